@@ -226,54 +226,44 @@ class Gate {
 
   /// Answers those that are not let in.
   httplib::Server::HandlerResponse operator()(const Request& request, Response& response) const {
-    if (const int status = status_of(request); status != 0) {
-      refuse(response, status, why(status));
-      return httplib::Server::HandlerResponse::Handled;
-    }
-    return httplib::Server::HandlerResponse::Unhandled;
+    const Refusal* const refusal = refusal_of(request);
+    if (refusal == nullptr) return httplib::Server::HandlerResponse::Unhandled;
+    refuse(response, refusal->first, refusal->second);
+    return httplib::Server::HandlerResponse::Handled;
   }
 
  private:
-  static constexpr int kForbidden = 403, kUnknown = 404, kNoMethod = 405, kTooLarge = 413, kNotJson = 415;
-
-  static const char* why(int status) {
-    switch (status) {
-      case kForbidden:
-        return "this server answers only the page that it gave out";
-      case kUnknown:
-        return "nothing is here: open the address that exactvo serve printed";
-      case kNoMethod:
-        return "GET the page, POST questions";
-      case kTooLarge:
-        return "the question is larger than 8 MiB, or does not say how large it is";
-      default:
-        return "a question is JSON, as it is: neither compressed nor in pieces";
-    }
-  }
+  /// A status, and why.
+  using Refusal = std::pair<int, const char*>;
+  static constexpr Refusal kForbidden{403, "this server answers only the page that it gave out"};
+  static constexpr Refusal kUnknown{404, "nothing is here: open the address that exactvo serve printed"};
+  static constexpr Refusal kNoMethod{405, "GET the page, POST questions"};
+  static constexpr Refusal kTooLarge{413, "the question is larger than 8 MiB, or does not say how large it is"};
+  static constexpr Refusal kNotJson{415, "a question is JSON, as it is: neither compressed nor in pieces"};
 
   bool is_own(const std::string& host) const { return std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end(); }
 
-  /// 0 where it is let in.
-  int status_of(const Request& request) const {
-    if (request.get_header_value_count("Host") != 1 || !is_own(request.get_header_value("Host"))) return kForbidden;
+  /// Null where it is let in.
+  const Refusal* refusal_of(const Request& request) const {
+    if (request.get_header_value_count("Host") != 1 || !is_own(request.get_header_value("Host"))) return &kForbidden;
     if (request.has_header("Origin")) {
       const std::string origin = request.get_header_value("Origin"), scheme = "http://";
-      if (origin.rfind(scheme, 0) != 0 || !is_own(origin.substr(scheme.size()))) return kForbidden;
+      if (origin.rfind(scheme, 0) != 0 || !is_own(origin.substr(scheme.size()))) return &kForbidden;
     }
     const std::string& path = request.path;
     const std::size_t end = path.find('/', 1);
-    if (end == std::string::npos || !are_equal(path.substr(1, end - 1), token_)) return kUnknown;
-    if (request.has_header("Range")) return kForbidden;  // many of them would multiply the page
-    if (request.method == "GET") return 0;
-    if (request.method != "POST") return kNoMethod;
+    if (end == std::string::npos || !are_equal(path.substr(1, end - 1), token_)) return &kUnknown;
+    if (request.has_header("Range")) return &kForbidden;  // many of them would multiply the page
+    if (request.method == "GET") return nullptr;
+    if (request.method != "POST") return &kNoMethod;
     if (request.get_header_value("Content-Type") != "application/json" || request.has_header("Content-Encoding") ||
         request.has_header("Transfer-Encoding"))
-      return kNotJson;
-    if (request.get_header_value_count("Content-Length") != 1) return kTooLarge;
+      return &kNotJson;
+    if (request.get_header_value_count("Content-Length") != 1) return &kTooLarge;
     const std::string length = request.get_header_value("Content-Length");
     const bool is_number = !length.empty() && length.size() < 10 &&
                            std::all_of(length.begin(), length.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_number && std::stoul(length) <= kMostBody ? 0 : kTooLarge;
+    return is_number && std::stoul(length) <= kMostBody ? nullptr : &kTooLarge;
   }
 
   std::array<std::string, 2> hosts_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/names.h"
 #include "support/routes_of_run.h"
 
 namespace exactvo::tools {
@@ -54,22 +55,13 @@ Json to_json(const std::string& id, const geometry::Obstacle& shape) {
   return {{"id", id}, {"solid", geometry::has_interior(shape)}, {"rings", std::move(rings)}};
 }
 
-const char* name(vo::BodyKind kind) {
-  switch (kind) {
-    case vo::BodyKind::enclosure:
-      return "enclosure";
-    case vo::BodyKind::obstacle_edge:
-      return "edge";
-    case vo::BodyKind::robot:
-      return "robot";
-    case vo::BodyKind::moving_obstacle:
-      return "moving";
-  }
-  return "";
-}
+constexpr geometry::Names<vo::BodyKind, 4> kBodyKinds{{{vo::BodyKind::enclosure, "enclosure"},
+                                                       {vo::BodyKind::obstacle_edge, "edge"},
+                                                       {vo::BodyKind::robot, "robot"},
+                                                       {vo::BodyKind::moving_obstacle, "moving"}}};
 
 Json to_json(const vo::Body& body) {
-  Json json = {{"kind", name(body.kind)}, {"owners", body.owners}};
+  Json json = {{"kind", geometry::name_in(kBodyKinds, body.kind)}, {"owners", body.owners}};
   const bool is_placed = body.kind == vo::BodyKind::enclosure || body.kind == vo::BodyKind::obstacle_edge;
   if (is_placed) json["shape"] = std::visit([](const auto& shape) { return to_json(shape); }, body.shape);
   return json;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "figures/label_places.h"
@@ -92,8 +93,8 @@ class RobotLayers {
     // The last one first: its label is always there, and the others give way.
     for (std::size_t k = places.size(); k-- > 0;) {
       const Vec2 p = places[k]->robots[i].position;
-      const Label time = label(p, robot.radius, places[k]->time, k, places.size());
-      to_.data.labelled_row({p.x, p.y, robot.radius, time.place.x, time.place.y}, time.text);
+      const auto& [at, time] = label(p, robot.radius, places[k]->time, k, places.size());
+      to_.data.labelled_row({p.x, p.y, robot.radius, at.x, at.y}, time);
     }
     to_.plot.data(index, to_.origin.using_columns(1, 2, ":3") +
                              fmt::format(" with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
@@ -159,12 +160,8 @@ class RobotLayers {
       for (const Step* mark : time_marks(to_.run)) times_.keep_off(vertices_at(obstacle, mark->time), true);
   }
 
-  struct Label {
-    Vec2 place;
-    std::string text;
-  };
-  /// The time; nothing where it would lie on something, unless it is the robot's last.
-  Label label(Vec2 p, double radius, double time, std::size_t k, std::size_t count) {
+  /// Where, and what: the time; nothing where it would lie on something, unless it is the robot's last.
+  std::pair<Vec2, std::string> label(Vec2 p, double radius, double time, std::size_t k, std::size_t count) {
     const bool last = k + 1 == count;
     const bool middle = k == count / 2;
     if (!to_.detailed || (robot_count() > kFewRobots && !last && !middle)) return {p, ""};

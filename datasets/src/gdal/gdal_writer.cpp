@@ -81,19 +81,8 @@ class LayerWriter {
     return system;
   }
 
-  static OGRFieldType type_of(PropertyTable::Type type) {
-    switch (type) {
-      case PropertyTable::Type::boolean:
-        return OFTInteger;
-      case PropertyTable::Type::integer:
-        return OFTInteger64;
-      case PropertyTable::Type::real:
-        return OFTReal;
-      case PropertyTable::Type::text:
-        break;
-    }
-    return OFTString;
-  }
+  /// By PropertyTable::Type.
+  static constexpr OGRFieldType kTypes[] = {OFTInteger, OFTInteger64, OFTReal, OFTString};
 
   /// The ids where a GeoPackage can have them as its own: distinct whole numbers from 1 on. Else none.
   static std::vector<GIntBig> feature_numbers(const std::vector<FeatureProperties>& all) {
@@ -118,7 +107,7 @@ class LayerWriter {
     OGRFieldDefn feature_id(kFeatureId, OFTString);
     if (has_id_column_) refuse_unless(layer.CreateField(&feature_id) == OGRERR_NONE);
     for (const PropertyTable::Column& column : table_.columns()) {
-      OGRFieldDefn field(column.name.c_str(), type_of(column.type));
+      OGRFieldDefn field(column.name.c_str(), kTypes[static_cast<int>(column.type)]);
       if (column.type == PropertyTable::Type::boolean) field.SetSubType(OFSTBoolean);
       refuse_unless(layer.CreateField(&field) == OGRERR_NONE);
     }

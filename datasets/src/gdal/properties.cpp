@@ -8,34 +8,23 @@
 namespace exactvo::datasets {
 namespace {
 
-void append_list(JsonWriter& json, const OGRFeature& feature, int field) {
-  json.begin_array();
-  int count = 0;
-  switch (feature.GetFieldDefnRef(field)->GetType()) {
-    case OFTIntegerList: {
-      const int* numbers = feature.GetFieldAsIntegerList(field, &count);
-      for (int k = 0; k < count; ++k) json.value(numbers[k]);
-      break;
-    }
-    case OFTInteger64List: {
-      const GIntBig* numbers = feature.GetFieldAsInteger64List(field, &count);
-      for (int k = 0; k < count; ++k) json.raw(std::to_string(numbers[k]));
-      break;
-    }
-    case OFTRealList: {
-      const double* numbers = feature.GetFieldAsDoubleList(field, &count);
-      for (int k = 0; k < count; ++k) json.value(numbers[k]);
-      break;
-    }
-    default: {
-      char** texts = feature.GetFieldAsStringList(field);
-      for (; texts != nullptr && *texts != nullptr; ++texts) json.value(*texts);
-    }
-  }
-  json.end_array();
+void append_number(JsonWriter& json, int number) {
+  json.value(number);
+}
+void append_number(JsonWriter& json, double number) {
+  json.value(number);
+}
+void append_number(JsonWriter& json, GIntBig number) {
+  json.raw(std::to_string(number));
 }
 
 void append_value(JsonWriter& json, const OGRFeature& feature, int field) {
+  int count = 0;
+  const auto list = [&](const auto* numbers) {
+    json.begin_array();
+    for (int k = 0; k < count; ++k) append_number(json, numbers[k]);
+    json.end_array();
+  };
   const OGRFieldDefn& definition = *feature.GetFieldDefnRef(field);
   if (feature.IsFieldNull(field)) {
     json.null();
@@ -50,16 +39,20 @@ void append_value(JsonWriter& json, const OGRFeature& feature, int field) {
       }
       break;
     case OFTInteger64:
-      json.raw(std::to_string(feature.GetFieldAsInteger64(field)));
-      break;
+      return append_number(json, feature.GetFieldAsInteger64(field));
     case OFTReal:
-      json.value(feature.GetFieldAsDouble(field));
-      break;
+      return append_number(json, feature.GetFieldAsDouble(field));
     case OFTIntegerList:
+      return list(feature.GetFieldAsIntegerList(field, &count));
     case OFTInteger64List:
+      return list(feature.GetFieldAsInteger64List(field, &count));
     case OFTRealList:
+      return list(feature.GetFieldAsDoubleList(field, &count));
     case OFTStringList:
-      append_list(json, feature, field);
+      json.begin_array();
+      for (char** texts = feature.GetFieldAsStringList(field); texts != nullptr && *texts != nullptr; ++texts)
+        json.value(*texts);
+      json.end_array();
       break;
     default:
       json.value(feature.GetFieldAsString(field));

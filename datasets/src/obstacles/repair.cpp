@@ -111,16 +111,9 @@ NormalizedPolygon normalized_without(const Kept& kept, std::vector<RingProblem>&
 }
 
 DataCode reason_for(EvenOddStatus status) {
-  switch (status) {
-    case EvenOddStatus::too_large:
-      return DataCode::out_of_range;
-    case EvenOddStatus::too_many_crossings:
-      return DataCode::size;
-    case EvenOddStatus::not_roundable:
-      return DataCode::rounding;
-    default:
-      return DataCode::library;
-  }
+  if (status == EvenOddStatus::too_large) return DataCode::out_of_range;
+  if (status == EvenOddStatus::too_many_crossings) return DataCode::size;
+  return status == EvenOddStatus::not_roundable ? DataCode::rounding : DataCode::library;
 }
 
 bool is_valid(const Polygon& polygon) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moving AI maps: "type octile", "height H", "width W", "map", then H rows of W symbols, the top one first.
 #include <map>
+#include <string_view>
 
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/geometry/counted.h"
@@ -17,27 +18,15 @@ struct Header {
   std::size_t width = 0;
 };
 
-/// Blocked: out of bounds, trees, water. Free: ground, swamp, and what games and warehouses put on the ground.
-enum class Ground { free, blocked, unknown };
+/// Out of bounds, trees, water.
+constexpr std::string_view kBlocked = "@OTW";
+/// Ground and swamp.
+constexpr std::string_view kFree = ".GS";
+/// Free as well: what games and warehouses put on the ground.
+constexpr std::string_view kUnusual = "stgE";
 
-Ground ground_of(char symbol) {
-  switch (symbol) {
-    case '@':
-    case 'O':
-    case 'T':
-    case 'W':
-      return Ground::blocked;
-    case '.':
-    case 'G':
-    case 'S':
-    case 's':
-    case 't':
-    case 'g':
-    case 'E':
-      return Ground::free;
-    default:
-      return Ground::unknown;
-  }
+bool is_one_of(std::string_view symbols, char symbol) {
+  return symbols.find(symbol) != std::string_view::npos;
 }
 
 std::size_t to_size(const LineReader& lines, std::string_view field) {
@@ -77,12 +66,11 @@ void read_row(const LineReader& lines, std::size_t y, Grid& grid, std::map<char,
     lines.refuse(DataCode::wrong_count, geometry::counted(row.size(), "cell"), geometry::counted(grid.width, "cell"));
   }
   for (std::size_t x = 0; x < row.size(); ++x) {
-    const Ground ground = ground_of(row[x]);
-    if (ground == Ground::unknown) {
+    const bool is_blocked = is_one_of(kBlocked, row[x]), is_unusual = is_one_of(kUnusual, row[x]);
+    if (!is_blocked && !is_unusual && !is_one_of(kFree, row[x]))
       lines.refuse(DataCode::format_syntax, "the symbol " + excerpt(row, x, 1), "one of . G S @ O T W");
-    }
-    if (ground == Ground::blocked) grid.occupied[y * grid.width + x] = 1;
-    if (row[x] == 's' || row[x] == 't' || row[x] == 'g' || row[x] == 'E') ++odd[row[x]];
+    if (is_blocked) grid.occupied[y * grid.width + x] = 1;
+    if (is_unusual) ++odd[row[x]];
   }
 }
 

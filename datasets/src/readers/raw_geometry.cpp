@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
@@ -28,64 +29,35 @@ std::string coordinates(geometry::Vec2 p) {
   return "(" + number(p.x) + ", " + number(p.y) + ")";
 }
 
-const char* words_for(DataCode code) {
-  switch (code) {
-    case DataCode::not_finite:
-      return "a coordinate that is no finite number";
-    case DataCode::too_few_points:
-      return "too few distinct points";
-    case DataCode::unclosed:
-      return "a ring that does not end where it began";
-    case DataCode::repeated_vertex:
-      return "the same point twice running";
-    case DataCode::clockwise:
-      return "the wrong winding";
-    case DataCode::zero_area:
-      return "a ring without area";
-    case DataCode::self_intersection:
-      return "a ring that crosses or touches itself";
-    case DataCode::out_of_range:
-      return "a coordinate beyond 2^100 m";
-    case DataCode::size:
-      return "rings that touch or cross too often";
-    default:
-      return "a hole that is not inside its polygon or meets another ring";
-  }
-}
+constexpr const char* kCut = "cut at its crossings, and recombined by the even-odd rule";
+constexpr const char* kHoleDropped = "hole dropped: nothing is in it";
 
-const char* words_for_repair(DataCode code) {
-  switch (code) {
-    case DataCode::unclosed:
-      return "ring closed";
-    case DataCode::repeated_vertex:
-      return "repeated vertex dropped";
-    case DataCode::clockwise:
-      return "winding reversed";
-    case DataCode::too_few_points:
-    case DataCode::zero_area:
-      return "hole dropped: nothing is in it";
-    default:
-      return "cut at its crossings, and recombined by the even-odd rule";
-  }
-}
+/// What is said of a finding: what was found, what is expected where it is refused, and how it is repaired.
+struct FindingWords {
+  DataCode code;
+  const char* found;
+  const char* expected;
+  const char* repair;
+};
+constexpr FindingWords kHoles{DataCode::hole_outside, "a hole that is not inside its polygon or meets another ring",
+                              "holes inside their polygon, apart from each other", kCut};
+constexpr FindingWords kFindings[] = {
+    {DataCode::not_finite, "a coordinate that is no finite number", "finite coordinates", kCut},
+    {DataCode::too_few_points, "too few distinct points", "at least three distinct points in a ring, two in a polyline",
+     kHoleDropped},
+    {DataCode::unclosed, "a ring that does not end where it began", kHoles.expected, "ring closed"},
+    {DataCode::repeated_vertex, "the same point twice running", kHoles.expected, "repeated vertex dropped"},
+    {DataCode::clockwise, "the wrong winding", kHoles.expected, "winding reversed"},
+    {DataCode::zero_area, "a ring without area", "a ring that encloses some area", kHoleDropped},
+    {DataCode::self_intersection, "a ring that crosses or touches itself", "a simple ring", kCut},
+    {DataCode::out_of_range, "a coordinate beyond 2^100 m", "coordinates within 2^100 m, 1.27e30 m, of (0, 0)", kCut},
+    {DataCode::size, "rings that touch or cross too often",
+     "rings whose edges' boxes meet in at most 2^26 pairs, and fewer or smaller holes", kCut}};
 
-const char* expectation(DataCode code) {
-  switch (code) {
-    case DataCode::not_finite:
-      return "finite coordinates";
-    case DataCode::too_few_points:
-      return "at least three distinct points in a ring, two in a polyline";
-    case DataCode::zero_area:
-      return "a ring that encloses some area";
-    case DataCode::self_intersection:
-      return "a simple ring";
-    case DataCode::out_of_range:
-      return "coordinates within 2^100 m, 1.27e30 m, of (0, 0)";
-    case DataCode::size:
-      return "rings whose edges' boxes meet in at most 2^26 pairs, and fewer or smaller holes";
-    default:
-      return "holes inside their polygon, apart from each other";
-  }
+const FindingWords& words_for(DataCode code) {
+  const auto* found =
+      std::find_if(std::begin(kFindings), std::end(kFindings), [&](const FindingWords& w) { return w.code == code; });
+  return found == std::end(kFindings) ? kHoles : *found;
 }
 
 /// Where it is; a JSON pointer names no vertex, so that is said here.
@@ -186,7 +158,7 @@ std::vector<RingFinding> far_findings(const RawGeometry& raw) {
 }  // namespace
 
 const char* words_of(const RingFinding& finding) {
-  return words_for(finding.code);
+  return words_for(finding.code).found;
 }
 
 std::string words_of_place(const RingFinding& finding) {
@@ -231,8 +203,8 @@ ValidationResult validate(const RawGeometry& raw) {
 }
 
 DataError ring_refusal(const RingFinding& finding, const std::string& file) {
-  return {finding.code, file, finding.place, words_for(finding.code) + words_for_where(finding),
-          expectation(finding.code)};
+  return {finding.code, file, finding.place, words_for(finding.code).found + words_for_where(finding),
+          words_for(finding.code).expected};
 }
 
 void refuse_unrepaired(const ValidationResult& checked, const std::string& file) {
@@ -311,7 +283,7 @@ void Collector::count(const std::vector<RingFinding>& findings) {
   if (stream_ != nullptr) return;
   for (const RingFinding& repaired : findings) {
     if (notes_of_findings_++ >= kMostFindings) return;
-    result_.notes.push_back({repaired.code, repaired.place, words_for_repair(repaired.code)});
+    result_.notes.push_back({repaired.code, repaired.place, words_for(repaired.code).repair});
   }
 }
 

@@ -112,34 +112,31 @@ class Checker {
     return unit.empty() ? text : text + " (" + unit + ")";
   }
 
-  static bool is_of_type(const Json& value, const std::string& type) {
-    if (type == "object") return value.is_object();
-    if (type == "array") return value.is_array();
-    if (type == "string") return value.is_string();
-    if (type == "number") return value.is_number();
-    if (type == "integer") return value.is_number_integer();
-    if (type == "boolean") return value.is_boolean();
-    if (type == "null") return value.is_null();
-    throw std::logic_error("schema type not supported: " + type);
-  }
-
-  static std::string name_of_type(const std::string& type) {
-    if (type == "object") return "an object";
-    if (type == "array") return "a list";
-    if (type == "string") return "text in quotes";
-    if (type == "boolean") return "true or false";
-    if (type == "null") return "null";
-    if (type == "integer") return "a whole number";
-    return "a " + type;
+  struct Type {
+    const char* name;
+    bool (Json::*holds)() const noexcept;
+    const char* words;
+  };
+  static const Type& type_named(const std::string& name) {
+    static constexpr Type kTypes[] = {{"object", &Json::is_object, "an object"},
+                                      {"array", &Json::is_array, "a list"},
+                                      {"string", &Json::is_string, "text in quotes"},
+                                      {"number", &Json::is_number, "a number"},
+                                      {"integer", &Json::is_number_integer, "a whole number"},
+                                      {"boolean", &Json::is_boolean, "true or false"},
+                                      {"null", &Json::is_null, "null"}};
+    for (const Type& type : kTypes)
+      if (name == type.name) return type;
+    throw std::logic_error("schema type not supported: " + name);
   }
 
   void type(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     const Json alternatives = rule.is_array() ? rule : Json::array({rule});
     std::string expected;
     for (const Json& alternative : alternatives) {
-      const std::string wanted = alternative.get<std::string>();
-      if (is_of_type(value, wanted)) return;
-      expected += (expected.empty() ? "" : " or ") + name_of_type(wanted);
+      const Type& wanted = type_named(alternative.get<std::string>());
+      if ((value.*wanted.holds)()) return;
+      expected += std::string(expected.empty() ? "" : " or ") + wanted.words;
     }
     refuse(DataCode::wrong_type, at, described(value), with_unit(expected, rules));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/names.h"
 #include "exactvo/geometry/predicates.h"
 #include "support/unsigned_zero.h"
 
@@ -37,21 +38,11 @@ Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
 
 namespace {
 
-const char* word_of(Taken taken) {
-  switch (taken) {
-    case Taken::itself:
-      return "itself";
-    case Taken::convex_pieces:
-      return "convex pieces";
-    case Taken::convex_hull:
-      return "convex hull";
-    case Taken::smallest_ellipse:
-      return "smallest ellipse";
-    case Taken::trap_free_ellipse:
-      break;
-  }
-  return "trap-free ellipse";
-}
+constexpr geometry::Names<Taken, 5> kTaken{{{Taken::itself, "itself"},
+                                            {Taken::convex_pieces, "convex pieces"},
+                                            {Taken::convex_hull, "convex hull"},
+                                            {Taken::smallest_ellipse, "smallest ellipse"},
+                                            {Taken::trap_free_ellipse, "trap-free ellipse"}}};
 
 // --- JSON ---
 
@@ -94,17 +85,25 @@ std::string boundary_json(const ConeAnswer& a) {
       json(a.encounter.velocity + a.nearest->u), json(a.nearest->u));
 }
 
-std::string certificate_json(const ConeAnswer& a) {
-  if (!a.certificate) return "null";
-  return fmt::format("{{\"verdict\": \"{}\", \"margin\": {}, \"text\": \"{}\"}}", name(check(*a.certificate)),
-                     json(a.certificate->margin), write_certificate(*a.certificate));
+std::string text_of(const vo::Certificate& c) {
+  return write_certificate(c);
+}
+std::string text_of(const vo::Containment& c) {
+  return write_containment(c);
+}
+
+template <class Certificate>
+std::string json(const std::optional<Certificate>& c) {
+  if (!c) return "null";
+  return fmt::format("{{\"verdict\": \"{}\", \"margin\": {}, \"text\": \"{}\"}}", name(check(*c)), json(c->margin),
+                     text_of(*c));
 }
 
 std::string half_planes_json(const ConeAnswer& a) {
   const char* why = why_no_certificate(a);
   return fmt::format(
       "\"half_plane\": {},\n  \"contact_half_plane\": {},\n  \"certificate\": {},\n  \"why_no_certificate\": {}",
-      json(a.half_plane), json(a.contact), certificate_json(a), why ? fmt::format("\"{}\"", why) : "null");
+      json(a.half_plane), json(a.contact), json(a.certificate), why ? fmt::format("\"{}\"", why) : "null");
 }
 
 std::string shared_json(const ConeAnswer& a) {
@@ -166,21 +165,14 @@ std::string bounds_json(const ConeAnswer& a) {
                      half_planes_json(a));
 }
 
-std::string containment_json(const std::optional<vo::Containment>& c) {
-  if (!c) return "null";
-  return fmt::format("{{\"verdict\": \"{}\", \"margin\": {}, \"text\": \"{}\"}}", name(check(*c)), json(c->margin),
-                     write_containment(*c));
-}
-
 /// What stands for the obstacle.
 std::string taken_json(const VoQuestion& q, const AskedObstacle& o) {
   const auto enclosed = enclosed_of(q, o);
-  const std::string proof =
-      enclosed ? fmt::format(", \"vertices\": {}, \"contained\": {},\n    \"certificate\": {}", enclosed->vertices,
-                             enclosed->contained, containment_json(enclosed->certificate))
-               : "";
-  return fmt::format("\"taken_as\": {{\"what\": \"{}\", \"convex_shapes\": {}{}}},\n  ", word_of(o.taken), o.encounters,
-                     proof);
+  const std::string proof = enclosed ? fmt::format(", \"vertices\": {}, \"contained\": {},\n    \"certificate\": {}",
+                                                   enclosed->vertices, enclosed->contained, json(enclosed->certificate))
+                                     : "";
+  return fmt::format("\"taken_as\": {{\"what\": \"{}\", \"convex_shapes\": {}{}}},\n  ",
+                     geometry::name_in(kTaken, o.taken), o.encounters, proof);
 }
 
 std::string cone_json(const ConeAnswer& a) {

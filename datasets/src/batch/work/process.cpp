@@ -142,7 +142,9 @@ void set_outcome(InputFacts& facts, const ReadCounts& counts, const std::optiona
   }
 }
 
+/// As a whole.
 void reject(InputFacts& facts, const char* code, const std::string& message) {
+  facts.tally = {};
   facts.outcome = "rejected";
   facts.code = code;
   facts.message = message;
@@ -189,13 +191,10 @@ InputFacts read_into(Chunker& chunker, const Input& input, const ReadOptions& gi
     for (const DataNote& note : file.notes) facts.notes.push_back(note.text);
     set_outcome(facts, file.counts, first_rejected);
   } catch (const DataError& error) {
-    facts.tally = {};
     reject(facts, code_name(error.code()), error.what());
   } catch (const std::bad_alloc&) {
-    facts.tally = {};
     reject(facts, code_name(DataCode::size), input.name + ": more memory wanted than there is");
   } catch (const std::exception& error) {
-    facts.tally = {};
     reject(facts, code_name(DataCode::library), input.name + ": " + error.what());
   }
   return facts;
