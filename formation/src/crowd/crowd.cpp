@@ -391,72 +391,67 @@ std::uint64_t CrowdBody::digest() const {
 
 }  // namespace crowd
 
-class Crowd::Engine : public CrowdBody {
- public:
-  using CrowdBody::CrowdBody;
-};
-
-Crowd::Crowd(const CrowdOptions& options) : engine_(std::make_unique<Engine>(options)) {}
-Crowd::Crowd(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
+Crowd::Crowd(const CrowdOptions& options) : body_(std::make_unique<CrowdBody>(options)) {}
+Crowd::Crowd(std::unique_ptr<CrowdBody> body) : body_(std::move(body)) {}
 Crowd::~Crowd() = default;
 Crowd::Crowd(Crowd&&) noexcept = default;
 Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 
 KindId Crowd::add_kind(const CrowdKind& kind) {
-  return engine_->add_kind(kind);
+  return body_->add_kind(kind);
 }
 RobotId Crowd::add_robot(Vec2 position, KindId kind) {
-  return engine_->add_robot(position, kind, {});
+  return body_->add_robot(position, kind, {});
 }
 RobotId Crowd::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
-  return engine_->add_robot(position, kind, velocity);
+  return body_->add_robot(position, kind, velocity);
 }
 void Crowd::reserve(std::size_t robots) {
-  engine_->core->robots.reserve(robots);
+  body_->core->robots.reserve(robots);
 }
 void Crowd::remove_robot(RobotId robot) {
-  engine_->remove_robot(robot);
+  body_->remove_robot(robot);
 }
 ObstacleId Crowd::add_obstacle(const geometry::Obstacle& obstacle) {
-  return engine_->add_obstacle(obstacle);
+  return body_->add_obstacle(obstacle);
 }
 ObstacleId Crowd::add_body(const geometry::ConvexShape& shape) {
-  return engine_->add_body(shape, false, {});
+  return body_->add_body(shape, false, {});
 }
 ObstacleId Crowd::add_moving_body(const geometry::ConvexShape& shape, Vec2 velocity) {
-  return engine_->add_body(shape, true, velocity);
+  return body_->add_body(shape, true, velocity);
 }
 void Crowd::set_body_velocity(ObstacleId body, Vec2 velocity) {
-  engine_->set_body_velocity(body, velocity);
+  body_->set_body_velocity(body, velocity);
 }
 Vec2 Crowd::body_velocity(ObstacleId body) const {
-  return engine_->core->bodies.velocity_of(engine_->body(body));
+  return body_->core->bodies.velocity_of(body_->body(body));
 }
 Vec2 Crowd::body_displacement(ObstacleId body) const {
-  const Body& b = engine_->body(body);
+  const Body& b = body_->body(body);
   return options().position_step * Vec2{static_cast<double>(b.x), static_cast<double>(b.y)};
 }
 std::vector<CrowdBodyState> Crowd::bodies() const {
   std::vector<CrowdBodyState> all;
-  for (const Body& b : engine_->core->bodies.all())
+  for (const Body& b : body_->core->bodies.all())
     all.push_back({b.id, b.shape, b.moves, body_displacement(b.id), body_velocity(b.id)});
   return all;
 }
 void Crowd::remove_obstacle(ObstacleId obstacle) {
-  engine_->remove_obstacle(obstacle);
+  body_->remove_obstacle(obstacle);
 }
 std::size_t Crowd::size() const {
-  return engine_->core->robots.size();
+  return body_->core->robots.size();
 }
 std::size_t Crowd::id_end() const {
-  return engine_->id_end;
+  return body_->id_end;
 }
 const CrowdOptions& Crowd::options() const {
-  return engine_->core->options;
+  return body_->core->options;
 }
 
 const CrowdKind& Crowd::kind(KindId kind) const {
-  const auto& kinds = engine_->core->kinds;
+  const auto& kinds = body_->core->kinds;
   if (kind >= kinds.size())
     throw CrowdError(CrowdProblem::unknown_kind,
                      words("kind", kind, "below " + std::to_string(kinds.size()) + ", the number of kinds"));
@@ -467,71 +462,71 @@ void Crowd::set_preferred(const std::vector<Vec2>& by_id) {
   if (by_id.size() < id_end())
     throw CrowdError(CrowdProblem::wrong_count, words("preferred velocities", static_cast<double>(by_id.size()),
                                                       std::to_string(id_end()) + ", one for each id"));
-  engine_->core->set_preferred(by_id);
-  engine_->core->steering = nullptr;
+  body_->core->set_preferred(by_id);
+  body_->core->steering = nullptr;
 }
 
 void Crowd::set_steering(Steering steering) {
-  engine_->core->steering = std::move(steering);
+  body_->core->steering = std::move(steering);
 }
 
 StepReport Crowd::step() {
-  return engine_->step();
+  return body_->step();
 }
 
 void Crowd::positions(std::vector<Vec2>& by_id) const {
-  engine_->fill(by_id, [&](std::size_t i) { return engine_->position(i); });
+  body_->fill(by_id, [&](std::size_t i) { return body_->position(i); });
 }
 
 void Crowd::velocities(std::vector<Vec2>& by_id) const {
-  engine_->fill(by_id, [&](std::size_t i) { return engine_->velocity(i); });
+  body_->fill(by_id, [&](std::size_t i) { return body_->velocity(i); });
 }
 
 void Crowd::kept(std::vector<std::uint8_t>& by_id) const {
-  const Robots& r = engine_->core->robots;
-  engine_->fill(by_id, [&](std::size_t i) { return (r.tag[i] & Robots::kKept) != 0; });
+  const Robots& r = body_->core->robots;
+  body_->fill(by_id, [&](std::size_t i) { return (r.tag[i] & Robots::kKept) != 0; });
 }
 
 Vec2 Crowd::position(RobotId robot) const {
-  return engine_->position(engine_->place_of(robot));
+  return body_->position(body_->place_of(robot));
 }
 
 Vec2 Crowd::velocity(RobotId robot) const {
-  return engine_->velocity(engine_->place_of(robot));
+  return body_->velocity(body_->place_of(robot));
 }
 
 KindId Crowd::kind_of(RobotId robot) const {
-  return static_cast<KindId>(engine_->core->robots.tag[engine_->place_of(robot)] & Robots::kKind);
+  return static_cast<KindId>(body_->core->robots.tag[body_->place_of(robot)] & Robots::kKind);
 }
 
 CrowdExplanation Crowd::explain(RobotId robot) const {
-  engine_->place_of(robot);
-  engine_->make_ready();
-  return engine_->core->explain(engine_->place_of(robot));
+  body_->place_of(robot);
+  body_->make_ready();
+  return body_->core->explain(body_->place_of(robot));
 }
 
 void Crowd::snapshot(std::ostream& to) const {
-  engine_->make_ready();
-  write_snapshot(*engine_, to);
+  body_->make_ready();
+  write_snapshot(*body_, to);
 }
 
 Crowd Crowd::restored(std::istream& from, int threads, Ranks* ranks) {
   CrowdOptions options = read_options(from);
   options.threads = threads;
   options.ranks = ranks;
-  auto engine = std::make_unique<Engine>(options);
-  read_snapshot(*engine, from);
-  return Crowd(std::move(engine));
+  auto body = std::make_unique<CrowdBody>(options);
+  read_snapshot(*body, from);
+  return Crowd(std::move(body));
 }
 
 std::uint64_t Crowd::digest() const {
-  return engine_->digest();
+  return body_->digest();
 }
 std::size_t Crowd::bytes() const {
-  return engine_->bytes();
+  return body_->bytes();
 }
 const CrowdPhases& Crowd::phases() const {
-  return engine_->core->phases;
+  return body_->core->phases;
 }
 
 }  // namespace exactvo::formation

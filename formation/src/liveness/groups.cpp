@@ -224,12 +224,6 @@ std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
   return found;
 }
 
-Groups::Members Groups::cluster_of(const Members& seeds) const {
-  Members all = by_nearness_to(seeds);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
 /// Whether a map for these is of a size that can be searched.
 bool Groups::fits(const Members& who, const std::vector<Vec2>& from, int replans) const {
   if (uses_whole_map(who)) return true;

@@ -113,7 +113,6 @@ class Groups {
   Members everyone() const;
   Members members_of(const Group& g) const;
   double largest_radius(const Members& who) const;  ///< m
-  Members cluster_of(const Members& seeds) const;
   std::vector<std::size_t> by_nearness_to(const Members& seeds) const;
   Members as_many_as_fit(std::vector<std::size_t> nearest_first, int replans) const;
   bool fits(const Members& who, const std::vector<Vec2>& from, int replans) const;

@@ -40,7 +40,8 @@ double largest(Vec2 v) {
 
 }  // namespace
 
-ObstacleIndex::ObstacleIndex(const Obstacle& obstacle) : edges_(edges_of(obstacle)) {
+ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
+    : edges_(edges_of(obstacle)), has_interior_(has_interior(obstacle)) {
   if (const auto* wall = std::get_if<Polyline>(&obstacle); wall && wall->points.size() == 1)
     edges_ = {{wall->points[0], wall->points[0]}};
   std::vector<Box> boxes;
@@ -51,48 +52,18 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle) : edges_(edges_of(obstacl
     largest_ = std::max({largest_, largest(e.a), largest(e.b)});
   }
   edges_by_place_ = BoxGrid(std::move(boxes));
-  if (has_interior(obstacle)) make_strips();
 }
 
-std::size_t ObstacleIndex::strip_at(double y) const {
-  const double count = static_cast<double>(start_.size() - 1);
-  return static_cast<std::size_t>(std::clamp((y - box_.low.y) / height_, 0.0, count - 1.0));
-}
-
-/// One strip per edge, or fewer where long edges would be listed in too many.
-void ObstacleIndex::make_strips() {
-  constexpr std::size_t kMostListings = 8;  // of an edge, on average
-  for (std::size_t count = edges_.size(); count > 0; count /= 2) {
-    height_ = (box_.high.y - box_.low.y) / static_cast<double>(count);
-    if (!(height_ > 0.0) || !std::isfinite(height_)) height_ = 1.0;
-    start_.assign(count + 1, 0);
-    const auto first = [&](const Segment& e) { return strip_at(std::min(e.a.y, e.b.y)); };
-    const auto last = [&](const Segment& e) { return strip_at(std::max(e.a.y, e.b.y)); };
-    std::size_t listings = 0;
-    for (const Segment& e : edges_) listings += last(e) - first(e) + 1;
-    if (listings > kMostListings * edges_.size() && count > 1) continue;
-    for (const Segment& e : edges_)
-      for (std::size_t k = first(e); k <= last(e); ++k) ++start_[k + 1];
-    for (std::size_t k = 0; k < count; ++k) start_[k + 1] += start_[k];
-    item_.resize(start_.back());
-    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-    for (std::size_t i = 0; i < edges_.size(); ++i)
-      for (std::size_t k = first(edges_[i]); k <= last(edges_[i]); ++k)
-        item_[next[k]++] = static_cast<std::uint32_t>(i);
-    return;
-  }
-}
-
+/// Of a polygon: by the edges that the ray towards +x may cross.
 bool ObstacleIndex::is_inside(Vec2 x) const {
-  if (start_.empty() || !holds(box_, x)) return false;
-  const std::size_t strip = strip_at(x.y);
-  bool odd = false;
-  for (std::uint32_t k = start_[strip]; k < start_[strip + 1]; ++k) {
-    const detail::Crossing c = detail::crossing(edges_[item_[k]], x);
-    if (c == detail::Crossing::on_edge) return true;
+  if (!has_interior_ || !holds(box_, x)) return false;
+  bool odd = false, on_edge = false;
+  edges_by_place_.for_each_meeting({x, {box_.high.x, x.y}}, [&](std::size_t e) {
+    const detail::Crossing c = detail::crossing(edges_[e], x);
+    on_edge = on_edge || c == detail::Crossing::on_edge;
     odd = odd != (c == detail::Crossing::right);
-  }
-  return odd;
+  });
+  return odd || on_edge;
 }
 
 /// Looks at the edges within a reach that doubles until it holds the nearest. An edge beyond a window is farther than

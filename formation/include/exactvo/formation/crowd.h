@@ -48,6 +48,10 @@
 
 namespace exactvo::formation {
 
+namespace crowd {
+class CrowdBody;
+}
+
 using geometry::Vec2;
 
 /// Names a robot until it is removed; then it may be given to another. Small numbers: 0 ... id_end() - 1.
@@ -313,9 +317,8 @@ class Crowd {
   const CrowdPhases& phases() const;
 
  private:
-  class Engine;
-  explicit Crowd(std::unique_ptr<Engine> engine);
-  std::unique_ptr<Engine> engine_;
+  explicit Crowd(std::unique_ptr<crowd::CrowdBody> body);
+  std::unique_ptr<crowd::CrowdBody> body_;
 };
 
 /// The name of the SIMD target in use ("AVX3", "AVX2", "SSE4", ...).

@@ -2,10 +2,9 @@
 #pragma once
 
 /// \file
-/// One obstacle, prepared for many distances: its edges by place, and for each height those that cross it. The same
-/// doubles as distance.h gives. Questions are exact where they are there.
+/// One obstacle, prepared for many distances: its edges by place. The same doubles as distance.h gives. Questions are
+/// exact where they are there.
 
-#include <cstdint>
 #include <vector>
 
 #include "exactvo/geometry/box_grid.h"
@@ -27,20 +26,16 @@ class ObstacleIndex {
   double swept_distance(const Segment& path, double enough) const;
 
  private:
-  void make_strips();
-  std::size_t strip_at(double y) const;
   bool is_inside(Vec2 x) const;
   /// The least distance to an edge, where that is less than `enough`.
   double edge_distance(const Segment& path, double enough) const;
   double signed_distance(Vec2 x, bool inside) const;
 
   std::vector<Segment> edges_;
+  bool has_interior_;
   Box box_;
   double largest_ = 0.0;  ///< m, coordinate
   BoxGrid edges_by_place_;
-  // Of a polygon: strips of equal height, each with the edges that cross it. Few enough to list no edge too often.
-  double height_ = 1.0;  ///< m
-  std::vector<std::uint32_t> start_, item_;
 };
 
 }  // namespace exactvo::geometry
