@@ -307,7 +307,7 @@ TEST(AuditMotion, TheWayOfAnObstacleIsWhatTheRunGoesBy) {
   SeededRandom random(exactvo::test::seed_of_run(94));
   for (int round = 0; round < 100; ++round) {
     const Leader motion = random_motion(random);
-    const exact::ExactWay way(motion, exact::Rational(10));
+    const exact::ExactWay way(motion);
     const MovingObstacle obstacle{"", geometry::Polyline{{{0, 0}, {1, 0}}}, motion};
     const double start = random.uniform(0.0, 8.0), end = start + random.uniform(0.01, 2.0);
     exact::Rational last(start);

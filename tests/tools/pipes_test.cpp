@@ -238,6 +238,54 @@ TEST(Pipes, EveryVerbReadsOneOnce) {
   EXPECT_THAT(here.read("out/metrics.json"), HasSubstr("pipe-s.json"));
 }
 
+/// Runs the line in the workplace; PROGRAM stands for the program.
+int status_of(const Workplace& here, std::string line) {
+  for (std::size_t at = 0; (at = line.find("PROGRAM", at)) != std::string::npos;)
+    line.replace(at, 7, "timeout 60 '" EXACTVO_PROGRAM "'");
+  const int status = std::system(("cd '" + here.path().string() + "'; " + line).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Pipes, ARunIsAuditedWhileItIsMade) {
+  const Workplace here;
+  std::filesystem::copy_file(data_file("paper/A7.json"), here.path() / "s.json");
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  const Outcome of_file = here.run("audit run/recording.jsonl");
+  ASSERT_EQ(of_file.status, 0);
+  make_pipe(here, "pipe");
+  EXPECT_EQ(
+      status_of(here, "PROGRAM simulate s.json --record pipe >run.log 2>&1 & PROGRAM audit pipe >log 2>&1 && wait $!"),
+      0);
+  EXPECT_EQ(here.read("log"), of_file.out);
+  EXPECT_THAT(here.read("run.log"), HasSubstr("all robots arrived"));
+  EXPECT_TRUE(fs::is_fifo(here.path() / "pipe")) << "no file takes its place";
+  EXPECT_EQ(status_of(here, "cat run/recording.jsonl | PROGRAM audit - >log 2>&1"), 0);
+  EXPECT_EQ(here.read("log"), of_file.out);
+}
+
+TEST(Pipes, ARecordingThatIsCutOffIsRefused) {
+  const Workplace here;
+  std::filesystem::copy_file(data_file("paper/A1.json"), here.path() / "s.json");
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  EXPECT_EQ(status_of(here, "head -n 9 run/recording.jsonl | PROGRAM audit - >log 2>&1"), 2);
+  EXPECT_THAT(here.read("log"), HasSubstr("standard input: line 10: found the end of the file, expected a last line"));
+  EXPECT_EQ(status_of(here, "gzip -c run/recording.jsonl | head -c 3000 | gzip -dc 2>err | PROGRAM audit - >log 2>&1"),
+            2);
+  EXPECT_THAT(here.read("log"), HasSubstr("standard input: line "));
+}
+
+TEST(Pipes, ARunWhoseReaderLeavesEnds) {
+  const Workplace here;
+  std::filesystem::copy_file(data_file("paper/A7.json"), here.path() / "s.json");
+  make_pipe(here, "pipe");
+  EXPECT_EQ(status_of(here,
+                      "PROGRAM simulate s.json --record-all --record pipe >log 2>&1 & "
+                      "head -c 100 pipe >beginning; wait $!"),
+            2);
+  EXPECT_THAT(here.read("log"), HasSubstr("pipe: found"));
+  EXPECT_THAT(here.read("beginning"), HasSubstr("exactvo-recording"));
+}
+
 /// Names in the folder that begin with a dot.
 std::vector<std::string> hidden_in(const fs::path& folder) {
   std::vector<std::string> found;

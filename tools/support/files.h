@@ -28,7 +28,8 @@ void check_output_folder(const std::filesystem::path& target);
 /// The same of a folder for figures alone: throws where it holds a file that is no figure of ours, nor belongs to one.
 void check_figure_folder(const std::filesystem::path& target);
 
-/// Takes an earlier output's pictures and page away, which would show another run than the one that is put there without any.
+/// Takes an earlier output's pictures and page away, which would show another run than the one that is put there
+/// without any.
 void remove_figures(const std::filesystem::path& target);
 
 /// A folder in the making: a hidden sibling of `target` to write into. `publish` puts it in place; without it the

@@ -33,7 +33,7 @@ class WarningRecorder : public RunRecorder {
  public:
   WarningRecorder(datasets::RecordingFile about, const RunOutput& output)
       : RunRecorder(std::move(about), output.folder, output.figures,
-                    output.page ? std::optional(output.page_limits) : std::nullopt),
+                    output.page ? std::optional(output.page_limits) : std::nullopt, output.recording),
         warnings_(output.warnings) {}
   void begin(const formation::Recording& run) override {
     if (warnings_) warnings_(run.warnings);

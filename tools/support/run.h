@@ -33,8 +33,9 @@ struct RunOutput {
   std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
   /// Gets, before the first row, what can be said before the run (formation::warnings_before).
   std::function<void(const std::vector<std::string>&)> warnings = nullptr;
-  bool page = false;                 ///< whether a page will be made (explorer/page.h)
-  PackedRunLimits page_limits = {};  ///< of what it holds
+  bool page = false;                     ///< whether a page will be made (explorer/page.h)
+  PackedRunLimits page_limits = {};      ///< of what it holds
+  std::filesystem::path recording = {};  ///< without a folder: a pipe for the recording
 };
 
 /// What makes a page and nothing else.

@@ -54,27 +54,30 @@ void ShownRows::move_to(RecordingFile& file) {
 }
 
 struct RunRecorder::Files {
-  Files(const std::filesystem::path& folder, const RecordingFile& about)
-      : recording(folder / "recording.jsonl", about), trajectory(folder / "trajectory.csv", about.scenario) {
+  Files(const std::filesystem::path& folder, const std::filesystem::path& recorded, const RecordingFile& about)
+      : recording(recorded, about) {
+    if (folder.empty()) return;
+    trajectory.emplace(folder / "trajectory.csv", about.scenario);
     if (!about.scenario.formation) return;
     lyapunov.emplace(folder / "lyapunov.csv");
     lyapunov->write(lyapunov_csv_head());
   }
 
   datasets::RecordingWriter recording;
-  datasets::TrajectoryWriter trajectory;
+  std::optional<datasets::TrajectoryWriter> trajectory;
   std::optional<datasets::AtomicFile> lyapunov;
 };
 
 RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures,
-                         std::optional<PackedRunLimits> page)
-    : about_(std::move(about)), folder_(std::move(folder)), has_figures_(has_figures) {
+                         std::optional<PackedRunLimits> page, const std::filesystem::path& recording)
+    : about_(std::move(about)), folder_(std::move(folder)), recording_(recording), has_figures_(has_figures) {
+  if (!folder_.empty()) recording_ = folder_ / "recording.jsonl";
   if (page) packer_.emplace(*page);
 }
 
 void RunRecorder::begin(const formation::Recording& run) {
   about_.recording = run;
-  if (!folder_.empty()) files_ = std::make_shared<Files>(folder_, about_);
+  if (!recording_.empty()) files_ = std::make_shared<Files>(folder_, recording_, about_);
   evaluator_.emplace(about_.scenario, about_.recording,
                      [this](const Step& row, const LyapunovRow* lyapunov) { take(row, lyapunov); });
 }
@@ -92,7 +95,7 @@ void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
   for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);
   for (const formation::JointPlan& plan : plans_of_last_) files_->recording.add(plan);
   files_->recording.add(row, bodies_, lyapunov);
-  files_->trajectory.add(row);
+  if (files_->trajectory) files_->trajectory->add(row);
   if (files_->lyapunov && lyapunov) files_->lyapunov->write(lyapunov_csv_line(*lyapunov));
 }
 
@@ -110,7 +113,7 @@ formation::Metrics RunRecorder::finish(formation::Recording run, RecordingFile& 
   file.outcome = found.metrics.outcome;
   if (files_) {
     files_->recording.finish(file);
-    files_->trajectory.finish();
+    if (files_->trajectory) files_->trajectory->finish();
     if (files_->lyapunov) files_->lyapunov->commit();
     files_.reset();
   }

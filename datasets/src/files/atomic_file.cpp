@@ -10,6 +10,7 @@
 
 #include "exactvo/geometry/require.h"
 #include "files/system_error.h"
+#include "files/text_file.h"
 #include "files/unique_word.h"
 
 namespace exactvo::datasets {
@@ -47,8 +48,12 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing, Unfinished unfinished)
+AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing, Unfinished unfinished, Pipe pipe)
     : path_(std::move(path)), unfinished_(unfinished) {
+  if (pipe == Pipe::is_written && is_pipe(path_)) {
+    open_pipe();
+    return;
+  }
   refuse_irregular(path_);
   if (missing == MissingFolder::is_made) make_directories(path_.parent_path());
   if (unfinished_ == Unfinished::stays) {
@@ -68,7 +73,15 @@ AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing, Unfini
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  if (unfinished_ == Unfinished::goes) ::unlink(temporary_.c_str());
+  if (unfinished_ == Unfinished::goes && !temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+/// Waits for a reader.
+void AtomicFile::open_pipe() {
+  do {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  } while (descriptor_ < 0 && errno == EINTR);
+  if (descriptor_ < 0) throw cannot_write(path_, errno);
 }
 
 /// Locked: two processes that append to one file would spoil it.
@@ -122,6 +135,10 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::commit(Durability durability) {
   EXACTVO_REQUIRE(descriptor_ >= 0, "a second commit of " + path_.string());
   flush();
+  if (temporary_.empty()) {
+    ::close(std::exchange(descriptor_, -1));
+    return;
+  }
   if (::fsync(descriptor_) != 0) throw cannot_write(path_, errno);
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
   ::close(std::exchange(descriptor_, -1));

@@ -2,13 +2,28 @@
 #include "json/json_cursor.h"
 
 #include <limits>
+#include <optional>
 
 namespace exactvo::datasets {
 
-JsonCursor JsonCursor::child(const Json& value, const std::string& token) const {
+namespace {
+
+/// The pointer of a value that stands somewhere in `all`, searched by its address: only messages need it.
+std::optional<std::string> pointer_to(const Json* value, const Json& all) {
+  if (value == &all) return "";
+  if (!all.is_structured()) return std::nullopt;
+  std::size_t number = 0;
+  for (auto entry = all.begin(); entry != all.end(); ++entry, ++number)
+    if (const auto rest = pointer_to(value, *entry))
+      return "/" + (all.is_object() ? pointer_token(entry.key()) : std::to_string(number)) + *rest;
+  return std::nullopt;
+}
+
+}  // namespace
+
+JsonCursor JsonCursor::child(const Json& value) const {
   JsonCursor cursor = *this;
   cursor.value_ = &value;
-  cursor.pointer_ += "/" + token;
   return cursor;
 }
 
@@ -16,13 +31,13 @@ JsonCursor JsonCursor::at(const std::string& key) const {
   if (!value_->is_object()) refuse("an object");
   const auto member = value_->find(key);
   if (member == value_->end()) refuse("the key \"" + key + "\"", DataCode::key_missing);
-  return child(*member, pointer_token(key));
+  return child(*member);
 }
 
 JsonCursor JsonCursor::at(std::size_t index) const {
   if (index >= size())
     refuse("at least " + std::to_string(index + 1) + (index == 0 ? " entry" : " entries"), DataCode::wrong_count);
-  return child((*value_)[index], std::to_string(index));
+  return child((*value_)[index]);
 }
 
 std::size_t JsonCursor::size() const {
@@ -70,7 +85,8 @@ int JsonCursor::integer() const {
 }
 
 void JsonCursor::refuse(const std::string& expected, DataCode code) const {
-  const std::string place = place_.empty() || pointer_.empty() ? place_ + pointer_ : place_ + ", " + pointer_;
+  const std::string pointer = pointer_to(value_, *root_).value_or("");
+  const std::string place = place_.empty() || pointer.empty() ? place_ + pointer : place_ + ", " + pointer;
   throw DataError(code, *file_, place, described(*value_), expected);
 }
 

@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// A place in a JSON value that knows how it was reached: what it can't give it names, with file, line and pointer.
+/// A place in a JSON value that can find out how it was reached: what it can't give it names, with file, line and
+/// pointer.
 
 #include <string>
 #include <utility>
@@ -16,7 +17,7 @@ class JsonCursor {
  public:
   /// `line` is put before the pointer in messages: "line 3" in JSON Lines, "" elsewhere.
   JsonCursor(const Json& value, const std::string& file, std::string line)
-      : value_(&value), file_(&file), place_(std::move(line)) {}
+      : root_(&value), value_(&value), file_(&file), place_(std::move(line)) {}
 
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
   bool is_null() const { return value_->is_null(); }
@@ -36,12 +37,12 @@ class JsonCursor {
   [[noreturn]] void refuse(const std::string& expected, DataCode code = DataCode::wrong_type) const;
 
  private:
-  JsonCursor child(const Json& value, const std::string& token) const;
+  JsonCursor child(const Json& value) const;
 
+  const Json* root_;
   const Json* value_;
   const std::string* file_;
   std::string place_;
-  std::string pointer_;
 };
 
 }  // namespace exactvo::datasets

@@ -22,6 +22,7 @@ namespace {
 using exact::ExactWay;
 using exact::Rational;
 using formation::MotionLaw;
+using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
 
@@ -49,8 +50,7 @@ bool has_its_offsets(const RecordingFile& file) {
 }
 
 /// Point (1), and where the run begins: the header against its own scenario and against the one that was meant.
-void check_header(const RecordingFile& file, const RunOutline& outline, const formation::Scenario* meant,
-                  AuditTally& tally) {
+void check_header(const RecordingFile& file, const Step& first, const formation::Scenario* meant, AuditTally& tally) {
   const auto require = [&](AuditPoint point, bool ok, const char* what) {
     ok ? tally.proven(point) : tally.refuted(point, what);
   };
@@ -74,12 +74,11 @@ void check_header(const RecordingFile& file, const RunOutline& outline, const fo
             "the scenario of the recording is not the one given");
   }
   const std::vector<formation::Robot>& robots = file.scenario.robots;
-  const std::vector<RunOutline::Places::Robot>& first = outline.first.robots;
-  const bool starts = std::equal(robots.begin(), robots.end(), first.begin(), first.end(),
-                                 [](const formation::Robot& robot, const RunOutline::Places::Robot& seen) {
+  const bool starts = std::equal(robots.begin(), robots.end(), first.robots.begin(), first.robots.end(),
+                                 [](const formation::Robot& robot, const RobotStep& seen) {
                                    return robot.position == seen.position && robot.velocity == seen.velocity;
                                  });
-  require(AuditPoint::sequence, outline.first.time == 0.0, "the first row is not at t = 0");
+  require(AuditPoint::sequence, first.time == 0.0, "the first row is not at t = 0");
   require(AuditPoint::sequence, starts, "the first row is not the scenario's start");
 }
 
@@ -89,85 +88,146 @@ bool has_arrived(const formation::Robot& robot, Vec2 position, double tolerance)
   return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));  // distances in a run are rounded
 }
 
-/// In the row before the last, which has no decisions.
-bool stayed(const RunOutline& outline, std::size_t robot) {
-  return outline.rows > 1 && outline.before_last.robots[robot].mode == formation::Mode::staying;
-}
+/// The end of a run. Its last row has no decisions, so that modes stand in the one before.
+struct End {
+  std::size_t rows;
+  const Step& last;
+  const Step* before_last;
+
+  bool stayed(std::size_t robot) const {
+    return before_last && before_last->robots[robot].mode == formation::Mode::staying;
+  }
+};
 
 /// Without a formation a run ends before its time limit where all robots have arrived or, as nothing comes to push
 /// them, stay because their goals are out of reach.
-bool has_ended(const formation::Scenario& s, const RunOutline& outline, bool& somebody_stays) {
+bool has_ended(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    if (has_arrived(s.robots[i], outline.last.robots[i].position, s.arrival_tolerance)) continue;
-    if (!stayed(outline, i) || !s.moving_obstacles.empty()) return false;
+    if (has_arrived(s.robots[i], end.last.robots[i].position, s.arrival_tolerance)) continue;
+    if (!end.stayed(i) || !s.moving_obstacles.empty()) return false;
     somebody_stays = true;
   }
   return true;
 }
 
 /// A run ends at its time limit, when nobody goes on, or when a formation has left every bound.
-bool is_whole(const formation::Scenario& s, const RunOutline& outline, bool& somebody_stays) {
+bool is_whole(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   constexpr double kSameRow = 1e-6;     // of a step
   constexpr double kOutOfBounds = 1e6;  // m and m/s
   const double steps = std::ceil(s.time_limit / s.time_step - kSameRow);
-  if (static_cast<double>(outline.rows - 1) >= steps) return true;
-  const std::vector<RunOutline::Places::Robot>& last = outline.last.robots;
+  if (static_cast<double>(end.rows - 1) >= steps) return true;
+  const std::vector<RobotStep>& last = end.last.robots;
   if (s.formation)
-    return std::any_of(last.begin(), last.end(), [](const RunOutline::Places::Robot& r) {
+    return std::any_of(last.begin(), last.end(), [](const RobotStep& r) {
       return !(geometry::norm(r.position) < kOutOfBounds && geometry::norm(r.velocity) < kOutOfBounds);
     });
-  return s.robots.size() == last.size() && has_ended(s, outline, somebody_stays);
+  return s.robots.size() == last.size() && has_ended(s, end, somebody_stays);
 }
 
-void check_end(const formation::Scenario& scenario, const RunOutline& outline, AuditTally& tally) {
-  is_whole(scenario, outline, tally.report.has_staying)
-      ? tally.proven(AuditPoint::sequence)
-      : tally.refuted(AuditPoint::sequence, "the last row is before the time limit, and not every robot has arrived");
-}
+/// Judges rows as they come, each when the next one is there.
+class RunAudit {
+ public:
+  /// `file` grows while rows are taken; `meant` as in `audit`, may be null. Both must outlive it.
+  RunAudit(const RecordingFile& file, const formation::Scenario* meant) : file_(file), meant_(meant) {}
 
-/// Point (2), the rows, and point (8), whose findings come in this order though all rows are needed for the first.
-void check_rows(const RecordingFile& file, const RunOutline& outline, const EachRow& each, AuditTally& tally) {
-  const std::vector<RationalObstacle> obstacles = rational_obstacles(file.scenario);
-  std::vector<ExactWay> ways;
-  for (const formation::MovingObstacle& o : file.scenario.moving_obstacles)
-    ways.emplace_back(o.motion, Rational(outline.latest));
-  std::optional<exact::ExponentialLaw> law;
-  if (file.recording.motion == MotionLaw::exponential)
-    law.emplace(Rational(file.recording.tracking_gain), Rational(file.recording.time_step));
-  PlacesInRows places(file, outline);
-  DecisionAudit decisions(file, obstacles, tally);
-  SequenceAudit sequence(file, ways, law ? &*law : nullptr, outline.last.time, tally);
-  MotionAudit motions(file, obstacles, ways, law ? &*law : nullptr, tally);
-  const auto of_header = static_cast<std::ptrdiff_t>(tally.report.findings.size());
-  walk(each, [&](const RowInRun& at) {
-    call_wait_hook();  // a long audit ends where its caller wants to
-    places.take(at.number, at.row);
-    sequence.check_row(at);
-    if (!at.next) return;
-    decisions.check(at);
-    sequence.check_step(at);
-    if (at.row.time >= 0.0 && at.row.time < at.next->time) motions.check(at);
-  });
-  std::vector<std::string>& findings = tally.report.findings;
-  const auto of_rows = static_cast<std::ptrdiff_t>(findings.size());
-  BodyAudit(file, obstacles, places, tally).check();
-  audit_plans(file, obstacles, places, tally);
-  std::rotate(findings.begin() + of_header, findings.begin() + of_rows, findings.end());
-}
-
-AuditTally audited(const RecordingFile& run, const RunOutline& outline, const EachRow& each,
-                   const formation::Scenario* scenario) {
-  AuditTally tally;
-  const std::string why = obstruction_of(run, outline);
-  if (why.empty()) {
-    check_header(run, outline, scenario, tally);
-    check_rows(run, outline, each, tally);
-    check_end(run.scenario, outline, tally);
-  } else {
-    tally.refuted(AuditPoint::sequence, why);
+  void take(SharedRow row) {
+    if (rows_ == 0) begin(*row);
+    if (why_.empty()) why_ = obstruction_in(*row);
+    if (judges_ && row_) judge(row.get());
+    before_ = std::exchange(row_, std::move(row));
+    ++rows_;
   }
-  return tally;
-}
+
+  /// REQUIRES: `file` is whole.
+  AuditTally finish() {
+    for (const formation::JointPlan& plan : file_.recording.plans)
+      if (why_.empty()) why_ = obstruction_in(plan, rows_);
+    if (rows_ == 0) why_ = "there are no rows";
+    if (!why_.empty()) {
+      tally_ = {};
+      tally_.refuted(AuditPoint::sequence, why_);
+      return std::move(tally_);
+    }
+    judge(nullptr);
+    judge_whole();
+    const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before_.get()}, tally_.report.has_staying);
+    is_whole_run ? tally_.proven(AuditPoint::sequence)
+                 : tally_.refuted(AuditPoint::sequence,
+                                  "the last row is before the time limit, and not every robot has arrived");
+    return std::move(tally_);
+  }
+
+ private:
+  /// Made once the header is known. They refer to each other.
+  struct Judges {
+    Judges(const RecordingFile& file, AuditTally& tally)
+        : obstacles(rational_obstacles(file.scenario)),
+          ways(ways_of(file.scenario)),
+          law(law_in(file.recording)),
+          places(file),
+          decisions(file, obstacles, tally),
+          sequence(file, ways, law ? &*law : nullptr, tally),
+          motions(file, obstacles, ways, law ? &*law : nullptr, tally) {}
+
+    static std::vector<ExactWay> ways_of(const formation::Scenario& scenario) {
+      std::vector<ExactWay> ways;
+      for (const formation::MovingObstacle& o : scenario.moving_obstacles) ways.emplace_back(o.motion);
+      return ways;
+    }
+    static std::optional<exact::ExponentialLaw> law_in(const formation::Recording& recording) {
+      if (recording.motion != MotionLaw::exponential) return std::nullopt;
+      return exact::ExponentialLaw(Rational(recording.tracking_gain), Rational(recording.time_step));
+    }
+
+    std::vector<RationalObstacle> obstacles;
+    std::vector<ExactWay> ways;
+    std::optional<exact::ExponentialLaw> law;
+    PlacesInRows places;
+    DecisionAudit decisions;
+    SequenceAudit sequence;
+    MotionAudit motions;
+  };
+
+  void begin(const Step& first) {
+    why_ = obstruction_in(file_);
+    if (why_.empty()) why_ = obstruction_in(first);
+    if (!why_.empty()) return;
+    check_header(file_, first, meant_, tally_);
+    of_header_ = tally_.report.findings.size();
+    judges_.emplace(file_, tally_);
+  }
+
+  /// The row that was taken last. `next`: null after the last.
+  void judge(const Step* next) {
+    if (!why_.empty()) return;
+    call_wait_hook();  // a long audit ends where its caller wants to
+    const RowInRun at{rows_ - 1, *row_, before_.get(), next};
+    judges_->places.take(at.row);
+    judges_->sequence.check_row(at);
+    if (!next) return;
+    judges_->decisions.check(at);
+    judges_->sequence.check_step(at);
+    if (at.row.time >= 0.0 && at.row.time < next->time) judges_->motions.check(at);
+  }
+
+  /// Points (2) and (8), whose findings come before those of rows.
+  void judge_whole() {
+    std::vector<std::string>& findings = tally_.report.findings;
+    const auto of_rows = static_cast<std::ptrdiff_t>(findings.size());
+    BodyAudit(file_, judges_->obstacles, judges_->places, tally_).check();
+    audit_plans(file_, judges_->obstacles, judges_->places, tally_);
+    std::rotate(findings.begin() + static_cast<std::ptrdiff_t>(of_header_), findings.begin() + of_rows, findings.end());
+  }
+
+  const RecordingFile& file_;
+  const formation::Scenario* meant_;
+  AuditTally tally_;
+  std::optional<Judges> judges_;  ///< nothing before the first row, and where the run can't be audited
+  std::string why_;               ///< it can't be
+  SharedRow before_, row_;
+  std::size_t rows_ = 0;
+  std::size_t of_header_ = 0;  ///< findings
+};
 
 /// The counts that are sums of others.
 AuditReport finished(AuditTally tally) {
@@ -194,28 +254,24 @@ bool AuditReport::clean() const {
 }
 
 AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario) {
-  const EachRow each = [&](const auto& take) {
-    for (const Step& row : file.recording.steps) take(SharedRow(SharedRow(), &row));
-  };
-  RunOutline outline;
-  for (const Step& row : file.recording.steps) outline.add(row);
-  return finished(audited(file, outline, each, scenario));
+  RunAudit audit(file, scenario);
+  for (const Step& row : file.recording.steps) audit.take(SharedRow(SharedRow(), &row));
+  return finished(audit.finish());
 }
 
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario) {
-  SealedRecording recording(path);
-  RunOutline outline;
-  const RecordingFile run =
-      recording.read([&](const RecordingFile&, const Step& row, const formation::LyapunovRow*) { outline.add(row); });
-  const EachRow each = [&](const auto& take) {
-    recording.read([&](const RecordingFile&, Step row, const formation::LyapunovRow*) {
-      take(std::make_shared<const Step>(std::move(row)));
-    });
-  };
-  AuditTally tally = audited(run, outline, each, scenario);
+  SealedLines lines(path);
+  RecordingFile run;
+  RunAudit audit(run, scenario);
+  read_recording_lines([&](std::string_view& line) { return lines.next(line); }, lines.file(),
+                       [&](const RecordingFile&, Step row, const formation::LyapunovRow*) {
+                         audit.take(std::make_shared<const Step>(std::move(row)));
+                       },
+                       run);
+  AuditTally tally = audit.finish();
   const AuditPoint point = AuditPoint::scenario;
-  recording.is_sealed() ? tally.proven(point)
-                        : tally.refuted(point, "the lines are not those that the sha256 of the last one was made of");
+  lines.are_sealed() ? tally.proven(point)
+                     : tally.refuted(point, "the lines are not those that the sha256 of the last one was made of");
   return finished(std::move(tally));
 }
 

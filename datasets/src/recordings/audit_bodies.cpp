@@ -107,16 +107,15 @@ void BodyAudit::check_outlooks() {
 bool BodyAudit::is_in_order(const Outlook& outlook, const Outlook* before) const {
   if (!before) return outlook.time == 0.0 && outlook.goal == 0;
   if (file_.scenario.formation) {
-    const PlacesInRows::Place* place = places_.of_outlook(outlook);
-    return outlook.goal == 0 && outlook.time > before->time && place && place->time == outlook.time;
+    return outlook.goal == 0 && outlook.time > before->time && places_.at_begin(outlook);
   }
   const formation::Robot& robot = file_.scenario.robots[outlook.robot];
   if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
     return false;
-  const PlacesInRows::Place* place = places_.of_outlook(outlook);
-  if (!place || place->time != outlook.time) return false;
+  const Vec2* place = places_.at_begin(outlook);
+  if (!place) return false;
   // Reached within the robot's radius; distances there are rounded.
-  const Point d = exactly(place->position) - exactly(robot.goals[before->goal]);
+  const Point d = exactly(*place) - exactly(robot.goals[before->goal]);
   const Rational reach(std::max(robot.radius, file_.scenario.arrival_tolerance));
   return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));
 }

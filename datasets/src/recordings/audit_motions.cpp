@@ -119,11 +119,13 @@ void MotionAudit::meet_moving(const Driven& d, std::size_t i, const Moved& moved
 }
 
 void MotionAudit::meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer) {
+  constexpr double kRounding = 1.0 + 0x1p-50;
   for (std::size_t j = 0; j < driven.size(); ++j) {
     if (j == i) continue;
     ++tally_.report.robot_questions;
-    const Rational reach = Rational(file_.scenario.robots[i].radius) + Rational(file_.scenario.robots[j].radius);
-    if (are_apart(driven[i].box, driven[j].box, exact::at_least(reach))) continue;
+    const double radius = file_.scenario.robots[i].radius, other = file_.scenario.robots[j].radius;
+    if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
+    const Rational reach = Rational(radius) + Rational(other);
     const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
     const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
     const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };

@@ -31,12 +31,14 @@ class PlanAudit {
 
   void begins(std::size_t k) {
     const std::size_t robot = plan_.robots[k];
-    const PlacesInRows::Place* place = places_.of(plan_.from_row, robot);
-    if (place && place->anchor == plan_.starts[k])
+    const geometry::Vec2* place = places_.at_begin(plan_, robot);
+    const std::string where = "where " + id(robot) + " was in row " + std::to_string(plan_.from_row);
+    if (place && *place == plan_.starts[k])
       tally_.proven(AuditPoint::plans);
+    else if (places_.is_forgotten(plan_, robot))
+      tally_.open(AuditPoint::plans, at_row(plan_.row, "the plan begins too long ago to know " + where));
     else
-      tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +
-                                                              " was in row " + std::to_string(plan_.from_row)));
+      tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin " + where));
   }
 
   void move(std::size_t m) {

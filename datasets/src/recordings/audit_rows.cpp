@@ -17,15 +17,10 @@ bool is_in_range(Vec2 v) {
   return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate;
 }
 
-RunOutline::Places places_in(const Step& row) {
-  RunOutline::Places seen{row.time, {}};
-  seen.robots.reserve(row.robots.size());
-  for (const RobotStep& r : row.robots) seen.robots.push_back({r.position, r.velocity, r.mode});
-  return seen;
-}
+}  // namespace
 
-std::string obstruction_beside_rows(const RecordingFile& run) {
-  const formation::Recording& recording = run.recording;
+std::string obstruction_in(const RecordingFile& beginning) {
+  const formation::Recording& recording = beginning.recording;
   const bool is_exponential = recording.motion == formation::MotionLaw::exponential;
   if (!(recording.time_step > 0.0) || !std::isfinite(recording.time_step)) return "the time step is not above 0";
   if (is_exponential && (!(recording.tracking_gain > 0.0) || !std::isfinite(recording.tracking_gain)))
@@ -55,62 +50,49 @@ std::string obstruction_in(const formation::JointPlan& plan, std::size_t rows) {
   return plan.row >= rows ? "a plan is made after the last row" : "";
 }
 
-}  // namespace
-
-void walk(const EachRow& each, const std::function<void(const RowInRun& at)>& judge) {
-  SharedRow before, row;
-  std::size_t number = 0;
-  const auto go_on = [&](SharedRow next) {
-    if (row) judge({number++, *row, before.get(), next.get()});
-    before = std::exchange(row, std::move(next));
-  };
-  each(go_on);
-  go_on(nullptr);
+void PlacesInRows::take(const Step& row) {
+  const std::size_t robots = row.robots.size(), number = rows_++;
+  for (; first_ < number && known_.size() + robots > most_; ++first_)
+    known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(robots));
+  for (const RobotStep& robot : row.robots) known_.push_back(robot.anchor);
+  const formation::Recording& recording = run_.recording;
+  for (; outlooks_ < recording.outlooks.size(); ++outlooks_)
+    if (const auto begin = row_of(recording.outlooks[outlooks_]))
+      ask_for({*begin, recording.outlooks[outlooks_].robot});
+  for (; plans_ < recording.plans.size(); ++plans_)
+    for (const std::size_t robot : recording.plans[plans_].robots) ask_for({recording.plans[plans_].from_row, robot});
+  for (auto at = asked_.lower_bound({number, 0}); at != asked_.end() && at->first.first == number; ++at)
+    at->second = row.robots[at->first.second].anchor;
 }
 
-std::string obstruction_of(const RecordingFile& run, const RunOutline& outline) {
-  std::string why = obstruction_beside_rows(run);
-  if (why.empty()) why = outline.obstruction;
-  for (const formation::JointPlan& plan : run.recording.plans)
-    if (why.empty()) why = obstruction_in(plan, outline.rows);
-  return why.empty() && outline.rows == 0 ? "there are no rows" : why;
-}
-
-void RunOutline::add(const Step& row) {
-  if (obstruction.empty()) obstruction = obstruction_in(row);
-  before_last = std::move(last);
-  last = places_in(row);
-  if (rows++ == 0) first = last;
-  latest = std::max(latest, row.time);
-}
-
-PlacesInRows::PlacesInRows(const RecordingFile& run, const RunOutline& outline)
-    : time_step_(run.recording.time_step), rows_(outline.rows) {
-  for (const formation::Outlook& outlook : run.recording.outlooks)
-    if (const auto row = row_of(outlook)) places_[{*row, outlook.robot}];
-  for (const formation::JointPlan& plan : run.recording.plans)
-    for (const std::size_t robot : plan.robots) places_[{plan.from_row, robot}];
+void PlacesInRows::ask_for(const Key& key) {
+  if (key.first < first_) return;
+  std::optional<Vec2>& place = asked_[key];
+  if (key.first < rows_) place = known_[(key.first - first_) * run_.scenario.robots.size() + key.second];
 }
 
 std::optional<std::size_t> PlacesInRows::row_of(const formation::Outlook& outlook) const {
-  const double row = std::round(outlook.time / time_step_);
-  if (!(row >= 0.0) || !(row < static_cast<double>(rows_))) return std::nullopt;
+  const double row = std::round(outlook.time / run_.recording.time_step);
+  if (!(row >= 0.0) || !(row < 0x1p53) || row * run_.recording.time_step != outlook.time) return std::nullopt;
   return static_cast<std::size_t>(row);
 }
 
-void PlacesInRows::take(std::size_t number, const Step& row) {
-  for (auto at = places_.lower_bound({number, 0}); at != places_.end() && at->first.first == number; ++at)
-    at->second = {row.time, row.robots[at->first.second].position, row.robots[at->first.second].anchor};
+const Vec2* PlacesInRows::at(const Key& key) const {
+  const auto found = asked_.find(key);
+  return found != asked_.end() && found->second ? &*found->second : nullptr;
 }
 
-const PlacesInRows::Place* PlacesInRows::of_outlook(const formation::Outlook& outlook) const {
+const Vec2* PlacesInRows::at_begin(const formation::Outlook& outlook) const {
   const auto row = row_of(outlook);
-  return row ? of(*row, outlook.robot) : nullptr;
+  return row ? at({*row, outlook.robot}) : nullptr;
 }
 
-const PlacesInRows::Place* PlacesInRows::of(std::size_t row, std::size_t robot) const {
-  const auto found = places_.find({row, robot});
-  return row < rows_ && found != places_.end() ? &found->second : nullptr;
+const Vec2* PlacesInRows::at_begin(const formation::JointPlan& plan, std::size_t robot) const {
+  return at({plan.from_row, robot});
+}
+
+bool PlacesInRows::is_forgotten(const formation::JointPlan& plan, std::size_t robot) const {
+  return asked_.count({plan.from_row, robot}) == 0;
 }
 
 }  // namespace exactvo::datasets

@@ -2,10 +2,10 @@
 #pragma once
 
 /// \file
-/// The rows of an audited run. They are read twice, so that none is kept: first for what is asked of them as a whole,
-/// then to judge one after the other.
+/// The rows of an audited run, which come one after the other and only once: of those that have been judged it is known
+/// where robots were.
 
-#include <functional>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,8 +18,6 @@
 namespace exactvo::datasets {
 
 using SharedRow = std::shared_ptr<const formation::Step>;
-/// Gives `take` every row in order, as often as it is called.
-using EachRow = std::function<void(const std::function<void(SharedRow row)>& take)>;
 
 /// A row among its neighbours.
 struct RowInRun {
@@ -28,57 +26,46 @@ struct RowInRun {
   const formation::Step* before;  ///< null of the first
   const formation::Step* next;    ///< null of the last, which does not decide
 };
-/// Keeps three rows at a time.
-void walk(const EachRow& each, const std::function<void(const RowInRun& at)>& judge);
 
-/// What is asked of the rows as a whole.
-class RunOutline {
- public:
-  /// Of a row where and in which mode robots were.
-  struct Places {
-    struct Robot {
-      geometry::Vec2 position, velocity;
-      formation::Mode mode;
-    };
-    double time = 0.0;  ///< s
-    std::vector<Robot> robots;
-  };
+// What keeps a run from being audited at all; empty where nothing does.
 
-  void add(const formation::Step& row);
+/// In what is said before the first row.
+std::string obstruction_in(const RecordingFile& beginning);
+std::string obstruction_in(const formation::Step& row);
+/// Of a run of so many rows.
+std::string obstruction_in(const formation::JointPlan& plan, std::size_t rows);
 
-  std::size_t rows = 0;
-  Places first, before_last, last;
-  double latest = 0.0;      ///< s
-  std::string obstruction;  ///< in the first row that has one
-};
-
-/// What keeps a run from being audited at all; empty where nothing does. `run` may be without rows.
-std::string obstruction_of(const RecordingFile& run, const RunOutline& outline);
-
-/// Where robots were in the rows that outlooks and plans speak of: memory by how many those are.
+/// Where robots were when outlooks and plans begin. Plans begin in rows that have passed: of these the last are known.
 class PlacesInRows {
  public:
-  struct Place {
-    double time;              ///< s, of the row
-    geometry::Vec2 position;  ///< m
-    geometry::Vec2 anchor;    ///< m, the place itself or, of second-order robots, the brake point
-  };
+  /// 2^23 positions are 128 MiB: as many as a run has memory for (formation's history.h).
+  static constexpr std::size_t kMostPositions = std::size_t{1} << 23;
 
-  /// REQUIRES: rows of the number that `outline` says.
-  PlacesInRows(const RecordingFile& run, const RunOutline& outline);
+  /// `run` must outlive it, and grows while rows are taken.
+  explicit PlacesInRows(const RecordingFile& run, std::size_t most = kMostPositions) : run_(run), most_(most) {}
 
-  void take(std::size_t number, const formation::Step& row);
+  /// The next row, before which `run` has the outlooks and plans that begin with it.
+  void take(const formation::Step& row);
 
-  /// Null of what no outlook and no plan speaks of, and where there is no such row.
-  const Place* of_outlook(const formation::Outlook& outlook) const;
-  const Place* of(std::size_t row, std::size_t robot) const;
+  /// m, where half-planes of the robot were built. Null where there is no row of that time.
+  const geometry::Vec2* at_begin(const formation::Outlook& outlook) const;
+  /// Of a robot of the plan.
+  const geometry::Vec2* at_begin(const formation::JointPlan& plan, std::size_t robot) const;
+  /// Whether the row in which it begins had been forgotten when the plan came up.
+  bool is_forgotten(const formation::JointPlan& plan, std::size_t robot) const;
 
  private:
+  using Key = std::pair<std::size_t, std::size_t>;  ///< row and robot
   std::optional<std::size_t> row_of(const formation::Outlook& outlook) const;
+  void ask_for(const Key& key);
+  const geometry::Vec2* at(const Key& key) const;
 
-  double time_step_;  ///< s
-  std::size_t rows_;
-  std::map<std::pair<std::size_t, std::size_t>, Place> places_;  ///< by row and robot
+  const RecordingFile& run_;
+  std::size_t most_;
+  std::size_t rows_ = 0, first_ = 0;                    ///< so far; of these the first that is known
+  std::deque<geometry::Vec2> known_;                    ///< m, anchors of all robots, row after row
+  std::size_t outlooks_ = 0, plans_ = 0;                ///< of the run, so far
+  std::map<Key, std::optional<geometry::Vec2>> asked_;  ///< m; nothing as long as its row has not come
 };
 
 }  // namespace exactvo::datasets

@@ -59,10 +59,10 @@ Point scaled(const Interval& x, const Point& p) {
 }  // namespace
 
 SequenceAudit::SequenceAudit(const RecordingFile& file, const std::vector<ExactWay>& ways,
-                             const exact::ExponentialLaw* law, double end, AuditTally& tally)
+                             const exact::ExponentialLaw* law, AuditTally& tally)
     : file_(file), ways_(ways), duration_(file.recording.time_step), tally_(tally) {
   if (!file.scenario.formation) return;
-  leader_.emplace(file.scenario.formation->leader, Rational(end) + 1);
+  leader_.emplace(file.scenario.formation->leader);
   const std::string integrator = file.info.integrator.value_or("exact");
   const Rational k(file.scenario.formation->gains.k3), z = k * duration_;
   if (law) {

@@ -22,9 +22,9 @@ namespace exactvo::datasets {
 
 class SequenceAudit {
  public:
-  /// `ways` of the moving obstacles, `law` where motion is exponential; the last row is at `end`, s. Keeps references.
+  /// `ways` of the moving obstacles, `law` where motion is exponential. Keeps references.
   SequenceAudit(const RecordingFile& file, const std::vector<exact::ExactWay>& ways, const exact::ExponentialLaw* law,
-                double end, AuditTally& tally);
+                AuditTally& tally);
 
   /// A row by itself: its time, where leader and moving obstacles are, and where half-planes are built.
   void check_row(const RowInRun& at);

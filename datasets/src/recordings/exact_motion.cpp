@@ -158,7 +158,7 @@ void ExactWay::add_leg(const Piece& leg, const Rational& from, const std::option
   }
 }
 
-ExactWay::ExactWay(const formation::Leader& motion, const Rational& end) {
+ExactWay::ExactWay(const formation::Leader& motion) {
   read_profile(motion);
   const Interval none{Rational(0), Rational(0)}, one{Rational(1), Rational(1)};
   const Point start = exactly(motion.path.front());
@@ -168,7 +168,7 @@ ExactWay::ExactWay(const formation::Leader& motion, const Rational& end) {
   };
   Interval before = none;
   Rational from(0);
-  for (std::size_t i = 1; i < motion.path.size() && from <= end; ++i) {
+  for (std::size_t i = 1; i < motion.path.size(); ++i) {
     const Point leg = exactly(motion.path[i]) - exactly(motion.path[i - 1]);
     if (sgn(leg.x) == 0 && sgn(leg.y) == 0) continue;
     const Interval length = root(dot(leg, leg));

@@ -75,8 +75,8 @@ class StepMotion {
 /// they are rational the corners' times are exact, else they are enclosed.
 class ExactWay {
  public:
-  /// As far as `end`, s. REQUIRES: at least one point in the path, profile times that do not fall.
-  ExactWay(const formation::Leader& motion, const Rational& end);
+  /// REQUIRES: at least one point in the path, profile times that do not fall.
+  explicit ExactWay(const formation::Leader& motion);
 
   /// The displacement over [start, end] piece by piece; s.
   struct TimedChord {

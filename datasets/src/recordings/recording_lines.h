@@ -6,11 +6,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/recording_file.h"
+#include "files/sha256.h"
 
 namespace exactvo::datasets {
 
@@ -20,25 +21,24 @@ using NextLine = std::function<bool(std::string_view& line)>;
 /// Of a text that must outlive it.
 NextLine lines_of(std::string_view text);
 
-/// `read_recording` of these lines: rows go to `take`. `name` is used in messages.
-RecordingFile read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take);
+/// `read_recording` of these lines into `run`, which is empty: rows go to `take`. `name` is used in messages.
+void read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take, RecordingFile& run);
 
-/// A recording that is read row by row, more than once, with the digest of its lines. The text of a pipe is kept, since
-/// nothing is left of it after the first time; of a file nothing is.
-class SealedRecording {
+/// Lines with their digest, which is made while they are read.
+class SealedLines {
  public:
-  explicit SealedRecording(std::filesystem::path path);
+  /// Of a file or a pipe; "-" is standard input.
+  explicit SealedLines(const std::filesystem::path& path) : lines_(path.string(), kLargestWholeFile) {}
 
-  /// Rows go to `take`. Throws DataError where it can't be read, or has changed since it was first read.
-  RecordingFile read(const TakeRow& take);
-  /// Whether the last line has the digest of all lines above it. REQUIRES: it was read.
-  bool is_sealed() const;
+  bool next(std::string_view& line);
+  const std::string& file() const { return lines_.file(); }
+  /// Whether the last line has the digest of all lines above it. REQUIRES: a recording was read to its end.
+  bool are_sealed();
 
  private:
-  std::filesystem::path path_;
-  std::optional<std::string> text_;  ///< of a pipe
-  std::string digest_;               ///< of all lines but the last
-  std::string last_line_;
+  TextLines lines_;
+  Sha256 hash_;
+  std::string last_;  ///< not in the hash yet
 };
 
 }  // namespace exactvo::datasets

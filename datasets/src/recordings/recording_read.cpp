@@ -111,6 +111,7 @@ class LineReader {
       bodies_.resize(number + 1);
       known_.resize(number + 1);
     }
+    if (known_[number]) at.at("number").refuse("a number of no body above", DataCode::out_of_range);
     bodies_[number] = to_body(at);
     require_owners(at.at("owners"), bodies_[number]);
     if (bodies_[number].kind == vo::BodyKind::robot) {
@@ -137,6 +138,8 @@ class LineReader {
 
   void read_outlook(const JsonCursor& at) {
     formation::Outlook outlook{at.at("time").number(), robot_of_scenario(at.at("robot")), at.at("goal").count(), {}};
+    if (rows_ > 0 && !(outlook.time > last_time_))
+      at.at("time").refuse("a time after that of the rows above", DataCode::out_of_range);
     const JsonCursor list = at.at("bodies");
     for (std::size_t k = 0; k < list.size(); ++k) outlook.bodies.push_back(known_body(list.at(k)));
     file_.recording.outlooks.push_back(std::move(outlook));
@@ -189,6 +192,7 @@ class LineReader {
     std::optional<formation::LyapunovRow> lyapunov;
     if (at.has("lyapunov")) lyapunov = to_lyapunov(at.at("lyapunov"), step.time);
     ++rows_;
+    last_time_ = step.time;
     take_(file_, std::move(step), lyapunov ? &*lyapunov : nullptr);
   }
 
@@ -223,6 +227,7 @@ class LineReader {
   const TakeRow& take_;
   std::vector<vo::Body>& bodies_;
   std::size_t rows_ = 0;
+  double last_time_ = 0.0;  ///< s, of the rows so far
   std::vector<bool> known_;
   bool at_end_ = false;
 };
@@ -269,18 +274,17 @@ RecordingFile with_all_rows(const Read& read) {
 
 }  // namespace
 
-RecordingFile read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take) {
+void read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take, RecordingFile& run) {
   std::string_view line;
   if (!next_line(line)) line = {};
   require_recording(line, next_line, name);
-  RecordingFile file;
   {
     const Json header = parse_json_line(line, name, 1);
     const JsonCursor first(header, name, "line 1");
     // A header of format 1 has no name: its version is what is wrong with it.
-    read_header(first.has("header") ? first.at("header") : first, name, file);
+    read_header(first.has("header") ? first.at("header") : first, name, run);
   }
-  LineReader reader(file, take);
+  LineReader reader(run, take);
   std::size_t number = 2;
   for (; next_line(line); ++number) {
     const Json content = parse_json_line(line, name, number);
@@ -290,12 +294,13 @@ RecordingFile read_recording_lines(const NextLine& next_line, const std::string&
     throw DataError(DataCode::wrong_count, name, "line " + std::to_string(number), "the end of the file",
                     "a last line \"end\": the recording was cut off");
   }
-  return file;
 }
 
 RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take) {
   TextLines lines(path);
-  return read_recording_lines([&](std::string_view& line) { return lines.next(line); }, path.string(), take);
+  RecordingFile run;
+  read_recording_lines([&](std::string_view& line) { return lines.next(line); }, path.string(), take, run);
+  return run;
 }
 
 RecordingFile read_recording(const std::filesystem::path& path) {
@@ -303,7 +308,11 @@ RecordingFile read_recording(const std::filesystem::path& path) {
 }
 
 RecordingFile parse_recording(const std::string& text, const std::string& name) {
-  return with_all_rows([&](const TakeRow& take) { return read_recording_lines(lines_of(text), name, take); });
+  return with_all_rows([&](const TakeRow& take) {
+    RecordingFile run;
+    read_recording_lines(lines_of(text), name, take, run);
+    return run;
+  });
 }
 
 }  // namespace exactvo::datasets

@@ -93,7 +93,8 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
 }  // namespace
 
 struct RecordingWriter::State {
-  explicit State(const std::filesystem::path& path) : out(path) {}
+  explicit State(const std::filesystem::path& path)
+      : out(path, MissingFolder::is_made, Unfinished::goes, Pipe::is_written) {}
 
   /// Writes {"name": what was appended}.
   template <class Append>

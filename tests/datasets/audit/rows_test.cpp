@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The audit of a file reads it row by row, twice: it finds what the audit of the whole recording in memory finds.
+// The audit of a file or a pipe reads it once, row by row: it finds what the audit of the whole recording in memory
+// finds.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "audit/edits.h"
 #include "exactvo/datasets/audit.h"
-#include "recordings/recording_lines.h"
+#include "recordings/audit_rows.h"
 
 namespace exactvo::datasets::test {
 namespace {
@@ -52,21 +55,49 @@ TEST_F(AuditRowByRow, FindsWhatTheAuditOfAllRowsFinds) {
   EXPECT_GT(refuted, 50u) << "else little was compared";
 }
 
-TEST_F(AuditRowByRow, RefusesAFileThatChangesBetweenItsTwoReadings) {
-  const std::vector<ShortRun> runs = short_runs();
-  const TakeRow ignore = [](const RecordingFile&, const formation::Step&, const formation::LyapunovRow*) {};
-  write(sealed(runs[0].lines));
-  SealedRecording recording(path_);
-  recording.read(ignore);
-  EXPECT_TRUE(recording.is_sealed());
-  EXPECT_NO_THROW(recording.read(ignore));
-  write(sealed(runs[1].lines));
-  try {
-    recording.read(ignore);
-    FAIL() << "the rows judged would not be those that were counted";
-  } catch (const DataError& e) {
-    EXPECT_EQ(e.code(), DataCode::file_unreadable) << e.what();
+TEST_F(AuditRowByRow, FindsInAPipeWhatItFindsInAFile) {
+  for (const ShortRun& run : short_runs()) {
+    write(sealed(run.lines));
+    const std::string of_file = to_json(audit_recording(path_, &run.scenario));
+    const fs::path pipe = path_.string() + ".pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::thread writer([&] { write_recording(pipe, read_recording(path_)); });
+    EXPECT_EQ(to_json(audit_recording(pipe, &run.scenario)), of_file) << run.name;
+    writer.join();
+    EXPECT_TRUE(fs::is_fifo(pipe)) << "no file takes its place";
+    fs::remove(pipe);
   }
+}
+
+formation::Step row_at(double x) {
+  formation::Step row;
+  for (const double y : {0.0, 5.0}) row.robots.emplace_back().anchor = {x, y};
+  return row;
+}
+
+TEST(PlacesInRows, KnowsTheLastOfTheRowsThatHavePassed) {
+  RecordingFile run;
+  run.recording.time_step = 0.5;
+  run.scenario.robots.resize(2);
+  run.recording.outlooks = {{1.0, 0, 0, {}}, {1.25, 0, 0, {}}};  // of row 2, and of none
+  PlacesInRows places(run, 6);                                   // three rows of two robots
+  const auto plan = [&](std::size_t from_row) { run.recording.plans.push_back({5, from_row, {0, 1}, {}, {}}); };
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (k == 5)
+      for (const std::size_t from : {2, 3, 4, 5}) plan(from);
+    places.take(row_at(static_cast<double>(k)));
+  }
+  const std::vector<formation::JointPlan>& plans = run.recording.plans;
+  EXPECT_TRUE(places.is_forgotten(plans[0], 1)) << "rows 3 to 5 were known when it came up";
+  EXPECT_EQ(places.at_begin(plans[0], 1), nullptr);
+  for (std::size_t k = 1; k < plans.size(); ++k) {
+    EXPECT_FALSE(places.is_forgotten(plans[k], 1));
+    ASSERT_NE(places.at_begin(plans[k], 1), nullptr) << plans[k].from_row;
+    EXPECT_EQ(*places.at_begin(plans[k], 1), (geometry::Vec2{static_cast<double>(plans[k].from_row), 5.0}));
+  }
+  ASSERT_NE(places.at_begin(run.recording.outlooks[0]), nullptr);
+  EXPECT_EQ(*places.at_begin(run.recording.outlooks[0]), (geometry::Vec2{2.0, 0.0}));
+  EXPECT_EQ(places.at_begin(run.recording.outlooks[1]), nullptr);
 }
 
 }  // namespace

@@ -239,7 +239,8 @@ ExitCode audit(const AuditFlags& flags) {
 }
 
 void declare_audit(CLI::App& app, AuditFlags& flags) {
-  app.add_option("path", flags.path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
+  app.add_option("path", flags.path,
+                 "A recording.jsonl, or - for stdin; a crowd's FILE.evr; or a folder searched for both");
   app.add_option("--sample", flags.sample, "Of a recording of a crowd, check about this many motions; 0: all");
   app.add_option("--scenario", flags.scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags.certificates,
@@ -255,6 +256,7 @@ Verb audit_verb() {
       "Verify recordings in exact rational arithmetic: bodies, half-planes, choices, every step (exit status 1 if one "
       "fails)",
       "  exactvo audit out --json\n"
+      "  zstd -dc recording.jsonl.zst | exactvo audit -\n"
       "  exactvo audit out/A1 --scenario datasets/data/paper/A1.json\n"
       "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
       "      | exactvo audit --certificate -\n",

@@ -137,8 +137,9 @@ FinishedRun run_with_progress(const SimulateFlags& flags, const datasets::Loaded
   line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
   const TerminateOnSignal terminate_on_signal;
   const bool figures = !folder.empty() && !flags.no_figures;
-  return run(scenario, options, provenance,
-             {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures});
+  RunOutput output{folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures};
+  output.recording = flags.crowd.record;
+  return run(scenario, options, provenance, output);
 }
 
 void print_results(const SimulateFlags& flags, const FinishedRun& finished) {
@@ -249,6 +250,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
+          "  mkfifo large.pipe; exactvo simulate large.json --record large.pipe & exactvo audit large.pipe\n"
           "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
           with_flags(declare_simulate, simulate_anywhere)};

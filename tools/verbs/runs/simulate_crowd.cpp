@@ -169,6 +169,15 @@ std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulati
   return text;
 }
 
+/// Of the standard engine.
+void check_record(const std::string& record, const std::string& out) {
+  std::error_code unknown;
+  if (!out.empty() || !std::filesystem::is_fifo(record, unknown))
+    throw UsageError("--record", record,
+                     out.empty() ? "a pipe; or --engine crowd beside it, or --out DIR, which writes the recording"
+                                 : "no --out beside it, which writes the recording");
+}
+
 }  // namespace
 
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
@@ -176,7 +185,9 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
                  "standard: everything; crowd: many robots with goals among obstacles, method orca, every step "
                  "certified")
       ->capture_default_str();
-  app.add_option("--record", flags.record, "With --engine crowd: FILE.evr for positions, whole or not at all");
+  app.add_option("--record", flags.record,
+                 "With --engine crowd: FILE.evr for positions, whole or not at all. Else, without --out: a pipe that "
+                 "takes the recording as the run is made");
   app.add_option("--every", flags.every, "With --record: a row every N steps")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
@@ -203,14 +214,12 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
   if (flags.engine != "crowd" && flags.engine != "standard")
     throw UsageError("--engine", flags.engine, "standard or crowd");
   const bool is_crowd = flags.engine == "crowd";
-  if (!is_crowd && !flags.record.empty())
-    throw UsageError("--record", flags.record,
-                     "--engine crowd beside it; without, --out DIR writes the recording of a run");
+  if (!is_crowd && !flags.record.empty()) check_record(flags.record, out);
   for (const CLI::Option* option : is_crowd ? flags.of_standard : flags.of_crowd)
     if (option->count() > 0) throw only_with(option->get_name(), is_crowd);
   if (is_crowd && flags.method->count() > 0 && simulation.method != "orca")
     throw UsageError("--method", simulation.method, "orca, the only method of --engine crowd");
-  if (!flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
+  if (is_crowd && !flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
     throw UsageError("--record", flags.record, "a name that ends in .evr");
   if (flags.snapshot_every > 0 && flags.record.empty())
     throw UsageError("--snapshot-every", std::to_string(flags.snapshot_every),

@@ -32,13 +32,19 @@ enum class Unfinished {
   stays  ///< it stays as "PATH.unfinished", whatever ends the program; the next one goes on with it
 };
 
+/// What happens where a pipe stands at the path.
+enum class Pipe {
+  is_refused,  ///< DataError: the rename would take its place
+  is_written   ///< bytes go into it as they come; who reads it has to find out where they end too early
+};
+
 /// A file in the making. Nothing stands at `path` until `commit`.
 class AtomicFile {
  public:
   /// Throws DataError (E_FILE_UNWRITABLE), as the others do, also where another process makes the same file and it
   /// `stays`.
   explicit AtomicFile(std::filesystem::path path, MissingFolder missing = MissingFolder::is_made,
-                      Unfinished unfinished = Unfinished::goes);
+                      Unfinished unfinished = Unfinished::goes, Pipe pipe = Pipe::is_refused);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -53,12 +59,13 @@ class AtomicFile {
   void commit(Durability durability = Durability::name);
 
  private:
+  void open_pipe();
   void open_unfinished();
   void flush();
   void put(std::string_view bytes);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  ///< none for a pipe
   Unfinished unfinished_ = Unfinished::goes;
   int descriptor_ = -1;
   std::string buffer_;

@@ -47,7 +47,8 @@ struct RecordingFile {
 };
 
 /// A recording that is written as the run is made, in constant memory. Whole or not at all (atomic_file.h): nothing
-/// stands there before `finish`. Throws DataError where it can't be written.
+/// stands there before `finish`. Into a pipe it goes as it is made; one that is cut off lacks its last line. Throws
+/// DataError where it can't be written.
 class RecordingWriter {
  public:
   /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
