@@ -395,6 +395,34 @@ TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
 }
 
+/// They pushed each other off it, by nineteen plans, until the time limit: the first one drove 278 m.
+TEST(Liveness, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {-5, 3}, {5, 0})};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_EQ(m.plans->groups, 0u);
+  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
+  for (const RobotMetrics& r : m.robots) EXPECT_LT(r.path_length, 15.0) << r.id;
+  EXPECT_LT(run.steps.back().time, 10.0) << "nobody goes on";
+  EXPECT_NE(m.outcome.find("R1 stays: R2 rests at its goal, 0 m from that of R1"), std::string::npos) << m.outcome;
+}
+
+/// Its way back leads through a robot that rests there and does not cooperate: it went "back" for the whole run without
+/// a move, plan after plan, and more time was said to be all that was missing.
+TEST(Liveness, WhoHasNoWayBackMakesNoPlanToGoBack) {
+  for (const double half : {1.25, 1.5}) {
+    Scenario s;
+    s.time_limit = 60.0;
+    test_scenes::add_box(s, 8.0, half);
+    s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {5, 0}, {-5, 0})};
+    s.robots[0].cooperates = false;
+    const Metrics m = measure(s, simulate(s));
+    EXPECT_EQ(m.plans->groups, 0u) << half;
+    EXPECT_NE(m.outcome.find("there is no plan on the roadmap for R2"), std::string::npos) << m.outcome;
+  }
+}
+
 /// With a sight of half a radius robots saw each other too late and overlapped: whoever can be met in a step is seen.
 TEST(Liveness, WhoCanBeMetIsSeenHoweverShortTheNeighbourDistance) {
   for (const double distance : {0.1, 0.5, 1.1, 1.2}) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "exactvo/datasets/audit.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/stuck.h"
 #include "exactvo/formation/waiting.h"
 #include "liveness_scenes.h"
 #include "support/seeded_random.h"
@@ -164,16 +166,68 @@ TEST(SlotPlans, NobodyPlansForRobotsThatDoNotCooperateNorAmongMovingObstacles) {
   EXPECT_EQ(liveness_of(s, {}), Liveness::off);
 }
 
-/// A slot inside a wall cannot be reached, and nobody plans for it.
-TEST(SlotPlans, ASlotThatIsTakenByAWallIsNotPlannedFor) {
-  Scenario s = at_slots(test_scenes::circle(2));
-  s.formation->offsets[0] = {0.0, 9.0};
-  test_scenes::add_wall(s, {{-1.0, 9.0}, {1.0, 9.0}});  // through the slot of the first
-  s.time_limit = 30.0;
+/// A line of robots beside each other, whose leader drives 10 m to the right.
+Scenario line_of(std::vector<double> offsets) {
+  Scenario s;
+  for (const double y : offsets)
+    test_scenes::add_robot(s, {-10.0, 2.0 * static_cast<double>(s.robots.size()) - 3.0}, {0.0, y});
+  s = at_slots(std::move(s));
+  s.formation->leader.path = {{-10.0, 0.0}, {0.0, 0.0}};
+  s.formation->leader.speed = 1.5;
+  s.time_limit = 60.0;
+  return s;
+}
+
+bool rests_at_the_end(const SlotRun& r) {
+  const std::vector<RobotStep>& last = r.recording.steps.back().robots;
+  return std::all_of(last.begin(), last.end(), [](const RobotStep& x) { return geometry::norm(x.velocity) < kAtRest; });
+}
+
+/// Robots that were plans' goals moved in and out of each other's slots until the time limit, or drove round the
+/// obstacle for as long.
+TEST(SlotPlans, WhoseSlotAnObstacleTakesGoesBesideItAndStays) {
+  Scenario s = line_of({-3.0, -1.0, 1.0, 3.0});
+  s.obstacles.push_back({"block", geometry::Polygon{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}}, {}}});
   const SlotRun r = run(s);
-  EXPECT_FALSE(r.is_formed());
   EXPECT_EQ(r.recording.liveness->groups, 0u);
   EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
+  EXPECT_THAT(r.metrics.outcome,
+              testing::HasSubstr("R4 cannot take its slot, (0, 3): obstacle 'block' stands in it; it ends 1.6"));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(r.metrics.robots[i].arrived) << i;
+  EXPECT_FALSE(r.metrics.robots[3].arrived);
+  EXPECT_TRUE(rests_at_the_end(r));
+  EXPECT_TRUE(audited(r).clean());
+}
+
+TEST(SlotPlans, OfSlotsInOnePlaceOneIsFilledAndTheOthersStandBesideIt) {
+  const SlotRun r = run(line_of({0.0, 0.3, -0.3}));
+  EXPECT_EQ(r.recording.liveness->groups, 0u);
+  EXPECT_THAT(r.metrics.outcome, testing::HasSubstr(" cannot take its slot, (0, 0"));
+  EXPECT_THAT(r.metrics.outcome, testing::HasSubstr("the slot of R"));
+  std::size_t arrived = 0;
+  for (const RobotMetrics& robot : r.metrics.robots) arrived += robot.arrived;
+  EXPECT_EQ(arrived, 1u);
+  EXPECT_TRUE(rests_at_the_end(r));
+}
+
+/// A slot that the margin keeps a robot off, by less than counts as arrived: it drove round the wall for the whole run.
+TEST(SlotPlans, ASlotInTheMarginOfAWallIsFilledAsNearAsTheMarginLeaves) {
+  Scenario s = line_of({-3.0, -1.0, 1.0, 3.0});
+  s.obstacles.push_back({"box", geometry::Polygon{{{0.5, -6}, {6, -6}, {6, 6}, {0.5, 6}}, {}}});
+  const SlotRun r = run(s);
+  EXPECT_TRUE(r.is_formed()) << r.metrics.outcome;
+  EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
+  for (const RobotMetrics& robot : r.metrics.robots) EXPECT_LT(robot.path_length, 14.0) << robot.id;
+}
+
+/// Behind walls: nobody drives round them for ever.
+TEST(SlotPlans, ASlotInAClosedRoomIsNamed) {
+  Scenario s = line_of({-2.0, 3.0});
+  s.obstacles.push_back({"room", geometry::Polyline{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}, {-1, 2}}}});
+  const SlotRun r = run(s);
+  EXPECT_THAT(r.metrics.outcome, testing::HasSubstr("R2 cannot take its slot, (0, 3): obstacle 'room' encloses it"));
+  EXPECT_TRUE(r.metrics.robots[0].arrived);
+  EXPECT_TRUE(rests_at_the_end(r)) << r.metrics.outcome;
 }
 
 TEST(SlotPlans, BeginWhereTheBrakePointsWere) {

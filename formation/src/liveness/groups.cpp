@@ -24,6 +24,9 @@ constexpr double kBetweenPlans = 5.0;
 constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
+/// Plans for which the same robots waited, with the same goals: beyond that they are in vain.
+constexpr int kMostTries = 4;
+
 // In diameters.
 constexpr double kNearer = 0.4;    ///< counts as coming nearer
 constexpr double kTogether = 1.0;  ///< a smaller gap joins two robots in a group
@@ -51,6 +54,22 @@ std::vector<std::size_t> merged(std::vector<std::size_t> a, const std::vector<st
 
 bool has(const std::vector<std::size_t>& sorted, std::size_t x) {
   return std::binary_search(sorted.begin(), sorted.end(), x);
+}
+
+/// Why there is no plan, before the names of those who wait for one.
+std::string words_of(PlanEnd why) {
+  switch (why) {
+    case PlanEnd::none_on_map:
+      return "there is no plan on the roadmap for ";
+    case PlanEnd::too_large:
+      return "too many robots stand together to plan for ";
+    case PlanEnd::no_use:
+      return "another robot stands where no plan can make room for ";
+    case PlanEnd::in_vain:
+      return "joint plans were driven " + std::to_string(kMostTries) + " times in vain for ";
+    default:
+      return "no plan was found on the roadmap for ";
+  }
 }
 
 std::string seconds(double t) {
@@ -242,26 +261,35 @@ Groups::Members Groups::as_many_as_fit(std::vector<std::size_t> nearest_first, i
   }
 }
 
+bool Groups::is_in_the_way_back(std::size_t robot, const Members& who, std::size_t to, double beside) const {
+  constexpr std::size_t kStride = 3;  // rows
+  const Vec2 here = now_[robot].position;
+  return std::any_of(who.begin(), who.end(), [&](std::size_t i) {
+    const double near = (1.0 + beside) * (scenario_.robots[i].radius + scenario_.robots[robot].radius);
+    for (std::size_t x = history_.last(); x > to + kStride; x -= kStride)
+      if (squared_norm(history_[x][i] - here) < near * near) return true;
+    return squared_norm(history_[to][i] - here) < near * near;
+  });
+}
+
 /// Who stands now where the members would go back through joins, as do those in its way.
 Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) const {
-  constexpr std::size_t kStride = 3;  // rows
   for (bool grew = true; grew;) {
     who = with_groups_of(std::move(who));
     Members more;
-    for (std::size_t j = 0; j < now_.size(); ++j) {
-      if (has(who, j) || !now_[j].may_join) continue;
-      const auto is_in_the_way_of = [&](std::size_t i) {
-        const double near = (1.0 + kBesideTheWayBack) * (scenario_.robots[i].radius + scenario_.robots[j].radius);
-        for (std::size_t x = history_.last(); x > to + kStride; x -= kStride)
-          if (squared_norm(history_[x][i] - now_[j].position) < near * near) return true;
-        return squared_norm(history_[to][i] - now_[j].position) < near * near;
-      };
-      if (std::any_of(who.begin(), who.end(), is_in_the_way_of)) more.push_back(j);
-    }
+    for (std::size_t j = 0; j < now_.size(); ++j)
+      if (!has(who, j) && now_[j].may_join && is_in_the_way_back(j, who, to, kBesideTheWayBack)) more.push_back(j);
     grew = !more.empty();
     who = merged(std::move(who), more);
   }
   return who;
+}
+
+/// Unless somebody stands in the way who makes none.
+bool Groups::can_go_back(const Members& who, std::size_t to) const {
+  for (std::size_t j = 0; j < now_.size(); ++j)
+    if (!now_[j].may_join && !has(who, j) && is_in_the_way_back(j, who, to, 0.0)) return false;
+  return true;
 }
 
 // --- Plans ---
@@ -300,17 +328,18 @@ bool Groups::plan_for(Members who, const Members& seeds, int replans) {
   for (double back = 0.0; !is_stopped_(); back = back == 0.0 ? kFirstBack * patience_ : 2.0 * back) {
     const std::size_t to = now - std::min(now - history_.first(), rows_back(back));
     if (back > 0.0) who = with_those_in_the_way_back(std::move(who), to);
+    if (back > 0.0 && !can_go_back(who, to)) break;
     end = plan_from(who, seeds, replans, to);
     if (end == PlanEnd::none_on_map && who.size() < everyone().size() && now_.size() <= kEveryoneUpTo) {
       who = everyone();
       end = plan_from(who, seeds, replans, to);
     }
     if (end == PlanEnd::planned) return true;
-    if (to == history_.first()) break;
+    if (to == history_.first() || end == PlanEnd::no_use || end == PlanEnd::in_vain) break;
   }
   // A map that has no plan may lack a place: that far in a niche, say. Then from now and from the first row again.
   for (const std::size_t to : {now, history_.first()})
-    if (end == PlanEnd::none_on_map && !is_stopped_() &&
+    if (end == PlanEnd::none_on_map && !is_stopped_() && can_go_back(who, to) &&
         plan_from(who, seeds, replans, to, Detail::dense) == PlanEnd::planned)
       return true;
   for (const std::size_t i : seeds) ++of_robot_[i].failures;
@@ -404,6 +433,32 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
   return targets;
 }
 
+/// Whether the plan would bring one of the seeds to its goal, or nearer to it than it stands.
+bool Groups::serves_any(const Members& seeds, const Members& who, const Roadmap& map,
+                        const std::vector<PlaceNumber>& targets) const {
+  constexpr double kThere = 1e-6;  // of the radius
+  return std::any_of(seeds.begin(), seeds.end(), [&](std::size_t i) {
+    const RobotNow& r = now_[i];
+    const double radius = scenario_.robots[i].radius;
+    const auto k = std::lower_bound(who.begin(), who.end(), i) - who.begin();
+    const double left = norm(r.goal - map.place(targets[static_cast<std::size_t>(k)]));
+    return !r.has_arrived && (left <= kThere * radius || left < norm(r.goal - r.position) - kNearer * 2.0 * radius);
+  });
+}
+
+/// Of those of them who are not where they are to go.
+Groups::Tried& Groups::tried(const Members& who) {
+  Tried now;
+  for (const std::size_t i : who) {
+    if (now_[i].has_arrived) continue;
+    now.waiting.push_back(i);
+    now.goals.push_back(now_[i].goal_number);
+  }
+  const auto known = std::find_if(tried_.begin(), tried_.end(),
+                                  [&](const Tried& t) { return t.waiting == now.waiting && t.goals == now.goals; });
+  return known != tried_.end() ? *known : tried_.emplace_back(std::move(now));
+}
+
 /// Of the generator, for a plan from where the robots were in that row.
 std::size_t Groups::most_calls(std::size_t row) const {
   if (row == history_.last()) return kCalls;
@@ -422,6 +477,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   const std::vector<Vec2>& from = history_[row];
   if (!fits(who, from, replans)) return PlanEnd::too_large;
   dissolve_those_of(seeds);
+  if (tried(who).times >= kMostTries) return PlanEnd::in_vain;
   Roadmap map = map_for(who, from, replans, detail);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
@@ -430,6 +486,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   problem.map = &map;
   problem.is_stopped = is_stopped_;
   problem.goals = targets_for(who, from, map);
+  if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
   for (const std::size_t i : who) {
     problem.radii.push_back(scenario_.robots[i].radius);
     problem.starts.push_back(map.attach(from[i], scenario_.robots[i].radius));
@@ -449,6 +506,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
     of_robot_[i].failures = 0;
     of_robot_[i].planned_goal = now_[i].goal_number;
   }
+  ++tried(who).times;
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
   made_.push_back(recorded(g));
@@ -497,9 +555,7 @@ std::string Groups::no_plan_words(const Members& robots) const {
       if (has(robots, i)) names.push_back(scenario_.robots[i].id);
     if (names.empty()) continue;
     const std::string who = abridged(std::move(names));
-    texts.push_back(w.why == PlanEnd::none_on_map     ? "there is no plan on the roadmap for " + who
-                    : w.why == PlanEnd::out_of_budget ? "no plan was found on the roadmap for " + who
-                                                      : "too many robots stand together to plan for " + who);
+    texts.push_back(words_of(w.why) + who);
   }
   std::string text;
   for (const std::string& t : texts) text += (text.empty() ? "" : "; ") + t;

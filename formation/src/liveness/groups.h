@@ -96,6 +96,12 @@ class Groups {
     Members who;
     PlanEnd why;
   };
+  /// Who went by plan as they were not at these goals, and how often.
+  struct Tried {
+    Members waiting;
+    std::vector<std::size_t> goals;
+    int times = 0;
+  };
 
   Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
   const Group& group(std::size_t robot) const { return groups_[group_of_[robot]]; }
@@ -117,7 +123,10 @@ class Groups {
   Members as_many_as_fit(std::vector<std::size_t> nearest_first, int replans) const;
   bool fits(const Members& who, const std::vector<Vec2>& from, int replans) const;
   Members with_groups_of(Members who) const;
+  /// Whether `robot` stands in the way of a member that goes back as far as that row, or within `beside` of the radii.
+  bool is_in_the_way_back(std::size_t robot, const Members& who, std::size_t to, double beside) const;
   Members with_those_in_the_way_back(Members who, std::size_t to) const;
+  bool can_go_back(const Members& who, std::size_t to) const;
   /// `seeds`: those who wait. Only their groups end, and only their patience, where no plan is found.
   bool plan_for(Members who, const Members& seeds, int replans);
   PlanEnd plan_from(const Members& who, const Members& seeds, int replans, std::size_t row,
@@ -130,6 +139,9 @@ class Groups {
   Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const;
   geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
+  bool serves_any(const Members& seeds, const Members& who, const Roadmap& map,
+                  const std::vector<PlaceNumber>& targets) const;
+  Tried& tried(const Members& who);
   std::size_t most_calls(std::size_t row) const;
   void dissolve(std::size_t group);
   JointPlan recorded(const Group& g) const;
@@ -157,6 +169,7 @@ class Groups {
   std::vector<Due> due_;                                             ///< who was stalled in the last row
   mutable std::map<std::pair<double, Detail>, Roadmap> whole_maps_;  ///< by radius
   std::vector<WithoutPlan> without_plan_;
+  std::vector<Tried> tried_;
   LivenessCourse course_;
   std::vector<JointPlan> made_;
   PlanSearch search_;

@@ -24,7 +24,9 @@ enum class PlanEnd {
   planned,
   none_on_map,    ///< every joint place that can be reached was tried
   out_of_budget,  ///< or stopped
-  too_large       ///< not tried: the map would be too large
+  too_large,      ///< not tried: the map would be too large
+  no_use,         ///< not tried: whom it is for would come no nearer to its goal, in which another stands
+  in_vain         ///< not tried: the same robots went by plan again and again, and wait as before
 };
 
 struct PlanFound {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "control/consensus.h"
 #include "decision/decision.h"
@@ -34,7 +35,9 @@ struct FormationRobot {
   SideCommitment side;
   RobotBypass bypass;
   // With joint plans.
+  std::string note = {};                   ///< for the next row
   std::optional<StaticField> pieces = {};  ///< what it sees of obstacles while it goes by plan, made when it first does
+  bool goes_beside = false;                ///< its slot: SlotPlans::places
   bool sees_pieces = false;                ///< it went by plan when it decided last
 };
 
@@ -109,11 +112,20 @@ class FormationRun {
     return remedies_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
   }
 
+  /// m: from its slot, or from where it goes as that cannot be filled, to the robot.
+  Vec2 relative_position(std::size_t i, Vec2 leader) const {
+    const Vec2 here = robots_[i].body.position;
+    return robots_[i].goes_beside ? here - plans_->places()[i].at : here - leader - offsets_[i];
+  }
+  bool misses_slot(std::size_t i) const {
+    return plans_ && !plans_->places().empty() && !plans_->places()[i].why_not.empty();
+  }
+
   void take_relative_states(const LeaderState& leader) {
     relative_.position.clear();
     relative_.velocity.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      relative_.position.push_back(robots_[i].body.position - leader.position - offsets_[i]);
+      relative_.position.push_back(relative_position(i, leader.position));
       relative_.velocity.push_back(robots_[i].body.velocity - leader.velocity);
     }
   }
@@ -122,10 +134,10 @@ class FormationRun {
     now_ = time;
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
-    take_relative_states(leader);
     joint_.anchors.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) joint_.anchors.push_back({anchor(i), anchor_velocity(i)});
-    if (plans_) plans_->begin_step(time, joint_.anchors, leader);
+    if (plans_) begin_plans(time, leader);
+    take_relative_states(leader);
     joint_.look_at_robots(plans_ ? &plans_->groups() : nullptr);
     move_obstacles(scenario_, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
@@ -134,6 +146,29 @@ class FormationRun {
         plans_->groups(), row, [&](std::size_t i) { return viewpoint(i); },
         [&](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, time, step, fallen_back); });
     return row;
+  }
+
+  void begin_plans(double time, const LeaderState& leader) {
+    const bool had_places = !plans_->places().empty();
+    plans_->begin_step(time, joint_.anchors, leader);
+    if (had_places || plans_->places().empty()) return;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const SlotPlans::Place& place = plans_->places()[i];
+      const Vec2 slot = leader.position + offsets_[i];
+      if (!(place.at == slot)) go_beside_slot(i, time, place, norm(place.at - slot));
+    }
+  }
+
+  /// Its obstacles are seen anew for where it goes now. `distance`: m, from its slot.
+  void go_beside_slot(std::size_t i, double time, const SlotPlans::Place& place, double distance) {
+    FormationRobot& r = robots_[i];
+    r.goes_beside = true;
+    r.field =
+        StaticField(scene_, scenario_, options_, scenario_.robots[i].radius, anchor(i), place.at, HorizonRule::clamped);
+    r.side = {};
+    outlooks_.push_back({time, i, 0, r.field.shapes()});
+    if (!place.why_not.empty())
+      r.note = "cannot take its slot: " + place.why_not + "; goes to a place " + metres(distance) + " from it";
   }
 
   Viewpoint viewpoint(std::size_t i) const {
@@ -146,7 +181,8 @@ class FormationRun {
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
     add_moving_constraints(scenario_, here, scene_, joint_.others[i]);
-    if (plans_) step.note = plans_->groups().note(i);
+    step.note = std::exchange(robots_[i].note, {});
+    if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, nullptr);
     robots_[i].field.constraints(here, statics_);
@@ -159,6 +195,7 @@ class FormationRun {
                                            wanted};
     DecisionInput in{steered(i, situation, statics_, joint_.others[i], step), here, &statics_, &joint_.others[i],
                      schedule_.keeps_all(time)};
+    if (misses_slot(i) && norm(relative_.position[i]) <= scenario_.arrival_tolerance) step.mode = Mode::staying;
     decider_.decide(in, step);
     if (!remedies_.smoothing) return;
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
@@ -293,9 +330,15 @@ class FormationRun {
 
   void add_words_of_plans(const Step& end, Recording& recording) const {
     std::vector<std::size_t> not_there;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (norm(end.robots[i].position - end.leader_position - offsets_[i]) > scenario_.arrival_tolerance)
-        not_there.push_back(i);
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const Vec2 slot = end.leader_position + offsets_[i];
+      const double error = norm(end.robots[i].position - slot);
+      if (!(error > scenario_.arrival_tolerance)) continue;
+      not_there.push_back(i);
+      if (misses_slot(i))
+        recording.outcome += "; " + scenario_.robots[i].id + " cannot take its slot, " + printed_place(slot) + ": " +
+                             plans_->places()[i].why_not + "; it ends " + metres(error) + " from it";
+    }
     const std::string words = plans_->groups().no_plan_words(not_there);
     if (!words.empty()) recording.outcome += "; " + words;
   }

@@ -41,7 +41,9 @@ struct KinematicRobot : OwnWay {
   bool has_come_nearest = false;             ///< it is there
   bool waits_for_room = false;               ///< it has to be pushed out before its course can be planned
   // With liveness.
-  double held_up = 0.0;  ///< 0 .. 1: how little of its preference it drove of late
+  double held_up = 0.0;                      ///< 0 .. 1: how little of its preference it drove of late
+  std::vector<std::size_t> rivals = {};      ///< whose last goals are so near to its own that one of the two has room
+  std::optional<std::size_t> taken_by = {};  ///< the rival that rests at its goal
 };
 
 class KinematicRun {
@@ -66,6 +68,7 @@ class KinematicRun {
       robot.velocity = scenario.robots[i].velocity;
       look_at_goal(i, 0.0);
     }
+    if (liveness_ != Liveness::off) find_rivals();
   }
 
   void run(Recording& recording, RunSink& sink) {
@@ -137,6 +140,33 @@ class KinematicRun {
     return true;
   }
 
+  void find_rivals() {
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        if (!are_too_near(scenario_, i, j)) continue;
+        robots_[i].rivals.push_back(j);
+        robots_[j].rivals.push_back(i);
+      }
+  }
+
+  /// Who finds a rival at its goal stays where it is, instead of pressing against it for ever.
+  void look_for_rivals(std::size_t i) {
+    KinematicRobot& r = robots_[i];
+    const std::optional<std::size_t> before = std::exchange(r.taken_by, std::nullopt);
+    if (!has_last_goal(i) || at_goal(i)) return;
+    const auto by = std::find_if(r.rivals.begin(), r.rivals.end(), [&](std::size_t j) { return at_goal(j); });
+    if (by == r.rivals.end()) return;
+    r.taken_by = *by;
+    if (before != r.taken_by) add_note(r.note, "stays: " + taken_words(i));
+  }
+
+  /// "R1 rests at its goal, 0.3 m from the goal of R2, and both have room only 0.8 m apart".
+  std::string taken_words(std::size_t i) const {
+    const Robot &mine = scenario_.robots[i], &other = scenario_.robots[*robots_[i].taken_by];
+    return other.id + " rests at its goal, " + metres(norm(other.goals.back() - mine.goals.back())) + " from that of " +
+           mine.id + ", which leaves no room for both";
+  }
+
   void pass_waypoint(std::size_t i, double time) {
     if (has_last_goal(i) || !is_within_reach(i)) return;
     ++robots_[i].goal;
@@ -146,6 +176,8 @@ class KinematicRun {
 
   Step decide_all(double time) {
     now_ = time;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!robots_[i].rivals.empty()) look_for_rivals(i);
     if (groups_) look_at_groups(time);
     joint_.anchors.clear();
     for (const KinematicRobot& r : robots_) joint_.anchors.push_back({r.position, r.velocity});
@@ -224,8 +256,8 @@ class KinematicRun {
       const KinematicRobot& r = robots_[i];
       const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
       const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
-      now.push_back(
-          {r.position, goal, at_goal(i) || r.has_come_nearest, has_way && scenario_.robots[i].cooperates, r.goal});
+      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.taken_by,
+                     has_way && scenario_.robots[i].cooperates, r.goal});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
@@ -304,7 +336,7 @@ class KinematicRun {
 
   bool stays(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
-    return guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room));
+    return r.taken_by || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
   }
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
@@ -336,6 +368,10 @@ class KinematicRun {
   }
 
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
+    if (robots_[i].taken_by) {
+      step.mode = Mode::staying;
+      return {};
+    }
     if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), goal_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
@@ -372,8 +408,10 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + why_not_there(i);
     std::vector<std::size_t> not_there;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
       if (!at_goal(i)) not_there.push_back(i);
+      if (robots_[i].taken_by) text += "; " + scenario_.robots[i].id + " stays: " + taken_words(i);
+    }
     if (!not_there.empty()) text += no_passing_words();
     if (!groups_ || not_there.empty()) return text;
     for (const std::string& words : {groups_->no_plan_words(not_there), groups_->still_going_words()})

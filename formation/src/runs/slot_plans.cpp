@@ -3,7 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/infinity.h"
+#include "exactvo/geometry/pi.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -41,7 +47,8 @@ double way_left(double distance, double diameter) {
 }  // namespace
 
 SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped)
-    : offsets_(std::move(offsets)),
+    : scenario_(scenario),
+      offsets_(std::move(offsets)),
       leader_arrival_(detail::leader_arrival(scenario.formation->leader)),
       tolerance_(scenario.arrival_tolerance),
       gap_(gap_of(scenario)),
@@ -50,23 +57,99 @@ SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int th
       space_(scenario.obstacles),
       groups_(larger_, space_, true, threads, std::move(is_stopped)) {}
 
-bool SlotPlans::has_place(std::size_t robot, Vec2 slot) const {
-  const double radius = larger_.robots[robot].radius;
-  return space_.clearance(slot, radius) >= radius;
+/// Empty where nothing is known to keep the robot from the slot.
+std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const {
+  const double radius = scenario_.robots[robot].radius;
+  const double wanted = std::max(larger_.robots[robot].radius, radius + scenario_.margins.obstacle - tolerance_);
+  if (space_.clearance(slot, wanted) < wanted) {
+    double nearest = geometry::kInfinity;
+    std::string id;
+    for (const SceneObstacle& o : scenario_.obstacles) {
+      const double distance = geometry::signed_distance(o.shape, slot);
+      if (distance < nearest) id = o.id, nearest = distance;
+    }
+    return "obstacle '" + id + "' " + (nearest > 0.0 ? "is only " + metres(nearest) + " from it" : "stands in it");
+  }
+  const Destination to{slot, tolerance_};
+  const bool is_open = norm(slot - from) <= tolerance_ || space_.is_clear(from, slot, radius);
+  if (is_open || reach.reachable_place(radius, from, to) || !reach.is_proven_out_of_reach(radius, from, to)) return "";
+  return reach.why_not(radius, from, {slot, 0.0}, "it");
+}
+
+/// Straight away from what is too near, else on rings about the slot; where there is none, the robot stays where it is.
+Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<Disc>& taken,
+                                Reachability& reach) const {
+  constexpr double kFinest = 0.25, kBeyond = 16.0;  // of the radius: between rings, and beyond where it is
+  constexpr double kMostRings = 128.0;
+  const double radius = scenario_.robots[robot].radius, room = radius + scenario_.margins.obstacle;
+  const auto is_free = [&](Vec2 place) {
+    return space_.clearance(place, room) >= room && std::all_of(taken.begin(), taken.end(), [&](const Disc& t) {
+             return norm(place - t.centre) >= (1.0 + kPlannedGap) * (radius + t.radius) + scenario_.margins.robot;
+           });
+  };
+  const auto is_good = [&](Vec2 place) {
+    return is_free(place) && (space_.is_open() || reach.reachable_place(radius, from, {place, 0.0}));
+  };
+  const Vec2 away = space_.from_nearest_edge(slot, room);
+  const Vec2 beside = norm(away) > 0.0 ? slot + (room / norm(away) - 1.0) * away : slot;
+  if (beside != slot && is_good(beside)) return beside;
+  const Vec2 way = norm(from - slot) > 0.0 ? geometry::normalized(from - slot) : Vec2{1.0, 0.0};
+  const double far = norm(from - slot) + kBeyond * radius, step = std::max(kFinest * radius, far / kMostRings);
+  for (int ring = 1; ring * step < far; ++ring)
+    for (int k = 0, directions = 6 * ring; k < directions; ++k) {
+      // Nearest to the robot first.
+      const double turn = (k % 2 == 0 ? 1.0 : -1.0) * ((k + 1) / 2) * 2.0 * geometry::kPi / directions;
+      const Vec2 place = slot + ring * step * geometry::rotated(way, turn);
+      if (is_good(place)) return place;
+    }
+  return from;
+}
+
+/// Who is nearest to its slot has it first.
+void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
+  constexpr double kNearEnough = 0.9;  // it ends beside its slot and counts as there
+  Reachability reach(scenario_, 0.0, false);
+  std::vector<std::pair<double, std::size_t>> nearest_first;
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    const Vec2 slot = leader + offsets_[i];
+    places_.push_back({slot, why_no_place(i, anchors[i].position, slot, reach)});
+    nearest_first.emplace_back(norm(slot - anchors[i].position), i);
+  }
+  std::sort(nearest_first.begin(), nearest_first.end());
+  std::vector<Disc> taken;
+  for (const auto& [distance, i] : nearest_first) {
+    Place& mine = places_[i];
+    const double radius = scenario_.robots[i].radius;
+    for (const auto& [other_distance, j] : nearest_first) {
+      if (j == i) break;
+      const double room = norm(places_[j].at - mine.at) + 2.0 * tolerance_;
+      if (mine.why_not.empty() && places_[j].why_not.empty() && room < radius + scenario_.robots[j].radius)
+        mine.why_not =
+            "the slot of " + scenario_.robots[j].id + " is only " + metres(norm(places_[j].at - mine.at)) + " from it";
+    }
+    if (mine.why_not.empty()) taken.push_back({mine.at, radius});
+  }
+  for (const auto& [distance, i] : nearest_first) {
+    Place& mine = places_[i];
+    if (mine.why_not.empty()) continue;
+    const Vec2 slot = std::exchange(mine.at, free_place_near(i, anchors[i].position, mine.at, taken, reach));
+    if (norm(mine.at - slot) <= kNearEnough * tolerance_) mine.why_not.clear();
+    taken.push_back({mine.at, scenario_.robots[i].radius});
+  }
 }
 
 void SlotPlans::begin_step(double time, const std::vector<Anchor>& anchors, const LeaderState& leader) {
   const bool rests = is_active(time);
-  if (rests && has_place_.empty())
-    for (std::size_t i = 0; i < anchors.size(); ++i) has_place_.push_back(has_place(i, leader.position + offsets_[i]));
+  if (rests && places_.empty()) choose_places(anchors, leader.position);
+  const auto goal_of = [&](std::size_t i) { return rests ? places_[i].at : leader.position + offsets_[i]; };
   std::vector<RobotNow> now;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const Vec2 slot = leader.position + offsets_[i];
-    const bool is_there = !rests || !has_place_[i] || norm(slot - anchors[i].position) <= tolerance_;
-    now.push_back({anchors[i].position, slot, is_there, rests && larger_.robots[i].cooperates, 0});
+    const Vec2 goal = goal_of(i);
+    const bool is_there = !rests || norm(goal - anchors[i].position) <= tolerance_;
+    now.push_back({anchors[i].position, goal, is_there, rests && larger_.robots[i].cooperates, 0});
   }
   groups_.begin_step(time, std::move(now), [&](std::size_t i) {
-    return way_left(norm(leader.position + offsets_[i] - anchors[i].position), 2.0 * larger_.robots[i].radius);
+    return way_left(norm(goal_of(i) - anchors[i].position), 2.0 * larger_.robots[i].radius);
   });
 }
 

@@ -5,6 +5,10 @@
 /// Robots of a formation that block each other's slots go by joint plans once the leader rests (liveness, rules R2 to
 /// R4). What is planned are their brake points x + v/k3, which move at exactly the chosen velocity, as kinematic robots
 /// do; the bodies follow behind. Heuristic, as all plans are: half-planes decide, and an audit proves the motion.
+///
+/// A robot whose slot cannot be filled then goes to a place beside it instead of pressing for it for ever: where an
+/// obstacle stands in the slot, or so near that the robot's margin keeps it off, where no way leads to it, or where
+/// another robot has a slot too near.
 
 #include <functional>
 #include <string>
@@ -13,13 +17,15 @@
 #include "decision/decision.h"
 #include "liveness/groups.h"
 #include "motion/leader.h"
+#include "preflight/reachability.h"
 #include "scene/free_space.h"
 
 namespace exactvo::formation::detail {
 
 class SlotPlans {
  public:
-  /// `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups. REQUIRES: a formation.
+  /// `scenario` must outlive it. `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups. REQUIRES: a
+  /// formation.
   SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped);
   SlotPlans(const SlotPlans&) = delete;  // groups refer to members
 
@@ -34,12 +40,28 @@ class SlotPlans {
 
   void begin_step(double time, const std::vector<Anchor>& anchors, const LeaderState& leader);
 
+  /// Where a robot goes once the leader rests.
+  struct Place {
+    Vec2 at;              ///< m: its slot, or about the nearest place to it that is free and in reach
+    std::string why_not;  ///< the slot cannot be filled: "obstacle 'block' stands in it". Empty where it is its slot
+  };
+  /// Of each robot; empty until the leader rests.
+  const std::vector<Place>& places() const { return places_; }
+
   Groups& groups() { return groups_; }
   const Groups& groups() const { return groups_; }
 
  private:
-  bool has_place(std::size_t robot, Vec2 slot) const;
+  struct Disc {
+    Vec2 centre;
+    double radius;
+  };
+  void choose_places(const std::vector<Anchor>& anchors, Vec2 leader);
+  std::string why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const;
+  Vec2 free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<Disc>& taken,
+                       Reachability& reach) const;
 
+  const Scenario& scenario_;
   std::vector<Vec2> offsets_;
   double leader_arrival_;  ///< s
   double tolerance_;       ///< m
@@ -47,7 +69,7 @@ class SlotPlans {
   Scenario larger_;  ///< with robots larger by what they keep from obstacles
   ObstacleSpace space_;
   Groups groups_;
-  std::vector<char> has_place_;  ///< whether nothing stands in its slot; empty until the leader rests
+  std::vector<Place> places_;
 };
 
 }  // namespace exactvo::formation::detail
