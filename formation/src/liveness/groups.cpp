@@ -25,7 +25,7 @@ constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
 /// Plans for which the same robots waited, with the same goals: beyond that they are in vain.
-constexpr int kMostTries = 4;
+constexpr int kMostTries = 10;
 
 // In diameters.
 constexpr double kNearer = 0.4;    ///< counts as coming nearer
