@@ -45,6 +45,14 @@ double rounding(double shape, const Segment& chord, double others) {
 /// Who may not be touched: an obstacle, a moving obstacle or another robot, by its number.
 using Other = std::pair<CollisionKind, std::size_t>;
 
+/// What is known round a place where a robot was: no static obstacle is nearer.
+struct Quiet {
+  Vec2 place;
+  double room = 0.0;    ///< m
+  int steps_until = 0;  ///< before it is looked at again
+  int patience = 1;     ///< how many steps to wait if it is worth nothing again
+};
+
 /// Where something was between two rows.
 struct Moment {
   double time = 0.0;  ///< s, of the first
@@ -73,6 +81,7 @@ class ClearanceSweep::Sweep {
       for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
     }
     obstacles_.resize(scenario.obstacles.size());
+    quiet_.resize(scenario.robots.size());
     by_place_ = geometry::BoxGrid(std::move(boxes));
     for (const double x : largest_) largest_of_all_ = std::max(largest_of_all_, x);
     constexpr double kToTheEnd = std::numeric_limits<double>::max();
@@ -134,9 +143,12 @@ class ClearanceSweep::Sweep {
 
   void lower_to_obstacles(std::size_t step, double end, std::size_t robot) {
     double& least = least_[robot];
-    for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least))))
-      note(robot, {CollisionKind::obstacle, o}, step, end, obstacle_clearance(o, robot, motions_[robot], enough(least)),
-           least);
+    if (!scenario_.obstacles.empty() && !stays_quiet(robot, enough(least))) {
+      for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least))))
+        note(robot, {CollisionKind::obstacle, o}, step, end,
+             obstacle_clearance(o, robot, motions_[robot], enough(least)), least);
+      look_round(robot, enough(least));
+    }
     for (std::size_t o = 0; o < scenario_.moving_obstacles.size(); ++o)
       note(robot, {CollisionKind::moving_obstacle, o}, step, end,
            moving_clearance(o, robot, motions_[robot], enough(least)), least);
@@ -159,6 +171,42 @@ class ClearanceSweep::Sweep {
                                [&](std::size_t o) { near_.push_back(o); });
     std::sort(near_.begin(), near_.end());
     return near_;
+  }
+
+  /// Whether what is known round a place says that no obstacle matters to this step.
+  bool stays_quiet(std::size_t robot, double enough) const {
+    constexpr double kRounding = 1.0 + 1e-9;
+    const Quiet& quiet = quiet_[robot];
+    if (!(quiet.room > 0.0)) return false;
+    const Segment chord = motions_[robot].chord(0.0, 1.0);
+    const double away = std::max(norm(chord.a - quiet.place), norm(chord.b - quiet.place));
+    return quiet.room > kRounding * (away + reach_that_matters(robot, enough));
+  }
+
+  /// Looks as far round the end of the step as pays for some steps to come. Where obstacles are too near for that it is
+  /// tried again after 1, 2, 4, ... steps.
+  void look_round(std::size_t robot, double enough) {
+    constexpr double kSteps = 10.0;
+    constexpr int kMostPatience = 16;
+    Quiet& quiet = quiet_[robot];
+    quiet.room = 0.0;
+    if (--quiet.steps_until > 0 || !std::isfinite(enough)) return;
+    const double step = strays(motions_[robot]), reach = reach_that_matters(robot, enough);
+    const double worth = reach + 3.0 * step, most = reach + kSteps * step + scenario_.robots[robot].radius;
+    quiet.place = motions_[robot].chord(0.0, 1.0).b;
+    double room = most;
+    for (const std::size_t o : near_obstacles(robot, most)) {
+      const double rounding = 2.0 * geometry::rounding_of_distance(std::max(largest_[o], largest(quiet.place)));
+      room = std::min(room, index_of(o).swept_distance({quiet.place, quiet.place}, most + rounding) - rounding);
+      if (room < worth) break;
+    }
+    if (room >= worth) {
+      quiet.room = room;
+      quiet.patience = 1;
+    } else {
+      quiet.steps_until = quiet.patience;
+      quiet.patience = std::min(2 * quiet.patience, kMostPatience);
+    }
   }
 
   const geometry::ObstacleIndex& index_of(std::size_t obstacle) const {
@@ -366,6 +414,7 @@ class ClearanceSweep::Sweep {
   std::vector<double> ways_of_step_;  ///< m
   std::vector<Vec2> starts_;          ///< m
   std::vector<std::size_t> near_;
+  std::vector<Quiet> quiet_;  ///< of each robot
 };
 
 ClearanceSweep::ClearanceSweep(const Scenario& scenario, const Recording& run)
