@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "decision/decision.h"
+#include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/run_info.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
@@ -37,6 +39,10 @@ std::size_t relaxed(const Recording& run) {
     for (const RobotStep& r : row.robots)
       count += r.status == lp::Status::relaxed || r.status == lp::Status::infeasible;
   return count;
+}
+
+bool audits_clean(const Scenario& s, const Recording& run) {
+  return datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean();
 }
 
 TEST(Liveness, CirclesOfTwoToTwentyAllArrive) {
@@ -405,7 +411,63 @@ TEST(Liveness, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
   EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
   for (const RobotMetrics& r : m.robots) EXPECT_LT(r.path_length, 15.0) << r.id;
   EXPECT_LT(run.steps.back().time, 10.0) << "nobody goes on";
-  EXPECT_NE(m.outcome.find("R1 stays: R2 rests at its goal, 0 m from that of R1"), std::string::npos) << m.outcome;
+  EXPECT_NE(m.outcome.find("R1 stays: R2 rests at the goal that both have"), std::string::npos) << m.outcome;
+}
+
+/// Who is far away when its rival arrives comes, and stays beside it; who was there first is not pushed off. The run
+/// ended at once before, with R2 stopped where it was.
+TEST(Liveness, WhoseGoalIsTakenComesBesideItAndStays) {
+  for (const double apart : {0.0, 0.5}) {
+    Scenario s;
+    s.robots = {robot("R1", {3, 0}, {0, 0}), robot("R2", {20, 0}, {apart, 0})};
+    const Recording run = simulate(s);
+    const Metrics m = measure(s, run);
+    EXPECT_TRUE(m.robots[0].arrived);
+    const double gap = norm(run.steps.back().robots[0].position - run.steps.back().robots[1].position) - 1.0;
+    EXPECT_LT(gap, 0.5) << apart;
+    EXPECT_TRUE(audits_clean(s, run));
+  }
+}
+
+/// The rival arrives while they go by a joint plan, which they drive to its end. The run ended there before, and the
+/// audit refuted what it said of robots that stayed.
+TEST(Liveness, WhoGoesByPlanToATakenGoalDrivesOn) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 0})};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
+  EXPECT_NE(m.outcome.find(" stays: "), std::string::npos) << m.outcome;
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// R1 rests where R2 only passes: it makes way, and comes back.
+TEST(Liveness, WhoRestsOnAnothersGoalOnTheWayMakesWay) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 5})};
+  s.robots[1].goals = {{0, 0}, {0, 5}};
+  const Recording run = simulate(s);
+  EXPECT_EQ(measure(s, run).outcome, "all robots arrived");
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// A niche that is taken for a long time: plans through it are in vain, and are made again once it is free.
+TEST(Liveness, PlansInVainAreMadeAgainOnceWhatStoodThereHasMoved) {
+  Scenario s;
+  s.time_step = 0.1;
+  s.time_limit = 1000.0;
+  s.obstacles.push_back(
+      {"w",
+       geometry::Polyline{
+           {{-8, 0.8}, {-0.8, 0.8}, {-0.8, 2.2}, {0.8, 2.2}, {0.8, 0.8}, {8, 0.8}, {8, -0.8}, {-8, -0.8}, {-8, 0.8}}}});
+  s.robots = {robot("R1", {-4, 0}, {4, 0}), robot("R2", {4, 0}, {-4, 0})};
+  MovingObstacle door;
+  door.id = "door";
+  door.shape = geometry::Polygon{{{-0.7, 1.0}, {0.7, 1.0}, {0.7, 2.1}, {-0.7, 2.1}}, {}};
+  door.motion.path = {{0, 0}, {0, 60}};
+  door.motion.profile = {{0, 0}, {150, 0}, {151, 1}, {500, 1}};
+  s.moving_obstacles = {door};
+  EXPECT_EQ(measure(s, simulate(s)).outcome, "all robots arrived");
 }
 
 /// Its way back leads through a robot that rests there and does not cooperate: it went "back" for the whole run without

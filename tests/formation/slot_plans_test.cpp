@@ -210,14 +210,33 @@ TEST(SlotPlans, OfSlotsInOnePlaceOneIsFilledAndTheOthersStandBesideIt) {
   EXPECT_TRUE(rests_at_the_end(r));
 }
 
-/// A slot that the margin keeps a robot off, by less than counts as arrived: it drove round the wall for the whole run.
-TEST(SlotPlans, ASlotInTheMarginOfAWallIsFilledAsNearAsTheMarginLeaves) {
-  Scenario s = line_of({-3.0, -1.0, 1.0, 3.0});
-  s.obstacles.push_back({"box", geometry::Polygon{{{0.5, -6}, {6, -6}, {6, 6}, {0.5, 6}}, {}}});
-  const SlotRun r = run(s);
-  EXPECT_TRUE(r.is_formed()) << r.metrics.outcome;
-  EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
-  for (const RobotMetrics& robot : r.metrics.robots) EXPECT_LT(robot.path_length, 14.0) << robot.id;
+/// A slot that the margin keeps a robot off, or leaves just so: it drove round the wall for the whole run.
+TEST(SlotPlans, SlotsInTheMarginOfAWallAreFilledAsNearAsTheMarginLeaves) {
+  for (const double margin : {0.05, 0.1})
+    for (const double clearance : {0.48, 0.5, 0.52, 0.55, 0.58, 0.6}) {
+      Scenario s = line_of({-3.0, -1.0, 1.0, 3.0});
+      s.margins.obstacle = margin;
+      s.obstacles.push_back({"box", geometry::Polygon{{{clearance, -6}, {6, -6}, {6, 6}, {clearance, 6}}, {}}});
+      const SlotRun r = run(limited(s, 30.0));
+      SCOPED_TRACE(std::to_string(margin) + " " + std::to_string(clearance) + ": " + r.metrics.outcome);
+      EXPECT_TRUE(r.metrics.collisions.empty());
+      for (const RobotMetrics& robot : r.metrics.robots) {
+        EXPECT_LT(robot.path_length, 14.0) << robot.id;
+      }
+      for (const RobotStep& robot : r.recording.steps.back().robots)
+        EXPECT_NEAR(robot.position.x, -std::max(0.0, 0.5 + margin - clearance), 1e-3);
+      EXPECT_TRUE(rests_at_the_end(r));
+    }
+}
+
+/// The leader rests from the first row on: what a robot sees first is what it sees beside its slot.
+TEST(SlotPlans, WhoGoesBesideItsSlotFromTheFirstRowOnIsAudited) {
+  Scenario s = line_of({-3.0, 3.0});
+  s.formation->leader.path = {{0.0, 0.0}};
+  s.obstacles.push_back({"block", geometry::Polygon{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}}, {}}});
+  const SlotRun r = run(limited(s, 20.0));
+  EXPECT_THAT(r.metrics.outcome, testing::HasSubstr("R2 cannot take its slot, (0, 3)"));
+  EXPECT_TRUE(audited(r).clean());
 }
 
 /// Behind walls: nobody drives round them for ever.

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
 #include "steering/steering.h"
 
@@ -24,8 +26,10 @@ constexpr double kBetweenPlans = 5.0;
 constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
-/// Plans for which the same robots waited, with the same goals: beyond that they are in vain.
+/// Plans for which the same robots waited, with the same goals: beyond that they are in vain, and there are longer and
+/// longer pauses between them.
 constexpr int kMostTries = 10;
+constexpr double kAfterTriesInVain = 40.0;  ///< in the time that the slowest robot needs for its diameter
 
 // In diameters.
 constexpr double kNearer = 0.4;    ///< counts as coming nearer
@@ -66,7 +70,7 @@ std::string words_of(PlanEnd why) {
     case PlanEnd::no_use:
       return "another robot stands where no plan can make room for ";
     case PlanEnd::in_vain:
-      return "joint plans were driven " + std::to_string(kMostTries) + " times in vain for ";
+      return "joint plans were made " + std::to_string(kMostTries) + " times or more, in vain, for ";
     default:
       return "no plan was found on the roadmap for ";
   }
@@ -393,19 +397,24 @@ Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int r
   return whole_maps_.emplace(key, Roadmap(*space_, whole_scene(radius), radius, detail)).first->second;
 }
 
-/// Each member's goal, or, where that is outside the map or taken, the nearest place that is free.
+/// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Who only passes its
+/// goal has it before who stays there.
 std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const {
   const std::size_t places = map.size();
-  std::vector<std::pair<double, std::size_t>> nearest_first;
-  for (std::size_t k = 0; k < who.size(); ++k) nearest_first.emplace_back(norm(now_[who[k]].goal - from[who[k]]), k);
+  std::vector<std::tuple<bool, double, std::size_t>> nearest_first;
+  for (std::size_t k = 0; k < who.size(); ++k) {
+    const RobotNow& r = now_[who[k]];
+    const bool stays = r.goal_number + 1 >= scenario_.robots[who[k]].goals.size();
+    nearest_first.emplace_back(stays, norm(r.goal - from[who[k]]), k);
+  }
   std::sort(nearest_first.begin(), nearest_first.end());
   std::vector<std::pair<Vec2, double>> taken;  // with radii
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
       taken.emplace_back(now_[j].position, scenario_.robots[j].radius);
   std::vector<PlaceNumber> targets(who.size());
-  for (const auto& entry : nearest_first) {
-    const std::size_t k = entry.second, i = who[k];
+  for (const auto& [stays, distance_to_goal, k] : nearest_first) {
+    const std::size_t i = who[k];
     const double radius = scenario_.robots[i].radius;
     const auto is_free = [&](Vec2 place) {
       return std::all_of(taken.begin(), taken.end(), [&](const auto& t) {
@@ -446,17 +455,33 @@ bool Groups::serves_any(const Members& seeds, const Members& who, const Roadmap&
   });
 }
 
-/// Of those of them who are not where they are to go.
-Groups::Tried& Groups::tried(const Members& who) {
-  Tried now;
+Groups::Waiting Groups::waiting_of(const Members& who) const {
+  Waiting waiting;
   for (const std::size_t i : who) {
     if (now_[i].has_arrived) continue;
-    now.waiting.push_back(i);
-    now.goals.push_back(now_[i].goal_number);
+    waiting.first.push_back(i);
+    waiting.second.push_back(now_[i].goal_number);
   }
-  const auto known = std::find_if(tried_.begin(), tried_.end(),
-                                  [&](const Tried& t) { return t.waiting == now.waiting && t.goals == now.goals; });
-  return known != tried_.end() ? *known : tried_.emplace_back(std::move(now));
+  return waiting;
+}
+
+/// m: moving obstacles, from where they began, and robots that join no plan.
+std::vector<Vec2> Groups::those_that_no_plan_moves() const {
+  std::vector<Vec2> at;
+  for (const MovingObstacle& o : scenario_.moving_obstacles) at.push_back(displacement_at(o, time_));
+  for (const RobotNow& r : now_) at.push_back(r.may_join ? Vec2{} : r.position);
+  return at;
+}
+
+/// Not once something has moved that could have kept them from their goals; else each pause is twice as long as the one
+/// before.
+bool Groups::is_in_vain(const Members& who) const {
+  const auto tries = tries_.find(waiting_of(who));
+  if (tries == tries_.end() || tries->second.number < kMostTries) return false;
+  const std::vector<Vec2> now = those_that_no_plan_moves();
+  for (std::size_t k = 0; k < now.size(); ++k)
+    if (norm(now[k] - tries->second.others[k]) > kNearer * 2.0 * largest_radius(who)) return false;
+  return time_ - tries->second.last < std::ldexp(kAfterTriesInVain * patience_, tries->second.number - kMostTries);
 }
 
 /// Of the generator, for a plan from where the robots were in that row.
@@ -477,7 +502,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   const std::vector<Vec2>& from = history_[row];
   if (!fits(who, from, replans)) return PlanEnd::too_large;
   dissolve_those_of(seeds);
-  if (tried(who).times >= kMostTries) return PlanEnd::in_vain;
+  if (is_in_vain(who)) return PlanEnd::in_vain;
   Roadmap map = map_for(who, from, replans, detail);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
@@ -506,7 +531,10 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
     of_robot_[i].failures = 0;
     of_robot_[i].planned_goal = now_[i].goal_number;
   }
-  ++tried(who).times;
+  Tries& tries = tries_[waiting_of(who)];
+  ++tries.number;
+  tries.last = time_;
+  tries.others = those_that_no_plan_moves();
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
   made_.push_back(recorded(g));

@@ -96,11 +96,12 @@ class Groups {
     Members who;
     PlanEnd why;
   };
-  /// Who went by plan as they were not at these goals, and how often.
-  struct Tried {
-    Members waiting;
-    std::vector<std::size_t> goals;
-    int times = 0;
+  /// Robots that were not where they were to go when plans were made, and the numbers of their goals.
+  using Waiting = std::pair<Members, std::vector<std::size_t>>;
+  struct Tries {
+    int number = 0;
+    double last = 0.0;           ///< s
+    std::vector<Vec2> others{};  ///< m: where those stood then that no plan moves
   };
 
   Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
@@ -141,7 +142,9 @@ class Groups {
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
   bool serves_any(const Members& seeds, const Members& who, const Roadmap& map,
                   const std::vector<PlaceNumber>& targets) const;
-  Tried& tried(const Members& who);
+  Waiting waiting_of(const Members& who) const;
+  std::vector<Vec2> those_that_no_plan_moves() const;
+  bool is_in_vain(const Members& who) const;
   std::size_t most_calls(std::size_t row) const;
   void dissolve(std::size_t group);
   JointPlan recorded(const Group& g) const;
@@ -169,7 +172,7 @@ class Groups {
   std::vector<Due> due_;                                             ///< who was stalled in the last row
   mutable std::map<std::pair<double, Detail>, Roadmap> whole_maps_;  ///< by radius
   std::vector<WithoutPlan> without_plan_;
-  std::vector<Tried> tried_;
+  std::map<Waiting, Tries> tries_;
   LivenessCourse course_;
   std::vector<JointPlan> made_;
   PlanSearch search_;

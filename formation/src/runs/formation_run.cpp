@@ -166,7 +166,7 @@ class FormationRun {
     r.field =
         StaticField(scene_, scenario_, options_, scenario_.robots[i].radius, anchor(i), place.at, HorizonRule::clamped);
     r.side = {};
-    outlooks_.push_back({time, i, 0, r.field.shapes()});
+    note_outlook(i, time, r.field.shapes());
     if (!place.why_not.empty())
       r.note = "cannot take its slot: " + place.why_not + "; goes to a place " + metres(distance) + " from it";
   }
@@ -215,7 +215,17 @@ class FormationRun {
     if (r.sees_pieces && !r.pieces) r.pieces = field_of_pieces(i);
     r.side = {};
     r.bypass = {};
-    outlooks_.push_back({time, i, 0, (r.sees_pieces ? *r.pieces : r.field).shapes()});
+    note_outlook(i, time, (r.sees_pieces ? *r.pieces : r.field).shapes());
+  }
+
+  /// One for each robot and row: the last that it has before it decides.
+  void note_outlook(std::size_t i, double time, std::vector<vo::BodyTable::Number> bodies) {
+    const auto same = std::find_if(outlooks_.rbegin(), outlooks_.rend(),
+                                   [&](const Outlook& o) { return o.time != time || o.robot == i; });
+    if (same != outlooks_.rend() && same->time == time)
+      same->bodies = std::move(bodies);
+    else
+      outlooks_.push_back({time, i, 0, std::move(bodies)});
   }
 
   void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {

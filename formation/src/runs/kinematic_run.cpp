@@ -44,6 +44,7 @@ struct KinematicRobot : OwnWay {
   double held_up = 0.0;                      ///< 0 .. 1: how little of its preference it drove of late
   std::vector<std::size_t> rivals = {};      ///< whose last goals are so near to its own that one of the two has room
   std::optional<std::size_t> taken_by = {};  ///< the rival that rests at its goal
+  bool rests_beside = false;                 ///< that rival
 };
 
 class KinematicRun {
@@ -149,20 +150,40 @@ class KinematicRun {
       }
   }
 
-  /// Who finds a rival at its goal stays where it is, instead of pressing against it for ever.
+  /// Who comes to a rival that rests at its goal stays there, instead of pressing against it for ever.
   void look_for_rivals(std::size_t i) {
     KinematicRobot& r = robots_[i];
+    const bool rested = std::exchange(r.rests_beside, false);
     const std::optional<std::size_t> before = std::exchange(r.taken_by, std::nullopt);
     if (!has_last_goal(i) || at_goal(i)) return;
-    const auto by = std::find_if(r.rivals.begin(), r.rivals.end(), [&](std::size_t j) { return at_goal(j); });
+    // Who was there first makes way a little, and comes back.
+    const auto has_its_goal = [&](std::size_t j) {
+      const double radius = scenario_.robots[j].radius;
+      return at_goal(j) || (before == j && norm(goal_of(j) - robots_[j].position) <= reach_of_goal(j) + radius);
+    };
+    const auto by = std::find_if(r.rivals.begin(), r.rivals.end(), has_its_goal);
     if (by == r.rivals.end()) return;
     r.taken_by = *by;
-    if (before != r.taken_by) add_note(r.note, "stays: " + taken_words(i));
+    r.rests_beside = !goes_by_plan(i) && is_beside_resting(i);
+    if (r.rests_beside && !rested) add_note(r.note, "stays: " + taken_words(i));
   }
 
-  /// "R1 rests at its goal, 0.3 m from the goal of R2, and both have room only 0.8 m apart".
+  /// About as near as half-planes let it come to the rival at its goal, or to one that stays beside that.
+  bool is_beside_resting(std::size_t i) const {
+    constexpr double kOfRadii = 0.25;
+    const std::optional<std::size_t> by = robots_[i].taken_by;
+    return std::any_of(robots_[i].rivals.begin(), robots_[i].rivals.end(), [&](std::size_t j) {
+      const bool rests = j == by || (robots_[j].rests_beside && robots_[j].taken_by == by);
+      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
+      const double gap = norm(robots_[i].position - robots_[j].position) - radii;
+      return rests && gap <= kOfRadii * radii + kNearMargins * scenario_.margins.robot;
+    });
+  }
+
+  /// "R1 rests at its goal, 0.3 m from that of R2, which leaves no room for both".
   std::string taken_words(std::size_t i) const {
     const Robot &mine = scenario_.robots[i], &other = scenario_.robots[*robots_[i].taken_by];
+    if (mine.goals.back() == other.goals.back()) return other.id + " rests at the goal that both have";
     return other.id + " rests at its goal, " + metres(norm(other.goals.back() - mine.goals.back())) + " from that of " +
            mine.id + ", which leaves no room for both";
   }
@@ -256,7 +277,7 @@ class KinematicRun {
       const KinematicRobot& r = robots_[i];
       const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
       const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
-      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.taken_by,
+      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.rests_beside,
                      has_way && scenario_.robots[i].cooperates, r.goal});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
@@ -336,7 +357,8 @@ class KinematicRun {
 
   bool stays(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
-    return r.taken_by || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
+    if (goes_by_plan(i)) return false;
+    return r.rests_beside || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
   }
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
@@ -368,7 +390,7 @@ class KinematicRun {
   }
 
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
-    if (robots_[i].taken_by) {
+    if (robots_[i].rests_beside) {
       step.mode = Mode::staying;
       return {};
     }
@@ -410,7 +432,9 @@ class KinematicRun {
     std::vector<std::size_t> not_there;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       if (!at_goal(i)) not_there.push_back(i);
-      if (robots_[i].taken_by) text += "; " + scenario_.robots[i].id + " stays: " + taken_words(i);
+      if (robots_[i].taken_by)
+        text += "; " + scenario_.robots[i].id + (robots_[i].rests_beside ? " stays: " : " cannot reach its goal: ") +
+                taken_words(i);
     }
     if (!not_there.empty()) text += no_passing_words();
     if (!groups_ || not_there.empty()) return text;

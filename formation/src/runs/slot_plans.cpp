@@ -57,11 +57,14 @@ SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int th
       space_(scenario.obstacles),
       groups_(larger_, space_, true, threads, std::move(is_stopped)) {}
 
+double SlotPlans::room_of(std::size_t robot) const {
+  return scenario_.robots[robot].radius + scenario_.margins.obstacle + 2.0 * kContactSkin;
+}
+
 /// Empty where nothing is known to keep the robot from the slot.
 std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const {
-  const double radius = scenario_.robots[robot].radius;
-  const double wanted = std::max(larger_.robots[robot].radius, radius + scenario_.margins.obstacle - tolerance_);
-  if (space_.clearance(slot, wanted) < wanted) {
+  const double radius = scenario_.robots[robot].radius, room = room_of(robot);
+  if (space_.clearance(slot, room) < room) {
     double nearest = geometry::kInfinity;
     std::string id;
     for (const SceneObstacle& o : scenario_.obstacles) {
@@ -81,7 +84,7 @@ Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const s
                                 Reachability& reach) const {
   constexpr double kFinest = 0.25, kBeyond = 16.0;  // of the radius: between rings, and beyond where it is
   constexpr double kMostRings = 128.0;
-  const double radius = scenario_.robots[robot].radius, room = radius + scenario_.margins.obstacle;
+  const double radius = scenario_.robots[robot].radius, room = room_of(robot);
   const auto is_free = [&](Vec2 place) {
     return space_.clearance(place, room) >= room && std::all_of(taken.begin(), taken.end(), [&](const Disc& t) {
              return norm(place - t.centre) >= (1.0 + kPlannedGap) * (radius + t.radius) + scenario_.margins.robot;
