@@ -470,6 +470,20 @@ TEST(Liveness, PlansInVainAreMadeAgainOnceWhatStoodThereHasMoved) {
   EXPECT_EQ(measure(s, simulate(s)).outcome, "all robots arrived");
 }
 
+/// Between 2 diameters, up to which it is proven that they cannot, and 2.06, which plans with their gaps need, they
+/// stand.
+TEST(Liveness, TwoPassEachOtherWhereTheyHaveJustRoomSideBySide) {
+  for (const double width : {2.07, 2.1, 2.14, 2.18, 2.3}) {
+    Scenario s;
+    test_scenes::add_box(s, 10.0, 0.5 * width);
+    s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {5, 0}, {-5, 0})};
+    const Recording run = simulate(s);
+    EXPECT_EQ(measure(s, run).outcome, "all robots arrived") << width;
+    EXPECT_EQ(relaxed(run), 0u) << width;
+    EXPECT_TRUE(audits_clean(s, run)) << width;
+  }
+}
+
 /// Its way back leads through a robot that rests there and does not cooperate: it went "back" for the whole run without
 /// a move, plan after plan, and more time was said to be all that was missing.
 TEST(Liveness, WhoHasNoWayBackMakesNoPlanToGoBack) {

@@ -342,10 +342,11 @@ bool Groups::plan_for(Members who, const Members& seeds, int replans) {
     if (to == history_.first() || end == PlanEnd::no_use || end == PlanEnd::in_vain) break;
   }
   // A map that has no plan may lack a place: that far in a niche, say. Then from now and from the first row again.
-  for (const std::size_t to : {now, history_.first()})
-    if (end == PlanEnd::none_on_map && !is_stopped_() && can_go_back(who, to) &&
-        plan_from(who, seeds, replans, to, Detail::dense) == PlanEnd::planned)
-      return true;
+  for (const Detail detail : {Detail::dense, Detail::walls})
+    for (const std::size_t to : {now, history_.first()})
+      if (end == PlanEnd::none_on_map && !is_stopped_() && can_go_back(who, to) &&
+          plan_from(who, seeds, replans, to, detail) == PlanEnd::planned)
+        return true;
   for (const std::size_t i : seeds) ++of_robot_[i].failures;
   forget_without_plan(seeds);
   without_plan_.push_back({seeds, end});

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::formation::detail {
 namespace {
 
@@ -46,6 +48,7 @@ Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double rad
   add_lattice(region);
   const std::vector<FreePoint> narrow = space.is_open() ? std::vector<FreePoint>{} : narrow_points(region);
   add_guards(narrow, detail);
+  if (detail == Detail::walls) add_places_beside_walls();
   add_ways();
   add_connectors(narrow);
 }
@@ -145,7 +148,7 @@ std::vector<Roadmap::FreePoint> Roadmap::narrow_points(const geometry::Box& regi
 }
 
 void Roadmap::add_guards(const std::vector<FreePoint>& narrow, Detail detail) {
-  const double reach = (detail == Detail::dense ? kDense : kSeesWithin) * diameter_;
+  const double reach = (detail == Detail::seen ? kSeesWithin : kDense) * diameter_;
   for (const FreePoint& point : narrow) {
     bool is_seen = false;
     for_each_near(point.place, reach, [&](PlaceNumber p) {
@@ -153,6 +156,28 @@ void Roadmap::add_guards(const std::vector<FreePoint>& narrow, Detail detail) {
     });
     if (!is_seen) add(point.place);
   }
+}
+
+/// From every place that far straight to the walls about it that ways still keep clear.
+void Roadmap::add_places_beside_walls() {
+  constexpr int kDirections = 8, kHalvings = 20;
+  constexpr double kFarthest = 0.75, kApart = 0.1, kOffWall = 1e-4;  // diameters
+  const std::size_t before = places_.size();
+  for (std::size_t a = 0; a < before; ++a)
+    for (int k = 0; k < kDirections; ++k) {
+      const Vec2 way = geometry::rotated({kFarthest * diameter_, 0.0}, 2.0 * geometry::kPi * k / kDirections);
+      const auto is_clear = [&](double share) {
+        return space_->is_clear(places_[a], places_[a] + share * way, way_clearance_ + kOffWall * diameter_);
+      };
+      if (is_clear(1.0)) continue;
+      double clear = 0.0;
+      for (double step = 0.5; step > std::ldexp(1.0, -kHalvings); step *= 0.5)
+        if (is_clear(clear + step)) clear += step;
+      const Vec2 beside = places_[a] + clear * way;
+      bool is_known = false;
+      for_each_near(beside, kApart * diameter_, [&](PlaceNumber) { is_known = true; });
+      if (!is_known) add(beside);
+    }
 }
 
 void Roadmap::add_ways() {

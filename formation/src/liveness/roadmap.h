@@ -27,6 +27,7 @@ using PlaceNumber = std::uint32_t;
 enum class Detail {
   seen,   ///< every free point sees one
   dense,  ///< every free point has one within half a diameter: also at the ends of niches
+  walls,  ///< as dense, with places beside the walls: where two have just room to pass each other
 };
 
 class Roadmap {
@@ -83,6 +84,7 @@ class Roadmap {
   void add_lattice(const geometry::Box& region);
   std::vector<FreePoint> narrow_points(const geometry::Box& region) const;
   void add_guards(const std::vector<FreePoint>& narrow, Detail detail);
+  void add_places_beside_walls();
   void add_ways();
   void add_connectors(const std::vector<FreePoint>& narrow);
 
