@@ -12,6 +12,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"
+#include "preflight/strip.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
@@ -183,6 +184,97 @@ TEST(Passing, NothingIsProvenOfRobotsThatOverlapAtTheStart) {
   EXPECT_THAT(robots_without_passing(changing({-1, 0}, {-0.5, 0})), IsEmpty());
   EXPECT_EQ(robots_without_passing(changing({-1, 0.24}, {1, 0})).size(), 1u);
   EXPECT_THAT(robots_without_passing(changing({-1, 0.26}, {1, 0})), IsEmpty());
+}
+
+/// Whose goal the walls alone keep it from has no use of room to pass: beyond the strip, in a wall, or behind a gap
+/// that is just too narrow.
+TEST(Passing, NothingIsSaidOfAGoalThatIsOutOfReachByItself) {
+  const auto reversed = [](double length, double width, Vec2 goal) {
+    Scenario s = corridor(length, width);
+    test_scenes::add_robot(s, {-3, 0}, goal);
+    test_scenes::add_robot(s, {3, 0}, {-3, 0});
+    return s;
+  };
+  EXPECT_EQ(robots_without_passing(reversed(12.0, 1.5, {4, 0})).size(), 1u);
+  EXPECT_THAT(robots_without_passing(reversed(12.0, 1.5, {7, 0})), IsEmpty()) << "beyond the end of the strip";
+  EXPECT_THAT(robots_without_passing(reversed(12.0, 1.5, {4, 5})), IsEmpty()) << "beside it";
+  EXPECT_THAT(robots_without_passing(reversed(12.0, 1.5, {4, 0.5})), IsEmpty()) << "in the wall";
+  EXPECT_THAT(robots_without_passing(reversed(12.0, 3.0, {0, 5})), IsEmpty()) << "where there is room to pass";
+  Scenario by_strips = reversed(12.0, 1.5, {4, 0});
+  by_strips.robots[1].goals = {{-9, 0}};
+  EXPECT_THAT(robots_without_passing(by_strips), IsEmpty()) << "of the second one";
+
+  const auto with_chamber = [](double gap) {
+    Scenario s;
+    test_scenes::add_wall(s, {{-6, -0.75},
+                              {5, -0.75},
+                              {5, -0.5 * gap},
+                              {5.2, -0.5 * gap},
+                              {5.2, -0.75},
+                              {8, -0.75},
+                              {8, 0.75},
+                              {5.2, 0.75},
+                              {5.2, 0.5 * gap},
+                              {5, 0.5 * gap},
+                              {5, 0.75},
+                              {-6, 0.75},
+                              {-6, -0.75}});
+    test_scenes::add_robot(s, {-3, 0}, {7, 0});
+    test_scenes::add_robot(s, {3, 0}, {-3, 0});
+    return moved(s, 0.0, {0.03, 0.06});  // the middle of the gap within squares
+  };
+  EXPECT_EQ(robots_without_passing(with_chamber(1.001)).size(), 1u);
+  EXPECT_THAT(robots_without_passing(with_chamber(0.999)), IsEmpty());
+}
+
+/// Then there is no room at the goals, whether the two can pass or not.
+TEST(Passing, NothingIsSaidOfGoalsTooNearToEachOther) {
+  const auto with_goals = [](double first, double second) {
+    Scenario s = corridor(12.0, 1.5);
+    test_scenes::add_robot(s, {-3, 0}, {first, 0});
+    test_scenes::add_robot(s, {3, 0}, {second, 0});
+    return robots_without_passing(s);
+  };
+  EXPECT_EQ(with_goals(1.0, 0.05).size(), 1u);
+  EXPECT_THAT(with_goals(1.0, 0.5), IsEmpty());
+}
+
+TEST(Passing, AProofAboutTwoIsSaidWhateverElseIsOfOthers) {
+  Scenario s = corridor(12.0, 1.5);
+  test_scenes::add_robot(s, {-3, 0}, {3, 0});
+  test_scenes::add_robot(s, {3, 0}, {-3, 0});
+  test_scenes::add_robot(s, {5, 0}, {9, 0});
+  s.time_limit = 1.0;
+  EXPECT_THAT(warnings_before(s), testing::ElementsAre(HasSubstr("goal of R3, (9, 0), cannot be reached"),
+                                                       HasSubstr("R1 and R2 cannot both reach their goals")));
+  const std::string outcome = simulate(s).outcome;
+  EXPECT_THAT(outcome, HasSubstr("R3 cannot reach its goal"));
+  EXPECT_THAT(outcome, HasSubstr("R1 and R2 cannot both reach their goals"));
+  EXPECT_THAT(outcome, testing::Not(HasSubstr("R3 cannot both")));
+  EXPECT_THAT(outcome, testing::Not(HasSubstr("and R3 cannot")));
+}
+
+/// Walls elsewhere cost nothing, and are no walls of the strip.
+TEST(Passing, OfAStripOnlyWallsNearItAreLookedAt) {
+  Scenario s = corridor(12.0, 1.5);
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y) {
+      const Vec2 p{20.0 + 5.0 * x, -100.0 + 5.0 * y};
+      test_scenes::add_wall(s, {p, p + Vec2{3.0, 0.0}, p + Vec2{3.0, 3.0}});
+    }
+  const detail::EdgesByPlace walls(s.obstacles);
+  std::vector<Vec2> squares;  // of the middles' places, 11 m by 0.5 m
+  for (int x = -44; x < 44; ++x)
+    for (int y = -2; y < 2; ++y) squares.push_back({0.125 * x, 0.125 * y});
+  const detail::DiscWithGoal there{{-3, 0}, {3, 0}, 0.05, 0.5}, back{{3, 0}, {-3, 0}, 0.05, 0.5};
+  constexpr std::size_t kLooks = 1000;
+  std::size_t left = kLooks;
+  ASSERT_TRUE(detail::strip_that_keeps_order(there, back, squares, 0.125, walls, left).has_value());
+  EXPECT_GT(walls.all().size(), 3 * kLooks);
+  EXPECT_GT(left, kLooks / 2);
+  std::size_t few = 100;
+  EXPECT_FALSE(detail::strip_that_keeps_order(there, back, squares, 0.125, walls, few).has_value());
+  EXPECT_EQ(few, 0u);
 }
 
 /// What is proven to be out of reach is never reached: closed scenes with little room, run.

@@ -8,11 +8,14 @@
 #include <cstdio>
 #include <deque>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
+#include "preflight/open_way.h"
 #include "preflight/open_window.h"
+#include "preflight/reachability.h"
 #include "preflight/strip.h"
 #include "scene/edges_by_place.h"
 #include "steering/goals.h"
@@ -25,11 +28,12 @@ using geometry::Segment;
 constexpr std::size_t kMostSquares = 4000;  ///< of a robot: about 250 squares of its radius
 constexpr std::size_t kMostLooks = 200000;  ///< at squares, in all: 0.1 s
 constexpr std::size_t kMostLooksOfCover = 8 * (kMostSquares + 1);
-constexpr std::size_t kMostPairs = 8000000;     ///< that are gone to, in all: half a second
-constexpr double kCoarsestSquare = 0.25;        ///< side of a square, of the smaller radius
-constexpr double kFinestSquare = 1.0 / 16.0;    ///< the same
-constexpr double kRoundedDown = 1.0 - 0x1p-40;  ///< of a product of a few factors
-constexpr double kHalfDiagonal = 0.70711;       ///< of a square, rounded up
+constexpr std::size_t kMostPairs = 8000000;           ///< that are gone to, in all: half a second
+constexpr std::size_t kMostLooksOfStrips = 20000000;  ///< at walls and squares of strips, in all: 0.2 s
+constexpr double kCoarsestSquare = 0.25;              ///< side of a square, of the smaller radius
+constexpr double kFinestSquare = 1.0 / 16.0;          ///< the same
+constexpr double kRoundedDown = 1.0 - 0x1p-40;        ///< of a product of a few factors
+constexpr double kHalfDiagonal = 0.70711;             ///< of a square, rounded up
 
 /// x and y times the side are the coordinates of its lower left corner, without rounding: the side is a power of two.
 struct Square {
@@ -193,6 +197,11 @@ std::vector<char> squares_at(Vec2 goal, double reach, const Cover& cover) {
   return is_at;
 }
 
+/// Whether what is covered comes within reach of the goal: else the walls alone keep the disc from it.
+bool holds_goal(const std::vector<char>& is_at) {
+  return std::find(is_at.begin(), is_at.end(), char{1}) != is_at.end();
+}
+
 /// What a search over pairs of squares comes to.
 struct PairSearch {
   enum class End { reaches_goals, proven, out_of_budget } end = End::out_of_budget;
@@ -240,29 +249,49 @@ PairSearch search(const Traveller& a, const Traveller& b, std::size_t most) {
 class Proofs {
  public:
   /// `spares`: makes no cover of a robot that stands in the open.
-  Proofs(const Scenario& scenario, bool spares) : scenario_(scenario), walls_(scenario.obstacles), spares_(spares) {}
+  Proofs(const Scenario& scenario, bool spares)
+      : scenario_(scenario),
+        walls_(scenario.obstacles),
+        open_(scenario.obstacles),
+        reach_(scenario, 0.0, false),
+        spares_(spares) {}
 
   /// Whether the covers that were spared could not have used up the looks: without sparing the same is found.
   bool is_sure() const { return looks_left_ > spared_; }
 
-  /// Whether proofs about this robot are looked for. Who starts in a wall is pushed out of it: nothing holds it in its
-  /// cover.
-  bool has_little_room(std::size_t i) {
+  /// Where a robot gets to that proofs are looked for about; else null. Who starts in a wall is pushed out of it:
+  /// nothing holds it in its cover. Whose goal is out of reach has no use of passing.
+  const Cover* little_room(std::size_t i) {
     const Robot& r = scenario_.robots[i];
-    return r.goals.size() == 1 && r.radius > 0.0 && !walls_.exclude(r.position, r.radius) &&
-           cover_of(i, coarsest_side(r.radius)) != nullptr;
+    if (r.goals.size() != 1 || !(r.radius > 0.0) || walls_.exclude(r.position, r.radius)) return nullptr;
+    const Cover* cover = cover_of(i, coarsest_side(r.radius));
+    return cover && holds_goal(squares_at_goal(i, *cover)) ? cover : nullptr;
   }
 
-  /// REQUIRES: both have little room.
+  bool is_in(const Cover& cover, std::size_t robot) const {
+    const Vec2 p = scenario_.robots[robot].position;
+    return fits_grid(p, cover.side) && cover.number.find(square_at(p, cover.side)) != SquareNumbers::kUnknown;
+  }
+
+  /// That the two cannot pass, where each of them could reach its goal if the other were not there. REQUIRES: both have
+  /// little room.
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
-    if (overlap_at_start(i, j)) return std::nullopt;
+    if (overlap_at_start(i, j) || detail::are_too_near(scenario_, i, j)) return std::nullopt;
+    std::optional<NoPassing> proof = by_walls(i, j);
+    return proof && !is_out_of_reach(i) && !is_out_of_reach(j) ? std::move(proof) : std::nullopt;
+  }
+
+ private:
+  std::optional<NoPassing> by_walls(std::size_t i, std::size_t j) {
     if (std::optional<NoPassing> proof = in_a_strip(i, j)) return proof;
     const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
     for (double side = coarsest_side(smaller); side >= kFinestSquare * smaller; side *= 0.5) {
       const Cover* of_i = cover_of(i, side);
       const Cover* of_j = of_i ? cover_of(j, side) : nullptr;
       if (!of_j || !(is_in(*of_i, j) || is_in(*of_j, i))) return std::nullopt;
-      const PairSearch found = search(traveller(i, *of_i), traveller(j, *of_j), pairs_left_);
+      const Traveller first = traveller(i, *of_i), second = traveller(j, *of_j);
+      if (!holds_goal(first.is_goal) || !holds_goal(second.is_goal)) return std::nullopt;
+      const PairSearch found = search(first, second, pairs_left_);
       pairs_left_ -= std::min(pairs_left_, found.pairs);
       if (found.end == PairSearch::End::out_of_budget) return std::nullopt;
       if (found.end == PairSearch::End::proven) return NoPassing{i, j, side, corners_of(*of_i), found.pairs, 0.0};
@@ -270,7 +299,23 @@ class Proofs {
     return std::nullopt;
   }
 
- private:
+  /// Squares cover more than what can be reached: a goal behind a gap just too narrow may lie in them.
+  bool is_out_of_reach(std::size_t robot) {
+    const auto [known, is_new] = is_out_of_reach_.try_emplace(robot, false);
+    if (is_new)
+      known->second = !open_.is_found(scenario_.robots[robot].position, scenario_.robots[robot].goals[0],
+                                      scenario_.robots[robot].radius) &&
+                      is_proven_out_of_reach(robot);
+    return known->second;
+  }
+
+  bool is_proven_out_of_reach(std::size_t robot) {
+    const Robot& r = scenario_.robots[robot];
+    const detail::Destination goal{r.goals[0], detail::reach_of(scenario_, r, 0)};
+    return !reach_.reachable_place(r.radius, r.position, goal) &&
+           reach_.is_proven_out_of_reach(r.radius, r.position, goal);
+  }
+
   static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsestSquare * radius))); }
 
   /// Such robots push each other apart, to any side.
@@ -285,20 +330,17 @@ class Proofs {
         scenario_.robots[i].radius <= scenario_.robots[j].radius ? std::pair(i, j) : std::pair(j, i);
     const Cover* cover = cover_of(smaller, coarsest_side(scenario_.robots[smaller].radius));
     if (!cover || !is_in(*cover, larger)) return std::nullopt;
+    if (!holds_goal(squares_at_goal(i, *cover)) || !holds_goal(squares_at_goal(j, *cover))) return std::nullopt;
     std::vector<Vec2> squares = corners_of(*cover);
     const std::optional<double> width =
-        detail::strip_that_keeps_order(disc(i), disc(j), squares, cover->side, walls_.edges());
+        detail::strip_that_keeps_order(disc(i), disc(j), squares, cover->side, walls_.edges(), looks_left_of_strips_);
     if (!width) return std::nullopt;
     return NoPassing{i, j, cover->side, std::move(squares), 0, *width};
   }
 
-  detail::Disc disc(std::size_t i) const {
+  detail::DiscWithGoal disc(std::size_t i) const {
     const Robot& r = scenario_.robots[i];
     return {r.position, r.goals[0], detail::reach_of(scenario_, r, 0), r.radius};
-  }
-
-  bool is_in(const Cover& cover, std::size_t robot) const {
-    return cover.number.find(square_at(scenario_.robots[robot].position, cover.side)) != SquareNumbers::kUnknown;
   }
 
   /// Null where it is not whole. Robots in one another's cover share it.
@@ -317,9 +359,13 @@ class Proofs {
   }
 
   Traveller traveller(std::size_t robot, const Cover& cover) const {
+    return {&cover, cover.number.find(square_at(scenario_.robots[robot].position, cover.side)),
+            squares_at_goal(robot, cover)};
+  }
+
+  std::vector<char> squares_at_goal(std::size_t robot, const Cover& cover) const {
     const Robot& r = scenario_.robots[robot];
-    return {&cover, cover.number.find(square_at(r.position, cover.side)),
-            squares_at(r.goals[0], detail::reach_of(scenario_, r, 0), cover)};
+    return squares_at(r.goals[0], detail::reach_of(scenario_, r, 0), cover);
   }
 
   static std::vector<Vec2> corners_of(const Cover& cover) {
@@ -330,8 +376,11 @@ class Proofs {
 
   const Scenario& scenario_;
   Walls walls_;
+  detail::OpenWay open_;
+  detail::Reachability reach_;                   ///< makes its map where it is asked
+  std::map<std::size_t, bool> is_out_of_reach_;  ///< of robots that were asked for
   std::deque<Cover> covers_;
-  std::size_t looks_left_ = kMostLooks, pairs_left_ = kMostPairs;
+  std::size_t looks_left_ = kMostLooks, pairs_left_ = kMostPairs, looks_left_of_strips_ = kMostLooksOfStrips;
   bool spares_;
   std::size_t spared_ = 0;  ///< looks, at most
 };
@@ -340,13 +389,23 @@ class Proofs {
 std::optional<std::vector<NoPassing>> without_passing(const Scenario& scenario, bool spares) {
   Proofs proofs(scenario, spares);
   const auto is_sure = [&] { return !spares || proofs.is_sure(); };
-  std::vector<std::size_t> asked;
+  struct Asked {
+    std::size_t robot;
+    const Cover* room;
+  };
+  std::vector<Asked> asked;
   for (std::size_t i = 0; i < scenario.robots.size() && is_sure(); ++i)
-    if (proofs.has_little_room(i)) asked.push_back(i);
+    if (const Cover* room = proofs.little_room(i)) asked.push_back({i, room});
+  // Finer squares cover less: who is in neither's coarsest ones is in none.
+  const auto may_meet = [&](const Asked& a, const Asked& b) {
+    return proofs.is_in(*a.room, b.robot) || proofs.is_in(*b.room, a.robot);
+  };
   std::vector<NoPassing> all;
   for (std::size_t k = 0; k < asked.size() && is_sure(); ++k)
     for (std::size_t l = k + 1; l < asked.size(); ++l)
-      if (std::optional<NoPassing> proof = proofs.of(asked[k], asked[l])) all.push_back(std::move(*proof));
+      if (may_meet(asked[k], asked[l]))
+        if (std::optional<NoPassing> proof = proofs.of(asked[k].robot, asked[l].robot))
+          all.push_back(std::move(*proof));
   if (!is_sure()) return std::nullopt;
   return all;
 }

@@ -234,7 +234,7 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
     last.push_back(targets.back());
   }
   warn_of_pairs(scenario, last, out);
-  if (out.empty()) warn_of_passing(scenario, out);  // who cannot reach a goal anyway proves nothing new
+  warn_of_passing(scenario, out);
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;
   warn_of_leader(scenario, out);

@@ -13,7 +13,7 @@ namespace exactvo::formation::detail {
 ///   - a goal, or a slot at the leader's end, that lies inside an obstacle or nearer to one than the robot's radius;
 ///     that is proven out of reach (reachability.h); or that a moving obstacle covers where it comes to rest;
 ///   - two goals or slots too near to each other for both robots;
-///   - where nothing of that is said, two robots that would have to pass each other and are proven to have no room to
+///   - two robots, none of which that is said of, that would have to pass each other and are proven to have no room to
 ///     (passing.h);
 ///   - a leader that reaches its end after the time limit, that moves faster than a robot can, or whose path was
 ///     planned and does not lead where it should or leaves no room for the formation;

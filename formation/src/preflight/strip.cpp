@@ -61,31 +61,60 @@ std::optional<double> width_to(const Segment& wall, const Frame& frame, const Ex
   return std::max(at_low, at_high) + 8.0 * frame.rounding();
 }
 
-bool order_would_change(const Disc& first, const Disc& second, const Frame& frame) {
+bool order_would_change(const DiscWithGoal& first, const DiscWithGoal& second, const Frame& frame) {
   const double start = frame.along(second.start) - frame.along(first.start);
   const double goal = frame.along(second.goal) - frame.along(first.goal), reach = first.reach + second.reach;
   const double rounding = 4.0 * frame.rounding();
   return start > rounding ? goal + reach < -rounding : start < -rounding && goal - reach > rounding;
 }
 
+/// By number, so that the same one is found whatever the order of the grid. The walls of a strip narrower than
+/// `side_by_side` reach past a disc in it, and so come nearer to its middle than that.
+std::vector<std::size_t> walls_near(Vec2 middle, double side_by_side, double rounding, const EdgesByPlace& walls) {
+  std::vector<std::size_t> near;
+  walls.grid().for_each_within(middle, side_by_side + rounding, [&](std::size_t k) { near.push_back(k); });
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+/// Whether both discs start level with the wall and the first to the left of it, nearer than `most`, m.
+bool may_bound(double length, const Frame& frame, const DiscWithGoal& first, const DiscWithGoal& second, double most) {
+  const double across = frame.across(first.start);
+  const auto is_level = [&](Vec2 p) { return frame.along(p) > 0.0 && frame.along(p) < length; };
+  return across > 0.0 && across < most && is_level(first.start) && is_level(second.start);
+}
+
+/// Takes them off what is left; nothing is left where that was too little.
+bool has_looks(std::size_t& left, std::size_t wanted) {
+  const bool enough = wanted <= left;
+  left = enough ? left - wanted : 0;
+  return enough;
+}
+
 }  // namespace
 
-std::optional<double> strip_that_keeps_order(const Disc& first, const Disc& second, const std::vector<Vec2>& squares,
-                                             double side, const EdgesByPlace& walls) {
+std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second,
+                                             const std::vector<Vec2>& squares, double side, const EdgesByPlace& walls,
+                                             std::size_t& looks) {
   constexpr double kRoundedDown = 1.0 - 0x1p-40;
   const double side_by_side = 2.0 * (first.radius + second.radius) * kRoundedDown;
   double largest = walls.largest_with(squares.front());
   for (const Vec2 goal : {first.goal, second.goal}) largest = std::max(largest, walls.largest_with(goal));
-  for (const Segment& wall : walls.all()) {
+  const double rounding = 16.0 * geometry::rounding_of_distance(largest);
+  const std::vector<std::size_t> near = walls_near(first.start, side_by_side, rounding, walls);
+  if (!has_looks(looks, 2 * near.size())) return std::nullopt;
+  for (const std::size_t k : near) {
+    const Segment wall = walls[k];
     for (const Segment& from : {wall, Segment{wall.b, wall.a}}) {  // squares are to the left of one of them
       const Frame frame(from, largest);
-      const double across = frame.across(first.start), length = norm(wall.b - wall.a);
-      if (!(across > 0.0 && across < side_by_side) || !order_would_change(first, second, frame)) continue;
+      const double length = norm(wall.b - wall.a);
+      if (!may_bound(length, frame, first, second, side_by_side) || !order_would_change(first, second, frame)) continue;
+      if (!has_looks(looks, squares.size() + near.size())) return std::nullopt;
       const Extent extent = extent_of(squares, side, frame);
       if (!(frame.rounding() <= extent.low && extent.high <= length - frame.rounding() && extent.nearest > 0.0))
         continue;
-      for (const Segment& other : walls.all())
-        if (const std::optional<double> width = width_to(other, frame, extent); width && *width < side_by_side)
+      for (const std::size_t other : near)
+        if (const std::optional<double> width = width_to(walls[other], frame, extent); width && *width < side_by_side)
           return width;
     }
   }

@@ -11,6 +11,7 @@
 ///
 /// Certified: nothing is found where rounding leaves it open.
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -18,7 +19,8 @@
 
 namespace exactvo::formation::detail {
 
-struct Disc {
+/// A robot in a strip.
+struct DiscWithGoal {
   Vec2 start;           ///< m
   Vec2 goal;            ///< m
   double reach = 0.0;   ///< m, of places that count as the goal
@@ -27,8 +29,11 @@ struct Disc {
 
 /// The width, m, rounded up, of a strip in which the order of the discs cannot change and would have to. `squares`:
 /// lower left corners of squares of that side, m, that cover every place that the middle of either disc can get to. Of
-/// each square some point is a radius from every wall. REQUIRES: the side is at most half of the smaller radius.
-std::optional<double> strip_that_keeps_order(const Disc& first, const Disc& second, const std::vector<Vec2>& squares,
-                                             double side, const EdgesByPlace& walls);
+/// each square some point is a radius from every wall. Only walls near the first disc are looked at: others are not
+/// those of a strip so narrow. `looks`: at walls and squares, how many are allowed and then how many are left; nothing
+/// is found once there are none. REQUIRES: the side is at most half of the smaller radius.
+std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second,
+                                             const std::vector<Vec2>& squares, double side, const EdgesByPlace& walls,
+                                             std::size_t& looks);
 
 }  // namespace exactvo::formation::detail

@@ -17,7 +17,8 @@
 /// strip between two walls, too narrow for the two side by side, their order along it never changes, and no pair has to
 /// be looked at. Certified: rounding only leaves more squares and pairs in. An answer without a pair says nothing:
 /// proofs are looked for only where robots have little room and overlap nothing at the start, and with a limited number
-/// of pairs.
+/// of pairs. Nor is anything said of a robot whose goal is out of reach for it alone, or of two whose goals are too
+/// near to each other: then it is not passing that they have no room for.
 
 #include <cstddef>
 #include <string>
@@ -37,8 +38,10 @@ struct NoPassing {
   double strip = 0.0;         ///< m, width of the strip, rounded up; 0 without one
 };
 
-/// Pairs of robots that are proven not to be able to be at their goals together, in order; of robots with one goal, by
-/// the static obstacles alone. Deterministic; takes a few tenths of a second at most. REQUIRES: a valid scenario.
+/// Pairs of robots that are proven not to be able to be at their goals together, though neither goal is proven out of
+/// reach by itself, in order; of robots with one goal, by the static obstacles alone. Deterministic; takes a few tenths
+/// of a second at most, and of some robots that something is proven of the map of all obstacles (geometry/routes.h).
+/// REQUIRES: a valid scenario.
 std::vector<NoPassing> robots_without_passing(const Scenario& scenario);
 
 /// "R1 and R2 cannot both reach their goals: they have no room to pass each other (proven: none of 8206 pairs of
