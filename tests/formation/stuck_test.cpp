@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "exactvo/formation/metrics.h"
 #include "paper_scenes.h"
 
 namespace exactvo::formation {
@@ -179,6 +180,85 @@ TEST(Stuck, WhatTheRobotInTheWayDoesIsSaid) {
   ends[1].goal = {0, 0};
   ends[1].velocity = {0, 1};
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is moving"));
+}
+
+/// Who creeps, as robots do that are held between a wall and each other, waits as who rests does.
+TEST(Stuck, WhoCreepsAndWaitsSaysForWhom) {
+  auto ends = head_on();
+  ends[0].velocity = {0.02, 0};
+  ends[1].velocity = {-0.02, 0};
+  const Scenario s = scene_of(ends);
+  EXPECT_THAT(text_of(s, unchanged(ends)),
+              HasSubstr("still moving when time ran out (0.02 m/s); its velocity is limited "
+                        "by robot R2; R1 waits for R2, which waits for R1: a deadlock of two"));
+  EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::ElementsAre("R1", "R2"));
+  for (End& end : ends) end.velocity = 20.0 * end.velocity;
+  EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::IsEmpty());
+}
+
+/// Beside a wall it was not said for whom a robot waits if that one waits for nobody.
+TEST(Stuck, WhoIsHeldByAWallAndOneRobotSaysForWhomItWaits) {
+  auto ends = head_on();
+  const geometry::Segment wall{{0, -0.5}, {9, -0.5}};
+  ends[0].constraints.push_back(constraint(ConstraintSource::obstacle_edge, 0, wall, {0, 1}, 1.0));
+  ends[1].constraints.clear();
+  ends[1].mode = Mode::arrived;
+  Scenario s = scene_of(ends);
+  s.obstacles = {{"wall", geometry::Polyline{{wall.a, wall.b}}}};
+  EXPECT_THAT(text_of(s, unchanged(ends)), HasSubstr("; R1 waits for R2, which rests at its goal"));
+}
+
+/// A goal in which another robot rests is not out of reach, nor is a slot that an obstacle stands in.
+TEST(Stuck, WhoStaysSaysWhy) {
+  auto ends = head_on();
+  for (End& end : ends) end.constraints.clear();
+  ends[0].mode = Mode::staying;
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("it stays, since its goal is out of reach"));
+  ends[1].mode = Mode::arrived;
+  ends[1].goal = ends[1].position;
+  ends[0].goal = ends[1].goal + Vec2{0.3, 0.0};
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)),
+              HasSubstr("it stays, since R2 rests at its goal, 0.3 m from its own"));
+  ends[0].goal = ends[1].goal + Vec2{0.9, 0.0};
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("it stays, since its goal is out of reach"));
+}
+
+TEST(Stuck, WhoGoesByAPlanSaysSo) {
+  auto ends = head_on();
+  ends.resize(1);
+  ends[0].constraints.clear();
+  ends[0].mode = Mode::by_plan;
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("no active constraint; it goes by a joint plan"));
+}
+
+/// Two robots whose leader has come to its end, 0.5 m and 3 m from their slots; they began in them.
+struct BesideTheirSlots {
+  Scenario scenario;
+  Recording recording;
+
+  explicit BesideTheirSlots(Vec2 velocity, Vec2 leader_velocity = {}) {
+    const std::vector<End> ends{{{0.5, 0}, {}, {}, {}, {}, Mode::staying},
+                                {{3, 4}, {}, velocity, {}, {}, Mode::staying}};
+    scenario = scene_of(ends);
+    scenario.formation.emplace().leader.path = {{0, 0}};
+    recording = unchanged(ends);
+    recording.offsets = {{0, 0}, {0, 4}};
+    for (std::size_t i = 0; i < 2; ++i) recording.steps[0].robots[i].position = recording.offsets[i];
+    for (Step& row : recording.steps) row.leader_velocity = leader_velocity;
+    recording.diverged = has_diverged(recording);
+  }
+};
+
+/// It was called diverged because its error had grown, and nothing was said of its robots.
+TEST(Stuck, AFormationThatRestsBesideItsSlotsHasNotDiverged) {
+  const BesideTheirSlots rests({});
+  EXPECT_FALSE(rests.recording.diverged);
+  const auto reports = explain_stuck(rests.scenario, rests.recording);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_THAT(reports[1].text, HasSubstr("R2 is 3 m from its slot, at (3.000, 4.000), at rest for "));
+  EXPECT_THAT(reports[1].text, HasSubstr("it stays, since its slot cannot be filled"));
+  EXPECT_TRUE(BesideTheirSlots({0.1, 0}).recording.diverged);
+  EXPECT_TRUE(BesideTheirSlots({}, {1, 0}).recording.diverged);
 }
 
 TEST(Stuck, AMovingObstacleHasNoEquilibrium) {

@@ -60,6 +60,20 @@ TEST(Waiting, ARobotThatRestsAtItsGoalIsNoDeadlockAndMakesOne) {
   EXPECT_THAT(deadlocks_in(row.graph()), IsEmpty());
 }
 
+TEST(Waiting, WhoStaysAtTheEndOfAQueueDoesSoForAReason) {
+  Row row({{1}, {2}, {}});
+  for (Robot& r : row.scenario.robots) r.goals = {{9.0, 0.0}};
+  row.scenario.robots[0].goals = row.scenario.robots[2].goals = {{-9.0, 0.0}};
+  row.step.robots[2].mode = Mode::staying;
+  EXPECT_THAT(row.words(0), HasSubstr("which waits for R3, which stays, since its goal is out of reach"));
+  row.step.robots[1].constraints.clear();
+  row.step.robots[1].mode = Mode::staying;
+  row.step.robots[2].mode = Mode::arrived;
+  row.scenario.robots[2].goals = {{9.4, 0.0}};
+  EXPECT_EQ(row.words(0), "R1 waits for R2, which stays, since R3 rests at its goal, 0.4 m from its own");
+  EXPECT_EQ(why_it_stays(row.scenario, row.step, 1), "R3 rests at its goal, 0.4 m from its own");
+}
+
 TEST(Waiting, AQueueBehindOneThatMovesIsAlive) {
   Row row({{1}, {2}, {3}, {}});
   row.step.robots[3].chosen = {1.0, 0.0};

@@ -100,7 +100,7 @@ struct End {
 };
 
 /// Without a formation a run ends before its time limit where all robots have arrived or, as nothing comes to push
-/// them, stay because their goals are out of reach.
+/// them, stay because their goals are out of reach or taken.
 bool has_ended(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     if (has_arrived(s.robots[i], end.last.robots[i].position, s.arrival_tolerance)) continue;
@@ -306,7 +306,7 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "
-        "answer)");
+        "answer) or taken by others");
   if (report.has_sums)
     words.emplace_back(
         "what robots track whose controller adds to the choice, or bounds its change: that they track "

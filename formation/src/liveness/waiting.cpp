@@ -7,6 +7,8 @@
 #include "decision/decision.h"
 #include "liveness/groups.h"
 #include "motion/leader.h"
+#include "scene/number_text.h"
+#include "steering/goals.h"
 
 namespace exactvo::formation {
 namespace {
@@ -15,14 +17,10 @@ using geometry::norm;
 
 // Shares of a robot's own fastest speed.
 constexpr double kWantsNothing = 1e-3;  ///< who wants less is not held up
-/// A faster robot moves: a ring of robots that wait for each other may turn slowly, and get apart.
+/// A faster robot does not stand: a ring of robots that wait for each other may turn slowly, and get apart.
 constexpr double kMoves = 1.0 / 15.0;
 /// Robots of a chain that are named one by one.
 constexpr std::size_t kNamed = 6;
-
-bool moves(const RobotStep& r, const Robot& robot) {
-  return norm(r.chosen) >= kMoves * robot.max_speed;
-}
 
 bool is_held_up(const RobotStep& r, const Robot& robot) {
   const double wanted = geometry::squared_norm(r.preferred), nothing = kWantsNothing * robot.max_speed;
@@ -90,10 +88,11 @@ std::string chained(const Scenario& scenario, const std::vector<std::size_t>& ch
          scenario.robots[chain.back()].id;
 }
 
-std::string end_words(const RobotStep& r, const Robot& robot) {
+std::string end_words(const Scenario& scenario, const Step& row, std::size_t robot) {
+  const RobotStep& r = row.robots[robot];
   if (r.mode == Mode::arrived) return ", which rests at its goal";
-  if (r.mode == Mode::staying) return ", which stays, since its goal is out of reach";
-  return moves(r, robot) ? ", which moves" : ", which is held up by no robot near it";
+  if (r.mode == Mode::staying) return ", which stays, since " + why_it_stays(scenario, row, robot);
+  return stands(scenario.robots[robot], r.chosen) ? ", which is held up by no robot near it" : ", which moves";
 }
 
 }  // namespace
@@ -125,6 +124,10 @@ std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph) {
   return cycles;
 }
 
+bool stands(const Robot& robot, Vec2 velocity) {
+  return norm(velocity) < kMoves * robot.max_speed;
+}
+
 bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& row, std::size_t robot) {
   std::vector<std::size_t> open{robot};
   std::vector<char> met(graph.size(), 0);
@@ -133,7 +136,7 @@ bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& ro
     const std::size_t i = open.back();
     open.pop_back();
     const RobotStep& r = row.robots[i];
-    if (r.mode != Mode::arrived && moves(r, scenario.robots[i])) return false;
+    if (r.mode != Mode::arrived && !stands(scenario.robots[i], r.chosen)) return false;
     for (const std::size_t j : graph[i])
       if (!met[j]) {
         met[j] = 1;
@@ -158,7 +161,17 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
     return chained(scenario, way) + ", which is in a deadlock of " + count(cycle.size());
   }
   const std::string queue = chain.size() > 2 ? "queue of " + std::to_string(chain.size()) + ": " : "";
-  return queue + chained(scenario, chain) + end_words(row.robots[chain.back()], scenario.robots[chain.back()]);
+  return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
+}
+
+std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
+  if (scenario.formation) return "its slot cannot be filled";
+  for (std::size_t j = 0; j < row.robots.size(); ++j)
+    if (j != robot && row.robots[j].mode == Mode::arrived && detail::are_too_near(scenario, robot, j))
+      return scenario.robots[j].id + " rests at its goal, " +
+             detail::metres(norm(scenario.robots[j].goals.back() - scenario.robots[robot].goals.back())) +
+             " from its own";
+  return "its goal is out of reach";
 }
 
 }  // namespace exactvo::formation

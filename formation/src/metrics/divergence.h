@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/stuck.h"
 
 namespace exactvo::formation::detail {
 
@@ -30,7 +31,19 @@ inline double formation_error(const Step& row, const std::vector<Vec2>& offsets)
   return worst;
 }
 
-/// Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
+/// m: of the robots that a formation can still lose. Who rests while the leader rests is where it stays: beside a slot
+/// that cannot be filled, in a trap or in a deadlock.
+inline double error_of_moving(const Step& row, const std::vector<Vec2>& offsets) {
+  const bool leader_rests = geometry::norm(row.leader_velocity) < kAtRest;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < row.robots.size(); ++i)
+    if (!leader_rests || !(geometry::norm(row.robots[i].velocity) < kAtRest))
+      worst = std::max(worst, slot_error(row, offsets, i));
+  return worst;
+}
+
+/// Judged by the end alone: a formation that moves and is farther from its slots than it began does not form.
+/// `first_error`: m, of the first row. `last_error`: m, `error_of_moving` of the last one.
 inline bool has_diverged(double first_error, double last_error) {
   constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
   return last_error > std::max(first_error, kArrivedOnce);

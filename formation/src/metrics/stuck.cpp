@@ -142,43 +142,43 @@ std::string other_words(const RunEnd& end, const RecordedConstraint& by) {
   return norm(other.velocity) >= kAtRest ? ", which is moving" : ", which is at rest";
 }
 
-/// Whom it waits for beyond the robots that block it; empty where the next one waits for nobody.
-std::string waiting_of(const RunEnd& end, std::size_t robot) {
-  if (end.waits.empty() || end.waits[robot].empty() || end.waits[end.waits[robot].front()].empty()) return "";
-  return waiting_words(end.scenario, *end.decided, end.waits, robot);
+/// Whom it waits for, or what the one robot that presses, and that waits for nobody, does; else the equilibrium.
+std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const std::vector<RecordedConstraint>& by) {
+  const bool is_one_robot = by.size() == 1 && by.front().source == ConstraintSource::robot;
+  const bool waits = !end.waits.empty() && !end.waits[r.robot].empty();
+  if (waits && !(is_one_robot && end.waits[end.waits[r.robot].front()].empty()))
+    return "; " + waiting_words(end.scenario, *end.decided, end.waits, r.robot);
+  if (is_one_robot && (waits || r.speed < kAtRest)) return other_words(end, by.front());
+  return r.equilibrium ? equilibrium_words(r) : "";
 }
 
 std::string blocked_words(const RunEnd& end, const StuckReport& r) {
   const std::vector<RecordedConstraint> by = pressing_of(r);
   const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
-  std::string text = (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario);
-  const std::string waiting = waiting_of(end, r.robot);
-  if (!waiting.empty()) return text + "; " + waiting;
-  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(end, by.front());
-  if (r.equilibrium) text += equilibrium_words(r);
-  return text;
+  return (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario) + beyond_what_presses(end, r, by);
 }
 
-std::string moving_words(const Scenario& s, const RobotStep& decision, const StuckReport& r) {
+std::string moving_words(const RunEnd& end, const RobotStep& decision, const StuckReport& r) {
   const std::vector<RecordedConstraint> by = pressing_of(r);
   if (decision.mode == Mode::following) {
     std::vector<RecordedConstraint> all;
     for (const BindingConstraint& b : r.binding) all.push_back(b.constraint);
-    return all.empty() ? "following a boundary" : "following the boundary of " + name_of(all, s);
+    return all.empty() ? "following a boundary" : "following the boundary of " + name_of(all, end.scenario);
   }
   if (by.empty()) return "no active constraint changes its velocity";
-  return "its velocity is limited by " + name_of(by, s) + (r.equilibrium ? equilibrium_words(r) : "");
+  return "its velocity is limited by " + name_of(by, end.scenario) + beyond_what_presses(end, r, by);
 }
 
 std::string cause_words(const RunEnd& end, const StuckReport& r) {
   const RobotStep* decision = last_decision(end, r.robot);
   if (!decision) return "no decision was taken";
   if (decision->mode == Mode::staying)
-    return r.speed < kAtRest ? "it stays, since its goal is out of reach" : "it stops, since its goal is out of reach";
+    return (r.speed < kAtRest ? "it stays, since " : "it stops, since ") +
+           why_it_stays(end.scenario, *end.decided, r.robot);
   std::string text;
   if (r.speed >= kAtRest) {
     text = r.binding.empty() && decision->mode != Mode::following ? "no active constraint"
-                                                                  : moving_words(end.scenario, *decision, r);
+                                                                  : moving_words(end, *decision, r);
   } else if (r.binding.empty()) {
     text = "no active constraint";
   } else if (pressing_of(r).empty()) {
@@ -189,6 +189,8 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
   if (decision->status != lp::Status::optimal && decision->violation > 0.0)
     text += printed("; the half-planes contradict each other by %.2g m/s", decision->violation);
   if (decision->mode == Mode::pushing_out) text += "; it is in contact with an obstacle";
+  if (decision->mode == Mode::by_plan) text += "; it goes by a joint plan";
+  if (decision->mode == Mode::going_back) text += "; it goes back to where a joint plan begins";
   return text;
 }
 
@@ -257,9 +259,9 @@ std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
 
 std::vector<std::size_t> StuckWatch::deadlock() const {
   if (!decided_) return {};
-  const auto rests = [&](std::size_t i) { return norm(last_->robots[i].velocity) < kAtRest; };
+  const auto stands_still = [&](std::size_t i) { return stands(scenario_.robots[i], last_->robots[i].velocity); };
   for (std::vector<std::size_t>& cycle : deadlocks_in(waiting_in(scenario_, *decided_)))
-    if (std::all_of(cycle.begin(), cycle.end(), rests)) return std::move(cycle);
+    if (std::all_of(cycle.begin(), cycle.end(), stands_still)) return std::move(cycle);
   return {};
 }
 

@@ -72,7 +72,7 @@ const TURNED = {
   guided: 'the preferred velocity leads along a proven route',
   'by-plan': 'the preferred velocity follows a joint plan of several robots',
   'going-back': 'the robot goes back the way it came, to where its plan begins',
-  staying: 'the robot stays, since its goal is out of reach',
+  staying: 'the robot stays, since its goal or slot is out of reach or taken',
   boost: 'boost turned the preferred velocity onto the tangent of the enclosure in the way',
   following: 'the preferred velocity follows the boundary, after a stall',
   'pushing-out': 'the robot is in contact, and the preferred velocity leads away from it',

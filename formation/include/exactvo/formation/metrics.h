@@ -158,8 +158,9 @@ bool is_safe(const Metrics& metrics);
 /// A detour that is worth a word in the outcome of a formation: longer than 1 m and than this share of the direct way.
 inline constexpr double kLongDetour = 0.25;
 
-/// What `Recording::diverged` is of a run that ends with the last row: a formation ends farther from its slots than it
-/// began, or its state left every bound. REQUIRES: a row.
+/// What `Recording::diverged` is of a run that ends with the last row: a robot that still moves, or whose leader does,
+/// ends farther from its slot than any began, or the state left every bound. Who rests elsewhere while the leader rests
+/// too has not diverged: it is stuck (stuck.h). REQUIRES: a row.
 bool has_diverged(const Recording& recording);
 
 /// "obstacle", "moving obstacle" or "robot".

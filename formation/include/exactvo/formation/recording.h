@@ -52,7 +52,7 @@ enum class Mode {
   guided,       ///< along a proven route
   by_plan,      ///< along a joint plan of several robots
   going_back,   ///< the way it came, to where its plan begins
-  staying,      ///< its goal is out of reach: the run's outcome says why
+  staying,      ///< its goal or slot is out of reach or taken: the run's outcome says why
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle
@@ -164,8 +164,8 @@ struct Recording {
   bool relative_frame = false;
   std::optional<Remedies> remedies;  ///< of a formation's controller, as they were in force
   std::vector<Vec2> offsets;  ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
-  bool diverged = false;      ///< the formation's error grew to the end, or the state left every bound
-  std::string outcome;        ///< in words, for people
+  bool diverged = false;  ///< the formation's error grew to the end, where robots move, or the state left every bound
+  std::string outcome;    ///< in words, for people
   /// What could be said before the run: a step beyond the integrator's limit, a goal inside an obstacle.
   std::vector<std::string> warnings;
   /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.

@@ -25,16 +25,18 @@ inline constexpr double kHeldBelow = 0.3;
 /// Of each robot, whom it waits for; the one that holds it most comes first.
 using WaitForGraph = std::vector<std::vector<std::size_t>>;
 
-/// Who waits for whom. In a formation nobody does before its leader has come to the end of its path, and in a run's last
-/// row, which decides nothing, nobody does either. REQUIRES: a row of a run of this scenario.
+/// Who waits for whom. In a formation nobody does before its leader has come to the end of its path, and in a run's
+/// last row, which decides nothing, nobody does either. REQUIRES: a row of a run of this scenario.
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 
 /// The cycles that are met by going from each robot to the one that holds it most: disjoint, each from its lowest
 /// number on, in the order of these.
 std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
 
-/// Whether this robot, those that it waits for, and those that they wait for in turn, all stand: each drives at less
-/// than a fifteenth of its fastest speed.
+/// Whether it drives at less than a fifteenth of its fastest speed.
+bool stands(const Robot& robot, Vec2 velocity);
+
+/// Whether this robot, those that it waits for, and those that they wait for in turn, all stand.
 bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& row, std::size_t robot);
 
 /// "R13 waits for R6, which waits for R13: a deadlock of two"; of a long cycle the first ones by name.
@@ -43,5 +45,9 @@ std::string deadlock_words(const Scenario& scenario, const std::vector<std::size
 /// The same of a robot in a deadlock, beginning with it; of others "R3 waits for R1, which rests at its goal", "queue
 /// of 4: R9 waits for R2, which moves". Empty where the robot waits for nobody.
 std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot);
+
+/// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 rests at its goal, 0.3 m from its own", "its
+/// slot cannot be filled". REQUIRES: a row of a run of this scenario, not its last.
+std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot);
 
 }  // namespace exactvo::formation
