@@ -192,7 +192,7 @@ TEST(Timetable, IsNearToWhatIsDriven) {
   EXPECT_GE(found, 9);
 }
 
-/// Against every position, with few radii exactly, with many never earlier.
+/// Against every position, with few radii exactly, with many never earlier; as bits and as lists.
 TEST(StandingRobots, SameAsLookingAtEveryStay) {
   SeededRandom random(test::seed_of_run(65));
   const Walls walls({});
@@ -208,13 +208,18 @@ TEST(StandingRobots, SameAsLookingAtEveryStay) {
       int first, last;
     };
     std::vector<Stay> stays;
-    StandingRobots standing(p.joint);
-    standing.clear(kLast);
+    const std::size_t words = static_cast<std::size_t>(std::min(kinds, 4)) * (kLast / 64 + 1) * p.map.size();
+    StandingRobots standing(p.joint, words), in_lists(p.joint, words - 1);
+    for (const int last : {2 * kLast, kLast})  // twice: what was there before is forgotten
+      for (StandingRobots* robots : {&standing, &in_lists}) robots->clear(static_cast<std::size_t>(last));
+    ASSERT_EQ(standing.words(), words);
+    ASSERT_EQ(in_lists.words(), 0u);
     for (std::size_t i = 0; i < p.joint.radii.size(); ++i)
       for (int first = 0; first <= kLast;) {
         const int last = std::min(kLast, first + random.integer(0, i % 2 == 0 ? 200 : 20));
         stays.push_back({i, static_cast<PlaceNumber>(random.integer(0, 5)), first, last});
-        standing.add(i, stays.back().place, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
+        for (StandingRobots* robots : {&standing, &in_lists})
+          robots->add(i, stays.back().place, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
         first = last + 1 + random.integer(0, 70);
       }
     for (int k = 0; k < 500; ++k) {
@@ -237,6 +242,12 @@ TEST(StandingRobots, SameAsLookingAtEveryStay) {
       const std::size_t position =
           standing.first_clear(radius, near, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
       const bool is_found = position <= static_cast<std::size_t>(last);
+      const std::size_t by_lists =
+          in_lists.first_clear(radius, near, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
+      ASSERT_EQ(by_lists <= static_cast<std::size_t>(last), is_found);
+      if (is_found) {
+        ASSERT_EQ(by_lists, position);
+      }
       if (kinds <= 4) {
         ASSERT_EQ(is_found, expected <= last);
       }

@@ -22,13 +22,14 @@ double squared_reach(double radii) {
 
 }  // namespace
 
-StandingRobots::StandingRobots(const JointProblem& problem) : problem_(problem) {
+StandingRobots::StandingRobots(const JointProblem& problem, std::size_t most_words)
+    : problem_(problem), most_words_(most_words) {
   constexpr std::size_t kMostLayers = 4;
   std::vector<double> radii = problem.radii;
   std::sort(radii.begin(), radii.end());
   radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
   const std::size_t count = std::min(radii.size(), kMostLayers);
-  for (std::size_t k = 1; k <= count; ++k) layers_.push_back({radii[k * radii.size() / count - 1], {}, {}});
+  for (std::size_t k = 1; k <= count; ++k) layers_.push_back({radii[k * radii.size() / count - 1]});
   for (const double radius : problem.radii) {
     const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& l) { return l.radius >= radius; });
     layer_of_.push_back(static_cast<std::size_t>(found - layers_.begin()));
@@ -36,18 +37,40 @@ StandingRobots::StandingRobots(const JointProblem& problem) : problem_(problem) 
 }
 
 void StandingRobots::clear(std::size_t count) {
+  const std::size_t places = problem_.map->size(), words = (count / kBits + 1) * places;
+  has_bits_ = layers_.size() * words <= most_words_;
   for (Layer& layer : layers_) {
-    layer.taken.assign((count / kBits + 1) * problem_.map->size(), 0);
-    layer.until.assign(layer.taken.size(), 0);
+    if (has_bits_) {
+      layer.taken.assign(words, 0);
+      layer.until.assign(words, 0);
+      continue;
+    }
+    layer = {layer.radius};
+    layer.stays.resize(places);
   }
 }
 
 void StandingRobots::add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last) {
   Layer& layer = layers_[layer_of_[robot]];
+  if (has_bits_) return add_bits(layer, problem_.map->size(), place, first, last);
+  add_stay(layer.stays[place], first, last);
+}
+
+/// Merged with those that it meets or follows on: of a sequence of moves mostly the last one, or none.
+void StandingRobots::add_stay(std::vector<Stay>& stays, std::size_t first, std::size_t last) {
+  Stay stay{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+  const auto begin = std::partition_point(stays.begin(), stays.end(), [&](Stay s) { return s.last + 1 < stay.first; });
+  const auto end = std::partition_point(begin, stays.end(), [&](Stay s) { return s.first <= stay.last + 1; });
+  if (begin != end) stay = {std::min(stay.first, begin->first), std::max(stay.last, (end - 1)->last)};
+  stays.insert(stays.erase(begin, end), stay);
+}
+
+void StandingRobots::add_bits(Layer& layer, std::size_t places, PlaceNumber place, std::size_t first,
+                              std::size_t last) {
   for (std::size_t w = first / kBits; w <= last / kBits; ++w) {
     const std::uint64_t from = w == first / kBits ? kAll << first % kBits : kAll;
     const std::uint64_t to = w == last / kBits ? kAll >> (kBits - 1 - last % kBits) : kAll;
-    const std::size_t word = w * problem_.map->size() + place;
+    const std::size_t word = w * places + place;
     layer.taken[word] |= from & to;
     layer.until[word] = std::max(layer.until[word], static_cast<std::uint32_t>(last + 1));
   }
@@ -55,6 +78,11 @@ void StandingRobots::add(std::size_t robot, PlaceNumber place, std::size_t first
 
 std::size_t StandingRobots::first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near,
                                         std::size_t first, std::size_t last) const {
+  while (!has_bits_ && first <= last) {
+    const std::size_t next = after_stays(radius, near, first);
+    if (next == first) return first;
+    first = next;
+  }
   while (first <= last) {
     std::uint64_t taken = (std::uint64_t{1} << first % kBits) - 1;
     const std::size_t next = add_taken(radius, near, first / kBits, taken);
@@ -77,6 +105,20 @@ std::size_t StandingRobots::add_taken(double radius, const std::vector<RoadmapEd
     }
   }
   return (word + 1) * kBits;
+}
+
+std::size_t StandingRobots::after_stays(double radius, const std::vector<RoadmapEdges::NearPlace>& near,
+                                        std::size_t position) const {
+  for (const Layer& layer : layers_) {
+    const double reach = squared_reach(radius + layer.radius);
+    for (const RoadmapEdges::NearPlace& n : near) {  // the nearest first
+      if (!(n.squared < reach)) break;
+      const std::vector<Stay>& stays = layer.stays[n.place];
+      const auto stay = std::partition_point(stays.begin(), stays.end(), [&](Stay s) { return s.last < position; });
+      if (stay != stays.end() && stay->first <= position) return stay->last + std::size_t{1};
+    }
+  }
+  return position;
 }
 
 SafeIntervals::SafeIntervals(const JointProblem& problem)

@@ -20,34 +20,50 @@ namespace exactvo::formation::detail {
 
 /// Who stands where before which move of the others: bits by place and position, for each of up to four radii. Where
 /// there are more, some robots count as larger than they are, so that a clear position may be missed, never made up.
+/// Where the bits would take too much memory, lists by place say the same, more slowly.
 class StandingRobots {
  public:
-  explicit StandingRobots(const JointProblem& problem);
+  /// Words of 64 bits; each has a number of 32 bits beside it, so that all take 48 MiB.
+  static constexpr std::size_t kMostWords = std::size_t{1} << 22;
+
+  explicit StandingRobots(const JointProblem& problem, std::size_t most_words = kMostWords);
 
   /// Forgets all; there are `count` + 1 positions.
   void clear(std::size_t count);
   /// One that stands there from position `first` to `last`.
   void add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last);
-  /// Of the positions the first at which nobody stands too near for one with that radius, m, on an edge of which these
-  /// are the places near it. A later one than `last` if there is none until then.
+  /// The first position from `first` to `last` at which a robot of that radius, m, can go along an edge: nobody stands
+  /// too near to it. `near`: the places near the edge. More than `last` where there is no such position.
   std::size_t first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
                           std::size_t last) const;
-  /// Of 64 bits each.
+  /// How many words of 64 bits there are; none where there are lists.
   std::size_t words() const { return layers_.size() * layers_.front().taken.size(); }
 
  private:
-  /// By 64 positions and place.
+  /// Positions at which somebody stands on a place.
+  struct Stay {
+    std::uint32_t first, last;
+  };
+  /// Robots that count as equally large. Bits are by 64 positions and place, or else stays by place: ascending, with a
+  /// position between any two.
   struct Layer {
     double radius;  ///< m, that its robots count as
-    std::vector<std::uint64_t> taken;
-    std::vector<std::uint32_t> until;  ///< the position after the last stay that meets them
+    std::vector<std::uint64_t> taken = {};
+    std::vector<std::uint32_t> until = {};  ///< the position after the last stay that meets them
+    std::vector<std::vector<Stay>> stays = {};
   };
 
+  static void add_bits(Layer& layer, std::size_t places, PlaceNumber place, std::size_t first, std::size_t last);
+  static void add_stay(std::vector<Stay>& stays, std::size_t first, std::size_t last);
   /// Adds those of the 64 positions that are taken, if not all are. Where to go on if they are.
   std::size_t add_taken(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t word,
                         std::uint64_t& taken) const;
+  /// The position after a stay too near to the edge that holds this one; this one itself if there is none.
+  std::size_t after_stays(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t position) const;
 
   const JointProblem& problem_;
+  std::size_t most_words_;
+  bool has_bits_ = true;
   std::vector<Layer> layers_;
   std::vector<std::size_t> layer_of_;  ///< by robot
 };
@@ -61,13 +77,14 @@ class SafeIntervals {
 
   std::size_t last_position() const { return count_; }
   std::size_t size() const { return size_; }
+  /// As of StandingRobots: what it takes to fill them counts as work.
   std::size_t words() const { return standing_.words(); }
   /// The interval of the place that holds a position.
   std::size_t at(PlaceNumber place, std::size_t position) const;
   /// The last position of an interval of the place.
   std::size_t last(PlaceNumber place, std::size_t interval) const;
-  /// Of the positions the first at which nobody stands near an edge, of which these are the places near it.
-  /// A later one than `last` if there is none until then.
+  /// The first position from `first` to `last` at which the robot can go along an edge, whose near places these are;
+  /// more than `last` where there is none.
   std::size_t first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first, std::size_t last) const {
     return standing_.first_clear(problem_.radii[robot_], near, first, last);
   }

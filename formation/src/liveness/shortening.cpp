@@ -36,7 +36,8 @@ class Shortening {
     constexpr std::size_t kStage = 30000000;  // of work; another one follows where it was worth it
     constexpr double kWorthIt = 0.98;
     constexpr std::size_t kWindowsAtLeast = 10;
-    may_plan_windows_ = kWindowsAtLeast * work_of_a_window() <= most_work;
+    // Of one stage: whether there is another is not known. Paths alone gain more where few windows have room.
+    may_plan_windows_ = kWindowsAtLeast * work_of_a_window() <= std::min(kStage, most_work);
     Timetable best = timetable(moves);
     double before = geometry::kInfinity;
     while (work() < most_work && cost_of(best) < kWorthIt * before) {
