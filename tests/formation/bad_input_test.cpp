@@ -245,6 +245,40 @@ TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
   EXPECT_THAT(r.warnings[0], HasSubstr("too near to each other"));
 }
 
+/// Neither too near nor with the margin between them: who came second pressed against the first for ever, and nothing
+/// had been said.
+TEST(BadInput, GoalsNearerThanTheMarginAreSaid) {
+  Scenario s;
+  for (const double x : {-5.0, 5.0}) {
+    Robot& robot = s.robots.emplace_back();
+    robot.id = x < 0.0 ? "W" : "E";
+    robot.position = {x, 0.0};
+    robot.goals = {{0.0, x < 0.0 ? 0.0 : 0.84}};
+  }
+  EXPECT_THAT(warnings_before(s),
+              testing::ElementsAre("goal of E, (0, 0.84), and goal of W, (0, 0), are 0.84 m apart, and "
+                                   "radii and margin take 1.04 m: the second to come may find no room"));
+  s.robots[1].goals = {{0.0, 1.05}};
+  EXPECT_TRUE(warnings_before(s).empty());
+  s.robots[1].goals = {{0.0, 0.7}};
+  EXPECT_THAT(warnings_before(s), testing::ElementsAre(HasSubstr("too near to each other")));
+}
+
+TEST(BadInput, AGoalOnTheWayInWhichAnotherRobotIsToRestIsSaid) {
+  Scenario s;
+  for (const double x : {-5.0, 5.0}) {
+    Robot& robot = s.robots.emplace_back();
+    robot.id = x < 0.0 ? "W" : "E";
+    robot.position = {x, 0.0};
+    robot.goals = {{0.0, 0.0}};
+  }
+  s.robots[1].goals = {{0.0, 0.3}, {0.0, 5.0}};
+  EXPECT_THAT(warnings_before(s),
+              testing::ElementsAre("goal 1 of E, (0, 0.3), cannot be reached while W is at its last goal"));
+  s.robots[1].goals[0] = {0.0, 0.45};
+  EXPECT_TRUE(warnings_before(s).empty());
+}
+
 TEST(BadInput, OfManyRobotsWithOneGoalTheFirstPairsAreNamed) {
   Scenario s;
   for (int k = 0; k < 50; ++k) {

@@ -254,6 +254,30 @@ TEST(Passing, AProofAboutTwoIsSaidWhateverElseIsOfOthers) {
   EXPECT_THAT(outcome, testing::Not(HasSubstr("and R3 cannot")));
 }
 
+/// Corridors of 2 m to 2.2 m for robots 1 m wide were passed by no plan, and nothing was said.
+TEST(Passing, WhereOnlyMarginsAreMissingThatIsSaid) {
+  const auto head_on = [](double width, double margin) {
+    Scenario s = corridor(12.0, width);
+    s.margins.obstacle = margin;
+    s.time_limit = 60.0;
+    test_scenes::add_robot(s, {-3, 0}, {3, 0});
+    test_scenes::add_robot(s, {3, 0}, {-3, 0});
+    return s;
+  };
+  EXPECT_THAT(robots_without_margins_to_pass(head_on(1.99, 0.08)), IsEmpty()) << "there is no room at all";
+  EXPECT_THAT(robots_without_margins_to_pass(head_on(2.21, 0.08)), IsEmpty());
+  EXPECT_THAT(robots_without_margins_to_pass(head_on(2.1, 0.02)), IsEmpty());
+  const Scenario narrow = head_on(2.1, 0.08);
+  EXPECT_THAT(robots_without_passing(narrow), IsEmpty());
+  EXPECT_THAT(warnings_before(narrow),
+              testing::ElementsAre("R1 and R2 have room to pass each other, but not with their margins (they are in a "
+                                   "strip 2.1 m wide, and side by side they take 2.2 m)"));
+  EXPECT_FALSE(measure(narrow, simulate(narrow)).all_arrived);
+  const Scenario wide = head_on(2.21, 0.08), with_less = head_on(2.1, 0.02);
+  EXPECT_TRUE(measure(wide, simulate(wide)).all_arrived);
+  EXPECT_TRUE(measure(with_less, simulate(with_less)).all_arrived);
+}
+
 /// Walls elsewhere cost nothing, and are no walls of the strip.
 TEST(Passing, OfAStripOnlyWallsNearItAreLookedAt) {
   Scenario s = corridor(12.0, 1.5);
@@ -266,14 +290,14 @@ TEST(Passing, OfAStripOnlyWallsNearItAreLookedAt) {
   std::vector<Vec2> squares;  // of the middles' places, 11 m by 0.5 m
   for (int x = -44; x < 44; ++x)
     for (int y = -2; y < 2; ++y) squares.push_back({0.125 * x, 0.125 * y});
-  const detail::DiscWithGoal there{{-3, 0}, {3, 0}, 0.05, 0.5}, back{{3, 0}, {-3, 0}, 0.05, 0.5};
+  const detail::DiscWithGoal there{{-3, 0}, {3, 0}, 0.05}, back{{3, 0}, {-3, 0}, 0.05};
   constexpr std::size_t kLooks = 1000;
   std::size_t left = kLooks;
-  ASSERT_TRUE(detail::strip_that_keeps_order(there, back, squares, 0.125, walls, left).has_value());
+  ASSERT_TRUE(detail::strip_that_keeps_order(there, back, 2.0, squares, 0.125, walls, left).has_value());
   EXPECT_GT(walls.all().size(), 3 * kLooks);
   EXPECT_GT(left, kLooks / 2);
   std::size_t few = 100;
-  EXPECT_FALSE(detail::strip_that_keeps_order(there, back, squares, 0.125, walls, few).has_value());
+  EXPECT_FALSE(detail::strip_that_keeps_order(there, back, 2.0, squares, 0.125, walls, few).has_value());
   EXPECT_EQ(few, 0u);
 }
 

@@ -222,8 +222,8 @@ class RunAudit {
   const RecordingFile& file_;
   const formation::Scenario* meant_;
   AuditTally tally_;
-  std::optional<Judges> judges_;  ///< nothing before the first row, and where the run can't be audited
-  std::string why_;               ///< it can't be
+  std::optional<Judges> judges_;  ///< nothing before the first row, and where there is a `why_`
+  std::string why_;               ///< why the run can't be audited; else empty
   SharedRow before_, row_;
   std::size_t rows_ = 0;
   std::size_t of_header_ = 0;  ///< findings

@@ -91,10 +91,44 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
     out.push_back(geometry::counted(pairs - kNamed, "more pair") + " of goals too near to each other");
 }
 
+/// Last goals where there is room for both, but not with the margin between them: the second to come finds the first
+/// one too near, if that has not stopped at the edge of its goal's reach.
+void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
+  constexpr std::size_t kNamed = 10;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double radii = s.robots[i].radius + s.robots[j].radius, apart = norm(last[i].place - last[j].place);
+      if (are_too_near(s, i, j) || !(apart < radii + s.margins.robot) || ++pairs > kNamed) continue;
+      out.push_back(last[i].name + ", and " + last[j].name + ", are " + metres(apart) +
+                    " apart, and radii and margin take " + metres(radii + s.margins.robot) +
+                    ": the second to come may find no room");
+    }
+  }
+  if (pairs > kNamed)
+    out.push_back(geometry::counted(pairs - kNamed, "more pair") +
+                  " of goals nearer to each other than radii and margin take");
+}
+
+/// Goals on the way where another robot is to rest: in its last goal it leaves no room there.
+void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vector<Target>& targets,
+                              std::vector<std::string>& out) {
+  for (std::size_t g = 0; g + 1 < targets.size(); ++g) {
+    const auto takes = [&](const Robot& other) {
+      const double room = norm(targets[g].place - other.goals.back()) + targets[g].reach + s.arrival_tolerance;
+      return &other != &s.robots[i] && room < s.robots[i].radius + other.radius;
+    };
+    const auto other = std::find_if(s.robots.begin(), s.robots.end(), takes);
+    if (other != s.robots.end())
+      out.push_back(targets[g].name + ", cannot be reached while " + other->id + " is at its last goal");
+  }
+}
+
 /// Robots that have to pass each other and cannot; the first ones.
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
-  const std::vector<NoPassing> proofs = robots_without_passing(s);
+  std::vector<NoPassing> proofs = robots_without_passing(s);
+  for (NoPassing& within_margins : robots_without_margins_to_pass(s)) proofs.push_back(std::move(within_margins));
   for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
   if (proofs.size() > kNamed)
     out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +
@@ -230,10 +264,12 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
       from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, open, reach, out) : std::nullopt;
     }
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
+    warn_of_goals_on_the_way(scenario, i, targets, out);
     warn_of_fast_start(scenario, scenario.robots[i], out);
     last.push_back(targets.back());
   }
   warn_of_pairs(scenario, last, out);
+  if (!scenario.formation) warn_of_near_pairs(scenario, last, out);
   warn_of_passing(scenario, out);
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;

@@ -93,11 +93,9 @@ bool has_looks(std::size_t& left, std::size_t wanted) {
 
 }  // namespace
 
-std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second,
+std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second, double side_by_side,
                                              const std::vector<Vec2>& squares, double side, const EdgesByPlace& walls,
                                              std::size_t& looks) {
-  constexpr double kRoundedDown = 1.0 - 0x1p-40;
-  const double side_by_side = 2.0 * (first.radius + second.radius) * kRoundedDown;
   double largest = walls.largest_with(squares.front());
   for (const Vec2 goal : {first.goal, second.goal}) largest = std::max(largest, walls.largest_with(goal));
   const double rounding = 16.0 * geometry::rounding_of_distance(largest);

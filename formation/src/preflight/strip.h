@@ -21,18 +21,19 @@ namespace exactvo::formation::detail {
 
 /// A robot in a strip.
 struct DiscWithGoal {
-  Vec2 start;           ///< m
-  Vec2 goal;            ///< m
-  double reach = 0.0;   ///< m, of places that count as the goal
-  double radius = 0.0;  ///< m
+  Vec2 start;          ///< m
+  Vec2 goal;           ///< m
+  double reach = 0.0;  ///< m, of places that count as the goal
 };
 
-/// The width, m, rounded up, of a strip in which the order of the discs cannot change and would have to. `squares`:
-/// lower left corners of squares of that side, m, that cover every place that the middle of either disc can get to. Of
-/// each square some point is a radius from every wall. Only walls near the first disc are looked at: others are not
-/// those of a strip so narrow. `looks`: at walls and squares, how many are allowed and then how many are left; nothing
-/// is found once there are none. REQUIRES: the side is at most half of the smaller radius.
-std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second,
+/// The width, m, rounded up, of a strip narrower than `side_by_side` m in which the order of the discs cannot change
+/// and would have to. Level with each other they take 2 (r1 + r2); more is asked for where they have to keep something
+/// from the walls and each other. `squares`: lower left corners of squares of that side, m, that cover every place that
+/// the middle of either disc can get to. Of each square some point is a radius from every wall. Only walls near the
+/// first disc are looked at: others are not those of a strip so narrow. `looks`: at walls and squares, how many are
+/// allowed and then how many are left; nothing is found once there are none. REQUIRES: the side is at most half of the
+/// smaller radius.
+std::optional<double> strip_that_keeps_order(const DiscWithGoal& first, const DiscWithGoal& second, double side_by_side,
                                              const std::vector<Vec2>& squares, double side, const EdgesByPlace& walls,
                                              std::size_t& looks);
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Squares of a grid that cover the places that the middle of a disc can get to among static obstacles. A square is
+/// left out only where all of it is nearer than the radius to one edge. Certified: rounding only leaves more squares
+/// in.
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "scene/edges_by_place.h"
+
+namespace exactvo::formation::detail {
+
+inline constexpr std::size_t kMostSquares = 4000;             ///< of a cover: about 250 squares of the radius
+inline constexpr double kProductRoundedDown = 1.0 - 0x1p-40;  ///< of a few factors
+
+/// x and y times the side are the coordinates of its lower left corner, without rounding: the side is a power of two.
+struct GridSquare {
+  std::int32_t x, y;
+};
+
+/// Whether the place has a square: its numbers are no larger than they can be.
+bool fits_grid(Vec2 p, double side);
+
+/// One that contains the place. REQUIRES: it fits the grid.
+GridSquare square_at(Vec2 p, double side);
+
+/// The numbers of squares, by place. Most of the time of a cover goes into looking squares up: open addressing, in
+/// memory of one piece that is never more than half full.
+class SquareNumbers {
+ public:
+  static constexpr std::uint32_t kUnknown = 0xffffffff;
+
+  SquareNumbers() : slots_(kSlots) {}
+
+  std::uint32_t find(GridSquare q) const { return slot(q).number; }
+  /// REQUIRES: the square is unknown.
+  void add(GridSquare q, std::uint32_t number) { slots_[place(q)] = {q, number}; }
+
+ private:
+  struct Slot {
+    GridSquare square{};
+    std::uint32_t number = kUnknown;
+  };
+  static constexpr std::size_t kSlots = 16384;
+  static_assert(kSlots >= 2 * (kMostSquares + 2) && (kSlots & (kSlots - 1)) == 0, "a power of two, half of it empty");
+
+  static std::uint64_t key(GridSquare q) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(q.x)) << 32 | static_cast<std::uint32_t>(q.y);
+  }
+  const Slot& slot(GridSquare q) const { return slots_[place(q)]; }
+  /// Where the square stands, or would.
+  std::size_t place(GridSquare q) const {
+    std::size_t at = static_cast<std::size_t>(key(q) * 0x9e3779b97f4a7c15u >> 50);
+    while (slots_[at].number != kUnknown && key(slots_[at].square) != key(q)) at = (at + 1) % kSlots;
+    return at;
+  }
+
+  std::vector<Slot> slots_;
+};
+
+/// The squares that share a side or a corner with one.
+struct SquaresBeside {
+  std::uint32_t count = 0;
+  std::uint32_t number[8] = {};
+
+  const std::uint32_t* begin() const { return number; }
+  const std::uint32_t* end() const { return number + count; }
+};
+
+/// The squares that cover where a disc can get from its start.
+struct SquareCover {
+  double radius = 0.0, side = 0.0;
+  bool is_whole = false;  ///< else there are more squares than are looked at
+  std::vector<GridSquare> squares;
+  std::vector<SquaresBeside> beside;  ///< of each square; of none where the cover is not whole
+  SquareNumbers number;
+};
+
+/// The edges of all obstacles.
+class CoverWalls {
+ public:
+  explicit CoverWalls(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {}
+
+  const EdgesByPlace& edges() const { return edges_; }
+
+  /// Whether some edge is nearer than the radius to every point of the square; false where rounding leaves it open.
+  bool exclude(GridSquare q, double side, double radius) const;
+
+  /// The same of a single point.
+  bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
+
+  /// Whether a disc that starts in the square has more than `kMostSquares` to go to, none of which is excluded; false
+  /// where that takes a closer look.
+  bool leave_open(GridSquare start, double side, double radius) const;
+
+ private:
+  bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const;
+
+  EdgesByPlace edges_;
+};
+
+/// `looks`: at squares, how many are allowed and then how many are left.
+SquareCover cover_from(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks);
+
+/// Of each square, whether a point of it is within `reach` of the goal, m.
+std::vector<char> squares_at(Vec2 goal, double reach, const SquareCover& cover);
+
+}  // namespace exactvo::formation::detail
