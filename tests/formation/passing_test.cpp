@@ -254,8 +254,8 @@ TEST(Passing, AProofAboutTwoIsSaidWhateverElseIsOfOthers) {
   EXPECT_THAT(outcome, testing::Not(HasSubstr("and R3 cannot")));
 }
 
-/// Corridors of 2 m to 2.2 m for robots 1 m wide were passed by no plan, and nothing was said.
-TEST(Passing, WhereOnlyMarginsAreMissingThatIsSaid) {
+/// Corridors of 2 m to 2.06 m for robots 1 m wide are passed by no plan, and nothing was said.
+TEST(Passing, WhereOnlyTheGapsOfPlansAreMissingThatIsSaid) {
   const auto head_on = [](double width, double margin) {
     Scenario s = corridor(12.0, width);
     s.margins.obstacle = margin;
@@ -264,16 +264,17 @@ TEST(Passing, WhereOnlyMarginsAreMissingThatIsSaid) {
     test_scenes::add_robot(s, {3, 0}, {-3, 0});
     return s;
   };
-  EXPECT_THAT(robots_without_margins_to_pass(head_on(1.99, 0.08)), IsEmpty()) << "there is no room at all";
-  EXPECT_THAT(robots_without_margins_to_pass(head_on(2.21, 0.08)), IsEmpty());
-  EXPECT_THAT(robots_without_margins_to_pass(head_on(2.1, 0.02)), IsEmpty());
-  const Scenario narrow = head_on(2.1, 0.08);
+  EXPECT_THAT(robots_without_gaps_to_pass(head_on(1.99, 0.08)), IsEmpty()) << "there is no room at all";
+  EXPECT_THAT(robots_without_gaps_to_pass(head_on(2.07, 0.08)), IsEmpty());
+  EXPECT_THAT(robots_without_gaps_to_pass(head_on(2.05, 0.0)), IsEmpty());
+  const Scenario narrow = head_on(2.05, 0.08);
   EXPECT_THAT(robots_without_passing(narrow), IsEmpty());
-  EXPECT_THAT(warnings_before(narrow),
-              testing::ElementsAre("R1 and R2 have room to pass each other, but not with their margins (they are in a "
-                                   "strip 2.1 m wide, and side by side they take 2.2 m)"));
+  EXPECT_THAT(
+      warnings_before(narrow),
+      testing::ElementsAre("R1 and R2 have room to pass each other, but not with the gaps of plans (they are in "
+                           "a strip 2.05 m wide, and side by side they take 2.06 m)"));
   EXPECT_FALSE(measure(narrow, simulate(narrow)).all_arrived);
-  const Scenario wide = head_on(2.21, 0.08), with_less = head_on(2.1, 0.02);
+  const Scenario wide = head_on(2.07, 0.08), with_less = head_on(2.05, 0.0);
   EXPECT_TRUE(measure(wide, simulate(wide)).all_arrived);
   EXPECT_TRUE(measure(with_less, simulate(with_less)).all_arrived);
 }

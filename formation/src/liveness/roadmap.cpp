@@ -19,7 +19,6 @@ constexpr double kSeesWithin = 0.8;   ///< of a guard
 constexpr double kDense = 0.5;        ///< the same of a dense map
 constexpr double kLatticeGap = 0.03;  ///< beside the radius
 constexpr double kGuardGap = 0.02;
-constexpr double kWayGap = 0.01;
 constexpr double kNarrow = 1.5;  ///< where clearance is more, the lattice is enough
 
 /// Which places are joined by ways.

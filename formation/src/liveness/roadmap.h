@@ -23,6 +23,9 @@ namespace exactvo::formation::detail {
 
 using PlaceNumber = std::uint32_t;
 
+/// What ways keep from obstacles beside the radius, in diameters.
+inline constexpr double kWayGap = 0.01;
+
 /// How many places narrow parts have.
 enum class Detail {
   seen,   ///< every free point sees one

@@ -95,6 +95,20 @@ std::string end_words(const Scenario& scenario, const Step& row, std::size_t rob
   return stands(scenario.robots[robot], r.chosen) ? ", which is held up by no robot near it" : ", which moves";
 }
 
+/// Also while it makes way a little and comes back, by a plan.
+bool has_its_goal(const Scenario& scenario, const Step& row, std::size_t robot) {
+  const RobotStep& r = row.robots[robot];
+  const double from_goal = norm(scenario.robots[robot].goals.back() - r.position);
+  return r.mode == Mode::arrived ||
+         (r.mode == Mode::by_plan && from_goal <= scenario.arrival_tolerance + scenario.robots[robot].radius);
+}
+
+std::string rests_words(const Robot& robot, const Robot& other) {
+  if (robot.goals.back() == other.goals.back()) return robot.id + " rests at the goal that both have";
+  return robot.id + " rests at its goal, " + detail::metres(norm(robot.goals.back() - other.goals.back())) +
+         " from its own";
+}
+
 }  // namespace
 
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row) {
@@ -167,10 +181,8 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
   if (scenario.formation) return "its slot cannot be filled";
   for (std::size_t j = 0; j < row.robots.size(); ++j)
-    if (j != robot && row.robots[j].mode == Mode::arrived && detail::are_too_near(scenario, robot, j))
-      return scenario.robots[j].id + " rests at its goal, " +
-             detail::metres(norm(scenario.robots[j].goals.back() - scenario.robots[robot].goals.back())) +
-             " from its own";
+    if (j != robot && has_its_goal(scenario, row, j) && detail::are_too_near(scenario, robot, j))
+      return rests_words(scenario.robots[j], scenario.robots[robot]);
   return "its goal is out of reach";
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "liveness/roadmap.h"
 #include "liveness/sweeps.h"
 #include "preflight/open_way.h"
 #include "preflight/reachability.h"
@@ -83,7 +84,7 @@ PairSearch search(const Traveller& a, const Traveller& b, std::size_t most) {
 }
 
 /// What is asked of two robots.
-enum class Asked { for_room, for_room_with_margins };
+enum class Asked { for_room, for_room_with_gaps };
 
 class Proofs {
  public:
@@ -118,7 +119,7 @@ class Proofs {
   /// little room.
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
     if (overlap_at_start(i, j) || detail::are_too_near(scenario_, i, j)) return std::nullopt;
-    std::optional<NoPassing> proof = asked_ == Asked::for_room ? by_walls(i, j) : by_margins(i, j);
+    std::optional<NoPassing> proof = asked_ == Asked::for_room ? by_walls(i, j) : by_gaps(i, j);
     return proof && !is_out_of_reach(i) && !is_out_of_reach(j) ? std::move(proof) : std::nullopt;
   }
 
@@ -140,11 +141,13 @@ class Proofs {
     return std::nullopt;
   }
 
-  std::optional<NoPassing> by_margins(std::size_t i, std::size_t j) {
-    const double kept = 2.0 * scenario_.margins.obstacle + 0.5 * detail::kPlannedGap * side_by_side(i, j);
+  std::optional<NoPassing> by_gaps(std::size_t i, std::size_t j) {
+    const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
+    const double to_wall = std::min(scenario_.margins.obstacle, 2.0 * detail::kWayGap * smaller);
+    const double kept = 2.0 * to_wall + 0.5 * detail::kPlannedGap * side_by_side(i, j);
     std::optional<NoPassing> proof = in_a_strip(i, j, kProductRoundedDown * (side_by_side(i, j) + kept));
     if (!proof || proof->strip < side_by_side(i, j)) return std::nullopt;
-    proof->with_margins = true;
+    proof->with_gaps = true;
     return proof;
   }
 
@@ -278,8 +281,8 @@ std::vector<NoPassing> robots_without_passing(const Scenario& scenario) {
   return pairs_without(scenario, Asked::for_room);
 }
 
-std::vector<NoPassing> robots_without_margins_to_pass(const Scenario& scenario) {
-  return pairs_without(scenario, Asked::for_room_with_margins);
+std::vector<NoPassing> robots_without_gaps_to_pass(const Scenario& scenario) {
+  return pairs_without(scenario, Asked::for_room_with_gaps);
 }
 
 std::string words_of(const Scenario& scenario, const NoPassing& proof) {
@@ -290,8 +293,8 @@ std::string words_of(const Scenario& scenario, const NoPassing& proof) {
   else
     std::snprintf(text, sizeof text, "none of %zu pairs of squares of %g m leads there)", proof.pairs, proof.side);
   return scenario.robots[proof.first].id + " and " + scenario.robots[proof.second].id +
-         (proof.with_margins ? " have room to pass each other, but not with their margins ("
-                             : " cannot both reach their goals: they have no room to pass each other (proven: ") +
+         (proof.with_gaps ? " have room to pass each other, but not with the gaps of plans ("
+                          : " cannot both reach their goals: they have no room to pass each other (proven: ") +
          text;
 }
 

@@ -128,7 +128,7 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
   std::vector<NoPassing> proofs = robots_without_passing(s);
-  for (NoPassing& within_margins : robots_without_margins_to_pass(s)) proofs.push_back(std::move(within_margins));
+  for (NoPassing& within_gaps : robots_without_gaps_to_pass(s)) proofs.push_back(std::move(within_gaps));
   for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
   if (proofs.size() > kNamed)
     out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +

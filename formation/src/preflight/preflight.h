@@ -17,7 +17,7 @@ namespace exactvo::formation::detail {
 ///     the way that another robot at its last goal leaves no room in;
 ///   - two robots, none of which that is said of, that would have to pass each other and are proven to have no room to,
 ///   or
-///     none with their margins (passing.h);
+///     none with the gaps of plans (passing.h);
 ///   - a leader that reaches its end after the time limit, that moves faster than a robot can, or whose path was
 ///     planned and does not lead where it should or leaves no room for the formation;
 ///   - a robot that starts faster than its max_speed, or inside the hull of a moving obstacle;

@@ -37,7 +37,7 @@ struct NoPassing {
   std::size_t pairs = 0;      ///< of squares, that the two may get to; of none where they are in a strip
   double strip = 0.0;         ///< m, width of the strip, rounded up; 0 without one
   double side_by_side = 0.0;  ///< m, that the two take in it
-  bool with_margins = false;  ///< they take that with their margins; without, there is room
+  bool with_gaps = false;     ///< that plans leave to walls and between robots: without, there is room
 };
 
 /// Pairs of robots that are proven not to be able to be at their goals together, though neither goal is proven out of
@@ -46,13 +46,13 @@ struct NoPassing {
 /// REQUIRES: a valid scenario.
 std::vector<NoPassing> robots_without_passing(const Scenario& scenario);
 
-/// Pairs in a straight strip that is wide enough for the two side by side, but not with the margin to the walls and the
-/// gap that plans leave between robots: they could pass, and will hardly do so. Otherwise the same.
-std::vector<NoPassing> robots_without_margins_to_pass(const Scenario& scenario);
+/// Pairs in a straight strip that is wide enough for the two side by side, but not with the gaps that joint plans leave
+/// to walls and between robots: they could pass, and no plan finds it. Otherwise the same.
+std::vector<NoPassing> robots_without_gaps_to_pass(const Scenario& scenario);
 
 /// "R1 and R2 cannot both reach their goals: they have no room to pass each other (proven: none of 8206 pairs of
-/// squares of 0.125 m leads there)"; "R1 and R2 have room to pass each other, but not with their margins (they are in a
-/// strip 2.1 m wide, and side by side they take 2.2 m)".
+/// squares of 0.125 m leads there)"; "R1 and R2 have room to pass each other, but not with the gaps of plans (they are
+/// in a strip 2.05 m wide, and side by side they take 2.06 m)".
 std::string words_of(const Scenario& scenario, const NoPassing& proof);
 
 }  // namespace exactvo::formation
