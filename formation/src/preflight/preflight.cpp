@@ -110,13 +110,15 @@ void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std:
                   " of goals nearer to each other than radii and margin take");
 }
 
-/// Goals on the way where another robot is to rest: in its last goal it leaves no room there.
+/// Goals on the way where another robot is to rest: in its last goal it leaves no room there. By plans it makes way and
+/// comes back, if it cooperates.
 void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vector<Target>& targets,
                               std::vector<std::string>& out) {
   for (std::size_t g = 0; g + 1 < targets.size(); ++g) {
     const auto takes = [&](const Robot& other) {
       const double room = norm(targets[g].place - other.goals.back()) + targets[g].reach + s.arrival_tolerance;
-      return &other != &s.robots[i] && room < s.robots[i].radius + other.radius;
+      const bool makes_way = other.cooperates && s.liveness == Liveness::plan;
+      return !makes_way && &other != &s.robots[i] && room < s.robots[i].radius + other.radius;
     };
     const auto other = std::find_if(s.robots.begin(), s.robots.end(), takes);
     if (other != s.robots.end())
