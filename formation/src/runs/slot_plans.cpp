@@ -24,6 +24,9 @@ double gap_of(const Scenario& scenario) {
 /// Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to each other.
 constexpr double kShareOfGap = 0.25;
 
+/// Of the tolerance: it ends beside its slot and counts as there.
+constexpr double kNearEnough = 0.9;
+
 /// With the speed at which robots close in on their slots.
 Scenario with_larger_robots(Scenario scenario, const std::vector<Vec2>& offsets, double gap) {
   const FormationSpec& formation = *scenario.formation;
@@ -63,8 +66,9 @@ double SlotPlans::room_of(std::size_t robot) const {
 
 /// Empty where nothing is known to keep the robot from the slot.
 std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const {
-  const double radius = scenario_.robots[robot].radius, room = room_of(robot);
-  if (space_.clearance(slot, room) < room) {
+  const double radius = scenario_.robots[robot].radius;
+  const double wanted = std::max(larger_.robots[robot].radius, room_of(robot) - kNearEnough * tolerance_);
+  if (space_.clearance(slot, wanted) < wanted) {
     double nearest = geometry::kInfinity;
     std::string id;
     for (const SceneObstacle& o : scenario_.obstacles) {
@@ -77,6 +81,27 @@ std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Rea
   const bool is_open = norm(slot - from) <= tolerance_ || space_.is_clear(from, slot, radius);
   if (is_open || reach.reachable_place(radius, from, to) || !reach.is_proven_out_of_reach(radius, from, to)) return "";
   return reach.why_not(radius, from, {slot, 0.0}, "it");
+}
+
+/// Straight away from what is too near.
+Vec2 SlotPlans::off_the_wall(std::size_t robot, Vec2 slot) const {
+  const double room = room_of(robot);
+  const Vec2 away = space_.from_nearest_edge(slot, room);
+  return norm(away) > 0.0 ? slot + (room / norm(away) - 1.0) * away : slot;
+}
+
+/// Who ends beside a wall's margin, so near to its slot that it counts as there, goes to where the margin leaves it
+/// room: else it would drive round the wall. Where others have slots too near to that it keeps its own, which robots
+/// that go by plan reach.
+void SlotPlans::shift_off_the_wall(std::size_t i) {
+  Place& mine = places_[i];
+  const Vec2 beside = off_the_wall(i, mine.at);
+  const double room = room_of(i);
+  bool is_free = norm(beside - mine.at) <= kNearEnough * tolerance_ && space_.clearance(beside, room) >= room;
+  for (std::size_t j = 0; j < places_.size() && is_free; ++j)
+    is_free = j == i || norm(beside - places_[j].at) >=
+                            (1.0 + kPlannedGap) * (larger_.robots[i].radius + larger_.robots[j].radius);
+  if (is_free) mine.at = beside;
 }
 
 /// Straight away from what is too near, else on rings about the slot; where there is none, the robot stays where it is.
@@ -93,8 +118,7 @@ Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const s
   const auto is_good = [&](Vec2 place) {
     return is_free(place) && (space_.is_open() || reach.reachable_place(radius, from, {place, 0.0}));
   };
-  const Vec2 away = space_.from_nearest_edge(slot, room);
-  const Vec2 beside = norm(away) > 0.0 ? slot + (room / norm(away) - 1.0) * away : slot;
+  const Vec2 beside = off_the_wall(robot, slot);
   if (beside != slot && is_good(beside)) return beside;
   const Vec2 way = norm(from - slot) > 0.0 ? geometry::normalized(from - slot) : Vec2{1.0, 0.0};
   const double far = norm(from - slot) + kBeyond * radius, step = std::max(kFinest * radius, far / kMostRings);
@@ -110,7 +134,6 @@ Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const s
 
 /// Who is nearest to its slot has it first.
 void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
-  constexpr double kNearEnough = 0.9;  // it ends beside its slot and counts as there
   Reachability reach(scenario_, 0.0, false);
   std::vector<std::pair<double, std::size_t>> nearest_first;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
@@ -130,7 +153,9 @@ void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
         mine.why_not =
             "the slot of " + scenario_.robots[j].id + " is only " + metres(norm(places_[j].at - mine.at)) + " from it";
     }
-    if (mine.why_not.empty()) taken.push_back({mine.at, radius});
+    if (!mine.why_not.empty()) continue;
+    shift_off_the_wall(i);
+    taken.push_back({mine.at, radius});
   }
   for (const auto& [distance, i] : nearest_first) {
     Place& mine = places_[i];
