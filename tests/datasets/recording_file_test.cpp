@@ -424,10 +424,42 @@ TEST_F(RecordingFileTest, ARecordingCutShortIsNotTakenForAWholeOne) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string text = content_of(folder_ / "r.jsonl");
   const std::size_t end = text.rfind('\n', text.size() - 2) + 1;
-  const DataError error = refusal_of([&] { read_recording(put("cut.jsonl", text.substr(0, end))); });
-  expect_refusal(
-      error, DataCode::wrong_count,
+  const auto refused = [&](std::size_t bytes) {
+    const DataError error = refusal_of([&] { read_recording(put("cut.jsonl", text.substr(0, bytes))); });
+    EXPECT_EQ(error.code(), DataCode::cut_off) << bytes << ": " << error.what();
+    return error;
+  };
+  EXPECT_EQ(
+      refused(end).place(),
       "line " + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n')));
+  EXPECT_EQ(refused(end).found(), "the end of the file after 20 rows");
+  EXPECT_EQ(refused(end - 2).found(), "the end of the file after 19 rows, within a line");
+  // Wherever it was cut off, but before the line feed of the last line alone.
+  SeededRandom random(exactvo::test::seed_of_run(41));
+  for (std::size_t bytes = 0; bytes < 60; ++bytes) refused(bytes);
+  for (std::size_t bytes = end; bytes + 1 < text.size(); ++bytes) refused(bytes);
+  for (int k = 0; k < 300; ++k) refused(static_cast<std::size_t>(random.integer(0, static_cast<int>(end))));
+  EXPECT_NO_THROW(read_recording(put("whole.jsonl", text.substr(0, text.size() - 1))));
+  // What ends in no line of JSON is something else, and so is another file that ends early.
+  EXPECT_EQ(refusal_of([&] { read_recording(put("bad.jsonl", text.substr(0, end) + "oops\n")); }).code(),
+            DataCode::json_syntax);
+  EXPECT_EQ(refusal_of([&] { read_recording(put("bad.jsonl", "{\"head\n{}\n")); }).code(), DataCode::format_unknown);
+}
+
+TEST_F(RecordingFileTest, WhatIsSaidTwiceOrTooLateIsRefused) {
+  write_recording(folder_ / "r.jsonl", sample(false));
+  const std::string good = content_of(folder_ / "r.jsonl");
+  const auto line_at = [&](std::size_t at) { return good.substr(at, good.find('\n', at) + 1 - at); };
+  const auto refused_with = [&](std::size_t at, const std::string& more) {
+    return refusal_of([&] { read_recording(put("bad.jsonl", std::string(good).insert(at, more))); });
+  };
+  const std::size_t body = good.find("{\"body\":"), outlook = good.find("{\"outlook\":");
+  const std::size_t end = good.find("{\"end\":");  // all rows have passed
+  const std::string last = "line " + std::to_string(std::count(good.begin(), good.end(), '\n'));
+  expect_refusal(refused_with(body + line_at(body).size(), line_at(body)), DataCode::out_of_range,
+                 "line 3, /body/number");
+  expect_refusal(refused_with(end, line_at(body)), DataCode::out_of_range, last + ", /body/number");
+  expect_refusal(refused_with(end, line_at(outlook)), DataCode::out_of_range, last + ", /outlook/time");
 }
 
 void write_table(const std::filesystem::path& path, const RecordingFile& file) {

@@ -443,6 +443,34 @@ TEST(Messages, AnEmptyRecordingIsCalledEmpty) {
               HasSubstr("empty.jsonl: found an empty file, expected a recording.jsonl, as simulate --out writes it"));
 }
 
+TEST(Messages, WhatIsNoRecordingIsNamed) {
+  const auto said = [](const std::string& name, const std::string& content) {
+    place().write(name, content);
+    const Outcome outcome = place().run("audit " + name);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("[E_FORMAT_UNKNOWN]"));
+    return outcome.err;
+  };
+  const std::pair<const char*, std::string> packed[] = {{"zstd", "\x28\xb5\x2f\xfd more\n"},
+                                                        {"gzip", "\x1f\x8b more\n"},
+                                                        {"xz",
+                                                         "\xfd"
+                                                         "7zXZ more\n"},
+                                                        {"bzip2", "BZh9 more\n"},
+                                                        {"lz4", "\x04\x22\x4d\x18 more\n"}};
+  for (const auto& [program, content] : packed)
+    EXPECT_THAT(said("r.packed", content),
+                HasSubstr(std::string("r.packed: found what ") + program +
+                          " has packed, expected a recording.jsonl: unpack it, into a file or into the audit, " +
+                          program + " -dc FILE | exactvo audit -"));
+  EXPECT_THAT(said("r.bin", "\x01\x02\n"), HasSubstr("r.bin: found no text, expected a recording.jsonl"));
+  EXPECT_THAT(said("m.json", R"({"scenario": "s", "outcome": "", "provenance": {}})"),
+              HasSubstr("m.json: found the metrics of a run, expected a recording.jsonl"));
+  EXPECT_THAT(said("s.json", kScenario), HasSubstr("s.json: found a scenario, which is no run yet"));
+  EXPECT_THAT(place().run("audit s.json -").err,
+              HasSubstr("unexpected argument '-': the path is 's.json'; a scenario goes behind --scenario"));
+}
+
 TEST(Messages, ATimeStepBeyondTheHorizonIsReportedAsTheTimeStep) {
   place().write("slow.json", R"({"name": "slow", "time_step": 1,
     "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}]})");

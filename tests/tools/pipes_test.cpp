@@ -263,15 +263,99 @@ TEST(Pipes, ARunIsAuditedWhileItIsMade) {
   EXPECT_EQ(here.read("log"), of_file.out);
 }
 
-TEST(Pipes, ARecordingThatIsCutOffIsRefused) {
+TEST(Pipes, ARunIsAuditedFromItsStandardOutput) {
+  const Workplace here;
+  std::filesystem::copy_file(data_file("paper/A7.json"), here.path() / "s.json");
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  const std::string of_file = here.run("audit run/recording.jsonl").out;
+  for (const std::string record : {"--record -", "--record /dev/stdout"}) {
+    const std::string pipeline = "PROGRAM simulate s.json " + record;
+    EXPECT_EQ(status_of(here, pipeline + " 2>run.log | PROGRAM audit - >log 2>&1"), 0) << here.read("log");
+    EXPECT_EQ(here.read("log"), of_file) << record;
+    EXPECT_THAT(here.read("run.log"), HasSubstr("all robots arrived")) << record;
+  }
+  EXPECT_EQ(status_of(here, "PROGRAM simulate s.json --record - --json -q >r.jsonl 2>m.json"), 0);
+  EXPECT_THAT(here.read("m.json"), testing::StartsWith("{"));
+  EXPECT_THAT(here.read("m.json"), HasSubstr("\"all_arrived\": true"));
+  EXPECT_EQ(here.run("audit r.jsonl").out, of_file);
+  EXPECT_EQ(status_of(here, "PROGRAM simulate s.json --record - >/dev/full 2>log"), 2);
+  EXPECT_THAT(here.read("log"), HasSubstr("standard output: found No space left on device"));
+  for (const std::string other : {"--out o", "--engine crowd"})
+    EXPECT_EQ(here.run("simulate s.json --record - " + other).status, 2) << other;
+  EXPECT_THAT(here.run("simulate s.json --record r.jsonl").err, HasSubstr("expected - for stdout, or a pipe; or "));
+}
+
+/// Whatever keeps a run from beginning, who waits for its recording gets an end.
+TEST(Pipes, ARunThatCannotBeginLeavesNobodyWaiting) {
+  const Workplace here;
+  here.write("bad.json", "{}");
+  make_pipe(here, "pipe");
+  for (const std::string run :
+       {"simulate nosuch.json --record ", "simulate bad.json --record ", "simulate bad.json --metod orca --record "}) {
+    EXPECT_EQ(status_of(here, "PROGRAM " + run + "- 2>run.log | PROGRAM audit - >log 2>&1"), 2) << run;
+    EXPECT_THAT(here.read("log"), HasSubstr("standard input: found an empty file, expected a recording"));
+    EXPECT_THAT(here.read("log"), HasSubstr("[E_CUT_OFF]"));
+    EXPECT_THAT(here.read("run.log"), HasSubstr("error: "));
+  }
+  for (const std::string run : {"simulate nosuch.json --record ", "simulate bad.json --record "}) {
+    EXPECT_EQ(status_of(here, "PROGRAM " + run + "pipe 2>run.log & PROGRAM audit pipe >log 2>&1"), 2) << run;
+    EXPECT_THAT(here.read("log"), HasSubstr("pipe: found an empty file, expected a recording"));
+  }
+}
+
+TEST(Pipes, AWaitForAReaderEndsAtASignal) {
+  const Workplace here;
+  std::filesystem::copy_file(data_file("paper/A1.json"), here.path() / "s.json");
+  make_pipe(here, "pipe");
+  const Running program(here, {"simulate", "s.json", "--record", "pipe"});
+  EXPECT_EQ(program.status_after(SIGINT), 130);
+}
+
+TEST(Pipes, ARecordingThatEndsEarlyIsAuditedAsFarAsItGoesAndIsNoWholeOne) {
   const Workplace here;
   std::filesystem::copy_file(data_file("paper/A1.json"), here.path() / "s.json");
   ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
-  EXPECT_EQ(status_of(here, "head -n 9 run/recording.jsonl | PROGRAM audit - >log 2>&1"), 2);
-  EXPECT_THAT(here.read("log"), HasSubstr("standard input: line 10: found the end of the file, expected a last line"));
-  EXPECT_EQ(status_of(here, "gzip -c run/recording.jsonl | head -c 3000 | gzip -dc 2>err | PROGRAM audit - >log 2>&1"),
+  EXPECT_EQ(status_of(here, "head -n 9 run/recording.jsonl >cut.jsonl; PROGRAM audit - <cut.jsonl >log 2>err"), 2);
+  const std::string words = here.read("err");
+  EXPECT_THAT(words, HasSubstr("standard input: line 10: found the end of the file after "));
+  EXPECT_THAT(words, HasSubstr("expected a last line \"end\": the recording ends early; audited so far: "));
+  EXPECT_THAT(words, HasSubstr(" 0 refuted, 0 left open [E_CUT_OFF]"));
+  EXPECT_THAT(here.read("log"), HasSubstr("a recording ends early: what follows is of the rows there are"));
+  const Outcome of_file = here.run("audit cut.jsonl");
+  EXPECT_EQ(of_file.status, 2);
+  EXPECT_EQ(of_file.out, here.read("log"));
+  EXPECT_EQ(of_file.err, std::string(words).replace(words.find("standard input"), 14, "cut.jsonl"));
+  EXPECT_THAT(here.run("audit cut.jsonl --json").out, HasSubstr("\"cut_off\": true"));
+  EXPECT_THAT(here.run("view cut.jsonl --out v.html").err, HasSubstr("[E_CUT_OFF]"));
+  EXPECT_FALSE(here.has("v.html"));
+  // Within a line, as a packed recording ends whose writer was stopped.
+  EXPECT_EQ(status_of(here, "gzip -c run/recording.jsonl | head -c 3000 | gzip -dc 2>gz | PROGRAM audit - >log 2>err"),
             2);
-  EXPECT_THAT(here.read("log"), HasSubstr("standard input: line "));
+  EXPECT_THAT(here.read("err"), HasSubstr(", within a line, expected a last line \"end\": the recording ends early"));
+  EXPECT_THAT(here.read("err"), HasSubstr("[E_CUT_OFF]"));
+}
+
+/// Of the writer, while it runs.
+TEST(Pipes, ASignalLeavesARecordingThatSaysItEndsEarly) {
+  const Workplace here;
+  here.write("ring.json", R"({"name": "ring", "time_limit": 600, "robots": [
+    {"circle": {"count": 60, "radius": 200}, "max_speed": 1.5}]})");
+  constexpr const char* kWriter =
+      "( '" EXACTVO_PROGRAM "' simulate ring.json --record - 2>run.log & echo $! >pid; wait $! )";
+  for (const std::string signal : {"INT", "TERM", "KILL"}) {
+    const std::string pipeline = kWriter + std::string(" | tee part.jsonl | PROGRAM audit - >log 2>err & audit=$!; ");
+    const std::string grown =
+        "until [ $(stat -c %s part.jsonl 2>/dev/null || echo 0) -gt 600000 ]; do sleep 0.05; done; ";
+    EXPECT_EQ(
+        status_of(here, "rm -f part.jsonl pid; " + pipeline + grown + "kill -" + signal + " $(cat pid); wait $audit"),
+        2)
+        << here.read("err");
+    EXPECT_THAT(here.read("err"), HasSubstr("the recording ends early; audited so far: ")) << signal;
+    EXPECT_THAT(here.read("err"), HasSubstr("[E_CUT_OFF]")) << signal;
+    EXPECT_THAT(here.run("audit part.jsonl").err, HasSubstr("[E_CUT_OFF]")) << signal;
+    if (signal == "KILL") continue;  // which leaves no time for words
+    EXPECT_THAT(here.read("run.log"), HasSubstr("interrupted; the recording ends early"));
+  }
 }
 
 TEST(Pipes, ARunWhoseReaderLeavesEnds) {
@@ -284,6 +368,11 @@ TEST(Pipes, ARunWhoseReaderLeavesEnds) {
             2);
   EXPECT_THAT(here.read("log"), HasSubstr("pipe: found"));
   EXPECT_THAT(here.read("beginning"), HasSubstr("exactvo-recording"));
+  EXPECT_EQ(
+      status_of(here, "( PROGRAM simulate s.json --record-all --record - 2>log; echo $? >status ) | head -c 100 >b"),
+      0);
+  EXPECT_EQ(here.read("status"), "2\n");
+  EXPECT_THAT(here.read("log"), HasSubstr("standard output: found Broken pipe"));
 }
 
 /// Names in the folder that begin with a dot.

@@ -122,7 +122,12 @@ std::string surplus_words(const std::vector<const CLI::Option*>& options, const 
   const auto at = std::find(words.begin(), words.end(), word);
   const CLI::Option* before = at == words.begin() || at == words.end() ? nullptr : option_named(options, *(at - 1));
   if (before && is_flag(*before)) return fmt::format("unexpected argument '{}': {} takes no value", word, *(at - 1));
-  return fmt::format("unexpected argument '{}'", word);
+  std::string text = fmt::format("unexpected argument '{}'", word);
+  for (const CLI::Option* option : options)
+    if (option->get_positional() && option->results().size() == 1)
+      text += fmt::format(": the {} is '{}'", option->get_name(), option->results().front());
+  if (option_named(options, "--scenario")) text += "; a scenario goes behind --scenario";
+  return text;
 }
 
 std::string missing_words(const CLI::Option* option) {

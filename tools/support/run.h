@@ -6,10 +6,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
@@ -33,9 +35,9 @@ struct RunOutput {
   std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
   /// Gets, before the first row, what can be said before the run (formation::warnings_before).
   std::function<void(const std::vector<std::string>&)> warnings = nullptr;
-  bool page = false;                     ///< whether a page will be made (explorer/page.h)
-  PackedRunLimits page_limits = {};      ///< of what it holds
-  std::filesystem::path recording = {};  ///< without a folder: a pipe for the recording
+  bool page = false;                                          ///< whether a page will be made (explorer/page.h)
+  PackedRunLimits page_limits = {};                           ///< of what it holds
+  std::shared_ptr<datasets::AtomicFile> recording = nullptr;  ///< without a folder: takes the recording
 };
 
 /// What makes a page and nothing else.

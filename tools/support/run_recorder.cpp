@@ -54,9 +54,11 @@ void ShownRows::move_to(RecordingFile& file) {
 }
 
 struct RunRecorder::Files {
-  Files(const std::filesystem::path& folder, const std::filesystem::path& recorded, const RecordingFile& about)
-      : recording(recorded, about) {
-    if (folder.empty()) return;
+  /// The recording alone, into that file.
+  Files(std::shared_ptr<datasets::AtomicFile> recorded, const RecordingFile& about)
+      : recording(std::move(recorded), about) {}
+  Files(const std::filesystem::path& folder, const RecordingFile& about)
+      : recording(folder / "recording.jsonl", about) {
     trajectory.emplace(folder / "trajectory.csv", about.scenario);
     if (!about.scenario.formation) return;
     lyapunov.emplace(folder / "lyapunov.csv");
@@ -69,15 +71,18 @@ struct RunRecorder::Files {
 };
 
 RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures,
-                         std::optional<PackedRunLimits> page, const std::filesystem::path& recording)
-    : about_(std::move(about)), folder_(std::move(folder)), recording_(recording), has_figures_(has_figures) {
-  if (!folder_.empty()) recording_ = folder_ / "recording.jsonl";
+                         std::optional<PackedRunLimits> page, std::shared_ptr<datasets::AtomicFile> recording)
+    : about_(std::move(about)),
+      folder_(std::move(folder)),
+      recording_(std::move(recording)),
+      has_figures_(has_figures) {
   if (page) packer_.emplace(*page);
 }
 
 void RunRecorder::begin(const formation::Recording& run) {
   about_.recording = run;
-  if (!recording_.empty()) files_ = std::make_shared<Files>(folder_, recording_, about_);
+  if (!folder_.empty()) files_ = std::make_shared<Files>(folder_, about_);
+  if (folder_.empty() && recording_) files_ = std::make_shared<Files>(std::move(recording_), about_);
   evaluator_.emplace(about_.scenario, about_.recording,
                      [this](const Step& row, const LyapunovRow* lyapunov) { take(row, lyapunov); });
 }

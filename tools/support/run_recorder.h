@@ -44,9 +44,11 @@ class ShownRows {
 class RunRecorder : public formation::RunSink {
  public:
   /// `about`: what is known before the run. `folder` must exist; nothing is written where it is empty, but for the
-  /// `recording`, a pipe. Without `has_figures` no row is kept for them, without `page` none for a page.
+  /// recording where it has a file of its own, `recording`. Without `has_figures` no row is kept for them, without
+  /// `page` none for a page.
   RunRecorder(datasets::RecordingFile about, std::filesystem::path folder, bool has_figures = true,
-              std::optional<PackedRunLimits> page = std::nullopt, const std::filesystem::path& recording = {});
+              std::optional<PackedRunLimits> page = std::nullopt,
+              std::shared_ptr<datasets::AtomicFile> recording = nullptr);
 
   void begin(const formation::Recording& run) override;
   void add_body(const vo::Body& body) override { bodies_.push_back(body); }
@@ -66,7 +68,8 @@ class RunRecorder : public formation::RunSink {
   void take(const formation::Step& row, const formation::LyapunovRow* lyapunov);
 
   datasets::RecordingFile about_;
-  std::filesystem::path folder_, recording_;
+  std::filesystem::path folder_;
+  std::shared_ptr<datasets::AtomicFile> recording_;
   bool has_figures_;
   std::shared_ptr<Files> files_;
   std::optional<formation::Evaluator> evaluator_;

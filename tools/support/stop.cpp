@@ -22,6 +22,7 @@ namespace exactvo::tools {
 namespace {
 
 std::atomic<int> at_once{0};
+std::atomic<const char*> termination_words{""};
 std::atomic<pid_t> child_of_ours{0};
 
 struct Slot {
@@ -31,7 +32,8 @@ struct Slot {
 };
 std::array<Slot, 16> slots;
 
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free &&
+                  std::atomic<bool>::is_always_lock_free,
               "a signal handler reads them");
 
 /// As getdents64(2) has it.
@@ -79,7 +81,8 @@ void remove_contents(int folder, int depth) {
 
 }  // namespace
 
-TerminateOnSignal::TerminateOnSignal() {
+TerminateOnSignal::TerminateOnSignal(const char* words) {
+  termination_words = words;
   ++at_once;
   if (!interrupted()) return;
   --at_once;
@@ -90,6 +93,9 @@ TerminateOnSignal::~TerminateOnSignal() {
 }
 bool terminates_on_signal() {
   return at_once > 0;
+}
+const char* words_of_termination() {
+  return termination_words;
 }
 
 RemoveFolderOnSignal::RemoveFolderOnSignal(const std::string& folder) : slot_(-1) {

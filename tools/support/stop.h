@@ -15,13 +15,16 @@ namespace exactvo::tools {
 /// work whose end loses nothing: a computation before anything is written, or one that writes into a staged folder.
 class TerminateOnSignal {
  public:
-  /// Throws Interrupted where a signal has come before.
-  TerminateOnSignal();
+  /// `words`: what has become of the output, for the message; they must outlive the program. Throws Interrupted where a
+  /// signal has come before.
+  explicit TerminateOnSignal(const char* words = "nothing was written");
   ~TerminateOnSignal();
   TerminateOnSignal(const TerminateOnSignal&) = delete;
   TerminateOnSignal& operator=(const TerminateOnSignal&) = delete;
 };
 bool terminates_on_signal();
+/// Of the one that was made last. Async-signal-safe.
+const char* words_of_termination();
 
 /// A folder that a signal removes with all in it, for as long as the object lives. Beyond a fixed number of them at a
 /// time, further ones are not registered.

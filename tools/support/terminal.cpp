@@ -39,17 +39,17 @@ void write_to_stderr(const char* text) {
 }
 
 /// Called by signal handlers.
-[[noreturn]] void end_now(const char* words) {
+[[noreturn]] void end_now(const char* words, const char* more = "", const char* end = "") {
   while (ending.exchange(true)) ::pause();  // another thread's handler is at it
   remove_what_is_unfinished();
   if (stderr_is_terminal) write_to_stderr("\r\033[K");  // over the progress line
-  write_to_stderr(words);
+  for (const char* some : {words, more, end}) write_to_stderr(some);
   ::_exit(128 + interrupt_seen);
 }
 
 extern "C" void on_interrupt(int signal) {
   interrupt_seen = signal;
-  if (terminates_on_signal()) end_now("exactvo: error: interrupted; nothing was written\n");
+  if (terminates_on_signal()) end_now("exactvo: error: interrupted; ", words_of_termination(), "\n");
   if (watches_ranks())
     begin_end_of_rank();
   else
@@ -89,6 +89,10 @@ void put(const std::string& text) {
 
 void set_quiet(bool value) {
   quiet = value;
+}
+
+void print_to_stderr(const std::string& text) {
+  put(text);
 }
 
 void print(const std::string& text) {

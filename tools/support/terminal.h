@@ -19,6 +19,8 @@ void set_quiet(bool quiet);
 void print(const std::string& text);
 /// The same for what was printed by other means.
 void check_stdout();
+/// Results on stderr, where stdout has something else.
+void print_to_stderr(const std::string& text);
 
 /// Prints in chunks: neither a system call a line nor the whole text in memory.
 class ChunkedOutput {

@@ -50,8 +50,8 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 
 AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing, Unfinished unfinished, Pipe pipe)
     : path_(std::move(path)), unfinished_(unfinished) {
-  if (pipe == Pipe::is_written && is_pipe(path_)) {
-    open_pipe();
+  if (pipe == Pipe::is_written && (path_ == "-" || is_pipe(path_))) {
+    path_ == "-" ? open_standard_output() : open_pipe();
     return;
   }
   refuse_irregular(path_);
@@ -76,11 +76,15 @@ AtomicFile::~AtomicFile() {
   if (unfinished_ == Unfinished::goes && !temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-/// Waits for a reader.
+/// Waits for a reader, or a signal.
 void AtomicFile::open_pipe() {
-  do {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-  } while (descriptor_ < 0 && errno == EINTR);
+  while ((descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC)) < 0 && errno == EINTR) call_wait_hook();
+  if (descriptor_ < 0) throw cannot_write(path_, errno);
+}
+
+void AtomicFile::open_standard_output() {
+  path_ = "standard output";
+  descriptor_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
   if (descriptor_ < 0) throw cannot_write(path_, errno);
 }
 

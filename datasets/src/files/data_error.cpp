@@ -17,6 +17,7 @@ constexpr std::pair<DataCode, const char*> kCodeNames[] = {{DataCode::file_missi
                                                            {DataCode::out_of_range, "E_RANGE"},
                                                            {DataCode::not_an_option, "E_OPTION"},
                                                            {DataCode::wrong_count, "E_COUNT"},
+                                                           {DataCode::cut_off, "E_CUT_OFF"},
                                                            {DataCode::no_alternative, "E_NO_ALTERNATIVE"},
                                                            {DataCode::scenario, "E_SCENARIO"},
                                                            {DataCode::format_unknown, "E_FORMAT_UNKNOWN"},

@@ -7,6 +7,7 @@
 
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/counted.h"
 #include "json/json_text.h"
 #include "recordings/audit_bodies.h"
 #include "recordings/audit_decisions.h"
@@ -140,14 +141,10 @@ class RunAudit {
 
   /// REQUIRES: `file` is whole.
   AuditTally finish() {
-    for (const formation::JointPlan& plan : file_.recording.plans)
-      if (why_.empty()) why_ = obstruction_in(plan, rows_);
+    tally_.report.rows = rows_;
+    look_at_plans();
     if (rows_ == 0) why_ = "there are no rows";
-    if (!why_.empty()) {
-      tally_ = {};
-      tally_.refuted(AuditPoint::sequence, why_);
-      return std::move(tally_);
-    }
+    if (!why_.empty()) return unauditable();
     judge(nullptr);
     judge_whole();
     const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before_.get()}, tally_.report.has_staying);
@@ -157,7 +154,35 @@ class RunAudit {
     return std::move(tally_);
   }
 
+  /// Of a run that ends early, whose last row nobody knows to be one: what is said of it beforehand holds for the rows
+  /// there are. REQUIRES: `file` has no outlook and no plan of a row that did not come.
+  AuditTally finish_early() {
+    tally_.report.rows = rows_;
+    look_at_plans();
+    if (!why_.empty()) return unauditable();
+    if (!judges_) return std::move(tally_);
+    judges_->places.take(*row_);
+    judge_whole();
+    return std::move(tally_);
+  }
+
+  std::size_t rows() const { return rows_; }
+  /// Null before the first.
+  const Step* last_row() const { return row_.get(); }
+
  private:
+  void look_at_plans() {
+    for (const formation::JointPlan& plan : file_.recording.plans)
+      if (why_.empty()) why_ = obstruction_in(plan, rows_);
+  }
+
+  AuditTally unauditable() {
+    tally_ = {};
+    tally_.report.rows = rows_;
+    tally_.refuted(AuditPoint::sequence, why_);
+    return std::move(tally_);
+  }
+
   /// Made once the header is known. They refer to each other.
   struct Judges {
     Judges(const RecordingFile& file, AuditTally& tally)
@@ -240,6 +265,31 @@ AuditReport finished(AuditTally tally) {
   return std::move(r);
 }
 
+/// What is said of rows that did not come goes.
+void drop_what_follows(std::size_t rows, const Step* last, formation::Recording& run) {
+  const auto follows = [&](const formation::Outlook& o) { return !last || o.time > last->time; };
+  run.outlooks.erase(std::remove_if(run.outlooks.begin(), run.outlooks.end(), follows), run.outlooks.end());
+  while (!run.plans.empty() && run.plans.back().row >= rows) run.plans.pop_back();
+}
+
+/// Of a recording that ends early, as `why` says.
+AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError& why) {
+  drop_what_follows(audit.rows(), audit.last_row(), run.recording);
+  AuditReport report = finished(audit.finish_early());
+  PointCount all;
+  for (const PointCount& point : report.points) {
+    all.proven += point.proven;
+    all.refuted += point.refuted;
+    all.open += point.open;
+  }
+  const std::string found = "; audited so far: " + geometry::counted(report.rows, "row") + ", " +
+                            geometry::counted(all.asked(), "question") + ", " + std::to_string(all.refuted) +
+                            " refuted, " + std::to_string(all.open) + " left open";
+  report.cut_off.emplace_back(
+      DataError(why.code(), why.file(), why.place(), why.found(), why.expected() + found).what());
+  return report;
+}
+
 }  // namespace
 
 const char* name(AuditPoint point) {
@@ -250,7 +300,7 @@ const char* name(AuditPoint point) {
 
 bool AuditReport::clean() const {
   const bool refuted = std::any_of(points.begin(), points.end(), [](const PointCount& p) { return p.refuted > 0; });
-  return !refuted && (*this)[AuditPoint::motions].open == 0;
+  return !refuted && (*this)[AuditPoint::motions].open == 0 && cut_off.empty();
 }
 
 AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario) {
@@ -263,11 +313,16 @@ AuditReport audit_recording(const std::filesystem::path& path, const formation::
   SealedLines lines(path);
   RecordingFile run;
   RunAudit audit(run, scenario);
-  read_recording_lines([&](std::string_view& line) { return lines.next(line); }, lines.file(),
-                       [&](const RecordingFile&, Step row, const formation::LyapunovRow*) {
-                         audit.take(std::make_shared<const Step>(std::move(row)));
-                       },
-                       run);
+  try {
+    read_recording_lines([&](std::string_view& line) { return lines.next(line); }, lines.file(),
+                         [&](const RecordingFile&, Step row, const formation::LyapunovRow*) {
+                           audit.take(std::make_shared<const Step>(std::move(row)));
+                         },
+                         run);
+  } catch (const DataError& error) {
+    if (error.code() != DataCode::cut_off || audit.rows() == 0) throw;
+    return audited_so_far(audit, run, error);
+  }
   AuditTally tally = audit.finish();
   const AuditPoint point = AuditPoint::scenario;
   lines.are_sealed() ? tally.proven(point)
@@ -283,8 +338,8 @@ void add(AuditReport& sum, const AuditReport& other) {
     sum.points[p].unlisted += other.points[p].unlisted;
   }
   for (std::size_t AuditReport::*count :
-       {&AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps, &AuditReport::collisions,
-        &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
+       {&AuditReport::rows, &AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps,
+        &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
         &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
   for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
@@ -292,6 +347,7 @@ void add(AuditReport& sum, const AuditReport& other) {
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
+  sum.cut_off.insert(sum.cut_off.end(), other.cut_off.begin(), other.cut_off.end());
   sum.findings.insert(sum.findings.end(), other.findings.begin(), other.findings.end());
 }
 
@@ -321,6 +377,8 @@ std::vector<std::string> not_audited(const AuditReport& report) {
 std::string to_json(const AuditReport& report) {
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object();
+  json.member("rows", report.rows);
+  json.member("cut_off", !report.cut_off.empty());
   json.member("half_planes", report.half_planes);
   json.member("unsafe", report.unsafe);
   json.member("steps", report.steps);

@@ -88,6 +88,7 @@ class LineReader {
   LineReader(RecordingFile& file, const TakeRow& take) : file_(file), take_(take), bodies_(file.recording.bodies) {}
 
   bool is_at_end() const { return at_end_; }
+  std::size_t rows() const { return rows_; }
 
   void read(const JsonCursor& at) {
     if (at_end_) at.refuse("nothing after the end", DataCode::wrong_count);
@@ -232,16 +233,63 @@ class LineReader {
   bool at_end_ = false;
 };
 
-/// What a file is that is no recording, as far as that is seen in its beginning.
-std::string kind_of(std::string_view first_line, const NextLine& next_line) {
+/// It ends before its last line: before line `number`, or within it. `rows`: above.
+DataError cut_off(const std::string& name, std::size_t number, std::size_t rows, bool within_line) {
+  return {DataCode::cut_off, name, "line " + std::to_string(number),
+          "the end of the file after " + geometry::counted(rows, "row") + (within_line ? ", within a line" : ""),
+          "a last line \"end\": the recording ends early"};
+}
+
+/// A line of JSON. Where the last line ends amid it, whoever wrote it did not get further.
+Json line_of_recording(std::string_view line, const std::string& name, std::size_t number, std::size_t rows) {
+  try {
+    return parse_json_line(line, name, number);
+  } catch (const DataError& error) {
+    const std::string end = "line " + std::to_string(number) + ", column " + std::to_string(line.size() + 1);
+    if (error.code() != DataCode::json_syntax || error.place() != end) throw;
+    throw cut_off(name, number, rows, true);
+  }
+}
+
+/// How a recording begins, as the writer has it.
+constexpr std::string_view kBeginningOfHeader = R"({"header":{"kind":"exactvo-recording")";
+
+/// What is packed, by its first bytes: a name, and the command that unpacks it to its stdout.
+struct Packing {
+  std::string_view magic;
+  const char *name, *command;
+};
+constexpr Packing kPackings[] = {{"\x28\xb5\x2f\xfd", "zstd", "zstd -dc"},
+                                 {"\x1f\x8b", "gzip", "gzip -dc"},
+                                 {"\xfd"
+                                  "7zXZ",
+                                  "xz", "xz -dc"},
+                                 {"BZh", "bzip2", "bzip2 -dc"},
+                                 {"\x04\x22\x4d\x18", "lz4", "lz4 -dc"}};
+
+/// Whether bytes are those of a text in UTF-8, as far as control characters tell.
+bool is_text(std::string_view bytes) {
+  return std::none_of(bytes.begin(), bytes.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\r' && c != '\n';
+  });
+}
+
+/// The first lines of a file, 1 MiB or all.
+std::string beginning_of(std::string_view first_line, const NextLine& next_line) {
   constexpr std::size_t kBeginning = 1 << 20;
-  if (first_line.empty()) return "an empty file";
   std::string text(first_line);
   std::string_view line;
   while (text.size() < kBeginning && next_line(line)) text.append("\n").append(line);
+  return text;
+}
+
+/// What a file is that is no recording, as far as that is seen in its beginning.
+std::string kind_of(const std::string& beginning) {
+  if (!is_text(beginning)) return "no text";
   try {
-    const Json tree = parse_json(text, "");
+    const Json tree = parse_json(beginning, "");
     if (tree.is_object() && tree.contains("name") && tree.contains("robots")) return "a scenario, which is no run yet";
+    if (tree.is_object() && tree.contains("provenance") && tree.contains("outcome")) return "the metrics of a run";
   } catch (const DataError&) {  // not JSON
   }
   return "no recording";
@@ -249,13 +297,22 @@ std::string kind_of(std::string_view first_line, const NextLine& next_line) {
 
 /// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
 void require_recording(std::string_view first_line, const NextLine& next_line, const std::string& name) {
+  const std::string recording = "a recording.jsonl, as simulate --out writes it";
   if (first_line.find(kKind) != std::string_view::npos) return;
   if (begins_crowd_recording(first_line))
-    throw DataError(
-        DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
-        "a recording.jsonl, as simulate --out writes it; audit, convert, draw and view read recordings of crowds");
-  throw DataError(DataCode::format_unknown, name, "", kind_of(first_line, next_line),
-                  "a recording.jsonl, as simulate --out writes it");
+    throw DataError(DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
+                    recording + "; audit, convert, draw and view read recordings of crowds");
+  for (const Packing& packing : kPackings)
+    if (first_line.substr(0, packing.magic.size()) == packing.magic)
+      throw DataError(DataCode::format_unknown, name, "", std::string("what ") + packing.name + " has packed",
+                      "a recording.jsonl: unpack it, into a file or into the audit, " + std::string(packing.command) +
+                          " FILE | exactvo audit -");
+  const std::string beginning = beginning_of(first_line, next_line);
+  if (beginning.empty())
+    throw DataError(DataCode::cut_off, name, "", "an empty file",
+                    recording + ": whoever was to write it has not begun");
+  if (beginning == kBeginningOfHeader.substr(0, beginning.size())) throw cut_off(name, 1, 0, true);
+  throw DataError(DataCode::format_unknown, name, "", kind_of(beginning), recording);
 }
 
 /// What `read` reads, with all rows that it gives its argument.
@@ -279,7 +336,7 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
   if (!next_line(line)) line = {};
   require_recording(line, next_line, name);
   {
-    const Json header = parse_json_line(line, name, 1);
+    const Json header = line_of_recording(line, name, 1, 0);
     const JsonCursor first(header, name, "line 1");
     // A header of format 1 has no name: its version is what is wrong with it.
     read_header(first.has("header") ? first.at("header") : first, name, run);
@@ -287,13 +344,10 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
   LineReader reader(run, take);
   std::size_t number = 2;
   for (; next_line(line); ++number) {
-    const Json content = parse_json_line(line, name, number);
+    const Json content = line_of_recording(line, name, number, reader.rows());
     reader.read(JsonCursor(content, name, "line " + std::to_string(number)));
   }
-  if (!reader.is_at_end()) {
-    throw DataError(DataCode::wrong_count, name, "line " + std::to_string(number), "the end of the file",
-                    "a last line \"end\": the recording was cut off");
-  }
+  if (!reader.is_at_end()) throw cut_off(name, number, reader.rows(), false);
 }
 
 RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
@@ -93,8 +95,7 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
 }  // namespace
 
 struct RecordingWriter::State {
-  explicit State(const std::filesystem::path& path)
-      : out(path, MissingFolder::is_made, Unfinished::goes, Pipe::is_written) {}
+  explicit State(std::shared_ptr<AtomicFile> file) : out(std::move(file)) {}
 
   /// Writes {"name": what was appended}.
   template <class Append>
@@ -105,7 +106,7 @@ struct RecordingWriter::State {
     json.end_object();
     for (const std::string_view part : {std::string_view(json.text()), std::string_view("\n")}) {
       hash.add(part);
-      out.write(part);
+      out->write(part);
     }
   }
 
@@ -117,7 +118,7 @@ struct RecordingWriter::State {
     line("body", [&] { append_body(json, number, bodies[number]); });
   }
 
-  AtomicFile out;
+  std::shared_ptr<AtomicFile> out;
   JsonWriter json{JsonWriter::Layout::compact};
   Sha256 hash;
   std::vector<bool> named;  ///< of the bodies
@@ -126,7 +127,11 @@ struct RecordingWriter::State {
 };
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingFile& about)
-    : state_(std::make_unique<State>(path)) {
+    : RecordingWriter(std::make_shared<AtomicFile>(path, MissingFolder::is_made, Unfinished::goes, Pipe::is_written),
+                      about) {}
+
+RecordingWriter::RecordingWriter(std::shared_ptr<AtomicFile> out, const RecordingFile& about)
+    : state_(std::make_unique<State>(std::move(out))) {
   state_->has_leader = about.scenario.formation.has_value();
   state_->line("header", [&] { append_header(state_->json, about); });
 }
@@ -157,8 +162,8 @@ void RecordingWriter::finish(const RecordingFile& about) {
   state_->json.begin_object().key("end");
   append_end(state_->json, about, state_->rows, digest);
   state_->json.end_object();
-  state_->out.write(state_->json.text() + "\n");
-  state_->out.commit();
+  state_->out->write(state_->json.text() + "\n");
+  state_->out->commit();
 }
 
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {

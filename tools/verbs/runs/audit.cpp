@@ -79,7 +79,7 @@ std::string unlisted_lines(const datasets::AuditReport& report) {
 }
 
 std::string summary(const datasets::AuditReport& report) {
-  std::string text;
+  std::string text = report.cut_off.empty() ? "" : "a recording ends early: what follows is of the rows there are\n";
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     const datasets::PointCount& n = report.points[p];
     text += fmt::format("{}: {} asked, {} proven", words_of(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
@@ -212,6 +212,10 @@ ExitCode audit_recordings(const AuditFlags& flags) {
     throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
   const Audited all = audited(flags, files, scenario ? &*scenario : nullptr);
   print(flags.json ? to_json(all) : summary(all));
+  if (all.runs && !all.runs->cut_off.empty()) {
+    for (const std::string& words : all.runs->cut_off) error_message(words);
+    return ExitCode::bad_input;
+  }
   const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
   return clean ? ExitCode::success : ExitCode::negative;
 }

@@ -128,22 +128,23 @@ void announce(const formation::Scenario& scenario) {
       s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
 }
 
-/// Into the folder, which may be none.
+/// Into the folder, which may be none, or as a recording alone.
 FinishedRun run_with_progress(const SimulateFlags& flags, const datasets::LoadedScenario& read,
-                              const formation::SimulationOptions& options, const std::filesystem::path& folder) {
+                              const formation::SimulationOptions& options, const std::filesystem::path& folder,
+                              std::shared_ptr<datasets::AtomicFile> recording = nullptr) {
   const formation::Scenario& scenario = read.scenario;
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
   line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
-  const TerminateOnSignal terminate_on_signal;
+  const TerminateOnSignal terminate_on_signal(recording ? "the recording ends early" : "nothing was written");
   const bool figures = !folder.empty() && !flags.no_figures;
   RunOutput output{folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures};
-  output.recording = flags.crowd.record;
+  output.recording = std::move(recording);
   return run(scenario, options, provenance, output);
 }
 
-void print_results(const SimulateFlags& flags, const FinishedRun& finished) {
-  print(flags.json ? finished.metrics_json() : summary(finished));
+std::string results(const SimulateFlags& flags, const FinishedRun& finished) {
+  return flags.json ? finished.metrics_json() : summary(finished);
 }
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
@@ -159,7 +160,7 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
     write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
   }
   if (interrupted()) throw Interrupted();
-  print_results(flags, finished);
+  print(results(flags, finished));
   if (flags.no_figures) remove_figures(flags.out);
   folder.publish("metrics.json");
   message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
@@ -167,10 +168,18 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
 }
 
 FinishedRun run_and_print(const SimulateFlags& flags, const datasets::LoadedScenario& read,
-                          const formation::SimulationOptions& options) {
-  FinishedRun finished = run_with_progress(flags, read, options, {});
-  print_results(flags, finished);
+                          const formation::SimulationOptions& options,
+                          std::shared_ptr<datasets::AtomicFile> recording) {
+  FinishedRun finished = run_with_progress(flags, read, options, {}, std::move(recording));
+  is_stdout(flags.crowd.record) ? print_to_stderr(results(flags, finished)) : print(results(flags, finished));
   return finished;
+}
+
+/// What `--record` names, before anything can go wrong: who reads it waits for its end, whatever it is.
+std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) {
+  if (path.empty()) return nullptr;
+  return std::make_shared<datasets::AtomicFile>(is_stdout(path) ? "-" : path, datasets::MissingFolder::is_made,
+                                                datasets::Unfinished::goes, datasets::Pipe::is_written);
 }
 
 /// `ranks`: null where this process is alone.
@@ -183,6 +192,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
   options.threads = flags.crowd.threads;
+  std::shared_ptr<datasets::AtomicFile> recording = is_crowd ? nullptr : opened_recording(flags.crowd.record);
   const datasets::LoadedScenario read = read_scenario(flags.scenario);
   if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
   const formation::Scenario& scenario = read.scenario;
@@ -192,8 +202,8 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
     if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
   }
   announce(scenario);
-  const FinishedRun finished =
-      flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
+  const FinishedRun finished = flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
+                                                 : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
   return failed ? ExitCode::negative : ExitCode::success;
 }
@@ -250,7 +260,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
-          "  mkfifo large.pipe; exactvo simulate large.json --record large.pipe & exactvo audit large.pipe\n"
+          "  exactvo simulate large.json --record - | exactvo audit -\n"
           "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
           with_flags(declare_simulate, simulate_anywhere)};

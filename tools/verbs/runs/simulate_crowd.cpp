@@ -2,6 +2,8 @@
 #include "verbs/runs/simulate_crowd.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -172,13 +174,26 @@ std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulati
 /// Of the standard engine.
 void check_record(const std::string& record, const std::string& out) {
   std::error_code unknown;
-  if (!out.empty() || !std::filesystem::is_fifo(record, unknown))
+  if (!out.empty()) throw UsageError("--record", record, "no --out beside it, which writes the recording");
+  if (is_stdout(record)) {
+    if (::isatty(STDOUT_FILENO) == 1)
+      throw UsageError("--record", record, "a reader of stdout, which is a terminal: --record - | exactvo audit -");
+    return;
+  }
+  if (!std::filesystem::is_fifo(record, unknown))
     throw UsageError("--record", record,
-                     out.empty() ? "a pipe; or --engine crowd beside it, or --out DIR, which writes the recording"
-                                 : "no --out beside it, which writes the recording");
+                     "- for stdout, or a pipe; or --engine crowd beside it, or --out DIR, which writes the recording");
 }
 
 }  // namespace
+
+bool is_stdout(const std::string& path) {
+  struct stat there {};
+  struct stat standard {};
+  if (path == "-") return true;
+  return ::stat(path.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+         there.st_dev == standard.st_dev && there.st_ino == standard.st_ino;
+}
 
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_option("--engine", flags.engine,
@@ -187,7 +202,7 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
       ->capture_default_str();
   app.add_option("--record", flags.record,
                  "With --engine crowd: FILE.evr for positions, whole or not at all. Else, without --out: a pipe that "
-                 "takes the recording as the run is made");
+                 "takes the recording as the run is made, or - for stdout (results go to stderr then)");
   app.add_option("--every", flags.every, "With --record: a row every N steps")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));

@@ -28,6 +28,9 @@ struct CrowdFlags {
   std::vector<CLI::Option*> of_crowd, of_standard;  ///< options that the other engine does not have
 };
 
+/// Whether `--record` means stdout: "-", or another name of it. Results go to stderr then.
+bool is_stdout(const std::string& path);
+
 /// After `declare_simulation_flags`.
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags);
 

@@ -32,9 +32,9 @@ enum class Unfinished {
   stays  ///< it stays as "PATH.unfinished", whatever ends the program; the next one goes on with it
 };
 
-/// What happens where a pipe stands at the path.
+/// What happens where a pipe stands at the path, or the path is "-", standard output.
 enum class Pipe {
-  is_refused,  ///< DataError: the rename would take its place
+  is_refused,  ///< DataError: the rename would take its place; "-" is a name like others
   is_written   ///< bytes go into it as they come; who reads it has to find out where they end too early
 };
 
@@ -60,12 +60,13 @@ class AtomicFile {
 
  private:
   void open_pipe();
+  void open_standard_output();
   void open_unfinished();
   void flush();
   void put(std::string_view bytes);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< none for a pipe
+  std::filesystem::path temporary_;  ///< none for a pipe and for standard output
   Unfinished unfinished_ = Unfinished::goes;
   int descriptor_ = -1;
   std::string buffer_;

@@ -79,6 +79,10 @@ struct AuditReport {
   /// The count of one point.
   const PointCount& operator[](AuditPoint point) const { return points[static_cast<std::size_t>(point)]; }
 
+  std::size_t rows = 0;  ///< that were audited
+  /// Of each recording that ends early: where, and what was found in the rows that are there. They are no whole run.
+  std::vector<std::string> cut_off;
+
   std::size_t half_planes = 0;        ///< of (4): certified ones of obstacles
   std::size_t unsafe = 0;             ///< of (4): refuted
   std::size_t steps = 0;              ///< of (7): a robot's motion from one row to the next
@@ -99,7 +103,7 @@ struct AuditReport {
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
   bool has_integrated = false;      ///< a run was integrated by dopri5 or rosenbrock4
 
-  /// Nothing is refuted, and no motion open.
+  /// Nothing is refuted, no motion open, and no recording ends early.
   bool clean() const;
 };
 /// Findings of one point and one recording: this many refuted and this many open ones; PointCount counts the others.
@@ -111,7 +115,8 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 /// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that
 /// was altered in a way that is still safe, an ulp inward, is found too. Reads it once, row by row, so that it may be a
 /// pipe into which a run writes; "-" is standard input. Memory does not grow with the rows, but for where robots were:
-/// 16 bytes a robot and row, of the last 2^23 of these. Throws DataError where it can't be read.
+/// 16 bytes a robot and row, of the last 2^23 of these. Of one that ends early (`cut_off`) the rows that are there are
+/// audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr);
 
 /// Counts added up, findings joined.
@@ -120,9 +125,9 @@ void add(AuditReport& sum, const AuditReport& other);
 /// What this audit did not ask, a sentence each.
 std::vector<std::string> not_audited(const AuditReport& report);
 
-/// One JSON object: `half_planes`, `unsafe`, `steps`, `collisions`, `unproven`, `inconsistencies`, `points` (of each
-/// point `asked`, `proven`, `refuted`, `open`, `unlisted`), `largest_violation`, `proved` (how much of what was
-/// proven), `not_audited`, `findings`.
+/// One JSON object: `rows`, `cut_off` (whether there is one), `half_planes`, `unsafe`, `steps`, `collisions`,
+/// `unproven`, `inconsistencies`, `points` (of each point `asked`, `proven`, `refuted`, `open`, `unlisted`),
+/// `largest_violation`, `proved` (how much of what was proven), `not_audited`, `findings`.
 std::string to_json(const AuditReport& report);
 
 }  // namespace exactvo::datasets

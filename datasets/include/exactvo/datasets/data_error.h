@@ -28,6 +28,7 @@ enum class DataCode {
   out_of_range,        ///< E_RANGE: a number outside its stated range
   not_an_option,       ///< E_OPTION: a word that is none of the listed ones
   wrong_count,         ///< E_COUNT: a list too short or too long
+  cut_off,             ///< E_CUT_OFF: a recording that ends before its last line
   no_alternative,      ///< E_NO_ALTERNATIVE: fits none of the allowed shapes of the value
   scenario,            ///< E_SCENARIO: well-formed, but can't be run (robots overlapping at the start, ...)
   format_unknown,      ///< E_FORMAT_UNKNOWN: neither content nor name tells what kind of file it is

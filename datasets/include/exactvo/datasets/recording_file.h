@@ -31,6 +31,8 @@
 
 namespace exactvo::datasets {
 
+class AtomicFile;
+
 /// What `format_version` says. Another one is refused (E_RANGE).
 inline constexpr int kRecordingFormat = 2;
 
@@ -47,13 +49,15 @@ struct RecordingFile {
 };
 
 /// A recording that is written as the run is made, in constant memory. Whole or not at all (atomic_file.h): nothing
-/// stands there before `finish`. Into a pipe it goes as it is made; one that is cut off lacks its last line. Throws
-/// DataError where it can't be written.
+/// stands there before `finish`. Into a pipe it goes as it is made; one that is cut off lacks its last line
+/// (E_CUT_OFF where it is read). Throws DataError where it can't be written.
 class RecordingWriter {
  public:
   /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
   /// `tracking_gain`, `relative_frame`, `remedies`, `offsets` and `all_half_planes`.
   RecordingWriter(const std::filesystem::path& path, const RecordingFile& about);
+  /// Into a pipe that was opened before, for instance.
+  RecordingWriter(std::shared_ptr<AtomicFile> out, const RecordingFile& about);
   ~RecordingWriter();
   /// `bodies` are the run's so far.
   void add(const formation::Outlook& outlook, const std::vector<vo::Body>& bodies);
