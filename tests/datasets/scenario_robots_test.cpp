@@ -116,7 +116,8 @@ TEST_F(ScenarioRobotTables, AThousandRobotsAreRead) {
 
 TEST(ScenarioRobots, Property2_EntriesThatAreNoRobotsArePlaced) {
   expect_refusal(refused(R"({"id": "R"})"), DataCode::key_missing, "/robots/0");
-  expect_refusal(refused(R"({"circel": {}})"), DataCode::no_alternative, "/robots/0");
+  expect_refusal(refused(R"({"circel": {}})"), DataCode::key_unknown, "/robots/0/circel");
+  expect_refusal(refused(R"({"ring": {}})"), DataCode::no_alternative, "/robots/0");
   expect_refusal(refused(R"({"circle": {"count": 0, "radius": 1}})"), DataCode::out_of_range, "/robots/0/circle/count");
   expect_refusal(refused(R"({"circle": {"count": 2.5, "radius": 1}})"), DataCode::wrong_type, "/robots/0/circle/count");
   expect_refusal(refused(R"({"circle": {"count": 3}})"), DataCode::key_missing, "/robots/0/circle");

@@ -106,7 +106,7 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate ring.json --engine crwd", "standard or crowd"},
       {"simulate ring.json --record out.evr",
-       "--record: found 'out.evr', expected a pipe; or --engine crowd beside it"},
+       "--record: found 'out.evr', expected - for stdout, or a pipe; or --engine crowd beside it"},
       {"simulate ring.json --record out.jsonl --out out", "--record: found 'out.jsonl', expected no --out beside it"},
       {"simulate ring.json --engine crowd --method ivo", "--method: found 'ivo', expected orca"},
       {"simulate ring.json --engine crowd --out out", "--out: found 'out', expected --record FILE.evr in its place"},

@@ -142,6 +142,43 @@ TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
       HasSubstr(R"(found none of these keys, expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
 }
 
+TEST(Messages, AMistypedGeneratorIsAnsweredWithThoseThereAre) {
+  const std::string all = R"("id" with "position", or "circle", or "grid", or "random", or "file")";
+  const std::pair<const char*, std::string> cases[] = {
+      {R"({"circle": {"count": 4, "radius": 9}})",
+       "/robots: found an object, expected a list [{...}] of objects with " + all + " [E_TYPE]"},
+      {R"({"count": 4, "radius": 9})",
+       "/robots: found an object, expected a list [{...}] of objects with " + all + " [E_TYPE]"},
+      {R"([{"circl": {"count": 4, "radius": 9}}])",
+       R"(/robots/0/circl: found an unknown key "circl", expected a known key; did you mean "circle"?)"},
+      {R"([{"Grid": {"columns": 2}, "radius": 1}])",
+       R"(/robots/0/Grid: found an unknown key "Grid", expected a known key; did you mean "grid"?)"},
+      {R"([{"randm": {"count": 4}}])",
+       R"(/robots/0/randm: found an unknown key "randm", expected a known key; did you mean "random"?)"},
+      {R"([{"type": "ring", "count": 4}])", "/robots/0: found none of these keys, expected " + all},
+      {R"([{"count": 4, "radius": 9}])", "/robots/0: found none of these keys, expected " + all},
+      {R"([{"circle": {"count": 4, "radus": 9}}])",
+       R"(/robots/0/circle/radus: found an unknown key "radus", expected a known key; did you mean "radius"?)"},
+      {R"([{"circle": 4}])", "/robots/0/circle: found 4, expected an object"}};
+  for (const auto& [robots, message] : cases) {
+    place().write("bad.json", std::string(R"({"name": "a", "robots": )") + robots + "}");
+    EXPECT_THAT(place().run("simulate bad.json").err, HasSubstr(message)) << robots;
+  }
+}
+
+TEST(Messages, PlansThatAreNotMadeAreNoted) {
+  place().write("two.json", R"({"name": "two", "time_limit": 0.1, "robots": [
+    {"id": "a", "position": [0, 0], "goal": [8, 0]}, {"id": "b", "position": [8, 3], "goal": [0, 3]}],
+    "obstacles": [{"id": "o", "polygon": [[4, 9], [5, 9], [5, 10]]}]})");
+  const auto noted = [](const std::string& options) { return place().run("simulate two.json " + options).err; };
+  const char* words = "note: liveness is bias, not plan: among obstacles joint plans need guidance";
+  EXPECT_THAT(noted("--guidance none"), HasSubstr(words));
+  EXPECT_THAT(noted("--method ivo-edge --liveness plan"), HasSubstr(words));
+  for (const char* options :
+       {"", "--method ivo-edge", "--guidance none --liveness off", "--guidance none --liveness bias"})
+    EXPECT_THAT(noted(options), Not(HasSubstr("note: "))) << options;
+}
+
 TEST(Messages, JsonThatIsMalformedIsAnsweredByLineAndColumnInPlainWords) {
   struct Case {
     const char* text;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -423,6 +424,42 @@ TEST(Signals, OneWhileFiguresAreDrawnLeavesNoTemporaryFolder) {
     EXPECT_FALSE(here.has("out"));
     EXPECT_THAT(hidden_in(here.path()), testing::IsEmpty());
   }
+}
+
+/// What the program says to a terminal that is its stderr.
+std::string said_to_terminal(const Workplace& here, const std::vector<std::string>& words) {
+  int terminal = -1;
+  const pid_t pid = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (pid == 0) {
+    std::vector<std::string> all{EXACTVO_PROGRAM};
+    all.insert(all.end(), words.begin(), words.end());
+    std::vector<char*> argv;
+    for (std::string& word : all) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    if (::chdir(here.path().c_str()) == 0) ::execv(EXACTVO_PROGRAM, argv.data());
+    ::_exit(127);
+  }
+  std::string text;
+  char block[4096];
+  for (ssize_t got = 0; (got = ::read(terminal, block, sizeof block)) > 0;)
+    text.append(block, static_cast<std::size_t>(got));
+  ::close(terminal);
+  ::waitpid(pid, nullptr, 0);
+  return text;
+}
+
+TEST(Progress, SaysHowLongFiguresTake) {
+  const Workplace here;
+  fs::create_directory(here.path() / "bin");
+  here.write("bin/gnuplot", "#!/bin/sh\nsleep 4\n");
+  fs::permissions(here.path() / "bin/gnuplot", fs::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  ::setenv("PATH", ((here.path() / "bin").string() + ":" + before).c_str(), 1);
+  const std::string said = said_to_terminal(here, {"simulate", data_file("paper/A1.json"), "--out", "out"});
+  ::setenv("PATH", before.c_str(), 1);
+  EXPECT_THAT(said, HasSubstr("drawing figures of A1"));
+  EXPECT_THAT(said, HasSubstr("drawing figures of A1; at it for 2 s"));
+  EXPECT_TRUE(here.has("out/metrics.json")) << said;
 }
 
 TEST(Pipes, DevicesFoldersAndSocketsAreRefused) {

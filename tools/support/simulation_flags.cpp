@@ -142,6 +142,23 @@ void note_unused(const SimulationFlags& flags, const formation::Scenario& scenar
     message("note: --liveness bias is off in formations, whose robots do not turn to the right");
 }
 
+void note_liveness(const SimulationFlags& flags, const formation::Scenario& scenario,
+                   const formation::SimulationOptions& options) {
+  if (options.liveness.value_or(scenario.liveness) != formation::Liveness::plan) return;
+  const formation::Liveness used = liveness_of(scenario, options);
+  const bool is_asked_for = !flags.liveness.empty();
+  if (scenario.formation && is_asked_for && used != formation::Liveness::plan)
+    message(
+        "note: --liveness plan is off here: joint plans of a formation need method ivo or ivo-cluster, no moving "
+        "obstacles, and a controller whose brake points follow the choices");
+  // ivo-edge never has guidance: there it is said only to who asks for plans.
+  const bool may_have_guidance = options.method != formation::Method::ivo_edge;
+  if (!scenario.formation && used == formation::Liveness::bias && (is_asked_for || may_have_guidance))
+    message(
+        "note: liveness is bias, not plan: among obstacles joint plans need guidance, so that robots only turn to the "
+        "right for each other");
+}
+
 void note_recorded(const SimulationFlags& flags) {
   note(flags.of_runs, "the run is read from its recording");
 }

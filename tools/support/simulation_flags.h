@@ -36,6 +36,9 @@ CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed,
 
 /// A message for each option given that the scenario does not use.
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario);
+/// A message where joint plans are meant, by an option or the scenario, and not made (formation::liveness_of).
+void note_liveness(const SimulationFlags& flags, const formation::Scenario& scenario,
+                   const formation::SimulationOptions& options);
 /// A message for each option given where the run is a recorded one.
 void note_recorded(const SimulationFlags& flags);
 

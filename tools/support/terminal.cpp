@@ -172,13 +172,50 @@ void ProgressLine::show(double done, const std::string& doing) {
     const double rate = done / seconds;
     pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
   }
-  put(fmt::format("\r\033[K{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, shown(doing), pace));
-  shown_ = true;
+  put_line(fmt::format("{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, shown(doing), pace));
+}
+
+void ProgressLine::say(const std::string& doing) {
+  if (enabled_) put_line(shown(doing));
+}
+
+ProgressLine::~ProgressLine() {
+  clear();
+  if (!clock_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    at_end_ = true;
+  }
+  ends_.notify_all();
+  clock_.join();
+}
+
+void ProgressLine::put_line(std::string text) {
+  const std::lock_guard lock(mutex_);
+  put("\r\033[K" + text);
+  line_ = std::move(text);
+  shown_at_ = elapsed();
+  if (clock_.joinable()) return;
+  // Signals are for the thread that works: it is the one that waits for files and children.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  clock_ = std::thread([this] { say_how_long(); });
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void ProgressLine::say_how_long() {
+  constexpr double kLong = 2.0;  // s
+  std::unique_lock lock(mutex_);
+  while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; }))
+    if (const double since = elapsed() - shown_at_; !line_.empty() && since >= kLong)
+      put(fmt::format("\r\033[K{}; at it for {:.0f} s", line_, since));
 }
 
 void ProgressLine::clear() {
-  if (shown_) put("\r\033[K");
-  shown_ = false;
+  const std::lock_guard lock(mutex_);
+  if (!line_.empty()) put("\r\033[K");
+  line_.clear();
 }
 
 }  // namespace exactvo::tools

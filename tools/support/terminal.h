@@ -5,9 +5,12 @@
 /// Words for people, on stderr: messages, and a line that says how far a long run has come. Results go to stdout.
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace exactvo::tools {
 
@@ -62,16 +65,19 @@ struct Interrupted : std::runtime_error {
 };
 
 /// How far a long run has come, with its rate and the time left, on one line of a terminal that is written over and
-/// over; nothing where stderr is no terminal.
+/// over; nothing where stderr is no terminal. Where nothing new is shown for two seconds, as while a plan is searched
+/// for, it says how long.
 class ProgressLine {
  public:
   /// `unit`: what is counted, "runs" or "s simulated".
   ProgressLine(double total, std::string unit);
-  ~ProgressLine() { clear(); }
+  ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(double done, const std::string& doing);
+  /// Of work whose share done is not known.
+  void say(const std::string& doing);
   /// Whether it is seen at all.
   bool enabled() const { return enabled_; }
   /// Whether it is time to say again how far the run has come: 0.2 s after the last time, or 30 s where the line is not
@@ -83,12 +89,21 @@ class ProgressLine {
   void clear();
 
  private:
+  void put_line(std::string text);
+  void say_how_long();
+
   bool enabled_;
-  bool shown_ = false;
   double total_;
   std::string unit_;
   std::chrono::steady_clock::time_point start_;
   double due_at_ = 0.0;  ///< s
+
+  std::thread clock_{};  ///< says how long the line has been there
+  std::mutex mutex_;     ///< of what follows, and of writing
+  std::condition_variable ends_{};
+  bool at_end_ = false;
+  std::string line_{};     ///< shown last; empty: none
+  double shown_at_ = 0.0;  ///< s
 };
 
 }  // namespace exactvo::tools

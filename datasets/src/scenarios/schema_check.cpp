@@ -138,7 +138,21 @@ class Checker {
       if ((value.*wanted.holds)()) return;
       expected += std::string(expected.empty() ? "" : " or ") + wanted.words;
     }
+    if (value.is_object() && rules.contains("items")) expected += of_entries(rules.at("items"));
     refuse(DataCode::wrong_type, at, described(value), with_unit(expected, rules));
+  }
+
+  /// Of a list of objects: what each has. An entry alone is often written in the place of the list.
+  std::string of_entries(const Json& schema) const {
+    const Json& entry = resolved(schema);
+    std::string keys;
+    if (entry.contains("oneOf")) {
+      for (const Json& reference : entry.at("oneOf"))
+        keys += (keys.empty() ? "" : ", or ") + listed_keys(resolved(reference));
+    } else if (entry.contains("required")) {
+      keys = listed_keys(entry);
+    }
+    return keys.empty() ? "" : " [{...}] of objects with " + keys;
   }
 
   void one_of_words(const Json& rule, const Json& value, const Json&, const Place& at) const {
@@ -273,8 +287,23 @@ class Checker {
     }
     if (meant.empty())
       if (const Json* likely = likeliest(rule, value)) meant.push_back(likely);
+    if (meant.empty()) refuse_mistyped(rule, value, at);
     if (meant.size() == 1) return check(value, *meant.front(), at);
     refuse(DataCode::no_alternative, at, meant.empty() ? "none of these keys" : "the keys of more than one kind", keys);
+  }
+
+  /// Where no key tells what is meant: one that is nearly a key that would have told.
+  void refuse_mistyped(const Json& rule, const Json& value, const Place& at) const {
+    std::vector<std::string> telling;
+    std::set<std::string> known;
+    for (const Json& reference : rule) {
+      const Json& alternative = resolved(reference);
+      if (!alternative.contains("properties")) return;
+      for (const Json& key : alternative.at("required")) telling.push_back(key.get<std::string>());
+      for (const auto& [key, member] : alternative.at("properties").items()) known.insert(key);
+    }
+    for (const auto& [key, member] : value.items())
+      if (known.count(key) == 0 && !nearest_word(key, telling).empty()) refuse_unknown(key, telling, at);
   }
 
   /// Where no alternative has its required keys: the one that knows most of the value's, if there is one.

@@ -138,6 +138,7 @@ MadeRun simulated(const PageFlags& flags, const std::string& path) {
   options.record_all = true;
   const datasets::LoadedScenario read = read_scenario(path);
   note_unused(flags.simulation, read.scenario);
+  note_liveness(flags.simulation, read.scenario, options);
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(read.scenario.time_limit, "s simulated");
   RunOutput output = for_page(flags.limits);

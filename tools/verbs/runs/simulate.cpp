@@ -155,7 +155,10 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
     const TerminateOnSignal terminate_on_signal;
+    ProgressLine line(0.0, "");
+    line.say("drawing figures of " + read.scenario.name);
     draw(write_figures(finished.file, folder.path() / "figures"));
+    line.say("making explorer.html of " + read.scenario.name);
     const std::string title = in_words(datasets::run_info(read.scenario, options, {}));
     write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
   }
@@ -197,6 +200,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
   if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
   const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
+  note_liveness(flags.simulation, scenario, options);
   if (!flags.out.empty()) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
