@@ -167,16 +167,17 @@ double ProgressLine::elapsed() const {
 void ProgressLine::show(double done, const std::string& doing) {
   if (!enabled_) return;
   const double seconds = elapsed();
-  std::string pace;
-  if (done > 0.0 && seconds > 0.0) {
+  const std::string now = fmt::format("{:.4g} of {:.4g} {}: {}", done, total_, unit_, shown(doing));
+  std::string pace = how_long(now);
+  if (pace.empty() && done > 0.0 && seconds > 0.0) {
     const double rate = done / seconds;
     pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
   }
-  put_line(fmt::format("{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, shown(doing), pace));
+  put_line(now, pace);
 }
 
 void ProgressLine::say(const std::string& doing) {
-  if (enabled_) put_line(shown(doing));
+  if (enabled_) put_line(shown(doing), how_long(shown(doing)));
 }
 
 ProgressLine::~ProgressLine() {
@@ -190,11 +191,24 @@ ProgressLine::~ProgressLine() {
   clock_.join();
 }
 
-void ProgressLine::put_line(std::string text) {
+/// Of a line that is to be shown.
+std::string ProgressLine::how_long(const std::string& now) {
   const std::lock_guard lock(mutex_);
-  put("\r\033[K" + text);
-  line_ = std::move(text);
-  shown_at_ = elapsed();
+  if (now != line_) changed_at_ = elapsed();
+  return how_long_of_line();
+}
+
+/// Nothing as long as it is short. REQUIRES: the mutex is held.
+std::string ProgressLine::how_long_of_line() const {
+  constexpr double kLong = 2.0;  // s
+  const double since = elapsed() - changed_at_;
+  return since < kLong ? "" : fmt::format("; at it for {:.0f} s", since);
+}
+
+void ProgressLine::put_line(const std::string& now, const std::string& more) {
+  const std::lock_guard lock(mutex_);
+  put("\r\033[K" + now + more);
+  line_ = now;
   if (clock_.joinable()) return;
   // Signals are for the thread that works: it is the one that waits for files and children.
   sigset_t all, before;
@@ -205,11 +219,11 @@ void ProgressLine::put_line(std::string text) {
 }
 
 void ProgressLine::say_how_long() {
-  constexpr double kLong = 2.0;  // s
   std::unique_lock lock(mutex_);
-  while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; }))
-    if (const double since = elapsed() - shown_at_; !line_.empty() && since >= kLong)
-      put(fmt::format("\r\033[K{}; at it for {:.0f} s", line_, since));
+  while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; })) {
+    const std::string more = line_.empty() ? "" : how_long_of_line();
+    if (!more.empty()) put("\r\033[K" + line_ + more);
+  }
 }
 
 void ProgressLine::clear() {

@@ -89,7 +89,9 @@ class ProgressLine {
   void clear();
 
  private:
-  void put_line(std::string text);
+  void put_line(const std::string& now, const std::string& more);
+  std::string how_long(const std::string& now);
+  std::string how_long_of_line() const;
   void say_how_long();
 
   bool enabled_;
@@ -102,8 +104,8 @@ class ProgressLine {
   std::mutex mutex_;     ///< of what follows, and of writing
   std::condition_variable ends_{};
   bool at_end_ = false;
-  std::string line_{};     ///< shown last; empty: none
-  double shown_at_ = 0.0;  ///< s
+  std::string line_{};       ///< shown last, without pace and time; empty: none
+  double changed_at_ = 0.0;  ///< s, since when it has been that
 };
 
 }  // namespace exactvo::tools

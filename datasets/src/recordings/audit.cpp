@@ -93,10 +93,10 @@ bool has_arrived(const formation::Robot& robot, Vec2 position, double tolerance)
 struct End {
   std::size_t rows;
   const Step& last;
-  const Step* before_last;
+  const RowBefore* before_last;
 
   bool stayed(std::size_t robot) const {
-    return before_last && before_last->robots[robot].mode == formation::Mode::staying;
+    return before_last && (*before_last)[robot].mode == formation::Mode::staying;
   }
 };
 
@@ -135,7 +135,11 @@ class RunAudit {
     if (rows_ == 0) begin(*row);
     if (why_.empty()) why_ = obstruction_in(*row);
     if (judges_ && row_) judge(row.get());
-    before_ = std::exchange(row_, std::move(row));
+    if (row_) {
+      before_.emplace();
+      for (const RobotStep& robot : row_->robots) before_->push_back({robot.chosen, robot.mode});
+    }
+    row_ = std::move(row);
     ++rows_;
   }
 
@@ -147,7 +151,7 @@ class RunAudit {
     if (!why_.empty()) return unauditable();
     judge(nullptr);
     judge_whole();
-    const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before_.get()}, tally_.report.has_staying);
+    const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before()}, tally_.report.has_staying);
     is_whole_run ? tally_.proven(AuditPoint::sequence)
                  : tally_.refuted(AuditPoint::sequence,
                                   "the last row is before the time limit, and not every robot has arrived");
@@ -226,7 +230,7 @@ class RunAudit {
   void judge(const Step* next) {
     if (!why_.empty()) return;
     call_wait_hook();  // a long audit ends where its caller wants to
-    const RowInRun at{rows_ - 1, *row_, before_.get(), next};
+    const RowInRun at{rows_ - 1, *row_, before(), next};
     judges_->places.take(at.row);
     judges_->sequence.check_row(at);
     if (!next) return;
@@ -244,12 +248,15 @@ class RunAudit {
     std::rotate(findings.begin() + static_cast<std::ptrdiff_t>(of_header_), findings.begin() + of_rows, findings.end());
   }
 
+  const RowBefore* before() const { return before_ ? &*before_ : nullptr; }
+
   const RecordingFile& file_;
   const formation::Scenario* meant_;
   AuditTally tally_;
   std::optional<Judges> judges_;  ///< nothing before the first row, and where there is a `why_`
   std::string why_;               ///< why the run can't be audited; else empty
-  SharedRow before_, row_;
+  std::optional<RowBefore> before_;
+  SharedRow row_;
   std::size_t rows_ = 0;
   std::size_t of_header_ = 0;  ///< findings
 };

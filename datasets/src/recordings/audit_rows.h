@@ -19,11 +19,18 @@ namespace exactvo::datasets {
 
 using SharedRow = std::shared_ptr<const formation::Step>;
 
+/// What is asked of a row when the next one is judged, robot by robot: its half-planes would be most of the memory.
+struct RobotBefore {
+  geometry::Vec2 chosen;  ///< m/s
+  formation::Mode mode;
+};
+using RowBefore = std::vector<RobotBefore>;
+
 /// A row among its neighbours.
 struct RowInRun {
   std::size_t number;
   const formation::Step& row;
-  const formation::Step* before;  ///< null of the first
+  const RowBefore* before;        ///< null of the first
   const formation::Step* next;    ///< null of the last, which does not decide
 };
 

@@ -131,7 +131,7 @@ bool SequenceAudit::has_its_anchor(const RowInRun& at, std::size_t i) const {
   if (!at.next || !remedies || !remedies->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
   if (r.anchor != r.position + r.velocity / file_.scenario.formation->gains.k3) return false;
   if (!at.before) return r.anchor_velocity == r.velocity;
-  return !tracks_its_choice() || r.anchor_velocity == at.before->robots[i].chosen;
+  return !tracks_its_choice() || r.anchor_velocity == (*at.before)[i].chosen;
 }
 
 bool SequenceAudit::tracks_its_choice() const {

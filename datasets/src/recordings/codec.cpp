@@ -245,6 +245,7 @@ RobotStep to_robot(const JsonCursor& at) {
   if (at.has("uncertified")) robot.uncertified = at.at("uncertified").count();
   if (!at.has("constraints")) return robot;
   const JsonCursor list = at.at("constraints");
+  robot.constraints.reserve(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) robot.constraints.push_back(to_constraint(list.at(i)));
   return robot;
 }
