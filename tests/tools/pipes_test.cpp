@@ -310,6 +310,7 @@ TEST(Pipes, AWaitForAReaderEndsAtASignal) {
   make_pipe(here, "pipe");
   const Running program(here, {"simulate", "s.json", "--record", "pipe"});
   EXPECT_EQ(program.status_after(SIGINT), 130);
+  EXPECT_THAT(here.read("err"), HasSubstr("exactvo: begins once pipe is read"));
 }
 
 TEST(Pipes, ARecordingThatEndsEarlyIsAuditedAsFarAsItGoesAndIsNoWholeOne) {

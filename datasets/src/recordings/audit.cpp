@@ -95,9 +95,7 @@ struct End {
   const Step& last;
   const RowBefore* before_last;
 
-  bool stayed(std::size_t robot) const {
-    return before_last && (*before_last)[robot].mode == formation::Mode::staying;
-  }
+  bool stayed(std::size_t robot) const { return before_last && (*before_last)[robot].mode == formation::Mode::staying; }
 };
 
 /// Without a formation a run ends before its time limit where all robots have arrived or, as nothing comes to push

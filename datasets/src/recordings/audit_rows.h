@@ -30,8 +30,8 @@ using RowBefore = std::vector<RobotBefore>;
 struct RowInRun {
   std::size_t number;
   const formation::Step& row;
-  const RowBefore* before;        ///< null of the first
-  const formation::Step* next;    ///< null of the last, which does not decide
+  const RowBefore* before;      ///< null of the first
+  const formation::Step* next;  ///< null of the last, which does not decide
 };
 
 // What keeps a run from being audited at all; empty where nothing does.

@@ -181,6 +181,8 @@ FinishedRun run_and_print(const SimulateFlags& flags, const datasets::LoadedScen
 /// What `--record` names, before anything can go wrong: who reads it waits for its end, whatever it is.
 std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) {
   if (path.empty()) return nullptr;
+  const bool has_other_end = is_stdout(path) || path.rfind("/dev/", 0) == 0;  // what a shell has made
+  if (!has_other_end) message("begins once " + path + " is read");
   return std::make_shared<datasets::AtomicFile>(is_stdout(path) ? "-" : path, datasets::MissingFolder::is_made,
                                                 datasets::Unfinished::goes, datasets::Pipe::is_written);
 }
