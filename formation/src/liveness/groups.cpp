@@ -68,7 +68,7 @@ std::string words_of(PlanEnd why) {
     case PlanEnd::too_large:
       return "too many robots stand together to plan for ";
     case PlanEnd::no_use:
-      return "another robot stands where no plan can make room for ";
+      return "with all others at their goals there is no room nearer to its own for ";
     case PlanEnd::in_vain:
       return "joint plans were made " + std::to_string(kMostTries) + " times or more, in vain, for ";
     default:

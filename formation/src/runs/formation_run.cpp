@@ -329,7 +329,7 @@ class FormationRun {
 
   void judge(double first, const Step& end, Recording& recording) const {
     const double last = formation_error(end, offsets_);
-    recording.diverged = out_of_bounds() || has_diverged(first, last);
+    recording.diverged = out_of_bounds() || has_diverged(first, error_of_moving(end, offsets_));
     recording.outcome = recording.diverged
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";
