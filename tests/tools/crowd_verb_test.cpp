@@ -183,9 +183,9 @@ TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
   const std::string run = options + " --record killed.evr --snapshot-every 25 --resume";
   Outcome outcome;
   int kills = 0;
-  for (int tenths = 1;; ++tenths) {
-    outcome = here.run(run, "timeout -s KILL 0." + std::to_string(std::min(tenths, 9)));
-    if (outcome.status == 0 || tenths > 200) break;
+  for (int hundredths = 2;; hundredths += 3) {
+    outcome = here.run(run, "timeout -s KILL " + std::to_string(0.01 * std::min(hundredths, 90)));
+    if (outcome.status == 0 || kills > 200) break;
     ++kills;
     // A kill may come when the recording stands in its place and the program has not ended yet.
     EXPECT_TRUE(!here.has("killed.evr") || here.read("killed.evr") == here.read("whole.evr"));
