@@ -377,7 +377,7 @@ TEST(NearestPlace, LiesBeforeTheDoorThatIsTooNarrow) {
   EXPECT_EQ((run.recording.steps.end() - 2)->robots[0].mode, Mode::staying);
   EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: obstacles 'wall 1', 'wall 2'"),
                                          HasSubstr("and went as near as it can: it ends 2.4"),
-                                         HasSubstr("the nearest place is 2.4 m from it"),
+                                         HasSubstr("the nearest place that it can reach is 2.4 m from it"),
                                          HasSubstr("(no place nearer than 2.2 m can be reached)")));
   EXPECT_EQ(run.recording.routes.value().nearest, 1u);
 }

@@ -62,7 +62,7 @@ TEST(LeaderRoute, WhereTheFormationDoesNotFitLeavesOneRobotRoom) {
   EXPECT_EQ(leader.path.back(), (Vec2{20, 0}));
   EXPECT_GE(clearance_of(s, leader.path), 0.5 + s.margins.obstacle);
   EXPECT_EQ(leader.why_short, "");
-  EXPECT_THAT(leader.note, AllOf(HasSubstr("the formation, 4 m wide about the leader, does not fit through"),
+  EXPECT_THAT(leader.note, AllOf(HasSubstr("too narrow for the formation, 4 m wide about the leader"),
                                  HasSubstr("single robots, of 0.5 m radius")));
   EXPECT_THAT(warnings_before(s), testing::Contains(leader.note));
 }

@@ -271,7 +271,7 @@ TEST(Passing, WhereOnlyTheGapsOfPlansAreMissingThatIsSaid) {
   EXPECT_THAT(robots_without_passing(narrow), IsEmpty());
   EXPECT_THAT(
       warnings_before(narrow),
-      testing::ElementsAre("R1 and R2 have room to pass each other, but not with the gaps of plans (they are in "
+      testing::ElementsAre("R1 and R2 may have room to pass each other, but not with the gaps of plans (they are in "
                            "a strip 2.05 m wide, and side by side they take 2.06 m)"));
   EXPECT_FALSE(measure(narrow, simulate(narrow)).all_arrived);
   const Scenario wide = head_on(2.07, 0.08), with_less = head_on(2.05, 0.0);

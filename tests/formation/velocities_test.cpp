@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every scene that comes with the project, under every method and controller, drives the bits that are recorded in
-// golden_velocities.txt: one line per run, "scene method controller digest". Record anew (EXACTVO_RECORD_GOLDEN=FILE) only
-// for a change that is meant to move robots, or that is known to move them by rounding alone: the commit says which.
+// golden_velocities.txt: one line per run, "scene method controller digest". Record anew (EXACTVO_RECORD_GOLDEN=FILE)
+// only for a change that is meant to move robots, or that is known to move them by rounding alone: the commit says
+// which.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

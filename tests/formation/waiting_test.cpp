@@ -70,8 +70,9 @@ TEST(Waiting, WhoStaysAtTheEndOfAQueueDoesSoForAReason) {
   row.step.robots[1].mode = Mode::staying;
   row.step.robots[2].mode = Mode::arrived;
   row.scenario.robots[2].goals = {{9.4, 0.0}};
-  EXPECT_EQ(row.words(0), "R1 waits for R2, which stays, since R3 rests at its goal, 0.4 m from its own");
-  EXPECT_EQ(why_it_stays(row.scenario, row.step, 1), "R3 rests at its goal, 0.4 m from its own");
+  row.step.robots[2].position = {9.4, 0.0};
+  EXPECT_EQ(row.words(0), "R1 waits for R2, which stays, since R3 was first at its goal, 0.4 m from that of R2");
+  EXPECT_EQ(why_it_stays(row.scenario, row.step, 1), "R3 was first at its goal, 0.4 m from that of R2");
 }
 
 TEST(Waiting, AQueueBehindOneThatMovesIsAlive) {

@@ -204,7 +204,7 @@ TEST(Explanation, WhoStaysDoesSoForTheReasonsThatThereAre) {
   d.scenario.robots.push_back({"R2", {9.0, 9.0}, {0.0, 0.0}, 0.5, 3.0, {{5.0, 5.9}}});
   EXPECT_THAT(explanation(d), HasSubstr("its goal is out of reach.\n")) << "there is room for both";
   d.scenario.robots[1].goals = {{5.0, 5.7}};
-  EXPECT_THAT(explanation(d), HasSubstr("its goal is out of reach or R2 rests at its own, too near to it.\n"));
+  EXPECT_THAT(explanation(d), HasSubstr("its goal is out of reach or taken.\n"));
   d.scenario.formation.emplace();
   EXPECT_THAT(explanation(d), HasSubstr("the robot stays, since its slot cannot be filled.\n"));
 }

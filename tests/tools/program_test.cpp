@@ -541,7 +541,7 @@ TEST(Simulate, ALeaderThatNeverArrivesIsToldBeforeAndAfter) {
   here.write("never.json", scene.dump());
   const Outcome outcome = here.run("simulate never.json");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("warning: the leader reaches the end of its path never"));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the leader never reaches the end of its path"));
   EXPECT_THAT(outcome.out, HasSubstr("; the leader did not reach its end"));
 }
 

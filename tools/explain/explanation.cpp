@@ -192,17 +192,6 @@ std::string held_words(const Decision& d, const Balance& b) {
                      formation::name_of(by, d.scenario));
 }
 
-/// A robot that has come to a goal too near to that of this one takes it, too.
-std::string rival_words(const Decision& d) {
-  const auto takes = [&](const formation::Robot& other) {
-    const double apart = norm(other.goals.back() - d.who().goals.back()) + 2.0 * d.scenario.arrival_tolerance;
-    return other.id != d.who().id && apart < other.radius + d.who().radius;
-  };
-  const auto& robots = d.scenario.robots;
-  const auto rival = std::find_if(robots.begin(), robots.end(), takes);
-  return rival == robots.end() ? "" : fmt::format(" or {} rests at its own, too near to it", rival->id);
-}
-
 /// How the preferred velocity came about, where it is not simply straight for the goal.
 std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
@@ -214,7 +203,7 @@ std::string turned_words(const Decision& d) {
       return "the robot goes back the way it came, to where its plan begins";
     case formation::Mode::staying:
       return d.scenario.formation ? "the robot stays, since its slot cannot be filled"
-                                  : "the robot stays, since its goal is out of reach" + rival_words(d);
+                                  : "the robot stays, since its goal is out of reach or taken";
     case formation::Mode::boost:
       return "boost turned the preferred velocity onto the tangent of the enclosure in the way";
     case formation::Mode::following:

@@ -240,13 +240,16 @@ DataError cut_off(const std::string& name, std::size_t number, std::size_t rows,
           "a last line \"end\": the recording ends early"};
 }
 
-/// A line of JSON. Where the last line ends amid it, whoever wrote it did not get further.
-Json line_of_recording(std::string_view line, const std::string& name, std::size_t number, std::size_t rows) {
+/// A line of JSON. Where the last line ends amid it, whoever wrote it did not get further; another one is damaged.
+Json line_of_recording(std::string_view line, const NextLine& next_line, const std::string& name, std::size_t number,
+                       std::size_t rows) {
   try {
     return parse_json_line(line, name, number);
   } catch (const DataError& error) {
     const std::string end = "line " + std::to_string(number) + ", column " + std::to_string(line.size() + 1);
     if (error.code() != DataCode::json_syntax || error.place() != end) throw;
+    std::string_view further;
+    if (next_line(further)) throw;
     throw cut_off(name, number, rows, true);
   }
 }
@@ -336,7 +339,7 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
   if (!next_line(line)) line = {};
   require_recording(line, next_line, name);
   {
-    const Json header = line_of_recording(line, name, 1, 0);
+    const Json header = line_of_recording(line, next_line, name, 1, 0);
     const JsonCursor first(header, name, "line 1");
     // A header of format 1 has no name: its version is what is wrong with it.
     read_header(first.has("header") ? first.at("header") : first, name, run);
@@ -344,7 +347,7 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
   LineReader reader(run, take);
   std::size_t number = 2;
   for (; next_line(line); ++number) {
-    const Json content = line_of_recording(line, name, number, reader.rows());
+    const Json content = line_of_recording(line, next_line, name, number, reader.rows());
     reader.read(JsonCursor(content, name, "line " + std::to_string(number)));
   }
   if (!reader.is_at_end()) throw cut_off(name, number, reader.rows(), false);

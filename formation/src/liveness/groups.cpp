@@ -68,7 +68,7 @@ std::string words_of(PlanEnd why) {
     case PlanEnd::too_large:
       return "too many robots stand together to plan for ";
     case PlanEnd::no_use:
-      return "with all others at their goals there is no room nearer to its own for ";
+      return "the roadmap has no place nearer to its goal that others leave free for ";
     case PlanEnd::in_vain:
       return "joint plans were made " + std::to_string(kMostTries) + " times or more, in vain, for ";
     default:
@@ -399,14 +399,14 @@ Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int r
 }
 
 /// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Who only passes its
-/// goal has it before who stays there.
+/// goal has it before who stays there; who yields comes last.
 std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const {
   const std::size_t places = map.size();
-  std::vector<std::tuple<bool, double, std::size_t>> nearest_first;
+  std::vector<std::tuple<int, double, std::size_t>> nearest_first;
   for (std::size_t k = 0; k < who.size(); ++k) {
     const RobotNow& r = now_[who[k]];
-    const bool stays = r.goal_number + 1 >= scenario_.robots[who[k]].goals.size();
-    nearest_first.emplace_back(stays, norm(r.goal - from[who[k]]), k);
+    const bool passes = r.goal_number + 1 < scenario_.robots[who[k]].goals.size();
+    nearest_first.emplace_back(r.yields ? 2 : passes ? 0 : 1, norm(r.goal - from[who[k]]), k);
   }
   std::sort(nearest_first.begin(), nearest_first.end());
   std::vector<std::pair<Vec2, double>> taken;  // with radii
@@ -414,7 +414,7 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
       taken.emplace_back(now_[j].position, scenario_.robots[j].radius);
   std::vector<PlaceNumber> targets(who.size());
-  for (const auto& [stays, distance_to_goal, k] : nearest_first) {
+  for (const auto& [rank, from_goal, k] : nearest_first) {
     const std::size_t i = who[k];
     const double radius = scenario_.robots[i].radius;
     const auto is_free = [&](Vec2 place) {
@@ -466,23 +466,48 @@ Groups::Waiting Groups::waiting_of(const Members& who) const {
   return waiting;
 }
 
-/// m: moving obstacles, from where they began, and robots that join no plan.
-std::vector<Vec2> Groups::those_that_no_plan_moves() const {
-  std::vector<Vec2> at;
-  for (const MovingObstacle& o : scenario_.moving_obstacles) at.push_back(displacement_at(o, time_));
-  for (const RobotNow& r : now_) at.push_back(r.may_join ? Vec2{} : r.position);
+std::vector<std::pair<std::size_t, Vec2>> Groups::those_that_no_plan_moves() const {
+  std::vector<std::pair<std::size_t, Vec2>> at;
+  for (std::size_t k = 0; k < scenario_.moving_obstacles.size(); ++k)
+    at.emplace_back(k, displacement_at(scenario_.moving_obstacles[k], time_));
+  for (std::size_t i = 0; i < now_.size(); ++i)
+    if (!now_[i].may_join) at.emplace_back(i, now_[i].position);
   return at;
 }
 
-/// Not once something has moved that could have kept them from their goals; else each pause is twice as long as the one
-/// before.
+double Groups::left_of(const Waiting& waiting) const {
+  double left = 0.0;
+  for (const std::size_t i : waiting.first) left += norm(now_[i].goal - now_[i].position);
+  return left;
+}
+
+/// Something has moved that could have kept them from their goals, or they have come nearer to these.
+bool Groups::has_changed_since(const Tries& tries, const Waiting& waiting) const {
+  const double far = kNearer * 2.0 * largest_radius(waiting.first);
+  if (left_of(waiting) < tries.left - far) return true;
+  const auto now = those_that_no_plan_moves();
+  return !std::equal(
+      now.begin(), now.end(), tries.others.begin(), tries.others.end(),
+      [&](const auto& a, const auto& b) { return a.first == b.first && norm(a.second - b.second) <= far; });
+}
+
+/// Each pause is twice as long as the one before.
 bool Groups::is_in_vain(const Members& who) const {
-  const auto tries = tries_.find(waiting_of(who));
-  if (tries == tries_.end() || tries->second.number < kMostTries) return false;
-  const std::vector<Vec2> now = those_that_no_plan_moves();
-  for (std::size_t k = 0; k < now.size(); ++k)
-    if (norm(now[k] - tries->second.others[k]) > kNearer * 2.0 * largest_radius(who)) return false;
-  return time_ - tries->second.last < std::ldexp(kAfterTriesInVain * patience_, tries->second.number - kMostTries);
+  const Waiting waiting = waiting_of(who);
+  const auto found = tries_.find(waiting);
+  if (found == tries_.end() || found->second.number < kMostTries) return false;
+  const Tries& tries = found->second;
+  return !has_changed_since(tries, waiting) &&
+         time_ - tries.last < std::ldexp(kAfterTriesInVain * patience_, tries.number - kMostTries);
+}
+
+void Groups::count_try(const Members& who) {
+  const Waiting waiting = waiting_of(who);
+  Tries& tries = tries_[waiting];
+  if (tries.number == 0 || has_changed_since(tries, waiting))
+    tries = {0, 0.0, left_of(waiting), those_that_no_plan_moves()};
+  ++tries.number;
+  tries.last = time_;
 }
 
 /// Of the generator, for a plan from where the robots were in that row.
@@ -532,10 +557,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
     of_robot_[i].failures = 0;
     of_robot_[i].planned_goal = now_[i].goal_number;
   }
-  Tries& tries = tries_[waiting_of(who)];
-  ++tries.number;
-  tries.last = time_;
-  tries.others = those_that_no_plan_moves();
+  count_try(who);
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
   made_.push_back(recorded(g));
@@ -594,7 +616,7 @@ std::string Groups::no_plan_words(const Members& robots) const {
 std::string Groups::still_going_words() const {
   std::size_t robots = 0, left = 0, all = 0;
   for (const Group& g : groups_) {
-    if (g.is_over) continue;
+    if (g.is_over || (g.replans > 0 && g.following.moves_left() == g.following.plan().size())) continue;
     robots += members_of(g).size();
     left += g.following.moves_left();
     all += g.following.plan().size();

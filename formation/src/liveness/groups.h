@@ -32,6 +32,7 @@ struct RobotNow {
   bool has_arrived = false;     ///< at its last goal
   bool may_join = false;        ///< it cooperates and has a way to its goal
   std::size_t goal_number = 0;  ///< which of its goals is the present one
+  bool yields = false;          ///< others have their goals before it: its own is taken or out of reach
 };
 
 /// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
@@ -67,7 +68,8 @@ class Groups {
   /// "no plan was found on the roadmap for R1 and R2", of those of the given robots; empty where none was missing to
   /// the end.
   std::string no_plan_words(const std::vector<std::size_t>& robots) const;
-  /// "60 robots were still going by a joint plan, with 1200 of 4205 moves to go": of the plans that are not over.
+  /// "60 robots were still going by a joint plan, with 1200 of 4205 moves to go": of the plans that are not over, but
+  /// for those made again and again without a move.
   std::string still_going_words() const;
 
  private:
@@ -100,8 +102,10 @@ class Groups {
   using Waiting = std::pair<Members, std::vector<std::size_t>>;
   struct Tries {
     int number = 0;
-    double last = 0.0;           ///< s
-    std::vector<Vec2> others{};  ///< m: where those stood then that no plan moves
+    double last = 0.0;  ///< s
+    double left = 0.0;  ///< m, to their goals, straight, all together, when they came nearer last
+    /// m: where moving obstacles stood then, and robots that join no plan, by their numbers.
+    std::vector<std::pair<std::size_t, Vec2>> others{};
   };
 
   Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
@@ -143,8 +147,11 @@ class Groups {
   bool serves_any(const Members& seeds, const Members& who, const Roadmap& map,
                   const std::vector<PlaceNumber>& targets) const;
   Waiting waiting_of(const Members& who) const;
-  std::vector<Vec2> those_that_no_plan_moves() const;
+  std::vector<std::pair<std::size_t, Vec2>> those_that_no_plan_moves() const;
+  double left_of(const Waiting& waiting) const;
+  bool has_changed_since(const Tries& tries, const Waiting& waiting) const;
   bool is_in_vain(const Members& who) const;
+  void count_try(const Members& who);
   std::size_t most_calls(std::size_t row) const;
   void dissolve(std::size_t group);
   JointPlan recorded(const Group& g) const;

@@ -95,20 +95,6 @@ std::string end_words(const Scenario& scenario, const Step& row, std::size_t rob
   return stands(scenario.robots[robot], r.chosen) ? ", which is held up by no robot near it" : ", which moves";
 }
 
-/// Also while it makes way a little and comes back, by a plan.
-bool has_its_goal(const Scenario& scenario, const Step& row, std::size_t robot) {
-  const RobotStep& r = row.robots[robot];
-  const double from_goal = norm(scenario.robots[robot].goals.back() - r.position);
-  return r.mode == Mode::arrived ||
-         (r.mode == Mode::by_plan && from_goal <= scenario.arrival_tolerance + scenario.robots[robot].radius);
-}
-
-std::string rests_words(const Robot& robot, const Robot& other) {
-  if (robot.goals.back() == other.goals.back()) return robot.id + " rests at the goal that both have";
-  return robot.id + " rests at its goal, " + detail::metres(norm(robot.goals.back() - other.goals.back())) +
-         " from its own";
-}
-
 }  // namespace
 
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row) {
@@ -166,24 +152,33 @@ std::string deadlock_words(const Scenario& scenario, const std::vector<std::size
   return chained(scenario, chain) + ": a deadlock of " + count(cycle.size());
 }
 
+/// A cycle of which some still move may come apart.
 std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot) {
   if (graph[robot].empty()) return "";
   const std::vector<std::size_t> chain = chain_from(graph, robot), cycle = cycle_of(chain);
-  if (!cycle.empty() && cycle.front() == robot) return deadlock_words(scenario, cycle);
+  const bool is_deadlock = std::all_of(cycle.begin(), cycle.end(),
+                                       [&](std::size_t i) { return stands(scenario.robots[i], row.robots[i].chosen); });
+  if (!cycle.empty() && cycle.front() == robot && is_deadlock) return deadlock_words(scenario, cycle);
   if (!cycle.empty()) {
-    std::vector<std::size_t> way(chain.begin(), std::find(chain.begin(), chain.end(), chain.back()) + 1);
-    return chained(scenario, way) + ", which is in a deadlock of " + count(cycle.size());
+    const auto back = std::find(chain.begin(), chain.end(), chain.back());
+    if (cycle.front() == robot || !is_deadlock) return chained(scenario, chain);
+    return chained(scenario, {chain.begin(), back + 1}) + ", which is in a deadlock of " + count(cycle.size());
   }
   const std::string queue = chain.size() > 2 ? "queue of " + std::to_string(chain.size()) + ": " : "";
   return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
 }
 
+/// Of those about their goals who could have taken its own, the one that is nearest to its goal has.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
   if (scenario.formation) return "its slot cannot be filled";
-  for (std::size_t j = 0; j < row.robots.size(); ++j)
-    if (j != robot && has_its_goal(scenario, row, j) && detail::are_too_near(scenario, robot, j))
-      return rests_words(scenario.robots[j], scenario.robots[robot]);
-  return "its goal is out of reach";
+  std::optional<std::size_t> first;
+  const auto from_goal = [&](std::size_t j) { return norm(scenario.robots[j].goals.back() - row.robots[j].position); };
+  for (std::size_t j = 0; j < row.robots.size(); ++j) {
+    if (j == robot || row.robots[j].mode == Mode::staying || !detail::are_too_near(scenario, robot, j)) continue;
+    const double about = scenario.arrival_tolerance + 2.0 * (scenario.robots[robot].radius + scenario.robots[j].radius);
+    if (from_goal(j) <= about && (!first || from_goal(j) < from_goal(*first))) first = j;
+  }
+  return first ? detail::first_at_goal_words(scenario, *first, robot) : "its goal is out of reach";
 }
 
 }  // namespace exactvo::formation

@@ -259,7 +259,7 @@ std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
 
 std::vector<std::size_t> StuckWatch::deadlock() const {
   if (!decided_) return {};
-  const auto stands_still = [&](std::size_t i) { return stands(scenario_.robots[i], last_->robots[i].velocity); };
+  const auto stands_still = [&](std::size_t i) { return norm(last_->robots[i].velocity) < kAtRest; };
   for (std::vector<std::size_t>& cycle : deadlocks_in(waiting_in(scenario_, *decided_)))
     if (std::all_of(cycle.begin(), cycle.end(), stands_still)) return std::move(cycle);
   return {};

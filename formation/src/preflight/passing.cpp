@@ -293,7 +293,7 @@ std::string words_of(const Scenario& scenario, const NoPassing& proof) {
   else
     std::snprintf(text, sizeof text, "none of %zu pairs of squares of %g m leads there)", proof.pairs, proof.side);
   return scenario.robots[proof.first].id + " and " + scenario.robots[proof.second].id +
-         (proof.with_gaps ? " have room to pass each other, but not with the gaps of plans ("
+         (proof.with_gaps ? " may have room to pass each other, but not with the gaps of plans ("
                           : " cannot both reach their goals: they have no room to pass each other (proven: ") +
          text;
 }

@@ -116,9 +116,10 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
                               std::vector<std::string>& out) {
   for (std::size_t g = 0; g + 1 < targets.size(); ++g) {
     const auto takes = [&](const Robot& other) {
-      const double room = norm(targets[g].place - other.goals.back()) + targets[g].reach + s.arrival_tolerance;
       const bool makes_way = other.cooperates && s.liveness == Liveness::plan;
-      return !makes_way && &other != &s.robots[i] && room < s.robots[i].radius + other.radius;
+      return !makes_way && &other != &s.robots[i] &&
+             norm(targets[g].place - other.goals.back()) + targets[g].reach + s.arrival_tolerance <
+                 s.robots[i].radius + other.radius;
     };
     const auto other = std::find_if(s.robots.begin(), s.robots.end(), takes);
     if (other != s.robots.end())
@@ -130,7 +131,14 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
   std::vector<NoPassing> proofs = robots_without_passing(s);
-  for (NoPassing& within_gaps : robots_without_gaps_to_pass(s)) proofs.push_back(std::move(within_gaps));
+  const std::size_t proven = proofs.size();
+  for (NoPassing& within_gaps : robots_without_gaps_to_pass(s)) {
+    const auto is_of_same = [&](const NoPassing& p) {
+      return p.first == within_gaps.first && p.second == within_gaps.second;
+    };
+    if (std::none_of(proofs.begin(), proofs.begin() + static_cast<std::ptrdiff_t>(proven), is_of_same))
+      proofs.push_back(std::move(within_gaps));
+  }
   for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
   if (proofs.size() > kNamed)
     out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +
@@ -144,7 +152,8 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
   if (!(arrival > s.time_limit)) return;
   const std::string when =
       "only after " + number_text(arrival, 6) + " s, beyond the time limit of " + number_text(s.time_limit, 6) + " s";
-  out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
+  out.push_back(std::isfinite(arrival) ? "the leader reaches the end of its path " + when
+                                       : "the leader never reaches the end of its path");
 }
 
 /// Of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was rounded.
@@ -213,7 +222,8 @@ void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std:
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
     out.push_back("moving obstacle '" + o.id + "' moves at up to " + number_text(top.speed, 6) + " m/s, faster than " +
-                  robot.id + " (max_speed " + number_text(robot.max_speed, 6) + " m/s): it can be run over");
+                  robot.id + " (max_speed " + number_text(robot.max_speed, 6) + " m/s): it can run " + robot.id +
+                  " over");
     return;
   }
 }

@@ -15,6 +15,7 @@
 #include "runs/runs.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
+#include "steering/goal_claims.h"
 #include "steering/goals.h"
 #include "steering/guide.h"
 #include "steering/standing.h"
@@ -42,9 +43,9 @@ struct KinematicRobot : OwnWay {
   bool waits_for_room = false;               ///< it has to be pushed out before its course can be planned
   // With liveness.
   double held_up = 0.0;                      ///< 0 .. 1: how little of its preference it drove of late
-  std::vector<std::size_t> rivals = {};      ///< whose last goals are so near to its own that one of the two has room
-  std::optional<std::size_t> taken_by = {};  ///< the rival that rests at its goal
-  bool rests_beside = false;                 ///< that rival
+  bool has_claim = false;                    ///< it was first at its last goal (goal_claims.h)
+  std::optional<std::size_t> taken_by = {};  ///< who was first at a goal too near to its own
+  bool rests_beside = false;                 ///< it stays beside its goal, which is taken
 };
 
 class KinematicRun {
@@ -69,7 +70,7 @@ class KinematicRun {
       robot.velocity = scenario.robots[i].velocity;
       look_at_goal(i, 0.0);
     }
-    if (liveness_ != Liveness::off) find_rivals();
+    if (liveness_ != Liveness::off && GoalClaims(scenario).are_needed()) claims_.emplace(scenario);
   }
 
   void run(Recording& recording, RunSink& sink) {
@@ -141,51 +142,66 @@ class KinematicRun {
     return true;
   }
 
-  void find_rivals() {
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        if (!are_too_near(scenario_, i, j)) continue;
-        robots_[i].rivals.push_back(j);
-        robots_[j].rivals.push_back(i);
-      }
+  /// Who finds its goal taken comes beside it and stays there, instead of pressing for it for ever.
+  void look_at_claims() {
+    Cells<std::size_t> resting(4.0 * scenario_.robots.front().radius);
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      KinematicRobot& r = robots_[i];
+      if (r.rests_beside) resting.add(r.position, i);
+      if (r.has_claim || !has_last_goal(i)) continue;
+      r.taken_by = claims_->taken_by(i);
+      if (r.taken_by || !at_goal(i)) continue;
+      r.has_claim = true;
+      claims_->claim(i);
+    }
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      KinematicRobot& r = robots_[i];
+      const bool rests = r.taken_by && !goes_by_plan(i) && !at_goal(i) && is_beside_its_goal(i, resting);
+      if (rests && !r.rests_beside) add_note(r.note, "stays: " + taken_words(i));
+      r.rests_beside = rests;
+    }
   }
 
-  /// Who comes to a rival that rests at its goal stays there, instead of pressing against it for ever.
-  void look_for_rivals(std::size_t i) {
-    KinematicRobot& r = robots_[i];
-    const bool rested = std::exchange(r.rests_beside, false);
-    const std::optional<std::size_t> before = std::exchange(r.taken_by, std::nullopt);
-    if (!has_last_goal(i) || at_goal(i)) return;
-    // Who was there first makes way a little, and comes back.
-    const auto has_its_goal = [&](std::size_t j) {
-      const double radius = scenario_.robots[j].radius;
-      return at_goal(j) || (before == j && norm(goal_of(j) - robots_[j].position) <= reach_of_goal(j) + radius);
-    };
-    const auto by = std::find_if(r.rivals.begin(), r.rivals.end(), has_its_goal);
-    if (by == r.rivals.end()) return;
-    r.taken_by = *by;
-    r.rests_beside = !goes_by_plan(i) && is_beside_resting(i);
-    if (r.rests_beside && !rested) add_note(r.note, "stays: " + taken_words(i));
-  }
-
-  /// About as near as half-planes let it come to the rival at its goal, or to one that stays beside that.
-  bool is_beside_resting(std::size_t i) const {
+  /// m: what half-planes leave between the rims of two robots that come as near as they can, about.
+  double gap_beside(double radii) const {
     constexpr double kOfRadii = 0.25;
-    const std::optional<std::size_t> by = robots_[i].taken_by;
-    return std::any_of(robots_[i].rivals.begin(), robots_[i].rivals.end(), [&](std::size_t j) {
-      const bool rests = j == by || (robots_[j].rests_beside && robots_[j].taken_by == by);
-      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-      const double gap = norm(robots_[i].position - robots_[j].position) - radii;
-      return rests && gap <= kOfRadii * radii + kNearMargins * scenario_.margins.robot;
-    });
+    return kOfRadii * radii + kNearMargins * scenario_.margins.robot;
   }
 
-  /// "R1 rests at its goal, 0.3 m from that of R2, which leaves no room for both".
+  /// m, between the rims of a robot and of the one that has taken its goal, were that there.
+  double gap_to_taken(std::size_t i) const {
+    const Robot& taker = scenario_.robots[*robots_[i].taken_by];
+    return norm(robots_[i].position - taker.goals.back()) - taker.radius - scenario_.robots[i].radius;
+  }
+
+  /// Beside the taken goal, or beside one that stays there for the same reason.
+  bool is_beside_its_goal(std::size_t i, const Cells<std::size_t>& resting) const {
+    const KinematicRobot& r = robots_[i];
+    const double radius = scenario_.robots[i].radius;
+    bool is_beside = gap_to_taken(i) <= gap_beside(radius + scenario_.robots[*r.taken_by].radius);
+    const double reach = 4.0 * radius + kNearMargins * scenario_.margins.robot;
+    resting.for_each_about(r.position, reach, [&](std::size_t j) {
+      const double radii = radius + scenario_.robots[j].radius;
+      is_beside = is_beside || (j != i && robots_[j].taken_by == r.taken_by &&
+                                norm(robots_[j].position - r.position) - radii <= gap_beside(radii));
+    });
+    return is_beside;
+  }
+
+  /// So slowly that half-planes do not push off its goal who has taken it; out of that, where the robot is in it.
+  Vec2 beside_taken_goal(std::size_t i, Vec2 preferred) const {
+    const double gap = gap_to_taken(i) - scenario_.margins.robot;
+    const Vec2 from_goal = robots_[i].position - scenario_.robots[*robots_[i].taken_by].goals.back();
+    if (gap < 0.0 && norm(from_goal) > 0.0)
+      return straight_for(i, robots_[i].position - gap / norm(from_goal) * from_goal);
+    if (robots_[i].rests_beside) return {};
+    const double most = std::max(gap, 0.0) / scenario_.horizons.robots, speed = norm(preferred);
+    return speed > most ? most / speed * preferred : preferred;
+  }
+
+  /// "R1 was first at its goal, 0.3 m from that of R2, which leaves no room for both".
   std::string taken_words(std::size_t i) const {
-    const Robot &mine = scenario_.robots[i], &other = scenario_.robots[*robots_[i].taken_by];
-    if (mine.goals.back() == other.goals.back()) return other.id + " rests at the goal that both have";
-    return other.id + " rests at its goal, " + metres(norm(other.goals.back() - mine.goals.back())) + " from that of " +
-           mine.id + ", which leaves no room for both";
+    return first_at_goal_words(scenario_, *robots_[i].taken_by, i) + ", which leaves no room for both";
   }
 
   void pass_waypoint(std::size_t i, double time) {
@@ -197,8 +213,7 @@ class KinematicRun {
 
   Step decide_all(double time) {
     now_ = time;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (!robots_[i].rivals.empty()) look_for_rivals(i);
+    if (claims_) look_at_claims();
     if (groups_) look_at_groups(time);
     joint_.anchors.clear();
     for (const KinematicRobot& r : robots_) joint_.anchors.push_back({r.position, r.velocity});
@@ -275,10 +290,12 @@ class KinematicRun {
     std::vector<RobotNow> now;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       const KinematicRobot& r = robots_[i];
-      const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
-      const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
-      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.rests_beside,
-                     has_way && scenario_.robots[i].cooperates, r.goal});
+      // Without a way to its goal it stays where it is, and makes way.
+      const bool has_no_way = guide_ && !r.course && !r.waits_for_room;
+      const Vec2 goal = has_no_way ? r.position : r.course ? r.course->points.back() : goal_of(i);
+      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.rests_beside || has_no_way,
+                     scenario_.robots[i].cooperates && !r.waits_for_room, r.goal,
+                     has_no_way || r.nearest || r.taken_by});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
@@ -319,7 +336,8 @@ class KinematicRun {
       choose_by_plan(i, time, step, nullptr);
       return step;
     }
-    const Vec2 preferred = steer(i, time, step);
+    Vec2 preferred = steer(i, time, step);
+    if (r.taken_by && !r.rests_beside && !at_goal(i)) preferred = beside_taken_goal(i, preferred);
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
   }
@@ -357,8 +375,10 @@ class KinematicRun {
 
   bool stays(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
+    constexpr double kAtRest = 0.01;  // of the greatest speed
     if (goes_by_plan(i)) return false;
-    return r.rests_beside || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
+    if (r.rests_beside) return norm(r.velocity) <= kAtRest * scenario_.robots[i].max_speed;
+    return (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
   }
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
@@ -392,7 +412,7 @@ class KinematicRun {
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
     if (robots_[i].rests_beside) {
       step.mode = Mode::staying;
-      return {};
+      return beside_taken_goal(i, {});
     }
     if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), goal_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
@@ -429,16 +449,23 @@ class KinematicRun {
                 " completed a full circuit of the obstacle without finding a way to its goal";
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + why_not_there(i);
-    std::vector<std::size_t> not_there;
+    bool all_there = true;
+    std::vector<std::size_t> waiting;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      if (!at_goal(i)) not_there.push_back(i);
-      if (robots_[i].taken_by)
-        text += "; " + scenario_.robots[i].id + (robots_[i].rests_beside ? " stays: " : " cannot reach its goal: ") +
-                taken_words(i);
+      if (at_goal(i)) continue;
+      const KinematicRobot& r = robots_[i];
+      all_there = false;
+      if (!r.rests_beside) waiting.push_back(i);
+      if (r.taken_by)
+        text +=
+            "; " + scenario_.robots[i].id + (r.rests_beside ? " stays: " : " cannot reach its goal: ") + taken_words(i);
+      if (r.cut_by)
+        text += "; moving obstacle '" + scenario_.moving_obstacles[*r.cut_by].id + "' stands on the route of " +
+                scenario_.robots[i].id + ", and none leads round it";
     }
-    if (!not_there.empty()) text += no_passing_words();
-    if (!groups_ || not_there.empty()) return text;
-    for (const std::string& words : {groups_->no_plan_words(not_there), groups_->still_going_words()})
+    if (!all_there) text += no_passing_words();
+    if (!groups_ || waiting.empty()) return text;
+    for (const std::string& words : {groups_->no_plan_words(waiting), groups_->still_going_words()})
       if (!words.empty()) text += "; " + words;
     return text;
   }
@@ -456,7 +483,8 @@ class KinematicRun {
     const KinematicRobot& r = robots_[i];
     if (!r.nearest) return r.no_way;
     return r.no_way + ", and " + (r.has_come_nearest ? "went" : "was on its way") + " as near as it can: it ends " +
-           metres(norm(r.position - goal_of(i))) + " from it, the nearest place is " + words_of(*r.nearest);
+           metres(norm(r.position - goal_of(i))) + " from it; the nearest place that it can reach is " +
+           words_of(*r.nearest);
   }
 
   std::string arrivals() const {
@@ -483,7 +511,8 @@ class KinematicRun {
   OwnDecision own_;
   std::vector<KinematicRobot> robots_;
   ObstacleSpace open_space_{{}};
-  std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
+  std::optional<GoalClaims> claims_;  ///< where last goals are too near to each other, but with Liveness::off
+  std::optional<Groups> groups_;      ///< of several robots, but with Liveness::off
   JointDecisions joint_;
   std::vector<Outlook> outlooks_;
 };

@@ -90,17 +90,19 @@ Vec2 SlotPlans::off_the_wall(std::size_t robot, Vec2 slot) const {
   return norm(away) > 0.0 ? slot + (room / norm(away) - 1.0) * away : slot;
 }
 
-/// Who ends beside a wall's margin, so near to its slot that it counts as there, goes to where the margin leaves it
-/// room: else it would drive round the wall. Where others have slots too near to that it keeps its own, which robots
-/// that go by plan reach.
+/// Whose slot is in the margin of a wall goes to where that leaves it room, if it counts as there: else it would drive
+/// round the wall. Where others have places nearer to that than to its slot, it keeps its slot, which robots that go by
+/// plan reach.
 void SlotPlans::shift_off_the_wall(std::size_t i) {
+  constexpr double kAsFar = 1.0 - 1e-3;
   Place& mine = places_[i];
   const Vec2 beside = off_the_wall(i, mine.at);
   const double room = room_of(i);
   bool is_free = norm(beside - mine.at) <= kNearEnough * tolerance_ && space_.clearance(beside, room) >= room;
   for (std::size_t j = 0; j < places_.size() && is_free; ++j)
     is_free = j == i || norm(beside - places_[j].at) >=
-                            (1.0 + kPlannedGap) * (larger_.robots[i].radius + larger_.robots[j].radius);
+                            std::min((1.0 + kPlannedGap) * (larger_.robots[i].radius + larger_.robots[j].radius),
+                                     kAsFar * norm(mine.at - places_[j].at));
   if (is_free) mine.at = beside;
 }
 
@@ -148,10 +150,9 @@ void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
     const double radius = scenario_.robots[i].radius;
     for (const auto& [other_distance, j] : nearest_first) {
       if (j == i) break;
-      const double room = norm(places_[j].at - mine.at) + 2.0 * tolerance_;
-      if (mine.why_not.empty() && places_[j].why_not.empty() && room < radius + scenario_.robots[j].radius)
-        mine.why_not =
-            "the slot of " + scenario_.robots[j].id + " is only " + metres(norm(places_[j].at - mine.at)) + " from it";
+      const double apart = norm(offsets_[j] - offsets_[i]), radii = radius + scenario_.robots[j].radius;
+      if (mine.why_not.empty() && places_[j].why_not.empty() && apart + 2.0 * tolerance_ < radii)
+        mine.why_not = "the slot of " + scenario_.robots[j].id + " is only " + metres(apart) + " from it";
     }
     if (!mine.why_not.empty()) continue;
     shift_off_the_wall(i);

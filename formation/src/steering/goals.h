@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "exactvo/formation/scenario.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 
@@ -19,6 +21,13 @@ inline double reach_of(const Scenario& scenario, const Robot& robot, std::size_t
 inline bool are_too_near(const Scenario& scenario, std::size_t i, std::size_t j) {
   const Robot &a = scenario.robots[i], &b = scenario.robots[j];
   return norm(a.goals.back() - b.goals.back()) + 2.0 * scenario.arrival_tolerance < a.radius + b.radius;
+}
+
+/// "R1 was first at its goal, 0.3 m from that of R2".
+inline std::string first_at_goal_words(const Scenario& scenario, std::size_t first, std::size_t other) {
+  const Robot &a = scenario.robots[first], &b = scenario.robots[other];
+  if (a.goals.back() == b.goals.back()) return a.id + " was first at the goal that both have";
+  return a.id + " was first at its goal, " + metres(norm(a.goals.back() - b.goals.back())) + " from that of " + b.id;
 }
 
 }  // namespace exactvo::formation::detail

@@ -58,10 +58,8 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
                        (answer.defect.empty() ? answer.why_not : answer.defect) +
                        (answer.nearest ? "; it goes as near as it can, " + words_of(*answer.nearest) : "");
   else if (!fits)
-    leader.note = "the formation, " + detail::metres(2.0 * whole) +
-                  " wide about the leader, does not fit through: the "
-                  "leader's route leaves room for single robots, of " +
-                  detail::metres(single) + " radius";
+    leader.note = "the leader's route is too narrow for the formation, " + detail::metres(2.0 * whole) +
+                  " wide about the leader; it leaves room for single robots, of " + detail::metres(single) + " radius";
   leader.path = answer.course ? std::move(answer.course->points) : std::vector<Vec2>{from};
 }
 

@@ -214,7 +214,9 @@ ExitCode audit_recordings(const AuditFlags& flags) {
   print(flags.json ? to_json(all) : summary(all));
   if (all.runs && !all.runs->cut_off.empty()) {
     for (const std::string& words : all.runs->cut_off) error_message(words);
-    return ExitCode::bad_input;
+    const bool is_refuted = std::any_of(all.runs->points.begin(), all.runs->points.end(),
+                                        [](const datasets::PointCount& n) { return n.refuted > 0; });
+    return is_refuted ? ExitCode::negative : ExitCode::bad_input;
   }
   const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
   return clean ? ExitCode::success : ExitCode::negative;
