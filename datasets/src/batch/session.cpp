@@ -2,10 +2,12 @@
 #include "batch/session.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
-#include "batch/merge/assemble.h"
+#include "batch/formats/features.h"
+#include "batch/formats/picture.h"
 #include "batch/work/coroutine.h"
 #include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/provenance.h"
@@ -51,6 +53,60 @@ std::uint64_t nanoseconds_since(std::chrono::steady_clock::time_point start) {
 
 double ratio(double part, std::uint64_t whole) {
   return whole > 0 ? part / static_cast<double>(whole) : 1.0;
+}
+
+// --- The end ---
+
+/// JSON; the same in every output and at any time.
+std::string provenance_of(const Identity& identity, const BatchRun& run) {
+  Provenance provenance = make_provenance(run.command_line, 0);
+  for (const Input& input : identity.inputs) provenance.inputs.push_back({input.name, input.sha256});
+  provenance.written_at = "see summary.json";
+  return to_json(provenance);
+}
+
+/// Whether every input has its facts.
+bool all_there(const Journal& journal, std::size_t inputs) {
+  for (std::size_t k = 0; k < inputs; ++k)
+    if (!journal.is_there(journal.input_facts(k))) return false;
+  return true;
+}
+
+std::vector<InputFacts> all_facts(const Journal& journal, std::size_t inputs) {
+  std::vector<InputFacts> facts;
+  facts.reserve(inputs);
+  for (std::size_t k = 0; k < inputs; ++k) facts.push_back(read_facts(journal, k));
+  return facts;
+}
+
+/// Whatever a batch may write to OUT, of this configuration or another.
+bool is_output(const std::string& name) {
+  if (name == "figures.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
+  for (const Layer& layer : layers()) {
+    if (name == std::string(layer.name) + ".geojson") return true;
+  }
+  const std::size_t number = std::strtoull(name.c_str() + std::min<std::size_t>(name.size(), 5), nullptr, 10);
+  return number > 1 && name == page_name(number - 1);
+}
+
+/// Writes index.html and the pages after it, small pictures of every input's first obstacles, to
+/// `journal.final_folder()`, from the parts on disk. `facts` are those of every input, `words` stand at the head of
+/// each page. Throws DataError (E_FILE_UNWRITABLE; E_FORMAT_SYNTAX for a part that is none).
+void write_pages(const Journal& journal, const Identity& identity, const std::vector<InputFacts>& facts,
+                 const std::string& words, const std::string& provenance) {
+  const std::size_t pages = std::max<std::size_t>(1, (facts.size() + kInputsOfPage - 1) / kInputsOfPage);
+  for (std::size_t page = 0; page < pages; ++page) {
+    const std::unique_ptr<AtomicFile> file = output_file(journal.final_folder() / page_name(page));
+    file->write(page_head(page, pages, words));
+    const std::size_t end = std::min(facts.size(), (page + 1) * kInputsOfPage);
+    for (std::size_t input = page * kInputsOfPage; input < end; ++input) {
+      file->write(input_head(identity.inputs[input].name, words_of(facts[input])));
+      if (facts[input].chunks > 0) file->write(read_pictures(journal, input));
+      file->write(input_foot());
+    }
+    file->write(page_foot(provenance));
+    file->commit();
+  }
 }
 
 }  // namespace
@@ -264,9 +320,43 @@ BatchSummary Session::put_together(BatchResult& result) {
   };
   look_before_a_part();
   result.was_merged_ahead = outputs_ != nullptr;
-  if (!outputs_)
-    outputs_ = merge_all(journal_, identity_.inputs.size(), configuration_, provenance_, look_before_a_part);
-  return publish(*outputs_, journal_, identity_, configuration_, provenance_, times());
+  if (!outputs_) {
+    outputs_ = std::make_unique<Outputs>(journal_, configuration_, provenance_);
+    for (std::size_t input = 0; input < identity_.inputs.size(); ++input) {
+      const std::uint64_t chunks = read_facts(journal_, input).chunks;
+      for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        look_before_a_part();
+        merge(Piece{input, chunk});
+      }
+    }
+  }
+  return publish();
+}
+
+/// Finishes `outputs_`, which hold all parts, writes what is missing beside them, and moves everything to its place.
+BatchSummary Session::publish() {
+  const std::vector<InputFacts> facts = all_facts(journal_, identity_.inputs.size());
+  const Counts& out = outputs_->counts();
+  BatchSummary summary = summary_of(identity_, facts);
+  summary.obstacles_out = out.obstacles;
+  summary.certified = out.certified;
+  summary.uncertified = out.obstacles - out.certified;
+  summary.vertices = out.vertices;
+  summary.no_half_plane = out.no_half_plane;
+  outputs_->finish();
+  if (configuration_.pictures) {
+    const std::string words = words_of(summary.files, "files") + ". " + words_of(summary.obstacles, "obstacles") + ".";
+    write_pages(journal_, identity_, facts, words, provenance_);
+  }
+  const Times taken = times();
+  const auto last = output_file(journal_.final_folder() / "summary.json");
+  last->write(to_json(summary, identity_, provenance_, facts, taken));
+  last->commit();
+  journal_.publish("summary.json", is_output);
+  summary.seconds = taken.seconds;
+  summary.obstacles_now = taken.obstacles;
+  summary.vertices_now = taken.vertices;
+  return summary;
 }
 
 Times Session::times() const {
@@ -278,6 +368,7 @@ Times Session::times() const {
   times.vertices = made.vertices;
   times.workers = processes_ * workers_of(run_);
   times.has_rates = run_.shards == 1;
+  times.written_at = make_provenance({}, 0).written_at;
   return times;
 }
 

@@ -78,6 +78,7 @@ class Session {
   void finish_input(const Piece& last);
   [[noreturn]] void refuse_changed_input(std::size_t input);
   BatchSummary put_together(BatchResult& result);
+  BatchSummary publish();
   Times times() const;
 
   const BatchConfiguration& configuration_;

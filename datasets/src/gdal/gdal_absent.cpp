@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "batch/formats/geopackage.h"
 #include "exactvo/datasets/data_error.h"
-#include "gdal/plane_transform.h"
-#include "readers/grey_image.h"
-#include "readers/readers.h"
-#include "writers/writers.h"
+#include "gdal/vector_library.h"
 
 namespace exactvo::datasets {
 

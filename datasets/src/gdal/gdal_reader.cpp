@@ -2,21 +2,18 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <memory>
 #include <optional>
 
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/box.h"
+#include "files/file_names.h"
 #include "files/text_file.h"
 #include "gdal/gdal_session.h"
 #include "gdal/geojson_scan.h"
 #include "gdal/geojson_sequence.h"
-#include "gdal/geojson_shape.h"
-#include "gdal/geometry_visitor.h"
 #include "gdal/layer_plane.h"
-#include "gdal/plane_system.h"
 #include "gdal/properties.h"
 #include "json/json_text.h"
 #include "readers/readers.h"
@@ -36,15 +33,9 @@ bool is_longitude_latitude(const geometry::Box& box) {
 /// Characters of a text that is no geometry.
 constexpr std::size_t kShownText = 40;
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 /// A sequence whose first line is malformed is one that GDAL does not know.
 bool is_sequence_name(const std::filesystem::path& path) {
-  const std::string extension = lower_case_extension(path);
+  const std::string extension = lower_extension(path);
   const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
   return std::find(std::begin(known), std::end(known), extension) != std::end(known);
 }
@@ -101,7 +92,7 @@ class VectorReader {
 
   /// Of GeoJSON and TopoJSON: what is wrong in this program's words, with line and column.
   void refuse_malformed_json() const {
-    const std::string extension = lower_case_extension(path_);
+    const std::string extension = lower_extension(path_);
     if (extension != ".json" && extension != ".geojson" && extension != ".topojson") return;
     check_json_syntax(read_text_file(path_), path_.string());
   }
@@ -232,8 +223,8 @@ class VectorReader {
     refuse_complaints(layer_name(), !is_projected);
     out_.set_plane(plane_.plane());
     const std::string where = plane_.is_named() ? "of the reference system that it names"
-                                                : "round longitude " + number(plane_.origin().longitude) +
-                                                      ", latitude " + number(plane_.origin().latitude);
+                                                : "round longitude " + number_text(plane_.origin().longitude) +
+                                                      ", latitude " + number_text(plane_.origin().latitude);
     note_units("degrees: " + reason_ + "; brought to metres " + where);
   }
 
@@ -253,14 +244,8 @@ class VectorReader {
     }
     out_.set_plane(plane);
     const char* name = system.GetName();
-    note_units(number(metres_a_unit) + " m a unit: by its reference system " +
+    note_units(number_text(metres_a_unit) + " m a unit: by its reference system " +
                (name != nullptr ? name : "without a name"));
-  }
-
-  static std::string number(double value) {
-    std::string text;
-    append_number(text, value);
-    return text;
   }
 
   void note_units(const std::string& words) { out_.note(layers() > 1 ? "layer " + layer_name() : "", words); }
@@ -268,8 +253,8 @@ class VectorReader {
   void note_extent() {
     if (!out_.extent()) return;
     const auto [low, high] = *out_.extent();
-    out_.note("", "extent " + number(low.x) + " to " + number(high.x) + " m, " + number(low.y) + " to " +
-                      number(high.y) + " m");
+    out_.note("", "extent " + number_text(low.x) + " to " + number_text(high.x) + " m, " + number_text(low.y) + " to " +
+                      number_text(high.y) + " m");
   }
 
   /// Sets `reason_` as well.

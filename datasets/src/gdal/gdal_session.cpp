@@ -3,9 +3,7 @@
 
 #include <cpl_conv.h>
 
-#include <filesystem>
 #include <mutex>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>

@@ -4,12 +4,18 @@
 /// \file
 /// GDAL brought to heel: drivers registered once, its complaints collected instead of printed, datasets closed.
 
+#include <cpl_conv.h>
+#include <cpl_vsi.h>
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "exactvo/datasets/local_plane.h"
+#include "files/file_names.h"
 
 namespace exactvo::datasets {
 
@@ -37,6 +43,31 @@ class GdalComplaints {
 
 void register_gdal_once();
 
+/// A file that GDAL makes in memory, gone with the object. A GeoPackage records when it was written: as long as it
+/// lives, that is `date` in this thread, so that equal content is equal bytes.
+class MemoryFile {
+ public:
+  MemoryFile(const std::string& extension, const char* date) : name_("/vsimem/" + unique_word() + extension) {
+    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", date);
+  }
+  ~MemoryFile() {
+    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr);
+    VSIUnlink(name_.c_str());
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  const char* name() const { return name_.c_str(); }
+  std::string bytes() const {
+    vsi_l_offset length = 0;
+    const GByte* data = VSIGetMemFileBuffer(name(), &length, FALSE);
+    return data == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(data), length);
+  }
+
+ private:
+  std::string name_;
+};
+
 /// The driver that would open the file, by its content and name; "" where there is none.
 std::string vector_driver_of(const std::filesystem::path& path);
 
@@ -58,5 +89,13 @@ class GeoJsonParsing {
   /// Whether these are GDAL's words for a feature beyond the limit.
   static bool is_size_limit_in(const std::string& complaint);
 };
+
+// --- Reference systems of local planes (layer_plane.cpp) ---
+
+/// The azimuthal equidistant projection of `geographic` round `origin`.
+OGRSpatialReference plane_round(const OGRSpatialReference& geographic, const ProjectionOrigin& origin);
+
+/// On one line (WKT 2:2019); empty where it can't be told.
+std::string wkt_of(const OGRSpatialReference& system);
 
 }  // namespace exactvo::datasets

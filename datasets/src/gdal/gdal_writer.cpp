@@ -6,8 +6,6 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "gdal/gdal_session.h"
-#include "gdal/memory_file.h"
-#include "gdal/plane_system.h"
 #include "writers/property_table.h"
 #include "writers/writers.h"
 

@@ -4,7 +4,7 @@
 #include <cpl_port.h>
 
 #include "exactvo/datasets/input_text.h"
-#include "gdal/geojson_shape.h"
+#include "gdal/geojson_sequence.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "exactvo/datasets/input_text.h"
-#include "gdal/plane_system.h"
+#include "exactvo/datasets/data_error.h"
+#include "files/text_file.h"
+#include "gdal/vector_library.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets {
@@ -15,6 +17,8 @@ namespace {
 /// A millionth of a degree (0.1 m): a centre that people can copy. A billionth (0.1 mm): a place to zoom to.
 constexpr double kCentreDecimals = 1e6;
 constexpr double kCrossingDecimals = 1e9;
+/// A digit more than doubles of degrees beyond 100 have: what was written in fewer comes back as it was.
+constexpr double kWrittenDecimals = 1e13;
 
 double rounded_degrees(double degrees, double decimals) {
   return std::round(degrees * decimals) / decimals;
@@ -22,12 +26,6 @@ double rounded_degrees(double degrees, double decimals) {
 
 /// Characters of a text that is no reference system.
 constexpr std::size_t kShownText = 40;
-
-std::string number(double value) {
-  std::string text;
-  append_number(text, value);
-  return text;
-}
 
 }  // namespace
 
@@ -102,9 +100,10 @@ void LayerPlane::project(geometry::Ring& ring, const std::string& place) {
 
 void LayerPlane::refuse_unplaced(geometry::Vec2 written, const std::string& place) {
   complaints_.take_failure();
-  throw DataError(DataCode::projection, path_.string(), place,
-                  "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
-                  "coordinates near each other");
+  throw DataError(
+      DataCode::projection, path_.string(), place,
+      "a point that has no place on the local plane: " + number_text(written.x) + ", " + number_text(written.y),
+      "coordinates near each other");
 }
 
 std::optional<AsWritten> LayerPlane::as_written(const std::vector<geometry::Ring>& rings) {
@@ -123,6 +122,79 @@ geometry::Vec2 LayerPlane::back_to_degrees(geometry::Vec2 p) {
     return {kNowhere, kNowhere};
   }
   return {rounded_degrees(p.x, kCrossingDecimals), rounded_degrees(p.y, kCrossingDecimals)};
+}
+
+// --- Reference systems, and metres to degrees ---
+
+OGRSpatialReference plane_round(const OGRSpatialReference& geographic, const ProjectionOrigin& origin) {
+  OGRSpatialReference local;
+  local.CopyGeogCSFrom(&geographic);
+  local.SetAE(origin.latitude, origin.longitude, 0.0, 0.0);
+  return local;
+}
+
+std::string wkt_of(const OGRSpatialReference& system) {
+  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  char* text = nullptr;
+  const bool worked = system.exportToWkt(&text, options) == OGRERR_NONE && text != nullptr;
+  std::string wkt = worked ? text : "";
+  CPLFree(text);
+  return wkt;
+}
+
+namespace {
+
+class ToDegrees {
+ public:
+  ToDegrees(LocalPlane given, std::string named) : plane_(std::move(given)), file_(std::move(named)) {
+    GdalComplaints complaints;
+    OGRSpatialReference degrees = *OGRSpatialReference::GetWGS84SRS();
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRSpatialReference metres;
+    if (plane_.reference_system.empty()) {
+      metres = plane_round(degrees, plane_.origin.value_or(ProjectionOrigin{}));
+    } else {
+      metres.importFromWkt(plane_.reference_system.c_str());
+    }
+    metres.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    transform_.reset(OGRCreateCoordinateTransformation(&metres, &degrees));
+    const std::string words = complaints.take_failure();
+    if (transform_ == nullptr)
+      throw DataError(DataCode::projection, file_, "", words.empty() ? "a plane without a way to degrees" : words,
+                      "a reference system that PROJ knows");
+  }
+
+  std::vector<geometry::Vec2> operator()(std::vector<geometry::Vec2> points) const {
+    const GdalComplaints unheard;  // a point without a place is refused in words of our own
+    for (geometry::Vec2& p : points) {
+      const geometry::Vec2 given = p;
+      p = p - plane_.offset;
+      const bool is_far = !plane_.is_placed() && std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestUnplaced;
+      const bool worked = !is_far && transform_->Transform(1, &p.x, &p.y) != FALSE;
+      if (!worked || !geometry::is_finite(p)) refuse(given);
+      p = {rounded_degrees(p.x, kWrittenDecimals) + 0.0, rounded_degrees(p.y, kWrittenDecimals) + 0.0};  // no -0
+    }
+    return points;
+  }
+
+ private:
+  [[noreturn]] void refuse(geometry::Vec2 p) const {
+    throw DataError(
+        DataCode::projection, file_, "",
+        number_text(p.x) + ", " + number_text(p.y) + " m, which has no longitude and latitude",
+        plane_.is_placed() ? "a place on earth" : "coordinates within 1000 km of their middle, or GeoJSON in metres");
+  }
+
+  LocalPlane plane_;
+  std::string file_;
+  std::unique_ptr<OGRCoordinateTransformation> transform_;
+};
+
+}  // namespace
+
+PlaneTransform make_plane_transform(LocalPlane plane, std::string file) {
+  const auto transform = std::make_shared<const ToDegrees>(std::move(plane), std::move(file));
+  return [transform](std::vector<geometry::Vec2> points) { return (*transform)(std::move(points)); };
 }
 
 }  // namespace exactvo::datasets

@@ -2,16 +2,29 @@
 #pragma once
 
 /// \file
-/// What a feature has beside its shape, and what a GeoJSON file that we wrote says of its plane.
+/// What a feature holds: lines and polygons, and what it has beside its shape; and what a GeoJSON file that we wrote
+/// says of its plane.
 
 #include <ogr_feature.h>
+#include <ogr_geometry.h>
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "json/json_text.h"
+#include "readers/raw_geometry.h"
 
 namespace exactvo::datasets {
+
+/// The lines and polygons inside a geometry of any kind, in order, and a word about what else is there.
+struct Visitor {
+  std::function<void(RawKind, std::vector<geometry::Ring>)> shape;
+  std::function<void(const std::string&)> other;
+};
+
+void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
 
 /// Of a feature as GeoJSON has it; nothing of what is none.
 FeatureProperties properties_of_geojson(const Json& feature);

@@ -6,14 +6,24 @@
 /// longer to load than most questions to answer: a program either links the functions or loads them when it first needs
 /// them (modules/loader.cpp), and the rest of the library calls them through this table alone.
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "batch/formats/geopackage.h"
 #include "exactvo/datasets/input_text.h"
-#include "gdal/plane_transform.h"
+#include "exactvo/datasets/local_plane.h"
 #include "readers/grey_image.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
+
+/// Metres of a plane to longitude and latitude, as a function: what local_plane.h has done by GDAL.
+using PlaneTransform = std::function<std::vector<geometry::Vec2>(std::vector<geometry::Vec2>)>;
+
+/// Throws as MetresToDegrees does. layer_plane.cpp, or gdal_absent.cpp in a build without GDAL.
+PlaneTransform make_plane_transform(LocalPlane plane, std::string file);
 
 struct VectorLibrary {
   decltype(&datasets::read_vector_file) read_vector_file;

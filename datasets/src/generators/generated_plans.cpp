@@ -11,7 +11,6 @@ using geometry::Obstacle;
 using geometry::Polygon;
 using geometry::Ring;
 using geometry::Vec2;
-using Obstacles = std::vector<Obstacle>;
 
 /// Cells that are solid, and the polygons that they make.
 class Plan {
@@ -27,10 +26,10 @@ class Plan {
     }
   }
 
-  Obstacles polygons(Vec2 origin, double cell) const {
+  GeneratedShapes polygons(Vec2 origin, double cell) const {
     Collector out("generated", "generated", {});
     add_grid(grid_, {origin, cell, 0.0, 0, 0}, out);
-    Obstacles obstacles;
+    GeneratedShapes obstacles;
     for (formation::SceneObstacle& o : out.take().obstacles) obstacles.push_back(std::move(o.shape));
     return obstacles;
   }
@@ -134,7 +133,7 @@ Polygon building(CounterRandom& random, int x0, int y0, int x1, int y1) {
 }
 
 /// Lots along the longer side, each with a building that keeps to itself.
-void build_block(CounterRandom& random, int x0, int y0, int x1, int y1, Obstacles& out) {
+void build_block(CounterRandom& random, int x0, int y0, int x1, int y1, GeneratedShapes& out) {
   int at = x0;
   while (x1 - at >= 8) {
     int end = at + random.integer(8, 24);
@@ -210,7 +209,7 @@ void divide(Plan& plan, CounterRandom& random, const Room& whole) {
 
 }  // namespace
 
-Obstacles random_maze(CounterRandom& random) {
+GeneratedShapes random_maze(CounterRandom& random) {
   constexpr int kSide = kMazeCells * kPassage + 1;
   Plan plan(kSide, kSide);
   for (int k = 0; k <= kMazeCells; ++k) {
@@ -223,11 +222,11 @@ Obstacles random_maze(CounterRandom& random) {
   return plan.polygons({8.0, 8.0}, 0.25);
 }
 
-Obstacles random_blocks(CounterRandom& random) {
+GeneratedShapes random_blocks(CounterRandom& random) {
   constexpr int kSide = 120;
   const int street = random.integer(8, 16);
   const int x = random.integer(40, 70), y = random.integer(40, 70);
-  Obstacles buildings;
+  GeneratedShapes buildings;
   build_block(random, 4, 4, x, y, buildings);
   build_block(random, x + street, 4, kSide, y, buildings);
   build_block(random, 4, y + street, x, kSide, buildings);
@@ -235,7 +234,7 @@ Obstacles random_blocks(CounterRandom& random) {
   return buildings;
 }
 
-Obstacles random_floor(CounterRandom& random) {
+GeneratedShapes random_floor(CounterRandom& random) {
   Plan plan(kFloorWidth + 2, kFloorHeight + 2);
   plan.fill(0, 0, kFloorWidth + 1, kFloorHeight + 1);
   plan.fill(1, 1, kFloorWidth, kFloorHeight, false);

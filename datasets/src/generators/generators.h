@@ -21,14 +21,15 @@ geometry::Vec2 on_generator_grid(geometry::Vec2 p);
 /// A unit vector of a random direction, by the rational parametrisation of the circle: no sine, no cosine.
 geometry::Vec2 random_direction(CounterRandom& random);
 
-std::vector<geometry::Obstacle> random_polygon(CounterRandom& random);
-std::vector<geometry::Obstacle> random_star(CounterRandom& random);
-std::vector<geometry::Obstacle> random_walls(CounterRandom& random);
-std::vector<geometry::Obstacle> random_needle(CounterRandom& random);
+using GeneratedShapes = std::vector<geometry::Obstacle>;
+GeneratedShapes random_polygon(CounterRandom& random);
+GeneratedShapes random_star(CounterRandom& random);
+GeneratedShapes random_walls(CounterRandom& random);
+GeneratedShapes random_needle(CounterRandom& random);
 
 // generated_plans.cpp
-std::vector<geometry::Obstacle> random_maze(CounterRandom& random);
-std::vector<geometry::Obstacle> random_blocks(CounterRandom& random);
-std::vector<geometry::Obstacle> random_floor(CounterRandom& random);
+GeneratedShapes random_maze(CounterRandom& random);
+GeneratedShapes random_blocks(CounterRandom& random);
+GeneratedShapes random_floor(CounterRandom& random);
 
 }  // namespace exactvo::datasets

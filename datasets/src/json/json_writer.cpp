@@ -97,6 +97,12 @@ void append_number(std::string& text, double number) {
   }
 }
 
+std::string number_text(double number) {
+  std::string text;
+  append_number(text, number);
+  return text;
+}
+
 void JsonWriter::new_line(std::size_t depth) {
   text_ += '\n';
   text_.append(2 * depth, ' ');

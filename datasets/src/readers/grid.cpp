@@ -2,7 +2,6 @@
 #include "readers/grid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 namespace exactvo::datasets {

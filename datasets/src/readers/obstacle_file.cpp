@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <new>
@@ -11,6 +10,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/require.h"
+#include "files/file_names.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
 #include "gdal/vector_library.h"
@@ -31,12 +31,7 @@ void read_with_gdal(const std::filesystem::path& path, Collector& out) {
 }
 
 FormatProbe probe_of(const std::filesystem::path& path) {
-  FormatProbe probe;
-  probe.path = path;
-  probe.extension = path.extension().string();
-  for (char& c : probe.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  probe.beginning = read_beginning(path, kProbeLength);
-  return probe;
+  return {path, lower_extension(path), read_beginning(path, kProbeLength)};
 }
 
 /// XML, by its first element, and where that is not enough what stands near it.

@@ -14,19 +14,13 @@
 namespace exactvo::datasets {
 namespace {
 
-std::string number(double value) {
-  std::string text;
-  append_number(text, value);
-  return text;
-}
-
 /// A place that was projected: its digits beyond are the projection's rounding. (Adding 0 takes the sign off -0.)
 double to_millimetres(double metres) {
   return std::round(metres * 1000.0) / 1000.0 + 0.0;
 }
 
 std::string coordinates(geometry::Vec2 p) {
-  return "(" + number(p.x) + ", " + number(p.y) + ")";
+  return "(" + number_text(p.x) + ", " + number_text(p.y) + ")";
 }
 
 constexpr const char* kCut = "cut at its crossings, and recombined by the even-odd rule";
@@ -163,10 +157,10 @@ const char* words_of(const RingFinding& finding) {
 
 std::string words_of_place(const RingFinding& finding) {
   const bool is_projected = finding.in_file && finding.in_file->is_degrees;
-  const auto local_metres = [&](double x) { return number(is_projected ? to_millimetres(x) : x); };
+  const auto local_metres = [&](double x) { return number_text(is_projected ? to_millimetres(x) : x); };
   const auto named = [&](geometry::Vec2 p) {
     if (!is_projected) return coordinates(p);
-    return "longitude " + number(p.x) + ", latitude " + number(p.y);
+    return "longitude " + number_text(p.x) + ", latitude " + number_text(p.y);
   };
   const geometry::Vec2 where = finding.in_file ? finding.in_file->where : finding.where;
   std::string text = named(where);

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The readers of this room, one file each: how each knows its own, and how it hands a file to the collector.
+/// The readers of this room: how each knows its own, and how it hands a file to the collector.
 
 #include <filesystem>
 #include <functional>
@@ -42,7 +42,7 @@ void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out);
 /// Well-known text within another file: places and ids begin with those given.
 void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
-// moving_ai_map.cpp, moving_ai_scen.cpp
+// moving_ai.cpp
 bool looks_like_moving_ai_map(const FormatProbe& probe);
 void read_moving_ai_map(const std::filesystem::path& path, Collector& out);
 bool looks_like_moving_ai_scen(const FormatProbe& probe);
@@ -54,7 +54,7 @@ void read_ros_map(const std::filesystem::path& path, Collector& out);
 /// The picture that the map names, in the map's folder or below. Throws DataError as the reader does.
 std::filesystem::path picture_of_ros_map(const std::filesystem::path& map);
 
-// carmen_log.cpp, csm_log.cpp, points_csv.cpp: hits become the cells that hold them (hits.h)
+// hits.cpp: hits become the cells that hold them
 bool looks_like_carmen_log(const FormatProbe& probe);
 void read_carmen_log(const std::filesystem::path& path, Collector& out);
 bool looks_like_csm_log(const FormatProbe& probe);
@@ -78,18 +78,14 @@ void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
 /// 16 corners round the disc, tan(pi/16) / (pi/16) = 1.013 times its area; closed. The disc lies inside.
 geometry::Ring polygon_round(geometry::Vec2 center, double radius);
 
-// scenario_obstacles.cpp
-bool looks_like_scenario(const FormatProbe& probe);
-void read_scenario_obstacles(const std::filesystem::path& path, Collector& out);
-
 // wkb_text.cpp, within another file: places and ids begin with those given
 bool is_wkb_text(std::string_view text);
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
-// jts_xml.cpp
-void read_jts_xml(const std::filesystem::path& path, Collector& out);
-
-// rings_json.cpp, in the style of the earcut test files: [shell, hole, ...]
+// json_formats.cpp
+bool looks_like_scenario(const FormatProbe& probe);
+void read_scenario_obstacles(const std::filesystem::path& path, Collector& out);
+/// In the style of the earcut test files: [shell, hole, ...].
 bool looks_like_rings_json(const FormatProbe& probe);
 void read_rings_json(const std::filesystem::path& path, Collector& out);
 
@@ -97,11 +93,12 @@ void read_rings_json(const std::filesystem::path& path, Collector& out);
 /// Whether `element` is the first element of the text, comments and declarations skipped.
 bool first_element_is(const std::string& text, const std::string& element);
 
-// menge_xml.cpp, sumo_poly.cpp, jupedsim_xml.cpp, barn_world.cpp
+// xml_formats.cpp
 void read_menge_xml(const std::filesystem::path& path, Collector& out);
 bool looks_like_sumo_poly(const FormatProbe& probe);
 void read_sumo_poly(const std::filesystem::path& path, Collector& out);
 void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
+void read_jts_xml(const std::filesystem::path& path, Collector& out);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
 // obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL, called through vector_library.h

@@ -6,7 +6,7 @@
 /// recording says beside its rows: the Lyapunov functions term by term, who collided, and why robots stopped.
 
 #include "exactvo/datasets/recording_file.h"
-#include "json/json_cursor.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

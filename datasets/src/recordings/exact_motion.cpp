@@ -2,7 +2,6 @@
 #include "recordings/exact_motion.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace exactvo::datasets::exact {
 

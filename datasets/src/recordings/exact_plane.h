@@ -7,8 +7,6 @@
 
 #include <gmpxx.h>
 
-#include <algorithm>
-
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::datasets::exact {

@@ -9,7 +9,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/geometry/names.h"
-#include "json/json_cursor.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

@@ -8,12 +8,13 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
-#include "json/json_cursor.h"
+#include "json/json_text.h"
 #include "recordings/codec.h"
 #include "recordings/recording_lines.h"
 #include "recordings/recording_names.h"
 
 namespace exactvo::datasets {
+
 namespace {
 
 using formation::RecordedConstraint;
@@ -82,10 +83,10 @@ void read_end(const JsonCursor& at, std::size_t rows, RecordingFile& file) {
 }
 
 /// Reads the lines after the header.
-class LineReader {
+class RecordReader {
  public:
   /// Rows go to `take`.
-  LineReader(RecordingFile& file, const TakeRow& take) : file_(file), take_(take), bodies_(file.recording.bodies) {}
+  RecordReader(RecordingFile& file, const TakeRow& take) : file_(file), take_(take), bodies_(file.recording.bodies) {}
 
   bool is_at_end() const { return at_end_; }
   std::size_t rows() const { return rows_; }
@@ -334,6 +335,28 @@ RecordingFile with_all_rows(const Read& read) {
 
 }  // namespace
 
+NextLine lines_of(std::string_view text) {
+  return [rest = text](std::string_view& line) mutable {
+    if (rest.empty()) return false;
+    const std::size_t end = rest.find('\n');
+    line = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    return true;
+  };
+}
+
+bool SealedLines::next(std::string_view& line) {
+  if (!lines_.next(line)) return false;
+  if (lines_.number() > 1) hash_.add(last_ += '\n');
+  last_ = line;
+  return true;
+}
+
+bool SealedLines::are_sealed() {
+  const Json last = Json::parse(last_);
+  return last.contains("end") && last["end"].value("sha256", "") == hash_.digest();
+}
+
 void read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take, RecordingFile& run) {
   std::string_view line;
   if (!next_line(line)) line = {};
@@ -344,7 +367,7 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
     // A header of format 1 has no name: its version is what is wrong with it.
     read_header(first.has("header") ? first.at("header") : first, name, run);
   }
-  LineReader reader(run, take);
+  RecordReader reader(run, take);
   std::size_t number = 2;
   for (; next_line(line); ++number) {
     const Json content = line_of_recording(line, next_line, name, number, reader.rows());

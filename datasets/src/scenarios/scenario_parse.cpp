@@ -205,10 +205,8 @@ class ScenarioReader {
   static void refuse_far(const formation::SceneObstacle& obstacle, const std::filesystem::path& path) {
     for (const Vec2 p : geometry::vertices_of(obstacle.shape)) {
       if (std::max(std::fabs(p.x), std::fabs(p.y)) <= kFarthest) continue;
-      std::string found = "a vertex at ";
-      append_number(found, p.x);
-      append_number(found += ", ", p.y);
-      throw DataError(DataCode::out_of_range, path.string(), "obstacle " + obstacle.id, found,
+      throw DataError(DataCode::out_of_range, path.string(), "obstacle " + obstacle.id,
+                      "a vertex at " + number_text(p.x) + ", " + number_text(p.y),
                       "coordinates within 1e9 m of (0, 0), as in a scenario itself");
     }
   }

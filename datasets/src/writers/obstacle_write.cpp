@@ -2,16 +2,14 @@
 #include "exactvo/datasets/obstacle_write.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
-#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/require.h"
+#include "files/file_names.h"
 #include "gdal/vector_library.h"
 #include "json/json_text.h"
 #include "scenarios/scenario_json.h"
@@ -237,11 +235,6 @@ const Writer& writer_for(const std::filesystem::path& path, const std::string& f
 }
 
 }  // namespace
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 geometry::Ring closed(geometry::Ring ring) {
   if (!ring.empty()) ring.push_back(ring.front());

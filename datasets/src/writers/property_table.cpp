@@ -2,12 +2,12 @@
 #include "writers/property_table.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
+#include "files/file_names.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
@@ -130,12 +130,8 @@ std::vector<std::string> plane_losses(const WriteOptions& options, const char* f
   const LocalPlane& plane = options.plane;
   if (!plane.is_placed()) return {};
   std::string where = "a reference system";
-  if (plane.origin) {
-    where = "longitude ";
-    append_number(where, plane.origin->longitude);
-    where += ", latitude ";
-    append_number(where, plane.origin->latitude);
-  }
+  if (plane.origin)
+    where = "longitude " + number_text(plane.origin->longitude) + ", latitude " + number_text(plane.origin->latitude);
   return {"where (0, 0) lies on earth (" + where + "): " + format + " has no place for it"};
 }
 

@@ -35,12 +35,6 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
   list.insert(list.end(), more.begin(), more.end());
 }
 
-std::string number(double x) {
-  std::string text;
-  append_number(text, x);
-  return text;
-}
-
 }  // namespace
 
 Written to_rings_json(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
@@ -65,7 +59,7 @@ Written to_menge_xml(const Obstacles& obstacles, const WriteOptions& options, co
   for (const formation::SceneObstacle& obstacle : obstacles) {
     text += std::string("    <Obstacle closed=\"") + (geometry::has_interior(obstacle.shape) ? "1" : "0") + "\">\n";
     for (const geometry::Vec2 p : outline_of(obstacle.shape))
-      text += "      <Vertex p_x=\"" + number(p.x) + "\" p_y=\"" + number(p.y) + "\"/>\n";
+      text += "      <Vertex p_x=\"" + number_text(p.x) + "\" p_y=\"" + number_text(p.y) + "\"/>\n";
     text += "    </Obstacle>\n";
   }
   Written written{text + "  </ObstacleSet>\n</Experiment>\n", hole_losses(obstacles, "Menge")};
@@ -82,7 +76,7 @@ Written to_sumo_poly(const Obstacles& obstacles, const WriteOptions& options, co
     text += "  <poly id=\"" + escaped_markup(obstacle.id) + "\" type=\"obstacle\" color=\"128,128,128\" fill=\"" +
             (is_solid ? "1" : "0") + "\" layer=\"0\" shape=\"";
     for (const geometry::Vec2 p : is_solid ? closed(points) : points)
-      text += (text.back() == '"' ? "" : " ") + number(p.x) + "," + number(p.y);
+      text += (text.back() == '"' ? "" : " ") + number_text(p.x) + "," + number_text(p.y);
     text += "\"/>\n";
   }
   Written written{text + "</additional>\n", hole_losses(obstacles, "SUMO")};

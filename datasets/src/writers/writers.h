@@ -28,8 +28,6 @@ std::vector<std::string> losses_beside_shapes(const WriteOptions& options, const
 
 geometry::Ring closed(geometry::Ring ring);
 
-/// Of ASCII letters.
-std::string lower_case(std::string text);
 /// The outer ring, then the holes, each closed.
 std::vector<geometry::Ring> closed_rings_of(const geometry::Polygon& polygon);
 std::string wkt_of(const geometry::Obstacle& shape);

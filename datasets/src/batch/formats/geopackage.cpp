@@ -7,9 +7,6 @@
 
 #include <cerrno>
 #include <fstream>
-#include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "batch/formats/bytes.h"
@@ -20,7 +17,6 @@
 #include "exactvo/geometry/require.h"
 #include "files/system_error.h"
 #include "gdal/gdal_session.h"
-#include "gdal/memory_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -4,7 +4,7 @@
 /// \file
 /// The files of a batch that grow part by part: figures.jsonl, the GeoJSON layers, the GeoPackage. The same parts in
 /// the same order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
-/// assemble.h, summary.h.)
+/// session.cpp, summary.h.)
 
 #include <filesystem>
 #include <memory>

@@ -10,15 +10,14 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
-#include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/counted.h"
+#include "files/file_names.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
-#include "files/unique_word.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets::batch {

@@ -16,7 +16,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "batch/plan/inputs.h"

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The obstacles of a scenario (scenario_file.h), those of the files that it names included.
+#include <cctype>
+
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
 namespace {
+
+// --- One polygon as nested lists, [shell, hole, ...], each a list of [x, y]; often unclosed, either winding ---
+
+geometry::Ring to_ring(const JsonCursor& at) {
+  geometry::Ring ring;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const JsonCursor point = at.at(i);
+    if (point.size() < 2) point.refuse("[x, y]", DataCode::wrong_count);
+    ring.push_back({point.at(std::size_t{0}).number(), point.at(1).number()});
+  }
+  return ring;
+}
+
+// --- The obstacles of a scenario (scenario_file.h), those of the files that it names included ---
 
 RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
   const std::string place = "obstacle " + obstacle.id;
@@ -36,6 +53,24 @@ class Level {
 thread_local int Level::depth_ = 0;
 
 }  // namespace
+
+bool looks_like_rings_json(const FormatProbe& probe) {
+  std::size_t brackets = 0;
+  for (const char c : probe.beginning) {
+    if (c == '[') ++brackets;
+    if (c != '[' && std::isspace(static_cast<unsigned char>(c)) == 0) break;
+  }
+  return brackets == 3;
+}
+
+void read_rings_json(const std::filesystem::path& path, Collector& out) {
+  const Json tree = parse_json(read_text_file(path), out.file());
+  const JsonCursor rings(tree, out.file(), "");
+  RawGeometry raw{RawKind::polygon, "0", "polygon", {}};
+  for (std::size_t k = 0; k < rings.size(); ++k) raw.rings.push_back(to_ring(rings.at(k)));
+  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon skipped");
+  out.add(raw);
+}
 
 bool looks_like_scenario(const FormatProbe& probe) {
   const std::size_t first = probe.beginning.find_first_not_of(" \t\r\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "files/unique_word.h"
+#include "files/file_names.h"
 
 #include <cinttypes>
 #include <cstdint>
