@@ -17,7 +17,7 @@ using formation::ConstraintSource;
 using formation::RecordedConstraint;
 using testing::HasSubstr;
 
-/// kDirections of decision.cpp on shapes of a few metres.
+/// kDirections of explanation.cpp on shapes of a few metres.
 constexpr double kSampled = 1e-5;
 
 Decision with_two_walls() {

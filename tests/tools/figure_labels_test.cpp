@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "paper/campaign_tables.h"
+#include "paper/campaign.h"
 #include "run_program.h"
 
 namespace exactvo::test {

@@ -14,10 +14,7 @@
 #include "exactvo/formation/metrics.h"
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
-#include "figures/lyapunov_figure.h"
-#include "figures/paths_figure.h"
 #include "figures/run_figures.h"
-#include "figures/sheet.h"
 
 namespace exactvo::tools {
 namespace {

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "explorer/live.h"
+#include "explorer/server.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "explorer/packed_crowd.h"
+#include "explorer/packed_run.h"
 
 #include <fmt/format.h>
 

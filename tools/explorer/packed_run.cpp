@@ -5,15 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <cstring>
 #include <stdexcept>
-#include <utility>
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
-#include "explorer/packed_columns.h"
-#include "explorer/packed_head.h"
 
 namespace exactvo::tools {
 
@@ -22,6 +18,63 @@ using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
 using Json = nlohmann::ordered_json;
+
+// --- Columns of numbers, coded so that they deflate well; page/columns.js reads them ---
+
+/// Columns one after the other, each beginning at a multiple of 8 bytes.
+class PackedColumns {
+ public:
+  /// Each entry XORed with the one `stride` before it, which leaves few bits of what changes slowly; then the bytes of
+  /// all entries by their place in the entry. `stride` 0: no XOR.
+  void add(const char* name, const std::vector<double>& values, std::size_t stride) {
+    std::vector<std::uint64_t> bits(values.size());
+    if (!values.empty()) std::memcpy(bits.data(), values.data(), 8 * values.size());
+    const std::vector<std::uint64_t> plain = bits;
+    if (stride > 0)
+      for (std::size_t k = stride; k < bits.size(); ++k) bits[k] ^= plain[k - stride];
+    append(name, "f64", stride, bits);
+  }
+  /// The zigzag of each entry's second difference along `stride`: 0 of what moves evenly.
+  void add(const char* name, const std::vector<std::int32_t>& values, std::size_t stride) {
+    std::vector<std::uint32_t> coded(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const auto at = [&](std::size_t back) {
+        return k < back * stride ? 0U : static_cast<std::uint32_t>(values[k - back * stride]);
+      };
+      const auto difference = static_cast<std::int32_t>(k < 2 * stride ? at(0) - at(1) : at(0) - 2 * at(1) + at(2));
+      coded[k] = (static_cast<std::uint32_t>(difference) << 1) ^ static_cast<std::uint32_t>(difference >> 31);
+    }
+    append(name, "i32", stride, coded);
+  }
+  void add(const char* name, const std::vector<std::uint32_t>& values) { append(name, "u32", 0, values); }
+  /// Each entry less the one `stride` before it. `stride` 0: as it is.
+  void add(const char* name, const std::vector<std::uint8_t>& values, std::size_t stride) {
+    std::vector<std::uint8_t> coded = values;
+    for (std::size_t k = stride; k < values.size() && stride > 0; ++k)
+      coded[k] = static_cast<std::uint8_t>(values[k] - values[k - stride]);
+    append(name, "u8", stride, coded);
+  }
+
+  /// Of each column its name, type, number of entries and stride.
+  const Json& names() const { return names_; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <class Word>
+  void append(const char* name, const char* type, std::size_t stride, const std::vector<Word>& words) {
+    names_.push_back({{"name", name}, {"type", type}, {"count", words.size()}, {"stride", stride}});
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + words.size() * sizeof(Word));
+    for (std::size_t plane = 0; plane < sizeof(Word); ++plane)
+      for (std::size_t k = 0; k < words.size(); ++k)
+        bytes_[begin + plane * words.size() + k] =
+            static_cast<char>(static_cast<std::uint64_t>(words[k]) >> (8 * plane));
+    bytes_.resize((bytes_.size() + 7) / 8 * 8);
+  }
+
+  Json names_ = Json::array();
+  std::string bytes_;
+};
 
 namespace {
 

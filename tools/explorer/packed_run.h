@@ -19,8 +19,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -103,5 +103,24 @@ class RunPacker {
 /// The whole of a recording that was read.
 std::string packed_run(const datasets::RecordingFile& file, const std::string& metrics_json,
                        PackedRunLimits limits = {});
+
+struct PackedCrowd {
+  std::string scenario;     ///< its name
+  std::string packed;       ///< RunPacker::finish
+  bool is_cut_off = false;  ///< after its last whole row, which the page says too
+};
+
+/// A recording of a crowd (datasets/crowd_recording.h) as a packed run: positions and which robots kept their
+/// half-planes, without goals and decisions, which such recordings do not have. Read row by row, in memory bounded by
+/// the limits. Throws datasets::DataError.
+PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits = {});
+
+/// What the head of a packed run says of a recording beside its rows: the scene, the method, the bodies, the joint
+/// plans and the routes. Routes are planned again as the run did; null where it had none, or where that would take
+/// long.
+nlohmann::ordered_json packed_head(const datasets::RecordingFile& about, const PackedRunLimits& limits);
+
+/// Without what differs between equal runs, so that their pages do not. Null where `text` is no JSON.
+nlohmann::ordered_json shown_metrics(const std::string& text);
 
 }  // namespace exactvo::tools

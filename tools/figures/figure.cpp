@@ -4,17 +4,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <set>
 #include <sstream>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/require.h"
 #include "support/escape.h"
 #include "support/files.h"
+#include "support/run.h"
+#include "support/terminal.h"
+#include "support/usage.h"
 
 namespace exactvo::tools {
 
+namespace fs = std::filesystem;
+
 namespace {
+
+// --- Text ---
 
 /// Bytes from 0x80 on are those of letters beyond ASCII.
 bool is_plain(char c) {
@@ -36,6 +48,94 @@ std::string indented(const std::string& text) {
   for (std::string line; std::getline(in, line);)
     if (!line.empty()) result += (result.empty() ? "  " : "\n  ") + line;
   return result;
+}
+
+// --- Sheets ---
+
+constexpr double kLabel = 16.0;  // px from the left: the middle of the vertical label
+
+/// Where everything of a sheet lies, px from the top left.
+class Layout {
+ public:
+  explicit Layout(const Sheet& sheet)
+      : sheet_(sheet), rows_((static_cast<int>(sheet.panels.size()) + sheet.columns - 1) / sheet.columns) {}
+
+  double width() const {
+    return std::max(kLeft + kRight + sheet_.columns * sheet_.panel_width + (sheet_.columns - 1) * sheet_.gap, kLeast);
+  }
+  double height() const { return top(rows_ - 1) + sheet_.panel_height + kBottom + legend_height(); }
+  double left(int column) const { return kLeft + column * (sheet_.panel_width + sheet_.gap); }
+  double top(int row) const { return kTop + row * (sheet_.panel_height + kGapY); }
+  /// As many rows as gnuplot needs for entries that are all as wide as the widest.
+  double legend_height() const {
+    std::size_t longest = 0;
+    for (const auto& entry : sheet_.legend) longest = std::max(longest, entry.second.size());
+    const double entry = 70.0 + 7.0 * static_cast<double>(longest);
+    const double in_a_row = std::max(1.0, std::floor(0.95 * width() / entry));
+    return 14.0 + 18.0 * std::ceil(static_cast<double>(sheet_.legend.size()) / in_a_row);
+  }
+  std::string across(double px) const { return fmt::format("{:.5f}", px / width()); }
+  std::string up(double px) const { return fmt::format("{:.5f}", 1.0 - px / height()); }
+
+ private:
+  static constexpr double kLeft = 68.0, kRight = 14.0, kTop = 62.0, kBottom = 46.0, kGapY = 50.0;
+  static constexpr double kLeast = 460.0;  // for the title
+
+  const Sheet& sheet_;
+  int rows_;
+};
+
+std::string panel_text(const Sheet& sheet, const Layout& layout, int k) {
+  const SheetPanel& panel = sheet.panels[static_cast<std::size_t>(k)];
+  const int column = k % sheet.columns, row = k / sheet.columns;
+  const bool is_lowest = k + sheet.columns >= static_cast<int>(sheet.panels.size());
+  return filled("sheet_panel", {{"left", layout.across(layout.left(column))},
+                                {"right", layout.across(layout.left(column) + sheet.panel_width)},
+                                {"top", layout.up(layout.top(row))},
+                                {"bottom", layout.up(layout.top(row) + sheet.panel_height)},
+                                {"title", panel.title},
+                                {"x_label", is_lowest ? sheet.x_label : "''"},
+                                {"y_label", column == 0 ? sheet.y_label : "''"},
+                                {"label", layout.across(kLabel)},
+                                {"settings", panel.settings},
+                                {"plot", panel.plot}});
+}
+
+std::string legend_text(const Sheet& sheet) {
+  PlotCommand plot;
+  plot.item("2");  // beyond the axes: gnuplot draws no legend alone
+  for (const auto& [what, words] : sheet.legend) plot.item(what, words);
+  return plot.text();
+}
+
+// --- Files of a verb ---
+
+/// One file of a figure: what it is called where it is drawn, and what in the end.
+using FigureFile = std::pair<std::string, std::string>;
+
+constexpr const char* kFreeName =
+    "a name whose .svg, .png, .pdf, .dat and .gp the command neither reads nor writes besides";
+
+constexpr const char* kPictures[] = {".pdf", ".png", ".svg"};
+
+bool is_picture(const fs::path& name) {
+  return std::find(std::begin(kPictures), std::end(kPictures), name.extension()) != std::end(kPictures);
+}
+
+std::vector<FigureFile> files_of(const fs::path& out) {
+  const std::string stem = out.stem().string(), plain = plain_name(stem);
+  std::vector<FigureFile> files;
+  for (const char* source : {".dat", ".gp"}) files.push_back({plain + source, plain + source});
+  for (const char* picture : kPictures) files.push_back({plain + picture, stem + picture});
+  return files;
+}
+
+/// By whatever name or link; also of files that are not there yet.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path canonical_a = fs::weakly_canonical(a, error), canonical_b = fs::weakly_canonical(b, error);
+  return !canonical_a.empty() && canonical_a == canonical_b;
 }
 
 }  // namespace
@@ -207,6 +307,56 @@ std::string filled(const std::string& name, const Filling& filling) {
   const auto found = embedded_templates().find(name);
   EXACTVO_REQUIRE(found != embedded_templates().end(), "there is a template " + name);
   return filled_text(found->second, filling);
+}
+
+std::string letter_of(std::size_t panel) {
+  return panel < 26 ? fmt::format("({})", static_cast<char>('a' + panel)) : fmt::format("({})", panel + 1);
+}
+
+Figure sheet_figure(const std::string& name, const std::string& data, const std::string& shows, const Sheet& sheet) {
+  EXACTVO_REQUIRE(!sheet.panels.empty(), std::string("a sheet has a panel"));
+  const Layout layout(sheet);
+  std::string panels;
+  for (int k = 0; k < static_cast<int>(sheet.panels.size()); ++k) panels += panel_text(sheet, layout, k);
+  const double legend = layout.legend_height();
+  const std::string body = filled("sheet", {{"title", sheet.title},
+                                            {"panels", panels},
+                                            {"legend_top", layout.up(layout.height() - legend)},
+                                            {"legend_middle", layout.up(layout.height() - 0.55 * legend)},
+                                            {"legend", legend_text(sheet)}});
+  const Canvas canvas{static_cast<int>(std::lround(layout.width())), static_cast<int>(std::lround(layout.height()))};
+  return {name, data, shows, canvas, body};
+}
+
+void check_figure_name(const std::string& option, const std::string& name, const std::vector<fs::path>& others) {
+  if (name.empty()) return;
+  if (has_control_characters(name)) throw UsageError(option, name, "a name without control characters");
+  if (!is_picture(name)) throw UsageError(option, name, "a name that ends in .svg, .png or .pdf");
+  for (const auto& [drawn, asked] : files_of(name)) {
+    const fs::path path = fs::path(name).parent_path() / asked;
+    if (fs::is_directory(path)) throw UsageError(option, path.string() + ", a folder", "names that are free or files");
+    for (const fs::path& other : others)
+      if (is_same_file(path, other))
+        throw UsageError(option, name + ", which would replace " + path.string(), kFreeName);
+  }
+}
+
+void write_figure(Figure figure, const fs::path& out) {
+  figure.name = plain_name(out.stem().string());
+  const fs::path parent = fs::absolute(out).parent_path();
+  make_folder(parent);
+  StagedFolder folder(parent / "exactvo-figure", out);
+  draw({write_sources(figure, folder.path())});
+  const bool is_redrawn = fs::exists(parent / (figure.name + ".gp"));
+  for (const auto& [drawn, asked] : files_of(out)) {
+    if (fs::exists(folder.path() / drawn)) {
+      fs::rename(folder.path() / drawn, parent / asked);
+    } else if (is_redrawn) {
+      fs::remove(parent / asked);  // an earlier one would show something else than its neighbours
+    }
+  }
+  const fs::path script = out.parent_path() / (figure.name + ".gp");
+  message("wrote " + (fs::exists(out) ? out : script).string());
 }
 
 }  // namespace exactvo::tools

@@ -7,12 +7,12 @@
 /// that folder draws the pictures again.
 ///
 /// gnuplot runs what stands in the name of a file behind `<` or `|`. So a script names plain files only (`plain_name`),
-/// and whoever was asked for another name renames the pictures once they are drawn (figures/figure_file.h).
+/// and whoever was asked for another name renames the pictures once they are drawn (`write_figure`).
 ///
 /// The scripts are files to edit: tools/figures/templates/NAME.gp, embedded in the program when it is built. `@place@`
 /// in them stands for what the program fills in.
 ///
-/// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h
+/// Neighbours: gnuplot.h runs the scripts; outlines.h has the colours; run_figures.h
 /// and velocity_space.h make figures.
 
 #include <cstddef>
@@ -20,6 +20,7 @@
 #include <initializer_list>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/vec2.h"
@@ -129,5 +130,50 @@ std::string filled_text(const std::string& text, const Filling& filling);
 
 /// The same of the template `name`.
 std::string filled(const std::string& name, const Filling& filling);
+
+// --- Several plots side by side on one sheet, each with a letter, and one legend below all of them. Axis labels stand
+// at the left and below only: all panels of a sheet have the same quantities on their axes ---
+
+/// "(a)", ..., "(z)", "(27)", ...
+std::string letter_of(std::size_t panel);
+
+struct SheetPanel {
+  std::string title;     ///< a gnuplot string (quoted, markup), with its letter
+  std::string settings;  ///< the ranges, and whatever else is the panel's own
+  std::string plot;      ///< its plot command
+};
+
+struct Sheet {
+  std::string title;             ///< a gnuplot string
+  std::string x_label, y_label;  ///< the same
+  int columns = 1;
+  double panel_width = 250.0;   ///< px of what the axes enclose
+  double panel_height = 250.0;  ///< px; a plane is to scale where the panels' ranges have the same ratio
+  double gap = 40.0;            ///< px between columns, for the numbers at the axes
+  std::vector<SheetPanel> panels;
+  /// Of the legend: what gnuplot draws ("keyentry with ..."), and its words.
+  std::vector<std::pair<std::string, std::string>> legend;
+};
+
+/// REQUIRES: a panel, a plain name.
+Figure sheet_figure(const std::string& name, const std::string& data, const std::string& shows, const Sheet& sheet);
+
+// --- One figure for a verb: FILE.svg, FILE.png, FILE.pdf, whichever the user names, with FILE.dat and FILE.gp ---
+
+/// What the help of an option says of the file it names.
+inline constexpr const char* kFigureFileHelp =
+    "FILE.svg, FILE.png or FILE.pdf: all three are written, with FILE.dat and FILE.gp (gnuplot)";
+
+/// Throws UsageError unless the name ends in .svg, .png or .pdf, is printable, and none of the files that would be
+/// written is a folder or one of `others`, the files that the command reads and writes besides. An empty name passes.
+/// `option` is where the name was given. To be called before the work.
+void check_figure_name(const std::string& option, const std::string& name,
+                       const std::vector<std::filesystem::path>& others);
+
+/// Draws in a folder of its own under a plain name and moves the files into place together: the pictures under exactly
+/// the name that was asked for, data and script under the plain one, which is the same for ordinary names. A picture
+/// that could not be drawn is removed if an earlier figure left one of its name, that is, if the figure's script was
+/// there before. The figure's own name does not matter.
+void write_figure(Figure figure, const std::filesystem::path& out);
 
 }  // namespace exactvo::tools

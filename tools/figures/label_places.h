@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "figures/outlines.h"
-#include "figures/style.h"
 
 namespace exactvo::tools {
 

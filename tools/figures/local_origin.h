@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "figures/figure.h"
-#include "figures/style.h"
+#include "figures/outlines.h"
 
 namespace exactvo::tools {
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "figures/paths_figure.h"
+#include "figures/run_figures.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <utility>
 
 #include "exactvo/geometry/require.h"
+#include "figures/figure.h"
 #include "figures/panel_layers.h"
-#include "figures/sheet.h"
 
 namespace exactvo::tools {
 

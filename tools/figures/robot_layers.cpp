@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "figures/label_places.h"
+#include "figures/outlines.h"
 #include "figures/panel_layers.h"
-#include "figures/paths_figure.h"
-#include "figures/style.h"
+#include "figures/run_figures.h"
 
 namespace exactvo::tools {
 

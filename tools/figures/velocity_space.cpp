@@ -14,7 +14,6 @@ namespace exactvo::tools {
 
 using formation::ConstraintSource;
 using formation::RecordedConstraint;
-using geometry::HalfPlane;
 
 namespace {
 
@@ -38,12 +37,15 @@ class VelocitySpace {
  public:
   explicit VelocitySpace(const Decision& decision) : d_(decision), view_(view()) {
     add_allowed();
-    add_cones();
-    add_slack_half_planes();
-    add_active_half_planes();
+    add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
+    add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
+    add_half_planes(false, kSlackColour, 1.5, "half-plane, slack");
+    add_half_planes(true, kActiveColour, 3.0, "half-plane, " + active_words());
     add_hatching_key();
     add_speed_bound();
-    add_numbers();
+    // The numbers of the printed explanation, beside the lines and in their colours; those that bind choose first.
+    add_numbers_of(true, kActiveColour);
+    add_numbers_of(false, kSlackNumber);
     add_arrows();
   }
 
@@ -86,11 +88,6 @@ class VelocitySpace {
     data_.ring(ring);
     plot_.data(index, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", kAllowedColour),
                "allowed velocities");
-  }
-
-  void add_cones() {
-    add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
-    add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
   }
 
   std::vector<const RecordedConstraint*> of_kind(bool robots) const {
@@ -185,12 +182,10 @@ class VelocitySpace {
     curves.push_back(ring);
   }
 
-  Points boundary_in_view(const HalfPlane& h) const { return boundary_within(view_, h); }
-
   void add_half_planes(bool active, const char* colour, double width, const std::string& title) {
     std::vector<std::pair<Points, Vec2>> lines;
     for (const RecordedConstraint& c : constraints()) {
-      const Points line = c.active == active ? boundary_in_view(c.half_plane) : Points{};
+      const Points line = c.active == active ? boundary_within(view_, c.half_plane) : Points{};
       if (!line.empty()) lines.emplace_back(line, c.half_plane.normal);
     }
     if (lines.empty()) return;
@@ -202,9 +197,6 @@ class VelocitySpace {
     plot_.data(boundaries, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", width, colour), title);
     plot_.data(strokes, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
   }
-
-  void add_slack_half_planes() { add_half_planes(false, kSlackColour, 1.5, "half-plane, slack"); }
-  void add_active_half_planes() { add_half_planes(true, kActiveColour, 3.0, "half-plane, " + active_words()); }
 
   bool is_violated(const RecordedConstraint& c) const {
     return geometry::violation(c.half_plane, d_.step.chosen) > kOnLine * norm(c.half_plane.normal);
@@ -225,16 +217,10 @@ class VelocitySpace {
     plot_.data(index, "using 1:2 with lines lw 1.5 dt (6,4) lc rgb 'black'", "speed bound");
   }
 
-  /// The numbers of the printed explanation, beside the lines and in their colours; those that bind choose first.
-  void add_numbers() {
-    add_numbers_of(true, kActiveColour);
-    add_numbers_of(false, kSlackNumber);
-  }
-
   void add_numbers_of(bool active, const char* colour) {
     std::vector<std::pair<Vec2, std::size_t>> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
-      const Points line = boundary_in_view(constraints()[i].half_plane);
+      const Points line = boundary_within(view_, constraints()[i].half_plane);
       if (constraints()[i].active != active || line.empty()) continue;
       numbers.emplace_back(free_place(line, constraints()[i].half_plane.normal), i + 1);
     }

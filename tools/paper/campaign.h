@@ -3,7 +3,8 @@
 
 /// \file
 /// Counts over random fields (datasets/random_fields.h): how many are reached and safe, by method or by set of
-/// remedies. Resumable (parts.h), and the same bytes for any number of threads.
+/// remedies. Resumable (parts.h), and the same bytes for any number of threads. As people read them: a table, JSON,
+/// CSV, and a figure of the remedies.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "exactvo/datasets/random_fields.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "figures/figure.h"
 
 namespace exactvo::tools {
 
@@ -71,5 +73,21 @@ std::string campaign_csv(const std::vector<VariantResult>& results);
 /// Nothing in it depends on when or by how many threads it was made.
 std::string campaign_json(const std::string& what, const std::vector<VariantResult>& results,
                           const CampaignOptions& options);
+
+struct CampaignFiles {
+  std::string table;  ///< for people
+  std::string json;
+  std::string csv;
+  std::vector<Figure> figures;
+};
+
+/// Every kind of field by every method.
+CampaignFiles random_fields(const CampaignOptions& options);
+
+/// Every set of remedies over random formations, and over B0-B3 in `scenarios`.
+CampaignFiles ablations(const CampaignOptions& options, const std::filesystem::path& scenarios);
+
+/// `stem`.json, `stem`.csv and `stem`.txt in `folder`, each whole or not at all.
+void write_campaign(const CampaignFiles& files, const std::filesystem::path& folder, const std::string& stem);
 
 }  // namespace exactvo::tools

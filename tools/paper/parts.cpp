@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/part_folder.h"
 #include "exactvo/datasets/provenance.h"

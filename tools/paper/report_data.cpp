@@ -91,10 +91,6 @@ void check_run(const Place& run) {
   for (const char* key : {"least", "largest_rise"}) run.at("lyapunov").at("paper").at(key).number_or_none();
 }
 
-void check_summary(const Place& all) {
-  all.each(check_run);
-}
-
 void check_row(const Place& row) {
   for (const char* key : {"kind", "variant"}) row.at(key).text();
   for (const char* key : {"fields", "reached_and_safe", "reached"}) row.at(key).count();
@@ -164,7 +160,7 @@ ReportData::ReportData(const fs::path& section_five, const fs::path& campaigns, 
     : random_(read_json(campaigns / "random" / "random.json", check_random)),
       ablations_(read_json(campaigns / "ablations" / "ablations.json", check_ablations)),
       scenarios_(std::move(scenarios)) {
-  const Json summary = read_json(section_five / "summary.json", check_summary);
+  const Json summary = read_json(section_five / "summary.json", [](const Place& all) { all.each(check_run); });
   if (!summary.is_null()) summary_ = summary;
   std::vector<Json> of_runs;
   for (const Json& run : summary_) of_runs.push_back(run.contains("provenance") ? run["provenance"] : kNull);

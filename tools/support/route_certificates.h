@@ -10,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"

@@ -13,7 +13,6 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/metrics_file.h"
-#include "exactvo/datasets/scenario_file.h"
 #include "figures/gnuplot.h"
 #include "figures/run_figures.h"
 #include "support/files.h"

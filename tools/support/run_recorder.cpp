@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "figures/lyapunov_figure.h"
+#include "figures/run_figures.h"
 
 namespace exactvo::tools {
 

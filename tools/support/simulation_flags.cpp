@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <exception>
 #include <optional>
-#include <vector>
 
 #include "support/escape.h"
 #include "support/terminal.h"

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Many linear programs at once, on numpy arrays.
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string_view>
 
-#include "certificate_arrays.h"
 #include "exactvo/vo/lp/batch.h"
 #include "exactvo/vo/lp/solvers.h"
-#include "lp_batch_arrays.h"
 #include "lp_values.h"
 #include "module.h"
 

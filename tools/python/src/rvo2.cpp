@@ -2,11 +2,6 @@
 // The simulator of exactvo/rvo2.h, for the names of Python-RVO2 (rvo2.py).
 #include "exactvo/rvo2.h"
 
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <vector>
-
 #include "arguments.h"
 #include "module.h"
 

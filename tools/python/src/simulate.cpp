@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <set>
 

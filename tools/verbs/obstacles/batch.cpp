@@ -5,11 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <csignal>
-#include <filesystem>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"

@@ -9,7 +9,6 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
-#include "support/projection.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"

@@ -2,14 +2,13 @@
 // exactvo generate: obstacles by seed, the same on every machine.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/generators.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"

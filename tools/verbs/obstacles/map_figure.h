@@ -3,16 +3,17 @@
 
 /// \file
 /// Obstacles as a map, and over it what was made of them: facades, convex pieces, hulls and ellipses. A map is layers
-/// of curves and labels, drawn in the order in which they are added.
+/// of curves and labels, drawn in the order in which they are added. And polygons before and after a repair, side by
+/// side: the rings as given with their problems marked, and the polygons that they became, a colour each.
 
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
-#include "figures/style.h"
 
 namespace exactvo::tools {
 
@@ -58,5 +59,19 @@ Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const 
 /// The same for decomposed obstacles: pieces filled in pale colours, facades as bold lines, hulls dashed, the smallest
 /// ellipses, the facades' and the trap-free ones.
 Figure shapes_figure(const std::vector<geometry::ObstacleShapes>& obstacles, const std::string& title);
+
+/// One polygon that was recombined.
+struct RepairedPolygon {
+  std::string title;
+  std::vector<geometry::Ring> before;
+  std::vector<geometry::Vec2> problems;  ///< where
+  std::vector<geometry::Polygon> after;  ///< empty where it could not be repaired
+};
+
+/// At most so many are drawn, a row each.
+inline constexpr std::size_t kMostRepairedDrawn = 6;
+
+/// REQUIRES: at least one.
+Figure repair_figure(const std::vector<RepairedPolygon>& polygons);
 
 }  // namespace exactvo::tools

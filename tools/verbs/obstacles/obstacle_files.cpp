@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -13,10 +12,8 @@
 #include <utility>
 
 #include "exactvo/datasets/input_files.h"
-#include "exactvo/datasets/obstacle_write.h"
 #include "support/escape.h"
 #include "support/files.h"
-#include "support/projection.h"
 #include "support/terminal.h"
 #include "support/unsigned_zero.h"
 #include "support/usage.h"
@@ -296,6 +293,17 @@ std::string text_of(const OrderedJson& json) {
 
 OrderedJson json_number(double x) {
   return std::isfinite(x) ? OrderedJson(unsigned_zero(x)) : OrderedJson(nullptr);
+}
+
+std::string projection_line(const datasets::ObstacleFile& file) {
+  if (!file.origin) return "";
+  return fmt::format("{}: projected from degrees to metres, centred on longitude {}, latitude {}", file.file,
+                     file.origin->longitude, file.origin->latitude);
+}
+
+void say_projection(const datasets::ObstacleFile& file) {
+  if (const std::string line = projection_line(file); !line.empty())
+    message(line + "; --units metres takes them as they stand");
 }
 
 }  // namespace exactvo::tools

@@ -110,4 +110,11 @@ std::string text_of(const OrderedJson& json);
 /// A number, or null where it is none that JSON has.
 OrderedJson json_number(double x);
 
+/// Degrees that became metres: what nobody may take for granted, since GeoJSON without units is one of degrees.
+/// "FILE: degrees became metres round longitude X, latitude Y"; empty where nothing was projected.
+std::string projection_line(const datasets::ObstacleFile& file);
+
+/// Says the projection_line of a file that has one, and how to read it otherwise.
+void say_projection(const datasets::ObstacleFile& file);
+
 }  // namespace exactvo::tools

@@ -9,13 +9,13 @@
 
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "support/escape.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/obstacles/map_figure.h"
 #include "verbs/obstacles/obstacle_files.h"
-#include "verbs/obstacles/repair_figure.h"
 
 namespace exactvo::tools {
 

@@ -10,7 +10,7 @@
 #include "exactvo/datasets/obstacle_record.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/obstacle_shapes.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "figures/outlines.h"
 #include "support/escape.h"
 #include "support/terminal.h"

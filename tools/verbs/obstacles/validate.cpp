@@ -2,8 +2,6 @@
 // exactvo validate: every problem of obstacle files, with its place, code and coordinates.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "support/terminal.h"
 #include "verb.h"
 #include "verbs/obstacles/obstacle_files.h"

@@ -11,7 +11,7 @@
 
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "support/fields.h"
 #include "support/robot_numbers.h"
 #include "support/stop.h"
@@ -19,7 +19,6 @@
 #include "support/usage.h"
 #include "verb.h"
 #include "verbs/route/answer.h"
-#include "verbs/route/map.h"
 
 namespace exactvo::tools {
 
@@ -69,10 +68,18 @@ struct RouteQuery {
 class RouteQueries {
  public:
   /// Reads the header. Throws DataError, as `next` does: a file without one, a .scen for another kind of map.
-  RouteQueries(const std::string& file, const AskedMap& map);
+  RouteQueries(const std::string& file, const AskedMap& map) : lines_(file), map_(map) {
+    if (!lines_.next()) throw datasets::DataError(DataCode::format_syntax, lines_.file(), "", "an empty file", kHeader);
+    take_header();
+  }
 
   /// The next question; nothing at the end.
-  std::optional<RouteQuery> next();
+  std::optional<RouteQuery> next() {
+    if (!lines_.next()) return std::nullopt;
+    RouteQuery query = is_scen_ ? from_task() : from_columns();
+    query.index = count_++;
+    return query;
+  }
 
   /// Throws DataError for the question that `next` gave last.
   [[noreturn]] void refuse(DataCode code, const std::string& found, const std::string& expected) const {
@@ -80,9 +87,57 @@ class RouteQueries {
   }
 
  private:
-  void take_header();
-  RouteQuery from_columns() const;
-  RouteQuery from_task() const;
+  void take_header() {
+    const std::vector<std::string_view> words = fields_of(lines_.line());
+    is_scen_ = words.size() == 2 && words[0] == "version" && (words[1] == "1" || words[1] == "1.0");
+    if (is_scen_ && !map_.cells)
+      lines_.refuse(DataCode::format_syntax, "cells of a Moving AI map",
+                    fmt::format("CSV with coordinates, since {} is {}", map_.file, map_.format));
+    if (is_scen_) return;
+    column_count_ = words.size();
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const auto found = std::find(words.begin(), words.end(), kColumns[k]);
+      if (found == words.end()) lines_.refuse(DataCode::format_syntax, lines_.line(), kHeader);
+      if (std::find(found + 1, words.end(), kColumns[k]) != words.end())
+        lines_.refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
+      columns_[k] = static_cast<std::size_t>(found - words.begin());
+    }
+  }
+
+  RouteQuery from_columns() const {
+    const std::vector<std::string_view> fields = fields_of(lines_.line());
+    if (fields.size() != column_count_)
+      lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
+                    fmt::format("{} fields", column_count_));
+    std::array<double, 4> numbers{};
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::optional<double> number = number_in(fields[columns_[k]]);
+      if (!number || !std::isfinite(*number))
+        lines_.refuse(DataCode::number, fields[columns_[k]], fmt::format("a number in the column {}", kColumns[k]));
+      numbers[k] = *number;
+    }
+    return {0, {numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
+  }
+
+  RouteQuery from_task() const {
+    const std::vector<std::string_view> fields = task_fields(lines_.line());
+    if (fields.size() != kTaskFields)
+      lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
+                    fmt::format("{} fields", kTaskFields));
+    std::array<double, 6> numbers{};
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const std::optional<double> number = number_in(fields[kWidthField + k]);
+      if (!number || *number != std::floor(*number))
+        lines_.refuse(DataCode::number, fields[kWidthField + k], "a whole number of cells");
+      numbers[k] = *number;
+    }
+    const datasets::MapSize& size = map_.cells->size;
+    if (numbers[0] != static_cast<double>(size.columns) || numbers[1] != static_cast<double>(size.rows))
+      lines_.refuse(DataCode::out_of_range, fmt::format("a task for a map of {} x {} cells", numbers[0], numbers[1]),
+                    fmt::format("{} x {} cells, as {} has", size.columns, size.rows, map_.file));
+    static_assert(kStartField == kWidthField + 2);
+    return {0, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}};
+  }
 
   TableLines lines_;
   const AskedMap& map_;
@@ -91,70 +146,6 @@ class RouteQueries {
   std::size_t column_count_ = 0;
   std::size_t count_ = 0;
 };
-
-RouteQueries::RouteQueries(const std::string& file, const AskedMap& map) : lines_(file), map_(map) {
-  if (!lines_.next()) throw datasets::DataError(DataCode::format_syntax, lines_.file(), "", "an empty file", kHeader);
-  take_header();
-}
-
-void RouteQueries::take_header() {
-  const std::vector<std::string_view> words = fields_of(lines_.line());
-  is_scen_ = words.size() == 2 && words[0] == "version" && (words[1] == "1" || words[1] == "1.0");
-  if (is_scen_ && !map_.cells)
-    lines_.refuse(DataCode::format_syntax, "cells of a Moving AI map",
-                  fmt::format("CSV with coordinates, since {} is {}", map_.file, map_.format));
-  if (is_scen_) return;
-  column_count_ = words.size();
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    const auto found = std::find(words.begin(), words.end(), kColumns[k]);
-    if (found == words.end()) lines_.refuse(DataCode::format_syntax, lines_.line(), kHeader);
-    if (std::find(found + 1, words.end(), kColumns[k]) != words.end())
-      lines_.refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
-    columns_[k] = static_cast<std::size_t>(found - words.begin());
-  }
-}
-
-std::optional<RouteQuery> RouteQueries::next() {
-  if (!lines_.next()) return std::nullopt;
-  RouteQuery query = is_scen_ ? from_task() : from_columns();
-  query.index = count_++;
-  return query;
-}
-
-RouteQuery RouteQueries::from_columns() const {
-  const std::vector<std::string_view> fields = fields_of(lines_.line());
-  if (fields.size() != column_count_)
-    lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
-                  fmt::format("{} fields", column_count_));
-  std::array<double, 4> numbers{};
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    const std::optional<double> number = number_in(fields[columns_[k]]);
-    if (!number || !std::isfinite(*number))
-      lines_.refuse(DataCode::number, fields[columns_[k]], fmt::format("a number in the column {}", kColumns[k]));
-    numbers[k] = *number;
-  }
-  return {0, {numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
-}
-
-RouteQuery RouteQueries::from_task() const {
-  const std::vector<std::string_view> fields = task_fields(lines_.line());
-  if (fields.size() != kTaskFields)
-    lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
-                  fmt::format("{} fields", kTaskFields));
-  std::array<double, 6> numbers{};
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const std::optional<double> number = number_in(fields[kWidthField + k]);
-    if (!number || *number != std::floor(*number))
-      lines_.refuse(DataCode::number, fields[kWidthField + k], "a whole number of cells");
-    numbers[k] = *number;
-  }
-  const datasets::MapSize& size = map_.cells->size;
-  if (numbers[0] != static_cast<double>(size.columns) || numbers[1] != static_cast<double>(size.rows))
-    lines_.refuse(DataCode::out_of_range, fmt::format("a task for a map of {} x {} cells", numbers[0], numbers[1]),
-                  fmt::format("{} x {} cells, as {} has", size.columns, size.rows, map_.file));
-  static_assert(kStartField == kWidthField + 2);
-  return {0, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}};
-}
 
 // --- What goes together ---
 

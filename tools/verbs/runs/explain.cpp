@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/recording_file.h"
@@ -15,9 +14,8 @@
 #include "exactvo/formation/planned_routes.h"
 #include "exactvo/formation/stuck.h"
 #include "explain/decision.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "figures/outlines.h"
-#include "figures/style.h"
 #include "figures/velocity_space.h"
 #include "support/escape.h"
 #include "support/routes_of_run.h"

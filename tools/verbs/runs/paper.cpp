@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "paper/campaign.h"
-#include "paper/campaign_tables.h"
 #include "paper/report.h"
 #include "paper/section_five.h"
 #include "support/files.h"
 #include "support/parse_errors.h"
+#include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -134,7 +134,7 @@ ExitCode campaigns(const PaperFlags& flags) try {
     const CampaignOptions options = campaign_options(flags, "ablations", flags.fields);
     const CampaignFiles files = ablations(options, scenarios_for(flags));
     write_campaign(files, fs::path(flags.out) / "ablations", "ablations");
-    if (!flags.no_figures) draw_campaign(files, fs::path(flags.out) / "ablations");
+    if (!flags.no_figures) draw(write_figures(files.figures, fs::path(flags.out) / "ablations"));
     say(flags, files);
     message("wrote " + flags.out + "/ablations/");
   }

@@ -11,7 +11,7 @@
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/runs/page_runs.h"
+#include "verbs/runs/view.h"
 
 extern char** environ;
 

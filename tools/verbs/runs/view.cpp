@@ -1,22 +1,159 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo view: runs as a page for a browser.
+#include "verbs/runs/view.h"
+
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/metrics_file.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "support/run.h"
+#include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/runs/page_runs.h"
 
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+// --- The runs of a page ---
+
+/// A scene to start from, which the page shows where no run was given.
+struct Scene {
+  const char* key;
+  const char* title;
+  const char* words;
+  formation::Method method;
+  const char* scenario;
+};
+
+const Scene kScenes[] = {
+    {"wall", "A wall, and why ORCA stops",
+     "The robot heads straight for its goal, and the wall's half-plane lies at right angles to that way. As the robot "
+     "comes nearer, the line of the half-plane moves to the origin and takes the best allowed velocity along to zero: "
+     "play, and watch the green arrow shrink.",
+     formation::Method::orca,
+     R"({"name": "A wall, and why ORCA stops", "guidance": "none", "liveness": "off", "time_limit": 20,
+         "robots": [{"id": "R1", "position": [0, 0], "goal": [12, 0], "max_speed": 2}],
+         "obstacles": [{"id": "wall", "polyline": [[6, -3], [6, 3]]}]})"},
+    {"circle", "Four robots on a circle",
+     "Each robot wants to go through the middle; each takes half of every avoidance upon itself, and a bias to the "
+     "right breaks the symmetry. Click a robot in the world and see one half-plane for each of the others.",
+     formation::Method::ivo,
+     R"({"name": "Four robots on a circle", "time_limit": 30, "robots": [
+         {"id": "east", "position": [6, 0], "goal": [-6, 0], "max_speed": 1.5},
+         {"id": "north", "position": [0, 6], "goal": [0, -6], "max_speed": 1.5},
+         {"id": "west", "position": [-6, 0], "goal": [6, 0], "max_speed": 1.5},
+         {"id": "south", "position": [0, -6], "goal": [0, 6], "max_speed": 1.5}]})"},
+    {"gap", "A formation through a gap",
+     "Three robots keep their places beside a virtual leader that passes between two blocks; the half-planes of the "
+     "blocks take precedence over the places. Follow R3 and see which block binds, and when the formation closes "
+     "again.",
+     formation::Method::ivo,
+     R"({"name": "A formation through a gap", "time_limit": 25, "time_step": 0.02, "arrival_tolerance": 0.1,
+         "robots": [{"id": "R1", "position": [3, 0], "max_speed": 6}, {"id": "R2", "position": [0, 3], "max_speed": 6},
+                    {"id": "R3", "position": [-3, 0], "max_speed": 6}],
+         "obstacles": [{"id": "upper block", "polygon": [[7, 11.5], [10, 11.5], [10, 14.5], [7, 14.5]]},
+                       {"id": "lower block", "polygon": [[11.5, 7], [14.5, 7], [14.5, 10], [11.5, 10]]}],
+         "formation": {"topology": {"adjacency": [[0, 1, 1], [1, 0, 1], [1, 1, 0]], "pinning": [1, 1, 1]},
+                       "offsets": [[1, 1], [-1, 1], [1, -1]], "recentre": true,
+                       "leader": {"path": [[0, 0], [25, 25]], "speed": 4.242640687119285},
+                       "gains": {"k1": 0.25, "k2": 0.45, "k3": 37.5, "kappa": 1.5}, "catch_up_speed": 1.5}})"}};
+
+/// A wall and why ORCA stops before it, four robots on a circle, a formation through a gap: run at once, with every
+/// half-plane, and two sentences each.
+std::vector<MadeRun> guided_scenes(const PackedRunLimits& limits) {
+  std::vector<MadeRun> runs;
+  for (const Scene& scene : kScenes) {
+    formation::SimulationOptions options;
+    options.method = scene.method;
+    options.record_all = true;
+    const formation::Scenario scenario = datasets::parse_scenario(scene.scenario, scene.key, ".");
+    FinishedRun finished = run(scenario, options, datasets::make_provenance({}, 0), for_page(limits));
+    runs.push_back({{scene.key, scene.title, scene.words, std::move(finished.packed)}, options});
+  }
+  return runs;
+}
+
+/// Those that the run itself wrote; empty where it did not.
+std::string metrics_beside(const fs::path& recording) {
+  if (recording.filename() != "recording.jsonl") return "";
+  std::ifstream in(recording.parent_path() / "metrics.json");
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// What a recorded run was made with.
+formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
+  const datasets::RunInfo& info = file.info;
+  formation::SimulationOptions options;
+  parse(info.method, options.method);
+  if (info.controller) parse(*info.controller, options.controller);
+  if (info.integrator) parse(*info.integrator, options.integrator);
+  formation::Guidance guidance = formation::Guidance::none;
+  if (info.guidance) parse(*info.guidance, guidance);
+  options.guidance = guidance;
+  formation::Liveness liveness = formation::Liveness::off;
+  if (info.liveness) parse(*info.liveness, liveness);
+  options.liveness = liveness;
+  options.remedies = file.recording.remedies;
+  return options;
+}
+
+/// Row by row: what stays in memory is what the page keeps of them.
+MadeRun recorded(const PageFlags& flags, const fs::path& path) {
+  RunPacker packer(flags.limits);
+  std::string metrics = metrics_beside(path);
+  formation::Scenario scenario;  // the evaluator refers to it
+  std::optional<formation::Evaluator> evaluator;
+  const auto take = [&](const datasets::RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*) {
+    packer.add(row);
+    if (!metrics.empty()) return;
+    if (!evaluator) evaluator.emplace(scenario = so_far.scenario, so_far.recording);
+    evaluator->add(std::make_shared<const formation::Step>(std::move(row)));
+  };
+  const datasets::RecordingFile file = datasets::read_recording(path, take);
+  if (evaluator) metrics = datasets::metrics_json(file.info, evaluator->finish(file.recording).metrics);
+  const std::string title = title_of(file);
+  return {{page_key(title), title, "", packer.finish(file, metrics)}, options_of(file)};
+}
+
+/// Nothing computes with it: it has neither goals nor decisions.
+MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
+  const PackedCrowd crowd = packed_crowd(path, flags.limits);
+  if (crowd.is_cut_off) message("warning: " + path.string() + ": the recording was cut off after its last whole row");
+  const std::string title = crowd.scenario + ", crowd";
+  return {{page_key(title), title, "", crowd.packed}, std::nullopt};
+}
+
+/// With every half-plane.
+MadeRun simulated(const PageFlags& flags, const std::string& path) {
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.record_all = true;
+  const datasets::LoadedScenario read = read_scenario(path);
+  note_unused(flags.simulation, read.scenario);
+  note_liveness(flags.simulation, read.scenario, options);
+  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
+  ProgressLine line(read.scenario.time_limit, "s simulated");
+  RunOutput output = for_page(flags.limits);
+  output.progress = [&](double time) { line.show(time, read.scenario.name); };
+  FinishedRun finished = run(read.scenario, options, provenance, output);
+  return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
+}
+
+// --- The verb ---
 
 struct ViewFlags {
   PageFlags page;
@@ -56,6 +193,45 @@ void declare_view(CLI::App& app, ViewFlags& flags) {
 }
 
 }  // namespace
+
+void declare_page_flags(CLI::App& app, PageFlags& flags, int most, const std::string& what_runs_are) {
+  app.add_option("runs", flags.runs, what_runs_are)->expected(0, most);
+  app.add_option("--most-states", flags.limits.states,
+                 "Positions in the page per run, robots times rows; beyond, rows are left out")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 26));
+  app.add_option(
+         "--most-numbers", flags.limits.decision_numbers,
+         "Numbers of decisions in the page per run, about 14 a robot and row and 6 a half-plane; beyond, decisions "
+         "are left out")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28));
+  declare_simulation_flags(app, flags.simulation);
+}
+
+std::vector<MadeRun> page_runs(const PageFlags& flags) {
+  const TerminateOnSignal terminate_on_signal;
+  if (flags.runs.empty()) return guided_scenes(flags.limits);
+  bool any_simulated = false;
+  std::vector<MadeRun> runs;
+  for (const std::string& path : flags.runs) {
+    if (fs::path(path).extension() == ".evr") {
+      runs.push_back(recorded_crowd(flags, path));
+    } else if (const auto recording = recording_at(path)) {
+      runs.push_back(recorded(flags, *recording));
+    } else {
+      any_simulated = true;
+      runs.push_back(simulated(flags, path));
+    }
+  }
+  if (!any_simulated) note_recorded(flags.simulation);
+  std::set<std::string> taken;
+  for (MadeRun& run : runs) {
+    make_key_distinct(run.shown, taken);
+    taken.insert(run.shown.key);
+  }
+  return runs;
+}
 
 Verb view_verb() {
   return {"view", "Make a page to explore runs in a browser: the world, velocity space, the proofs",

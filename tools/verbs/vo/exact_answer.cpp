@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verbs/vo/exact_answer.h"
+#include "verbs/vo/answer.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figures/figure.h"
 #include "figures/outlines.h"
-#include "figures/sheet.h"
 #include "figures/velocity_space.h"
 #include "verbs/vo/answer.h"
 

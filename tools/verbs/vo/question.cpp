@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
@@ -15,7 +14,7 @@
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "support/robot_numbers.h"
 #include "support/usage.h"
 

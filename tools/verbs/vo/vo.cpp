@@ -15,7 +15,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/membership.h"
-#include "figures/figure_file.h"
+#include "figures/figure.h"
 #include "support/fields.h"
 #include "support/robot_numbers.h"
 #include "support/terminal.h"
@@ -234,10 +234,6 @@ ExitCode show(const VoFlags& flags) {
   return ExitCode::success;
 }
 
-void declare_vo(CLI::App& app, VoFlags& flags) {
-  declare_options(app, flags);
-}
-
 }  // namespace
 
 Verb vo_verb() {
@@ -252,7 +248,7 @@ Verb vo_verb() {
           "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n"
           "  printf '1,0.2\\n0,1\\n' | exactvo vo --obstacle 'DISC(4 0, 1)' --velocities - --position 0,0 \\\n"
           "      --radius 0.5 --time-horizon 2\n",
-          with_flags(declare_vo, show)};
+          with_flags(declare_options, show)};
 }
 
 }  // namespace exactvo::tools

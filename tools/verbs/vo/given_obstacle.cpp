@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/given_obstacle.h"
+#include "verbs/vo/question.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,8 +13,8 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/pi.h"
 #include "support/fields.h"
-#include "support/projection.h"
 #include "support/usage.h"
+#include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
 
@@ -26,7 +26,8 @@ namespace {
 
 constexpr const char* kShapeWords = "DISC(x y, r), ELLIPSE(cx cy, l11 l21 l22) or ELLIPSE(cx cy, a b, degrees)";
 
-/// Numbers between blanks, as WKT has them.
+/// Numbers between blanks, as WKT has them; so large at most that their squares and those of their sums stay far within
+/// doubles.
 std::optional<std::vector<double>> numbers_in(const std::string& text) {
   std::vector<double> numbers;
   const char* at = text.c_str();
@@ -36,7 +37,7 @@ std::optional<std::vector<double>> numbers_in(const std::string& text) {
     char* end = nullptr;
     numbers.push_back(std::strtod(at, &end));
     const bool whole = *end == '\0' || std::isspace(static_cast<unsigned char>(*end));
-    if (end == at || !whole || !(std::fabs(numbers.back()) <= kLargestGiven)) return std::nullopt;
+    if (end == at || !whole || !(std::fabs(numbers.back()) <= datasets::kLargestCoordinate)) return std::nullopt;
     at = end;
   }
 }
