@@ -194,6 +194,8 @@ TEST(Stuck, WhoCreepsAndWaitsSaysForWhom) {
   EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::IsEmpty()) << "who moves may get on";
   for (End& end : ends) end.velocity = 0.2 * end.velocity;
   EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::ElementsAre("R1", "R2"));
+  ends[0].goal = ends[0].position;
+  EXPECT_THAT(measure(scene_of(ends), unchanged(ends)).deadlock, testing::IsEmpty()) << "who is there waits for nobody";
 }
 
 /// Beside a wall it was not said for whom a robot waits if that one waits for nobody.

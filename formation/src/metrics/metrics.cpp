@@ -141,7 +141,7 @@ Evaluation Evaluator::finish(const Recording& run) {
   m.warnings = run.warnings;
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
-  const std::vector<std::size_t> deadlock = parts_->stuck.deadlock();
+  const std::vector<std::size_t> deadlock = parts_->stuck.deadlock(run);
   for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
   m.outcome =
       outcome_words(m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));

@@ -257,11 +257,15 @@ std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
   return reports;
 }
 
-std::vector<std::size_t> StuckWatch::deadlock() const {
+std::vector<std::size_t> StuckWatch::deadlock(const Recording& run) const {
   if (!decided_) return {};
-  const auto stands_still = [&](std::size_t i) { return norm(last_->robots[i].velocity) < kAtRest; };
-  for (std::vector<std::size_t>& cycle : deadlocks_in(waiting_in(scenario_, *decided_)))
-    if (std::all_of(cycle.begin(), cycle.end(), stands_still)) return std::move(cycle);
+  const RunEnd end{scenario_, run, *last_, decided_.get(), waiting_in(scenario_, *decided_)};
+  const auto stands_elsewhere = [&](std::size_t i) {
+    const RobotStep& r = last_->robots[i];
+    return norm(r.velocity) < kAtRest && norm(target_of(end, i) - r.position) > scenario_.arrival_tolerance;
+  };
+  for (std::vector<std::size_t>& cycle : deadlocks_in(end.waits))
+    if (std::all_of(cycle.begin(), cycle.end(), stands_elsewhere)) return std::move(cycle);
   return {};
 }
 

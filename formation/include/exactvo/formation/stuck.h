@@ -61,8 +61,9 @@ class StuckWatch {
   void add(std::shared_ptr<const Step> row);
   /// As if the run had ended with the last row added. `run` has what is known beside its rows. REQUIRES: a row.
   std::vector<StuckReport> reports(const Recording& run) const;
-  /// Robots that stand in the last row and of which each waits for the next (waiting.h); empty where there are none.
-  std::vector<std::size_t> deadlock() const;
+  /// Robots that stand in the last row, none of them at its goal or slot, and of which each waits for the next
+  /// (waiting.h); empty where there are none. `run`: as for `reports`.
+  std::vector<std::size_t> deadlock(const Recording& run) const;
 
  private:
   struct OfRobot {
