@@ -26,7 +26,6 @@
 namespace exactvo::bench {
 namespace {
 
-constexpr std::size_t kInstances = 32768;  // a branch predictor learns a small set
 constexpr int kRounds = 11;
 /// Velocities further apart than this are counted as different: float carries 2^-24 of 2 m/s, a sharp vertex 100 times.
 constexpr double kApart = 1e-4;
@@ -39,6 +38,7 @@ struct Flags {
   std::size_t adversarial = 0;  ///< problems a family and perturbation
   bool table = false;           ///< the figures to reach and what was measured, from the sets they need
   std::uint64_t seed = 1;
+  std::size_t problems = 32768;  ///< of a set that is recorded or made: a branch predictor learns a small one
   int rounds = kRounds;
   int untimed = 1;  ///< passes before each that is timed: a set settles in the shared cache after about four
 };
@@ -103,14 +103,14 @@ const std::vector<lp::Problem>& recording(const std::string& name, const Flags& 
   static std::map<std::string, std::vector<lp::Problem>> recorded;
   if (recorded.count(name) > 0) return recorded[name];
   const bool is_file = name == kFile || (flags.table && name == "C10" && !flags.instances.empty());
-  return recorded[name] = is_file ? instances_of(flags.instances) : record(name, kInstances);
+  return recorded[name] = is_file ? instances_of(flags.instances) : record(name, flags.problems);
 }
 
 Set set_named(std::string name, const Flags& flags) {
   const std::string whole_name = name;
   const char part = part_of(name);
   std::vector<lp::Problem> problems =
-      has_parts(name) ? recording(name, flags) : lp::generate(name, kInstances, flags.seed);
+      has_parts(name) ? recording(name, flags) : lp::generate(name, flags.problems, flags.seed);
   if (part != ' ') problems = only(problems, part == 'f');
   for (lp::Problem& p : problems) sort_hard_first(p);
   return {whole_name, problems};
@@ -376,6 +376,7 @@ bool read_flags(int argc, char** argv, Flags& flags) {
   options.text("--json", flags.json, "A file for the results");
   options.whole_number("--adversarial", flags.adversarial, 1, "Problems per family and perturbation; nothing is timed");
   options.whole_number("--seed", flags.seed, 0, "Of the generated sets");
+  options.whole_number("--problems", flags.problems, 1, "Of a set that is recorded or made, at most");
   options.whole_number("--rounds", flags.rounds, 1, "Timed passes over a set");
   options.whole_number("--untimed", flags.untimed, 0, "Passes before each that is timed");
   if (!options.parse(argc, argv)) return false;
