@@ -17,12 +17,17 @@ using geometry::Vec2;
 
 constexpr double kTurn = 6.283185307179586;
 
-inline void add_robot(Scenario& s, Vec2 from, Vec2 to) {
-  Robot& r = s.robots.emplace_back();
-  r.id = "R" + std::to_string(s.robots.size());
+inline Robot robot(const std::string& id, Vec2 from, Vec2 to) {
+  Robot r;
+  r.id = id;
   r.position = from;
   r.max_speed = 1.5;
   r.goals = {to};
+  return r;
+}
+
+inline void add_robot(Scenario& s, Vec2 from, Vec2 to) {
+  s.robots.push_back(robot("R" + std::to_string(s.robots.size() + 1), from, to));
 }
 
 inline void add_wall(Scenario& s, std::vector<Vec2> line) {

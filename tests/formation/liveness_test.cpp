@@ -24,15 +24,7 @@ namespace {
 
 using test_scenes::circle;
 using test_scenes::kTurn;
-
-Robot robot(const std::string& id, Vec2 from, Vec2 to) {
-  Robot r;
-  r.id = id;
-  r.position = from;
-  r.max_speed = 1.5;
-  r.goals = {to};
-  return r;
-}
+using test_scenes::robot;
 
 std::size_t relaxed(const Recording& run) {
   std::size_t count = 0;
@@ -40,10 +32,6 @@ std::size_t relaxed(const Recording& run) {
     for (const RobotStep& r : row.robots)
       count += r.status == lp::Status::relaxed || r.status == lp::Status::infeasible;
   return count;
-}
-
-bool audits_clean(const Scenario& s, const Recording& run) {
-  return datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean();
 }
 
 TEST(Liveness, CirclesOfTwoToTwentyAllArrive) {
@@ -402,89 +390,6 @@ TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
 }
 
-/// They pushed each other off it, by nineteen plans, until the time limit: the first one drove 278 m.
-TEST(Liveness, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
-  Scenario s;
-  s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {-5, 3}, {5, 0})};
-  const Recording run = simulate(s);
-  const Metrics m = measure(s, run);
-  EXPECT_EQ(m.plans->groups, 0u);
-  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
-  for (const RobotMetrics& r : m.robots) EXPECT_LT(r.path_length, 15.0) << r.id;
-  EXPECT_LT(run.steps.back().time, 10.0) << "nobody goes on";
-  EXPECT_NE(m.outcome.find("R1 stays: R2 was first at the goal that both have"), std::string::npos) << m.outcome;
-}
-
-/// Who is far away when its rival arrives comes, and stays beside it; who was there first is not pushed off. The run
-/// ended at once before, with R2 stopped where it was.
-TEST(Liveness, WhoseGoalIsTakenComesBesideItAndStays) {
-  for (const double apart : {0.0, 0.5}) {
-    Scenario s;
-    s.robots = {robot("R1", {3, 0}, {0, 0}), robot("R2", {20, 0}, {apart, 0})};
-    const Recording run = simulate(s);
-    const Metrics m = measure(s, run);
-    EXPECT_TRUE(m.robots[0].arrived);
-    const double gap = norm(run.steps.back().robots[0].position - run.steps.back().robots[1].position) - 1.0;
-    EXPECT_LT(gap, 0.5) << apart;
-    EXPECT_TRUE(audits_clean(s, run));
-  }
-}
-
-/// The rival arrives while they go by a joint plan, which they drive to its end. The run ended there before, and the
-/// audit refuted what it said of robots that stayed.
-TEST(Liveness, WhoGoesByPlanToATakenGoalDrivesOn) {
-  Scenario s;
-  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 0})};
-  const Recording run = simulate(s);
-  const Metrics m = measure(s, run);
-  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
-  EXPECT_NE(m.outcome.find(" stays: "), std::string::npos) << m.outcome;
-  EXPECT_TRUE(audits_clean(s, run));
-}
-
-/// R1 rests where R2 only passes: it makes way, and comes back.
-TEST(Liveness, WhoRestsOnAnothersGoalOnTheWayMakesWay) {
-  Scenario s;
-  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 5})};
-  s.robots[1].goals = {{0, 0}, {0, 5}};
-  const Recording run = simulate(s);
-  EXPECT_EQ(measure(s, run).outcome, "all robots arrived");
-  EXPECT_TRUE(audits_clean(s, run));
-}
-
-/// Six goals on a line, each too near to its neighbours: who is there first keeps its own, and the others make room.
-/// R4 stood 0.37 m from its goal for a minute, behind one that stayed as R4 was said to rest there.
-TEST(Liveness, WhoStaysBesideATakenGoalMakesRoomInIt) {
-  for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
-    Scenario s;
-    s.time_limit = 60.0;
-    for (int i = 0; i < 6; ++i)
-      s.robots.push_back(
-          robot("R" + std::to_string(i + 1), 6.0 * geometry::rotated({1.0, 0.0}, kTurn * i / 6.3), {0.6 * i, 0.0}));
-    SimulationOptions options;
-    options.liveness = liveness;
-    const Recording run = simulate(s, options);
-    const Metrics m = measure(s, run);
-    const auto arrived = std::count_if(m.robots.begin(), m.robots.end(), [](const auto& r) { return r.arrived; });
-    EXPECT_GE(arrived, liveness == Liveness::plan ? 2 : 1) << name(liveness) << ": " << m.outcome;
-    for (const StuckReport& r : explain_stuck(s, run))
-      EXPECT_EQ(r.text.find("out of reach"), std::string::npos) << r.text;
-  }
-}
-
-/// R1 has no way to its goal and stays where that of R2 is: it makes way by plan.
-TEST(Liveness, WhoHasNoWayToItsGoalMakesWayForOthers) {
-  Scenario s;
-  s.time_limit = 20.0;
-  s.obstacles.push_back({"pen", geometry::Polyline{{{5, -1}, {7, -1}, {7, 1}, {5, 1}, {5, -1}}}});
-  s.robots = {robot("R1", {-4, 0}, {6, 0}), robot("R2", {-8, 0}, {-4.2, 0})};
-  const Recording run = simulate(s);
-  const Metrics m = measure(s, run);
-  EXPECT_FALSE(m.robots[0].arrived);
-  EXPECT_TRUE(m.robots[1].arrived) << m.outcome;
-  EXPECT_TRUE(audits_clean(s, run));
-}
-
 /// A cart stands in the only door: plans through it were made again and again, and more time was said to be missing.
 TEST(Liveness, AMovingObstacleThatStandsInTheOnlyWayIsNamed) {
   Scenario s;
@@ -535,7 +440,7 @@ TEST(Liveness, TwoPassEachOtherWhereTheyHaveJustRoomSideBySide) {
     const Recording run = simulate(s);
     EXPECT_EQ(measure(s, run).outcome, "all robots arrived") << width;
     EXPECT_EQ(relaxed(run), 0u) << width;
-    EXPECT_TRUE(audits_clean(s, run)) << width;
+    EXPECT_TRUE(datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean()) << width;
   }
 }
 

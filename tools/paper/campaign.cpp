@@ -130,7 +130,7 @@ std::string random_table(const std::vector<VariantResult>& results, const Campai
   return text + "Formations: controller default; ivo-cluster is the same as ivo there.\n";
 }
 
-/// One set of remedies in the formation scenes: a JSON list, a run an entry.
+/// One set of remedies in the formation scenes: a JSON list with one entry per run.
 std::string scenes_of(const Variant& variant, const fs::path& scenarios) {
   Json list = Json::array();
   for (const char* scene : kFormationScenes) {

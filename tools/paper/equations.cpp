@@ -15,7 +15,7 @@ const std::vector<Equation>& equations() {
       {"(2)",
        "x, v in R^(n x 2), stacked in one column",
        "a stacked column has the space R^(2n)",
-       "a position and a velocity a robot",
+       "one position and one velocity per robot",
        {{"formation/include/exactvo/formation/recording.h", "struct RobotStep"}}},
       {"(3)",
        "x_i - x_j -> Delta_i - Delta_j, v_i - v_j -> 0",

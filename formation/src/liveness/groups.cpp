@@ -11,6 +11,7 @@
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
+#include "steering/goals.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
@@ -26,38 +27,18 @@ constexpr double kBetweenPlans = 5.0;
 constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
-/// Plans for which the same robots waited, with the same goals: beyond that they are in vain, and there are longer and
-/// longer pauses between them.
-constexpr int kMostTries = 10;
-constexpr double kAfterTriesInVain = 40.0;  ///< in the time that the slowest robot needs for its diameter
-
 // In diameters.
-constexpr double kNearer = 0.4;    ///< counts as coming nearer
 constexpr double kTogether = 1.0;  ///< a smaller gap joins two robots in a group
 constexpr double kBesideTheWayBack = 0.3;
-constexpr double kOpenMargin = 3.0;  ///< of a region round its robots and goals
-constexpr double kSceneMargin = 2.0;
 
-/// Calls of the generator.
-constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000;
 /// The whole scene is planned for at most that many robots.
 constexpr std::size_t kEveryoneUpTo = 200;
-/// A map of the whole scene or of all goals has at most this many places, which take 0.1 s to a second, and this many
-/// distances from places to goals.
-constexpr double kMostPlaces = 6e4;
-constexpr double kMostDistances = 4e6;
-/// A plan is made for fewer robots where its map would have more distances than that: they take 40 MB and a second.
-constexpr double kLargestMap = 1e7;
 
 std::vector<std::size_t> merged(std::vector<std::size_t> a, const std::vector<std::size_t>& b) {
   a.insert(a.end(), b.begin(), b.end());
   std::sort(a.begin(), a.end());
   a.erase(std::unique(a.begin(), a.end()), a.end());
   return a;
-}
-
-bool has(const std::vector<std::size_t>& sorted, std::size_t x) {
-  return std::binary_search(sorted.begin(), sorted.end(), x);
 }
 
 /// Why there is no plan, before the names of those who wait for one.
@@ -70,7 +51,7 @@ std::string words_of(PlanEnd why) {
     case PlanEnd::no_use:
       return "the roadmap has no place nearer to its goal that others leave free for ";
     case PlanEnd::in_vain:
-      return "joint plans were made " + std::to_string(kMostTries) + " times or more, in vain, for ";
+      return "joint plans were made " + std::to_string(PlanTries::kMost) + " times or more, in vain, for ";
     default:
       return "no plan was found on the roadmap for ";
   }
@@ -97,10 +78,12 @@ Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int
       space_(&space),
       plans_(plans),
       is_stopped_(std::move(is_stopped)),
+      patience_(patience_of(scenario)),
       of_robot_(scenario.robots.size()),
       group_of_(scenario.robots.size(), kNone),
       wanted_(scenario.robots.size()),
       notes_(scenario.robots.size()),
+      tries_(scenario),
       search_(threads) {
   for (const SceneObstacle& o : scenario.obstacles)
     for (const Segment& edge : geometry::edges_of(o.shape)) {
@@ -111,7 +94,6 @@ Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int
     scene_.add(r.position);
     for (const Vec2 goal : r.goals) scene_.add(goal);
   }
-  for (const Robot& r : scenario.robots) patience_ = std::max(patience_, 2.0 * r.radius / r.max_speed);
   for (OfRobot& r : of_robot_) {
     r.shortest = kInfinity;
     r.planned_at = -kInfinity;
@@ -215,12 +197,10 @@ Groups::Members Groups::with_groups_of(Members who) const {
 /// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on. Who keeps
 /// a wide margin is joined over that.
 std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
-  double largest = 0.0;
-  for (const Robot& r : scenario_.robots) largest = std::max(largest, r.radius);
   const auto reach = [&](double radii) {
     return radii + std::max(kTogether * radii, kNearMargins * scenario_.margins.robot);
   };
-  const double farthest = reach(2.0 * largest);
+  const double farthest = reach(2.0 * largest_radius(scenario_));
   Cells<std::size_t> by_place(farthest);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (now_[j].may_join) by_place.add(now_[j].position, j);
@@ -245,14 +225,6 @@ std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
     take(near);
   }
   return found;
-}
-
-/// Whether a map for these is of a size that can be searched.
-bool Groups::fits(const Members& who, const std::vector<Vec2>& from, int replans) const {
-  if (uses_whole_map(who)) return true;
-  return Roadmap::lattice_places(region_for(who, from, replans), largest_radius(who)) *
-             static_cast<double>(who.size()) <=
-         kLargestMap;
 }
 
 /// The nearest of a very large cluster.
@@ -282,7 +254,7 @@ Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) 
     who = with_groups_of(std::move(who));
     Members more;
     for (std::size_t j = 0; j < now_.size(); ++j)
-      if (!has(who, j) && now_[j].may_join && is_in_the_way_back(j, who, to, kBesideTheWayBack)) more.push_back(j);
+      if (!contains(who, j) && now_[j].may_join && is_in_the_way_back(j, who, to, kBesideTheWayBack)) more.push_back(j);
     grew = !more.empty();
     who = merged(std::move(who), more);
   }
@@ -292,7 +264,7 @@ Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) 
 /// Unless somebody stands in the way who makes none.
 bool Groups::can_go_back(const Members& who, std::size_t to) const {
   for (std::size_t j = 0; j < now_.size(); ++j)
-    if (!now_[j].may_join && !has(who, j) && is_in_the_way_back(j, who, to, 0.0)) return false;
+    if (!now_[j].may_join && !contains(who, j) && is_in_the_way_back(j, who, to, 0.0)) return false;
   return true;
 }
 
@@ -353,224 +325,11 @@ bool Groups::plan_for(Members who, const Members& seeds, int replans) {
   return false;
 }
 
-geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& from, int replans) const {
-  const double diameter = 2.0 * largest_radius(who);
-  geometry::Box here, both;
-  for (const std::size_t i : who) {
-    here.add(from[i]);
-    both.add(now_[i].goal);
-  }
-  both.add(here);
-  const auto grown = [](const geometry::Box& b, double by) {
-    return geometry::Box{b.low - Vec2{by, by}, b.high + Vec2{by, by}};
-  };
-  const geometry::Box all = grown(both, kOpenMargin * diameter);
-  const double places = Roadmap::lattice_places(all, 0.5 * diameter);
-  if (places <= kMostPlaces && places * static_cast<double>(who.size()) <= kMostDistances) return all;
-  return grown(here, (4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * replans) * diameter);
-}
-
-double Groups::largest_radius(const Members& who) const {
-  double largest = 0.0;
-  for (const std::size_t i : who) largest = std::max(largest, scenario_.robots[i].radius);
-  return largest;
-}
-
-geometry::Box Groups::whole_scene(double radius) const {
-  const Vec2 corner{2.0 * kSceneMargin * radius, 2.0 * kSceneMargin * radius};
-  return {scene_.low - corner, scene_.high + corner};
-}
-
-bool Groups::uses_whole_map(const Members& who) const {
-  if (space_->is_open()) return false;
-  const double radius = largest_radius(who);
-  const double places = Roadmap::lattice_places(whole_scene(radius), radius);
-  return places <= kMostPlaces && places * static_cast<double>(who.size()) <= kLargestMap;
-}
-
-/// For the largest of the members: who is larger and not among them needs no room.
-Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const {
-  const double radius = largest_radius(who);
-  if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius, detail);
-  const std::pair key{radius, detail};
-  const auto known = whole_maps_.find(key);
-  if (known != whole_maps_.end()) return known->second;
-  return whole_maps_.emplace(key, Roadmap(*space_, whole_scene(radius), radius, detail)).first->second;
-}
-
-/// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Who only passes its
-/// goal has it before who stays there; who yields comes last.
-std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const {
-  const std::size_t places = map.size();
-  std::vector<std::tuple<int, double, std::size_t>> nearest_first;
-  for (std::size_t k = 0; k < who.size(); ++k) {
-    const RobotNow& r = now_[who[k]];
-    const bool passes = r.goal_number + 1 < scenario_.robots[who[k]].goals.size();
-    nearest_first.emplace_back(r.yields ? 2 : passes ? 0 : 1, norm(r.goal - from[who[k]]), k);
-  }
-  std::sort(nearest_first.begin(), nearest_first.end());
-  std::vector<std::pair<Vec2, double>> taken;  // with radii
-  for (std::size_t j = 0; j < now_.size(); ++j)
-    if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      taken.emplace_back(now_[j].position, scenario_.robots[j].radius);
-  std::vector<PlaceNumber> targets(who.size());
-  for (const auto& [rank, from_goal, k] : nearest_first) {
-    const std::size_t i = who[k];
-    const double radius = scenario_.robots[i].radius;
-    const auto is_free = [&](Vec2 place) {
-      return std::all_of(taken.begin(), taken.end(), [&](const auto& t) {
-        const double wanted = (1.0 + kPlannedGap) * (radius + t.second);
-        return squared_norm(place - t.first) >= wanted * wanted;
-      });
-    };
-    const Vec2 goal = now_[i].goal;
-    std::optional<PlaceNumber> target;
-    if (is_free(goal) && space_->clearance(goal, radius) >= radius) target = map.attach_where_joined(goal, radius);
-    double least = kInfinity;
-    for (PlaceNumber p = 0; !target && p < places; ++p) {
-      const double distance = squared_norm(map.place(p) - goal);
-      if (distance < least && !map.is_blocked(p) && is_free(map.place(p))) {
-        least = distance;
-        targets[k] = p;
-      }
-    }
-    if (target)
-      targets[k] = *target;
-    else if (least == kInfinity)
-      targets[k] = map.attach(from[i], radius);
-    taken.emplace_back(map.place(targets[k]), radius);
-  }
-  return targets;
-}
-
-/// Whether the plan would bring one of the seeds to its goal, or nearer to it than it stands.
-bool Groups::serves_any(const Members& seeds, const Members& who, const Roadmap& map,
-                        const std::vector<PlaceNumber>& targets) const {
-  constexpr double kThere = 1e-6;  // of the radius
-  return std::any_of(seeds.begin(), seeds.end(), [&](std::size_t i) {
-    const RobotNow& r = now_[i];
-    const double radius = scenario_.robots[i].radius;
-    const auto k = std::lower_bound(who.begin(), who.end(), i) - who.begin();
-    const double left = norm(r.goal - map.place(targets[static_cast<std::size_t>(k)]));
-    return !r.has_arrived && (left <= kThere * radius || left < norm(r.goal - r.position) - kNearer * 2.0 * radius);
-  });
-}
-
-Groups::Waiting Groups::waiting_of(const Members& who) const {
-  Waiting waiting;
-  for (const std::size_t i : who) {
-    if (now_[i].has_arrived) continue;
-    waiting.first.push_back(i);
-    waiting.second.push_back(now_[i].goal_number);
-  }
-  return waiting;
-}
-
-std::vector<std::pair<std::size_t, Vec2>> Groups::those_that_no_plan_moves() const {
-  std::vector<std::pair<std::size_t, Vec2>> at;
-  for (std::size_t k = 0; k < scenario_.moving_obstacles.size(); ++k)
-    at.emplace_back(k, displacement_at(scenario_.moving_obstacles[k], time_));
-  for (std::size_t i = 0; i < now_.size(); ++i)
-    if (!now_[i].may_join) at.emplace_back(i, now_[i].position);
-  return at;
-}
-
-double Groups::left_of(const Waiting& waiting) const {
-  double left = 0.0;
-  for (const std::size_t i : waiting.first) left += norm(now_[i].goal - now_[i].position);
-  return left;
-}
-
-/// Something has moved that could have kept them from their goals, or they have come nearer to these.
-bool Groups::has_changed_since(const Tries& tries, const Waiting& waiting) const {
-  const double far = kNearer * 2.0 * largest_radius(waiting.first);
-  if (left_of(waiting) < tries.left - far) return true;
-  const auto now = those_that_no_plan_moves();
-  return !std::equal(
-      now.begin(), now.end(), tries.others.begin(), tries.others.end(),
-      [&](const auto& a, const auto& b) { return a.first == b.first && norm(a.second - b.second) <= far; });
-}
-
-/// Each pause is twice as long as the one before.
-bool Groups::is_in_vain(const Members& who) const {
-  const Waiting waiting = waiting_of(who);
-  const auto found = tries_.find(waiting);
-  if (found == tries_.end() || found->second.number < kMostTries) return false;
-  const Tries& tries = found->second;
-  return !has_changed_since(tries, waiting) &&
-         time_ - tries.last < std::ldexp(kAfterTriesInVain * patience_, tries.number - kMostTries);
-}
-
-void Groups::count_try(const Members& who) {
-  const Waiting waiting = waiting_of(who);
-  Tries& tries = tries_[waiting];
-  if (tries.number == 0 || has_changed_since(tries, waiting))
-    tries = {0, 0.0, left_of(waiting), those_that_no_plan_moves()};
-  ++tries.number;
-  tries.last = time_;
-}
-
-/// Of the generator, for a plan from where the robots were in that row.
-std::size_t Groups::most_calls(std::size_t row) const {
-  if (row == history_.last()) return kCalls;
-  return row == history_.first() ? kCallsFromTheStart : kCallsGoingBack;
-}
-
 void Groups::dissolve_those_of(const Members& who) {
   for (const std::size_t i : who) {
     if (is_member(i)) dissolve(group_of_[i]);
     of_robot_[i].planned_at = time_;
   }
-}
-
-PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row, Detail detail) {
-  const Members who = with_groups_of(members);
-  const std::vector<Vec2>& from = history_[row];
-  if (!fits(who, from, replans)) return PlanEnd::too_large;
-  dissolve_those_of(seeds);
-  if (is_in_vain(who)) return PlanEnd::in_vain;
-  Roadmap map = map_for(who, from, replans, detail);
-  for (std::size_t j = 0; j < now_.size(); ++j)
-    if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(who) + scenario_.robots[j].radius));
-  JointProblem problem;
-  problem.map = &map;
-  problem.is_stopped = is_stopped_;
-  problem.goals = targets_for(who, from, map);
-  if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
-  for (const std::size_t i : who) {
-    problem.radii.push_back(scenario_.robots[i].radius);
-    problem.starts.push_back(map.attach(from[i], scenario_.robots[i].radius));
-  }
-  const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
-  PlanFound found = search_.best_plan(problem, most_calls(row), has_lanes);
-  course_.search_nodes += found.nodes;
-  if (found.end != PlanEnd::planned) return found.end;
-  dissolve_those_of(who);
-  Group& g = groups_.emplace_back(Group{who, Following(std::move(found.plan), problem.radii)});
-  g.back_at = history_.last();
-  g.back_to = row;
-  g.progress = time_;
-  g.replans = replans;
-  for (const std::size_t i : who) {
-    group_of_[i] = groups_.size() - 1;
-    of_robot_[i].failures = 0;
-    of_robot_[i].planned_goal = now_[i].goal_number;
-  }
-  count_try(who);
-  ++course_.groups;
-  course_.largest = std::max(course_.largest, who.size());
-  made_.push_back(recorded(g));
-  forget_without_plan(who);
-  notes_[who.front()] = joined_notes(notes_[who.front()], plan_words(g));
-  return PlanEnd::planned;
-}
-
-JointPlan Groups::recorded(const Group& g) const {
-  JointPlan plan{g.back_at, g.back_to, g.who, {}, {}};
-  for (const std::size_t i : g.who) plan.starts.push_back(history_[g.back_to][i]);
-  for (const PlannedMove& m : g.following.plan()) plan.moves.push_back({g.who[m.robot], m.to});
-  return plan;
 }
 
 std::string Groups::plan_words(const Group& g) const {
@@ -593,7 +352,7 @@ void Groups::dissolve(std::size_t number) {
 /// They were planned for again.
 void Groups::forget_without_plan(const Members& who) {
   const auto is_of_these = [&](const WithoutPlan& w) {
-    return std::any_of(w.who.begin(), w.who.end(), [&](std::size_t i) { return has(who, i); });
+    return std::any_of(w.who.begin(), w.who.end(), [&](std::size_t i) { return contains(who, i); });
   };
   without_plan_.erase(std::remove_if(without_plan_.begin(), without_plan_.end(), is_of_these), without_plan_.end());
 }
@@ -603,7 +362,7 @@ std::string Groups::no_plan_words(const Members& robots) const {
   for (const WithoutPlan& w : without_plan_) {
     std::vector<std::string> names;
     for (const std::size_t i : w.who)
-      if (has(robots, i)) names.push_back(scenario_.robots[i].id);
+      if (contains(robots, i)) names.push_back(scenario_.robots[i].id);
     if (names.empty()) continue;
     const std::string who = abridged(std::move(names));
     texts.push_back(words_of(w.why) + who);

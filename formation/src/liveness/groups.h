@@ -7,6 +7,7 @@
 ///
 /// Deterministic: budgets of searches are counted.
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "exactvo/formation/waiting.h"
 #include "liveness/history.h"
 #include "liveness/plan_search.h"
+#include "liveness/plan_tries.h"
 
 namespace exactvo::formation::detail {
 
@@ -25,15 +27,10 @@ namespace exactvo::formation::detail {
 /// robot stops at that distance.
 inline constexpr double kNearMargins = 1.5;
 
-/// A robot at the beginning of a step.
-struct RobotNow {
-  Vec2 position;                ///< m
-  Vec2 goal;                    ///< m, a place that counts as its present goal
-  bool has_arrived = false;     ///< at its last goal
-  bool may_join = false;        ///< it cooperates and has a way to its goal
-  std::size_t goal_number = 0;  ///< which of its goals is the present one
-  bool yields = false;          ///< others have their goals before it: its own is taken or out of reach
-};
+/// Whether a sorted list has `x`.
+inline bool contains(const std::vector<std::size_t>& sorted, std::size_t x) {
+  return std::binary_search(sorted.begin(), sorted.end(), x);
+}
 
 /// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
 Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
@@ -98,16 +95,6 @@ class Groups {
     Members who;
     PlanEnd why;
   };
-  /// Robots that were not where they were to go when plans were made, and the numbers of their goals.
-  using Waiting = std::pair<Members, std::vector<std::size_t>>;
-  struct Tries {
-    int number = 0;
-    double last = 0.0;  ///< s
-    double left = 0.0;  ///< m, to their goals, straight, all together, when they came nearer last
-    /// m: where moving obstacles stood then, and robots that join no plan, by their numbers.
-    std::vector<std::pair<std::size_t, Vec2>> others{};
-  };
-
   Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
   const Group& group(std::size_t robot) const { return groups_[group_of_[robot]]; }
   double stalled_for(std::size_t robot) const { return time_ - of_robot_[robot].since; }
@@ -123,7 +110,6 @@ class Groups {
 
   Members everyone() const;
   Members members_of(const Group& g) const;
-  double largest_radius(const Members& who) const;  ///< m
   std::vector<std::size_t> by_nearness_to(const Members& seeds) const;
   Members as_many_as_fit(std::vector<std::size_t> nearest_first, int replans) const;
   bool fits(const Members& who, const std::vector<Vec2>& from, int replans) const;
@@ -146,12 +132,6 @@ class Groups {
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
   bool serves_any(const Members& seeds, const Members& who, const Roadmap& map,
                   const std::vector<PlaceNumber>& targets) const;
-  Waiting waiting_of(const Members& who) const;
-  std::vector<std::pair<std::size_t, Vec2>> those_that_no_plan_moves() const;
-  double left_of(const Waiting& waiting) const;
-  bool has_changed_since(const Tries& tries, const Waiting& waiting) const;
-  bool is_in_vain(const Members& who) const;
-  void count_try(const Members& who);
   std::size_t most_calls(std::size_t row) const;
   void dissolve(std::size_t group);
   JointPlan recorded(const Group& g) const;
@@ -161,8 +141,8 @@ class Groups {
   const FreeSpace* space_;
   bool plans_;
   std::function<bool()> is_stopped_;
-  geometry::Box scene_;    ///< m, of obstacles, robots and goals
-  double patience_ = 0.0;  ///< s, that the slowest needs for its diameter
+  geometry::Box scene_;  ///< m, of obstacles, robots and goals
+  double patience_;      ///< s
   double time_ = 0.0;
   std::size_t row_ = 0;
   std::vector<RobotNow> now_;
@@ -179,7 +159,7 @@ class Groups {
   std::vector<Due> due_;                                             ///< who was stalled in the last row
   mutable std::map<std::pair<double, Detail>, Roadmap> whole_maps_;  ///< by radius
   std::vector<WithoutPlan> without_plan_;
-  std::map<Waiting, Tries> tries_;
+  PlanTries tries_;
   LivenessCourse course_;
   std::vector<JointPlan> made_;
   PlanSearch search_;

@@ -144,7 +144,7 @@ class KinematicRun {
 
   /// Who finds its goal taken comes beside it and stays there, instead of pressing for it for ever.
   void look_at_claims() {
-    Cells<std::size_t> resting(4.0 * scenario_.robots.front().radius);
+    Cells<std::size_t> resting(4.0 * claims_->largest_radius());
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       KinematicRobot& r = robots_[i];
       if (r.rests_beside) resting.add(r.position, i);
@@ -179,8 +179,8 @@ class KinematicRun {
     const KinematicRobot& r = robots_[i];
     const double radius = scenario_.robots[i].radius;
     bool is_beside = gap_to_taken(i) <= gap_beside(radius + scenario_.robots[*r.taken_by].radius);
-    const double reach = 4.0 * radius + kNearMargins * scenario_.margins.robot;
-    resting.for_each_about(r.position, reach, [&](std::size_t j) {
+    const double most = radius + claims_->largest_radius();
+    resting.for_each_about(r.position, most + gap_beside(most), [&](std::size_t j) {
       const double radii = radius + scenario_.robots[j].radius;
       is_beside = is_beside || (j != i && robots_[j].taken_by == r.taken_by &&
                                 norm(robots_[j].position - r.position) - radii <= gap_beside(radii));

@@ -19,7 +19,9 @@ class GoalClaims {
  public:
   /// `scenario` must outlive it. REQUIRES: robots with goals.
   explicit GoalClaims(const Scenario& scenario)
-      : scenario_(scenario), largest_(largest_radius(scenario)), by_goal_(4.0 * largest_) {}
+      : scenario_(scenario), largest_(detail::largest_radius(scenario)), by_goal_(4.0 * largest_) {}
+
+  double largest_radius() const { return largest_; }  ///< m, of all robots
 
   /// Whether any two last goals are too near to each other.
   bool are_needed() const {
@@ -38,12 +40,6 @@ class GoalClaims {
   std::optional<std::size_t> taken_by(std::size_t i) const { return nearest_in(by_goal_, i); }
 
  private:
-  static double largest_radius(const Scenario& scenario) {
-    double largest = 0.0;
-    for (const Robot& r : scenario.robots) largest = std::max(largest, r.radius);
-    return largest;
-  }
-
   std::optional<std::size_t> nearest_in(const Cells<std::size_t>& goals, std::size_t i) const {
     const Vec2 goal = scenario_.robots[i].goals.back();
     std::optional<std::size_t> nearest;

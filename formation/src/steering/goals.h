@@ -4,11 +4,25 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "exactvo/formation/scenario.h"
 #include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
+
+/// m, of all robots.
+inline double largest_radius(const Scenario& scenario) {
+  double largest = 0.0;
+  for (const Robot& r : scenario.robots) largest = std::max(largest, r.radius);
+  return largest;
+}
+/// m, of the robots in `who`.
+inline double largest_radius(const Scenario& scenario, const std::vector<std::size_t>& who) {
+  double largest = 0.0;
+  for (const std::size_t i : who) largest = std::max(largest, scenario.robots[i].radius);
+  return largest;
+}
 
 /// How near to its goal number `goal` a robot has reached it, m: a goal on the way counts within the robot's own
 /// radius.

@@ -6,6 +6,7 @@
 
 #include "control/consensus.h"
 #include "exactvo/geometry/require.h"
+#include "steering/goals.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -29,12 +30,6 @@ double radius_of_formation(const Scenario& scenario, const std::vector<Vec2>& of
   return radius;
 }
 
-double largest_radius(const Scenario& scenario) {
-  double radius = 0.0;
-  for (const Robot& robot : scenario.robots) radius = std::max(radius, robot.radius);
-  return radius;
-}
-
 }  // namespace
 
 void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
@@ -47,7 +42,7 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
   leader.path = {from, goal.to};  // the map covers both
   leader.why_short.clear();
   leader.note.clear();
-  const double whole = radius_of_formation(scenario, offsets), single = largest_radius(scenario);
+  const double whole = radius_of_formation(scenario, offsets), single = detail::largest_radius(scenario);
   Guide guide(scenario, scenario.margins.obstacle, whole);
   const detail::Destination to{goal.to};
   const bool fits = guide.can_go(whole, from, to);

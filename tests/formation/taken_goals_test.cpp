@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goals that are too near to each other for all who have them, or in another robot's way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/run_info.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+#include "exactvo/formation/stuck.h"
+#include "liveness_scenes.h"
+
+namespace exactvo::formation {
+namespace {
+
+using test_scenes::kTurn;
+using test_scenes::robot;
+
+bool audits_clean(const Scenario& s, const Recording& run) {
+  return datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean();
+}
+
+/// They pushed each other off it, by nineteen plans, until the time limit: the first one drove 278 m.
+TEST(TakenGoals, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {-5, 3}, {5, 0})};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_EQ(m.plans->groups, 0u);
+  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
+  for (const RobotMetrics& r : m.robots) EXPECT_LT(r.path_length, 15.0) << r.id;
+  EXPECT_LT(run.steps.back().time, 10.0) << "nobody goes on";
+  EXPECT_NE(m.outcome.find("R1 stays: R2 was first at the goal that both have"), std::string::npos) << m.outcome;
+}
+
+/// Who is far away when its rival arrives comes, and stays beside it; who was there first is not pushed off. The run
+/// ended at once before, with R2 stopped where it was.
+TEST(TakenGoals, WhoseGoalIsTakenComesBesideItAndStays) {
+  for (const double apart : {0.0, 0.5}) {
+    Scenario s;
+    s.robots = {robot("R1", {3, 0}, {0, 0}), robot("R2", {20, 0}, {apart, 0})};
+    const Recording run = simulate(s);
+    const Metrics m = measure(s, run);
+    EXPECT_TRUE(m.robots[0].arrived);
+    const double gap = norm(run.steps.back().robots[0].position - run.steps.back().robots[1].position) - 1.0;
+    EXPECT_LT(gap, 0.5) << apart;
+    EXPECT_TRUE(audits_clean(s, run));
+  }
+}
+
+/// The rival arrives while they go by a joint plan, which they drive to its end. The run ended there before, and the
+/// audit refuted what it said of robots that stayed.
+TEST(TakenGoals, WhoGoesByPlanToATakenGoalDrivesOn) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 0})};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
+  EXPECT_NE(m.outcome.find(" stays: "), std::string::npos) << m.outcome;
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// R1 rests where R2 only passes: it makes way, and comes back.
+TEST(TakenGoals, WhoRestsOnAnothersGoalOnTheWayMakesWay) {
+  Scenario s;
+  s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 5})};
+  s.robots[1].goals = {{0, 0}, {0, 5}};
+  const Recording run = simulate(s);
+  EXPECT_EQ(measure(s, run).outcome, "all robots arrived");
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// Six goals on a line, each too near to its neighbours: who is there first keeps its own, and the others make room.
+/// R4 stood 0.37 m from its goal for a minute, behind one that stayed as R4 was said to rest there.
+TEST(TakenGoals, WhoStaysBesideATakenGoalMakesRoomInIt) {
+  for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
+    Scenario s;
+    s.time_limit = 60.0;
+    for (int i = 0; i < 6; ++i)
+      s.robots.push_back(
+          robot("R" + std::to_string(i + 1), 6.0 * geometry::rotated({1.0, 0.0}, kTurn * i / 6.3), {0.6 * i, 0.0}));
+    SimulationOptions options;
+    options.liveness = liveness;
+    const Recording run = simulate(s, options);
+    const Metrics m = measure(s, run);
+    const auto arrived = std::count_if(m.robots.begin(), m.robots.end(), [](const auto& r) { return r.arrived; });
+    EXPECT_GE(arrived, liveness == Liveness::plan ? 2 : 1) << name(liveness) << ": " << m.outcome;
+    for (const StuckReport& r : explain_stuck(s, run))
+      EXPECT_EQ(r.text.find("out of reach"), std::string::npos) << r.text;
+  }
+}
+
+/// R1 has no way to its goal and stays where that of R2 is: it makes way by plan.
+TEST(TakenGoals, WhoHasNoWayToItsGoalMakesWayForOthers) {
+  Scenario s;
+  s.time_limit = 20.0;
+  s.obstacles.push_back({"pen", geometry::Polyline{{{5, -1}, {7, -1}, {7, 1}, {5, 1}, {5, -1}}}});
+  s.robots = {robot("R1", {-4, 0}, {6, 0}), robot("R2", {-8, 0}, {-4.2, 0})};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_FALSE(m.robots[0].arrived);
+  EXPECT_TRUE(m.robots[1].arrived) << m.outcome;
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// In a corridor that R1 fills, R2 comes no nearer than beside R1, which stays beside R0. R2 was not seen to be, since
+/// it was looked for within the reach of small robots.
+TEST(TakenGoals, ASmallRobotStaysBesideALargeOneThatStays) {
+  Scenario s;
+  s.time_limit = 60.0;
+  for (const double y : {-2.7, 2.7}) test_scenes::add_wall(s, {{-4, y}, {30, y}});
+  s.robots = {robot("R0", {1, 0}, {0, 0}), robot("R1", {6, 0}, {0, 0}), robot("R2", {14, 0}, {0, 0})};
+  s.robots[1].radius = 2.5;
+  s.robots[2].radius = 0.3;
+  SimulationOptions options;
+  options.liveness = Liveness::bias;
+  const Recording run = simulate(s, options);
+  const Metrics m = measure(s, run);
+  EXPECT_NE(m.outcome.find("R2 stays: R0 was first at the goal that both have"), std::string::npos) << m.outcome;
+  EXPECT_LT(run.steps.back().time, s.time_limit / 2);
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
+}  // namespace
+}  // namespace exactvo::formation
