@@ -183,7 +183,7 @@ std::vector<HostileFile> hostile_files() {
         {"GeoJsonNesting", "a.geojson", "",
          "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":null,\"geometry\":" +
              repeated("{\"type\":\"GeometryCollection\",\"geometries\":[", kDeep),
-         DataCode::json_syntax});
+         DataCode::nesting});
     const std::string point = "{\"type\": \"Point\", \"coordinates\": [1, 2]}\n";
     files.push_back({"SequenceNesting", "a.ndjson", "",
                      point + repeated("{\"type\":\"GeometryCollection\",\"geometries\":[", kDeep), DataCode::nesting});

@@ -163,7 +163,7 @@ const Malformed kMalformed[] = {
     {R"({"type": "MultiPolygon", "coordinates": [[[[0, 0], [1, 0], [1, 1], [0, 0]]], [[5, 5], [6, 5], [6, 6]]]})",
      "/geometry/coordinates/1/0/0"},
     {R"({"type": "LineString", "coordinates": [0, 0, 1, 1]})", "/geometry/coordinates/0"},
-    {R"({"type": "LineString", "coordinates": [[0, NaN], [1, 1], 7]})", ""},
+    {R"({"type": "LineString", "coordinates": [[0, NaN], [1, 1], 7]})", "/geometry/coordinates/0"},
     {R"({"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [1, 2]}, {"type": "Wall"}]})",
      "/geometry/geometries/1/type"},
     {R"({"type": "Point", "coordinates": [1]})", "/geometry/coordinates"},
@@ -181,7 +181,7 @@ std::string feature_place(const std::string& pointer) {
   return pointer.empty() ? "feature 0" : "feature 0, " + pointer;
 }
 
-// GDAL gives no geometry for these, or one with parts missing, and no word of it.
+// GDAL would give no geometry for these, or one with parts missing, and no word of it.
 TEST_F(VectorFile, MalformedGeoJsonIsRefusedByFeature) {
   for (const Malformed& bad : kMalformed) {
     SCOPED_TRACE(bad.geometry);
@@ -206,6 +206,52 @@ TEST_F(VectorFile, MalformedFeaturesAreCountedAndTheOthersRead) {
   EXPECT_EQ(file.counts.passed_over, 0u);
   ASSERT_EQ(file.rejected.size(), 1u);
   EXPECT_EQ(file.rejected[0].place().rfind("feature 0, /geometry", 0), 0u) << file.rejected[0].what();
+}
+
+TEST_F(VectorFile, WhatOtherProgramsWriteBeyondJsonIsRead) {
+  ReadOptions options;
+  options.keep_properties = true;
+  const std::string members = R"("height": NaN, "low": -Infinity, "name": "caf)"
+                              "\xe9\t\"";
+  const std::string feature = R"({"type": "Feature", "properties": {)" + members + R"(}, "geometry": )" + kSquare + "}";
+  for (const std::string& text : {feature, R"({"type": "FeatureCollection", "features": [)" + feature + "]}"}) {
+    for (const char* name : {"a.geojson", "a.geojsonl"}) {
+      const ObstacleFile file = read(name, text, options);
+      ASSERT_EQ(file.obstacles.size(), 1u);
+      EXPECT_EQ(file.properties.at(0).members, R"({"height":null,"low":null,"name":"caf?\t"})");
+    }
+  }
+  const std::string whole = R"({"type": "Feature", "properties": {"name": "caf\u00e9 )"
+                            "\xc3\xa9"
+                            R"( N-I \" NaN"}, "geometry": )" +
+                            std::string(kSquare) + "}";
+  EXPECT_EQ(read("b.geojson", whole, options).properties.at(0).members,
+            "{\"name\":\"caf\xc3\xa9 \xc3\xa9 N-I \\\" NaN\"}");
+}
+
+/// Of 64 KiB each, wherever a word or a character of several bytes lies across their border.
+TEST_F(VectorFile, WordsAcrossBlocksAreRead) {
+  ReadOptions options;
+  options.keep_properties = true;
+  const std::string begin = R"({"type": "Feature", "properties": {"pad": ")";
+  for (std::size_t shift = 0; shift < 24; ++shift) {
+    const std::string pad((std::size_t{1} << 16) - begin.size() - shift, 'x');
+    const std::string text =
+        begin + pad + "\xe2\x82\xac\", \"a\": -Infinity}, \"geometry\": " + std::string(kSquare) + "}";
+    const ObstacleFile file = read("a.geojson", text, options);
+    EXPECT_EQ(file.properties.at(0).members, "{\"pad\":\"" + pad + "\xe2\x82\xac\",\"a\":null}") << shift;
+  }
+}
+
+TEST_F(VectorFile, ACollectionWithoutFeaturesIsRefused) {
+  for (const char* text : {R"({"type": "FeatureCollection"})", R"({"type": "FeatureCollection", "features": {}})"})
+    expect_refusal(refusal_of([&] { read("a.geojson", text); }), DataCode::format_syntax, "/features");
+}
+
+TEST_F(VectorFile, GeoJsonWithoutAReferenceSystemIsInMetres) {
+  const ObstacleFile file = read("a.geojson", collection("\"crs\": null, ", kSquare));
+  EXPECT_FALSE(file.origin.has_value());
+  EXPECT_EQ(file.notes.at(0).text, "taken as metres: names no reference system");
 }
 
 TEST_F(VectorFile, AbsentAndEmptyGeometriesArePassedOver) {
@@ -260,7 +306,7 @@ TEST_F(VectorFile, MalformedLinesOfASequenceAreToldByLineAndTheOthersRead) {
                                                        {"line 5, /type", DataCode::format_syntax},
                                                        {"line 6, column 1", DataCode::json_syntax},
                                                        {"line 7", DataCode::format_syntax},
-                                                       {"line 9", DataCode::format_syntax},
+                                                       {"line 9, /geometry/coordinates/0", DataCode::format_syntax},
                                                        {"line 10, /type", DataCode::format_syntax}};
   ASSERT_EQ(file.rejected.size(), std::size(refusals));
   for (std::size_t k = 0; k < file.rejected.size(); ++k) {

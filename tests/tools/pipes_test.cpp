@@ -170,7 +170,7 @@ TEST(Pipes, ASignalEndsTheReadingOfOneLargeFeature) {
   constexpr double kAmidReading = 0.3;  // s of processor time, of about three
   const Workplace here;
   std::string feature = R"({"type": "Feature", "properties": {"p": [1)";
-  while (feature.size() < 60'000'000) feature += ",\"some words of a long list that json-c takes little memory for\"";
+  while (feature.size() < 60'000'000) feature += ",\"some words of a long list that its parser takes little memory for\"";
   feature += R"(]}, "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}})";
   here.write("one.geojsonl", feature + "\n");
   here.write("one.geojson", feature);

@@ -11,8 +11,7 @@
 #include "files/file_names.h"
 #include "files/text_file.h"
 #include "gdal/gdal_session.h"
-#include "gdal/geojson_scan.h"
-#include "gdal/geojson_sequence.h"
+#include "gdal/geojson_file.h"
 #include "gdal/layer_plane.h"
 #include "gdal/properties.h"
 #include "json/json_text.h"
@@ -33,45 +32,32 @@ bool is_longitude_latitude(const geometry::Box& box) {
 /// Characters of a text that is no geometry.
 constexpr std::size_t kShownText = 40;
 
-/// A sequence whose first line is malformed is one that GDAL does not know.
-bool is_sequence_name(const std::filesystem::path& path) {
+/// What GDAL does not know may still be GeoJSON, or should be: its drivers look at the beginning alone.
+bool is_json_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
+  const char* const known[] = {".json", ".geojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
   return std::find(std::begin(known), std::end(known), extension) != std::end(known);
-}
-
-/// What begins so, in words.
-std::string kind_of_value(char c) {
-  if (c == '"') return "a string";
-  if (c == '[') return "an array";
-  if (c == 'n') return "null";
-  return c == 't' || c == 'f' ? "true or false" : "a number";
 }
 
 class VectorReader {
  public:
   VectorReader(const std::filesystem::path& path, Collector& out)
-      : path_(path), out_(out), geojson_parsing_(path), plane_(path_, out, complaints_) {
+      : path_(path), out_(out), plane_(path_, out, complaints_) {
     const std::string driver = vector_driver_of(path);
-    if (is_sequence_file(driver)) return;  // GDAL is not asked: it would read all of it now
-    if (driver == "GeoJSON") refuse_bulky_geojson();
-    data_ = open_vectors(path, driver);
-    if (data_ == nullptr && is_sequence_name(path)) {
-      complaints_.take_failure();  // of a bad first line, which is reported with its number
+    if (driver.empty() ? is_json_name(path) : driver.rfind("GeoJSON", 0) == 0) {
+      geojson_.emplace(path);
       return;
     }
-    set_malformed_aside();
+    data_ = open_vectors(path, driver);
     refuse_complaints("", data_ == nullptr);
   }
 
   void read() {
     for (int k = 0; k < layers(); ++k) {
-      layer_ = is_sequence() ? nullptr : data_->GetLayer(k);
+      layer_ = geojson_ ? nullptr : data_->GetLayer(k);
       settle_coordinates();
       for_each_feature([this](const Item& item) { add(item); });
     }
-    if (driver() == "GeoJSON") reject_strays();
-    if (!malformed_.empty() && !has_told_malformed_) refuse_malformed();
     note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
   }
@@ -81,127 +67,57 @@ class VectorReader {
   void refuse_complaints(const std::string& place, bool failed = false) {
     const std::string words = complaints_.take_failure();
     if (words.empty() && !failed) return;
-    if (GeoJsonParsing::is_size_limit_in(words))
-      throw DataError(DataCode::size, path_.string(), place, "a feature or member of more JSON than is read at a time",
-                      "fewer points in a feature, or another format, such as WKT");
-    if (place.empty()) refuse_malformed_json();
-    if (words.empty()) refuse_late_type();
+    if (place.empty() && lower_extension(path_) == ".topojson")
+      check_json_syntax(read_text_file(path_), path_.string());
     throw DataError(DataCode::library, path_.string(), place,
                     words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
   }
 
-  /// Of GeoJSON and TopoJSON: what is wrong in this program's words, with line and column.
-  void refuse_malformed_json() const {
-    const std::string extension = lower_extension(path_);
-    if (extension != ".json" && extension != ".geojson" && extension != ".topojson") return;
-    check_json_syntax(read_text_file(path_), path_.string());
-  }
-
-  /// Of GeoJSON alone.
-  const GeoJsonScan& scan() {
-    if (!scan_) scan_ = scan_geojson(path_, is_sequence_name(path_));
-    return *scan_;
-  }
-
-  /// Of a collection GDAL takes one feature after the other, with a limit of its own (GeoJsonParsing), which leaves out
-  /// what stands before them.
-  void refuse_bulky_geojson() {
-    std::error_code error;
-    const double size = static_cast<double>(std::filesystem::file_size(path_, error));
-    const JsonMemory& memory = scan().memory;
-    const bool is_bulky =
-        scan().is_collection() ? !error && memory.bytes() > parser_memory_for(size) : memory.is_too_much();
-    if (is_bulky) throw too_bulky(memory, path_.string(), "");
-  }
-
-  void reject_strays() {
-    for (const StrayEntry& stray : scan().strays)
-      out_.reject({DataCode::format_syntax, path_.string(), "/features/" + std::to_string(stray.number),
-                   kind_of_value(stray.begin), "a feature"});
-  }
-
-  /// GeoJSON that GDAL does not take for such: it looks for the type in the first 6000 bytes.
-  void refuse_late_type() {
-    const std::string& type = scan().type;
-    if (type != "FeatureCollection" && !is_type_of_record(type)) return;
-    throw DataError(DataCode::format_syntax, path_.string(), "/type", "\"" + type + "\" behind long members",
-                    "GeoJSON with its member \"type\" first");
-  }
-
-  /// What a layer or a sequence holds, one after the other.
+  /// A feature of a layer, or a record of GeoJSON.
   struct Item {
     std::size_t number = 0;
     std::string place;
-    const OGRGeometry* shape = nullptr;
-    const OGRFeature* feature = nullptr;  ///< none of a sequence
-    const DataError* fault = nullptr;     ///< of a sequence
-    const GeoJsonText* json = nullptr;    ///< of a sequence
+    const OGRFeature* feature = nullptr;
+    const GeoJsonRecord* record = nullptr;
+
+    bool has_geometry() const {
+      return feature != nullptr ? feature->GetGeometryRef() != nullptr : geometry_of(record->json) != nullptr;
+    }
+    void visit(const Visitor& visitor) const {
+      if (feature != nullptr)
+        datasets::visit(*feature->GetGeometryRef(), visitor);
+      else
+        datasets::visit(*geometry_of(record->json), visitor);
+    }
   };
 
-  bool is_sequence_file(const std::string& driver) {
-    if (driver.empty()) return is_sequence_name(path_);
-    return driver == "GeoJSONSeq" || (driver == "GeoJSON" && scan().is_sequence);
-  }
-
-  /// GDAL's driver would leave malformed lines out; they are read here.
-  bool is_sequence() const { return data_ == nullptr; }
-  int layers() const { return is_sequence() ? 1 : data_->GetLayerCount(); }
-  std::string layer_name() const { return is_sequence() ? "" : layer_->GetName(); }
+  int layers() const { return geojson_ ? 1 : data_->GetLayerCount(); }
+  std::string layer_name() const { return geojson_ ? path_.stem().string() : layer_->GetName(); }
 
   template <class Action>
-  void for_each_record(Action action) {
-    GeoJsonSequence sequence(path_);
-    std::size_t number = 0;
-    while (const std::optional<GeoJsonRecord> record = sequence.next()) {
-      complaints_.take_failure();  // of its parser: the record's fault says it
-      action(Item{number++, record->place, record->shape.get(), nullptr, record->fault ? &*record->fault : nullptr,
-                  &record->text});
-    }
-  }
-
-  /// GeoJSON's malformed geometries are looked at one by one (`lost_geometry`), and GDAL goes on after them.
-  void set_malformed_aside() {
-    if (data_ == nullptr || driver() != "GeoJSON") return;
-    const std::string words = complaints_.take_malformed();
-    if (malformed_.empty()) malformed_ = words;
-  }
-
-  [[noreturn]] void refuse_malformed() const {
-    throw DataError(DataCode::library, path_.string(), "", malformed_, "a vector file that GDAL reads");
-  }
-
-  template <class Action>
-  void for_each_feature(Action for_one) {
-    const auto action = [&](const Item& item) {
-      call_wait_hook();
-      for_one(item);
-    };
-    if (is_sequence()) return for_each_record(action);
+  void for_each_feature(Action action) {
+    if (geojson_)
+      return geojson_->for_each([&](const GeoJsonRecord& record) {
+        call_wait_hook();
+        action(Item{record.number, record.place, nullptr, &record});
+      });
     layer_->ResetReading();
     std::size_t number = 0;
     while (const std::unique_ptr<OGRFeature> feature{layer_->GetNextFeature()}) {
-      set_malformed_aside();
+      call_wait_hook();
       refuse_complaints("feature " + std::to_string(number));
-      action(Item{number, place_of(number), feature->GetGeometryRef(), feature.get()});
+      action(Item{number, place_of(number), feature.get(), nullptr});
       ++number;
     }
-    set_malformed_aside();
     refuse_complaints("after feature " + std::to_string(number));
   }
 
   geometry::Box bounding_box() {
+    if (geojson_ && geojson_->box()) return *geojson_->box();
     geometry::Box box;
-    Visitor visitor;
-    visitor.other = [](const std::string&) {};
-    visitor.shape = [&](RawKind, const std::vector<geometry::Ring>& rings) {
-      for (const geometry::Ring& ring : rings) {
-        for (const geometry::Vec2 p : ring) {
-          if (geometry::is_finite(p)) box.add(p);
-        }
-      }
-    };
+    const Visitor visitor = taker_of_points(box);
     for_each_feature([&](const Item& item) {
-      if (item.shape != nullptr) visit(*item.shape, visitor);
+      if (!is_refused(item) && item.has_geometry()) item.visit(visitor);
     });
     return box;
   }
@@ -209,7 +125,7 @@ class VectorReader {
   /// What the numbers of this layer mean: sets `plane_`.
   void settle_coordinates() {
     plane_.reset();
-    const OGRSpatialReference* system = is_sequence() ? OGRSpatialReference::GetWGS84SRS() : layer_->GetSpatialRef();
+    const OGRSpatialReference* system = geojson_ ? system_of_geojson() : layer_->GetSpatialRef();
     const Units units = units_of_layer();
     if (units == Units::metres) return settle_metres("metres: " + reason_);
     if (units == Units::automatic && system == nullptr)
@@ -262,14 +178,12 @@ class VectorReader {
     reason_ = "as the reader was told";
     if (out_.options().units != Units::automatic) return out_.options().units;
     reason_ = "by its reference system";
-    return is_geojson() ? units_of_geojson() : Units::automatic;
+    return geojson_ ? units_of_geojson() : Units::automatic;
   }
 
   Units units_of_geojson() {
     reason_ = "GeoJSON that says nothing of units (RFC 7946)";
-    const char* native = is_sequence() ? nullptr : layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
-    if (native == nullptr) return Units::automatic;
-    const Json members = parse_json(native, path_.string());
+    const Json& members = geojson_->members();
     plane_.set_given(given_plane(members, path_.string()));
     const auto units = members.find("units");
     if (units == members.end()) return Units::automatic;
@@ -279,68 +193,55 @@ class VectorReader {
     throw DataError(DataCode::not_an_option, path_.string(), "/units", described(*units), "\"m\" or \"degrees\"");
   }
 
-  std::string driver() const { return is_sequence() ? "GeoJSONSeq" : data_->GetDriverName(); }
-  bool is_geojson() const { return driver().find("GeoJSON") == 0; }
+  /// By a member "crs", as GeoJSON had it before RFC 7946; null where that is null.
+  const OGRSpatialReference* system_of_geojson() {
+    const Json& members = geojson_->members();
+    const auto crs = members.find("crs");
+    if (crs == members.end()) return OGRSpatialReference::GetWGS84SRS();
+    if (crs->is_null()) return nullptr;
+    const Json::json_pointer name("/properties/name");
+    const std::string words = crs->is_object() && crs->contains(name) && crs->at(name).is_string() ? crs->at(name) : "";
+    const char* const without_files[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+    const bool is_known = named_system_.SetFromUserInput(words.c_str(), without_files) == OGRERR_NONE;
+    complaints_.take_failure();
+    return is_known ? &named_system_ : OGRSpatialReference::GetWGS84SRS();
+  }
 
   void settle_impossible_degrees(Units units) {
-    if (units == Units::degrees || !is_geojson()) {
+    if (units == Units::degrees || !geojson_) {
       throw DataError(DataCode::projection, path_.string(), layer_name(),
                       "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
     }
     settle_metres("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
   }
 
+  static bool is_refused(const Item& item) { return item.record != nullptr && item.record->fault; }
+
   void add(const Item& item) {
     const std::string& place = item.place;
-    if (item.fault != nullptr) return out_.reject(*item.fault);
-    std::optional<GeoJsonText> of_feature;
-    if (driver() == "GeoJSON") of_feature.emplace(text_of(*item.feature));
-    const GeoJsonText* json = of_feature ? &*of_feature : item.json;
-    if (item.feature != nullptr) {
-      if (const std::optional<DataError> lost = lost_geometry(*item.feature, json, place)) {
-        has_told_malformed_ = true;
-        return out_.reject(*lost);
-      }
-    }
-    if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry skipped");
-    const FeatureProperties properties = properties_of(item, json);
+    if (is_refused(item)) return out_.reject(*item.record->fault);
+    if (const auto lost = geojson_ || !is_csv() ? std::nullopt : lost_from_csv(*item.feature, place))
+      return out_.reject(*lost);
+    if (!item.has_geometry()) return out_.pass_over(place, "a feature without geometry skipped");
+    const FeatureProperties properties = properties_of(item);
     std::size_t part = 0;
     Visitor visitor;
     visitor.other = [&](const std::string& words) { out_.pass_over(place, words); };
     visitor.shape = [&](RawKind kind, std::vector<geometry::Ring> rings) {
       hand_on(item.number, part++, place, kind, std::move(rings), properties);
     };
-    visit(*item.shape, visitor);
+    item.visit(visitor);
   }
 
-  /// A geometry that stands alone is the whole file.
-  static bool stands_alone(const OGRFeature& feature) { return feature.GetNativeData() == nullptr; }
-  std::string text_of(const OGRFeature& feature) const {
-    return stands_alone(feature) ? read_text_file(path_) : feature.GetNativeData();
-  }
-
-  FeatureProperties properties_of(const Item& item, const GeoJsonText* json) const {
+  FeatureProperties properties_of(const Item& item) const {
     if (!out_.options().keep_properties) return {};
-    if (json != nullptr && (item.feature == nullptr || !stands_alone(*item.feature))) return json->properties();
-    return datasets::properties_of(*item.feature, driver() == "GPKG");
+    if (geojson_) return datasets::properties_of(item.record->json);
+    return datasets::properties_of(*item.feature, data_->GetDriverName() == std::string("GPKG"));
   }
 
-  /// GDAL says nothing of a geometry that it cannot make out, or of the parts of one.
-  std::optional<DataError> lost_geometry(const OGRFeature& feature, const GeoJsonText* json,
-                                         const std::string& place) const {
-    if (json != nullptr) return lost_from_geojson(feature, *json, place);
-    return driver() == "CSV" ? lost_from_csv(feature, place) : std::nullopt;
-  }
+  bool is_csv() const { return data_->GetDriverName() == std::string("CSV"); }
 
-  std::optional<DataError> lost_from_geojson(const OGRFeature& feature, const GeoJsonText& json,
-                                             const std::string& place) const {
-    const OGRGeometry* shape = feature.GetGeometryRef();
-    const std::optional<GeoJsonFault> fault = json.fault(shape != nullptr && !shape->IsEmpty());
-    if (!fault) return std::nullopt;
-    return DataError(DataCode::format_syntax, path_.string(), place + place_within(*fault), fault->found,
-                     fault->expected);
-  }
-
+  /// GDAL says nothing of a geometry that it cannot make out.
   std::optional<DataError> lost_from_csv(const OGRFeature& feature, const std::string& place) const {
     if (feature.GetGeometryRef() != nullptr) return std::nullopt;
     const std::string text = text_of_geometry(feature);
@@ -375,15 +276,13 @@ class VectorReader {
 
   std::filesystem::path path_;
   Collector& out_;
-  GeoJsonParsing geojson_parsing_;
   GdalComplaints complaints_;
-  std::string malformed_;            ///< GDAL's words of a geometry of GeoJSON
-  bool has_told_malformed_ = false;  ///< in words of our own, with the feature
+  std::optional<GeoJsonFile> geojson_;  ///< else:
   std::unique_ptr<GDALDataset> data_;
   OGRLayer* layer_ = nullptr;
   LayerPlane plane_;
-  std::string reason_;  ///< why the layer's units are what they are
-  std::optional<GeoJsonScan> scan_;
+  OGRSpatialReference named_system_;  ///< by GeoJSON
+  std::string reason_;                ///< why the layer's units are what they are
 };
 
 /// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is

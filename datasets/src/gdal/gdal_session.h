@@ -27,17 +27,14 @@ class GdalComplaints {
   GdalComplaints(const GdalComplaints&) = delete;
   GdalComplaints& operator=(const GdalComplaints&) = delete;
 
-  /// The first failure since the last call, or ""; one that a geometry is malformed comes after all others.
+  /// The first failure since the last call, or "".
   std::string take_failure();
-  /// The first one that a geometry is malformed (GDAL's words begin with "Invalid "), or "". Others stay.
-  std::string take_malformed();
   std::vector<std::string> take_warnings();
 
  private:
   static void CPL_STDCALL hear(CPLErr severity, CPLErrorNum number, const char* words);
 
   std::string failure_;
-  std::string malformed_;
   std::vector<std::string> warnings_;
 };
 
@@ -68,27 +65,18 @@ class MemoryFile {
   std::string name_;
 };
 
+/// Bytes that a reader may take for `input_bytes` of input: 20 for each and 200 MB beside, of which the libraries of
+/// the process have a share.
+double parser_memory_for(double input_bytes);
+
 /// The driver that would open the file, by its content and name; "" where there is none.
 std::string vector_driver_of(const std::filesystem::path& path);
 
 /// Only drivers that read a local file of vectors: none that follow links to other files or to the network. `driver`:
 /// that of `vector_driver_of`. Throws DataError (E_SIZE) for KML and TopoJSON, which GDAL parses whole, where that
 /// would take more memory than a reader may (20 bytes for each of the input and 200 MB beside), estimated from the
-/// points of KML, and from the objects, lists and values of TopoJSON (gdal/json_memory.h).
+/// points of KML, and from the objects, lists and values of TopoJSON.
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, const std::string& driver);
-
-/// In this thread while it lives: holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of
-/// its size, and makes no fields of properties, which are read from the native data of the features.
-class GeoJsonParsing {
- public:
-  explicit GeoJsonParsing(const std::filesystem::path& path);
-  ~GeoJsonParsing();
-  GeoJsonParsing(const GeoJsonParsing&) = delete;
-  GeoJsonParsing& operator=(const GeoJsonParsing&) = delete;
-
-  /// Whether these are GDAL's words for a feature beyond the limit.
-  static bool is_size_limit_in(const std::string& complaint);
-};
 
 // --- Reference systems of local planes (layer_plane.cpp) ---
 

@@ -91,6 +91,15 @@ double bounded(const JsonCursor& at, double largest) {
 
 }  // namespace
 
+Visitor taker_of_points(geometry::Box& box) {
+  const auto take = [&box](RawKind, const std::vector<geometry::Ring>& rings) {
+    for (const geometry::Ring& ring : rings)
+      for (const geometry::Vec2 p : ring)
+        if (geometry::is_finite(p)) box.add(p);
+  };
+  return {take, [](const std::string&) {}};
+}
+
 void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth) {
   if (depth > kDeepestCollection) return visitor.other("collections nested too deeply skipped");
   if (geometry.IsEmpty()) return visitor.other(std::string("an empty ") + geometry.getGeometryName() + " skipped");
@@ -116,16 +125,6 @@ void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth) {
     return visit(*straight, visitor, depth + 1);
   }
   visitor.other(std::string("a ") + geometry.getGeometryName() + " skipped: no line or polygon");
-}
-
-FeatureProperties properties_of_geojson(const Json& feature) {
-  FeatureProperties properties;
-  if (!feature.is_object()) return properties;
-  const auto members = feature.find("properties");
-  const auto id = feature.find("id");
-  if (members != feature.end() && members->is_object() && !members->empty()) properties.members = members->dump();
-  if (id != feature.end() && (id->is_string() || id->is_number())) properties.id = id->dump();
-  return properties;
 }
 
 FeatureProperties properties_of(const OGRFeature& feature, bool with_id) {

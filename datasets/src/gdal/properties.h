@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/box.h"
 #include "json/json_text.h"
 #include "readers/raw_geometry.h"
 
@@ -24,10 +25,10 @@ struct Visitor {
   std::function<void(const std::string&)> other;
 };
 
-void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
+/// One that puts all finite points of shapes into `box`, which must outlive it.
+Visitor taker_of_points(geometry::Box& box);
 
-/// Of a feature as GeoJSON has it; nothing of what is none.
-FeatureProperties properties_of_geojson(const Json& feature);
+void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
 
 /// Of the feature's fields, but for the column that its geometry was read from. `with_id`: the feature's number counts.
 FeatureProperties properties_of(const OGRFeature& feature, bool with_id);

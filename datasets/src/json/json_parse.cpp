@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "json/json_text.h"
 
+#include <istream>
 #include <limits>
 #include <optional>
 #include <unordered_map>
@@ -131,16 +132,24 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   }
   bool end_object() override { return close(); }
 
-  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool start_array(std::size_t) override {
+    Json list = Json::array();
+    list.get_ref<Json::array_t&>().reserve(2);  // most are points
+    return open(std::move(list));
+  }
   bool end_array() override { return close(); }
 
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
-
  protected:
-  /// Before an object or a list that `depth` others contain.
-  virtual void on_open(std::size_t /*depth*/) {}
+  /// Before an object or a list. False ends the parse, here and below.
+  virtual bool on_open() = 0;
+  /// After a value that has come to its end.
+  virtual bool on_whole() { return true; }
   /// At a key that the object has already. Unless this throws, the last value counts.
   virtual void on_second(const std::string& /*key*/) {}
+
+  /// Of objects and lists whose end has not come.
+  std::size_t depth() const { return open_.size(); }
+  Json& innermost() const { return *open_.back().value; }
 
  private:
   /// An object or a list whose end has not come yet. What contains it does not grow until then, so that it stays where
@@ -179,16 +188,16 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   template <class Value>
   bool add(Value&& value) {
     place_for(Json(std::forward<Value>(value)));
-    return true;
+    return on_whole();
   }
   bool open(Json value) {
-    on_open(open_.size());
+    if (!on_open()) return false;
     open_.push_back({place_for(std::move(value))});
     return true;
   }
   bool close() {
     open_.pop_back();
-    return true;
+    return on_whole();
   }
 
   Json* place_for(Json value) {
@@ -219,9 +228,10 @@ class GuardedBuilder : public JsonBuilder {
   }
 
  private:
-  void on_open(std::size_t depth) override {
-    if (depth >= kDeepestJson)
+  bool on_open() override {
+    if (depth() >= kDeepestJson)
       throw errors_.here(DataCode::nesting, "more than 100 levels of nesting", "a file that nests less deeply");
+    return true;
   }
   void on_second(const std::string& key) override {
     throw errors_.here(DataCode::json_duplicate_key, "the key \"" + key + "\" a second time",
@@ -229,6 +239,57 @@ class GuardedBuilder : public JsonBuilder {
   }
 
   const SyntaxErrors& errors_;
+};
+
+/// Hands entries of a list on, and counts the memory of what it keeps.
+class EntryBuilder : public JsonBuilder {
+ public:
+  EntryBuilder(double most_bytes, const EntriesOf& entries) : most_bytes_(most_bytes), entries_(entries) {}
+
+  bool string(string_t& value) override {
+    bytes_ += kOfText + static_cast<double>(value.size());
+    return JsonBuilder::string(value);
+  }
+  bool key(string_t& key) override {
+    bytes_ += kOfMember + static_cast<double>(key.size());
+    if (depth() == 1) is_in_list_ = key == entries_.key;
+    return JsonBuilder::key(key);
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    end_ = is_whole_ ? JsonEnd::more_follows : JsonEnd::malformed;
+    return false;
+  }
+  JsonEnd end() const { return end_; }
+
+ private:
+  // Bytes beside the characters of texts: no less than the growth of the program's peak with a million equal tokens, on
+  // a machine of 64 bits. Most are of lists that double.
+  static constexpr double kOfValue = 48.0, kOfContainer = 96.0, kOfMember = 96.0, kOfText = 48.0;
+
+  bool on_open() override {
+    bytes_ += kOfContainer;
+    if (depth() >= kDeepestJson) end_ = JsonEnd::too_deep;
+    return end_ == JsonEnd::whole;
+  }
+  bool on_whole() override {
+    bytes_ += kOfValue;
+    is_whole_ = depth() == 0;
+    if (bytes_ > most_bytes_) end_ = JsonEnd::too_large;
+    if (depth() == 2 && is_in_list_ && innermost().is_array()) hand_on(innermost().get_ref<Json::array_t&>());
+    if (depth() < 2) bytes_of_rest_ = bytes_;
+    return end_ == JsonEnd::whole;
+  }
+  void hand_on(Json::array_t& list) {
+    if (entries_.take) entries_.take(std::move(list.back()));
+    list.clear();
+    bytes_ = bytes_of_rest_;
+  }
+
+  double most_bytes_;
+  const EntriesOf& entries_;
+  bool is_in_list_ = false, is_whole_ = false;
+  double bytes_ = 0.0, bytes_of_rest_ = 0.0;  ///< in all; of what is kept beside the entries
+  JsonEnd end_ = JsonEnd::whole;
 };
 
 /// Keeps nothing.
@@ -279,10 +340,11 @@ void check_json_syntax(std::string_view text, const std::string& file_name) {
   parse_into(check, text, position);
 }
 
-Json parse_json_if_any(std::string_view text) {
-  std::size_t position = 0;
-  JsonBuilder builder;
-  return parse_into(builder, text, position) ? builder.take() : Json(Json::value_t::discarded);
+ReadJson read_json(std::streambuf& text, double most_bytes, const EntriesOf& entries) {
+  EntryBuilder builder(most_bytes, entries);
+  std::istream stream(&text);
+  Json::sax_parse(stream, &builder);
+  return {builder.take(), builder.end()};
 }
 
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {

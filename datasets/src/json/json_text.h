@@ -7,8 +7,10 @@
 /// bounded.
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <streambuf>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,9 +32,28 @@ Json parse_json(std::string_view text, const std::string& file_name);
 /// Throws DataError (E_JSON_SYNTAX, E_NUMBER) as `parse_json` does, and keeps nothing of the text.
 void check_json_syntax(std::string_view text, const std::string& file_name);
 
-/// For text that another parser has accepted: a discarded value where it is no JSON; repeated keys are no error, the
-/// last one counts. A signal ends a long parse (the wait hook is called).
-Json parse_json_if_any(std::string_view text);
+/// A list that is not kept: each entry goes to `take` as soon as it is whole.
+struct EntriesOf {
+  std::string key;  ///< of the outermost object
+  std::function<void(Json)> take;
+};
+
+enum class JsonEnd {
+  whole,
+  more_follows,  ///< behind the value, which is whole
+  malformed,
+  too_deep,  ///< more than kDeepestJson
+  too_large  ///< for the memory allowed
+};
+
+struct ReadJson {
+  Json value;  ///< as far as it was read
+  JsonEnd end;
+};
+
+/// What `text` holds, in one pass. Repeated keys are no error, the last one counts. `most_bytes` of memory, estimated,
+/// may be kept at once.
+ReadJson read_json(std::streambuf& text, double most_bytes, const EntriesOf& entries = {});
 
 /// `parse_json` of line `number` of a file of lines, each of which is JSON: places name that line.
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number);

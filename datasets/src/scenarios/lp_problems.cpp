@@ -126,7 +126,7 @@ std::vector<lp::Problem> read_lines(const std::string& bytes, const std::string&
     ++number;
     if (is_blank(line)) continue;
     const bool is_whole = !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) ||
-                          !parse_json_if_any(line).is_discarded();
+                          Json::accept(line);
     if (!is_whole) return {parse_document(bytes, file)};
     problems.push_back(parse_line(line, number, file));
   }
