@@ -112,6 +112,15 @@ TEST_F(VectorFile, ProjectedSystemsAreScaledToMetres) {
   EXPECT_NEAR(std::get<geometry::Polyline>(file.obstacles.at(0).shape).points[0].x, 1200.0, 1e-6);
 }
 
+TEST_F(VectorFile, AnUnknownReferenceSystemIsNoted) {
+  for (const char* crs : {R"({"type": "name", "properties": {"name": "EPSG:999999"}})", R"("EPSG:25833")"}) {
+    const ObstacleFile file = read("a.geojson", collection(std::string("\"crs\": ") + crs + ", ", kSquare));
+    EXPECT_TRUE(file.origin.has_value());
+    EXPECT_EQ(file.notes.at(0).place, "/crs");
+    EXPECT_NE(file.notes.at(0).text.find("taken as longitude and latitude"), std::string::npos);
+  }
+}
+
 TEST_F(VectorFile, RingsArePutRightAndNoted) {
   const std::string clockwise = R"({"type": "Polygon", "coordinates": [[[0, 0], [0, 1], [1, 1], [1, 0], [0, 0]]]})";
   const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", clockwise));

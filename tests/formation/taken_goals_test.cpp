@@ -123,5 +123,33 @@ TEST(TakenGoals, ASmallRobotStaysBesideALargeOneThatStays) {
   EXPECT_TRUE(audits_clean(s, run));
 }
 
+/// Of robots that go as near as they can to goals out of reach, those that find the place taken stay beside it. They
+/// pushed each other off it until time ran out, and some were said to stay for one that had never been at its goal.
+TEST(TakenGoals, WhoseNearestPlaceIsTakenStaysBesideIt) {
+  for (const double apart : {0.0, 0.2}) {
+    for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
+      Scenario s;
+      s.time_limit = 60.0;
+      s.unreachable = Unreachable::nearest;
+      test_scenes::add_wall(s, {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}});
+      s.robots = {robot("R1", {-6, 0}, {-0.3, 0}), robot("R2", {-8, 0}, {-0.3, apart}), robot("R3", {7, 0}, {0.4, 0})};
+      SimulationOptions options;
+      options.liveness = liveness;
+      const Recording run = simulate(s, options);
+      EXPECT_LT(run.steps.back().time, s.time_limit / 2) << run.outcome;
+      const bool first_is_one = run.outcome.find("R2 stays: R1 was first ") != std::string::npos;
+      const std::string first = first_is_one ? "R1" : "R2", other = first_is_one ? "R2" : "R1";
+      const std::string place = apart == 0.0 ? "at the nearest place that both can reach"
+                                             : "where it stays, 0.2 m from where " + other + " was to come";
+      EXPECT_NE(run.outcome.find(other + " stays: " + first + " was first " + place), std::string::npos) << run.outcome;
+      EXPECT_NE(run.outcome.find("R3 cannot reach its goal"), std::string::npos) << run.outcome;
+      EXPECT_EQ(run.outcome.find("R3 stays"), std::string::npos) << run.outcome;
+      for (const StuckReport& report : explain_stuck(s, run))
+        EXPECT_NE(report.text.find("since its goal is out of reach"), std::string::npos) << report.text;
+      EXPECT_TRUE(audits_clean(s, run));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::formation

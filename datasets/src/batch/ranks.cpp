@@ -266,8 +266,4 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
   return result;
 }
 
-std::string mpi_release() {
-  return EXACTVO_MPI_RELEASE;
-}
-
 }  // namespace exactvo::datasets

@@ -204,7 +204,9 @@ class VectorReader {
     const char* const without_files[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
     const bool is_known = named_system_.SetFromUserInput(words.c_str(), without_files) == OGRERR_NONE;
     complaints_.take_failure();
-    return is_known ? &named_system_ : OGRSpatialReference::GetWGS84SRS();
+    if (is_known) return &named_system_;
+    out_.note("/crs", described(*crs) + " names no reference system that PROJ knows: taken as longitude and latitude");
+    return OGRSpatialReference::GetWGS84SRS();
   }
 
   void settle_impossible_degrees(Units units) {

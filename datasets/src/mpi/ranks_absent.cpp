@@ -14,10 +14,6 @@ BatchResult run_batch_over_ranks(const BatchConfiguration&, const BatchRun& run,
   return {};
 }
 
-std::string mpi_release() {
-  return "none";
-}
-
 std::unique_ptr<formation::Ranks> join_ranks() {
   return nullptr;
 }

@@ -168,14 +168,17 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
   return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
 }
 
-/// Of those about their goals who could have taken its own, the one that is nearest to its goal has.
+/// Of those about their goals who could have taken its own, the one that is nearest to its goal has. Where robots end
+/// elsewhere, only who is at its goal.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
   if (scenario.formation) return "its slot cannot be filled";
   std::optional<std::size_t> first;
   const auto from_goal = [&](std::size_t j) { return norm(scenario.robots[j].goals.back() - row.robots[j].position); };
   for (std::size_t j = 0; j < row.robots.size(); ++j) {
     if (j == robot || row.robots[j].mode == Mode::staying || !detail::are_too_near(scenario, robot, j)) continue;
-    const double about = scenario.arrival_tolerance + 2.0 * (scenario.robots[robot].radius + scenario.robots[j].radius);
+    const double pushed =
+        scenario.unreachable == Unreachable::nearest ? 0.0 : scenario.robots[robot].radius + scenario.robots[j].radius;
+    const double about = scenario.arrival_tolerance + 2.0 * pushed;
     if (from_goal(j) <= about && (!first || from_goal(j) < from_goal(*first))) first = j;
   }
   return first ? detail::first_at_goal_words(scenario, *first, robot) : "its goal is out of reach";

@@ -70,7 +70,9 @@ class KinematicRun {
       robot.velocity = scenario.robots[i].velocity;
       look_at_goal(i, 0.0);
     }
-    if (liveness_ != Liveness::off && GoalClaims(scenario).are_needed()) claims_.emplace(scenario);
+    const bool may_end_elsewhere = guide && scenario.unreachable == Unreachable::nearest;
+    if (liveness_ != Liveness::off && (may_end_elsewhere || GoalClaims(scenario).are_needed()))
+      claims_.emplace(scenario);
   }
 
   void run(Recording& recording, RunSink& sink) {
@@ -136,6 +138,11 @@ class KinematicRun {
 
   bool at_goal(std::size_t i) const { return has_last_goal(i) && is_within_reach(i); }
 
+  /// Where its way to its present goal ends.
+  Vec2 end_of(std::size_t i) const { return robots_[i].nearest ? robots_[i].nearest->place : goal_of(i); }
+
+  bool is_at_end(std::size_t i) const { return at_goal(i) || robots_[i].has_come_nearest; }
+
   bool all_arrived() const {
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i)) return false;
@@ -148,15 +155,15 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       KinematicRobot& r = robots_[i];
       if (r.rests_beside) resting.add(r.position, i);
-      if (r.has_claim || !has_last_goal(i)) continue;
-      r.taken_by = claims_->taken_by(i);
-      if (r.taken_by || !at_goal(i)) continue;
+      if (r.has_claim || !(has_last_goal(i) || r.nearest)) continue;
+      r.taken_by = claims_->taken_by(i, end_of(i));
+      if (r.taken_by || !is_at_end(i)) continue;
       r.has_claim = true;
-      claims_->claim(i);
+      claims_->claim(i, end_of(i));
     }
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       KinematicRobot& r = robots_[i];
-      const bool rests = r.taken_by && !goes_by_plan(i) && !at_goal(i) && is_beside_its_goal(i, resting);
+      const bool rests = r.taken_by && !goes_by_plan(i) && !is_at_end(i) && is_beside_its_goal(i, resting);
       if (rests && !r.rests_beside) add_note(r.note, "stays: " + taken_words(i));
       r.rests_beside = rests;
     }
@@ -170,8 +177,9 @@ class KinematicRun {
 
   /// m, between the rims of a robot and of the one that has taken its goal, were that there.
   double gap_to_taken(std::size_t i) const {
-    const Robot& taker = scenario_.robots[*robots_[i].taken_by];
-    return norm(robots_[i].position - taker.goals.back()) - taker.radius - scenario_.robots[i].radius;
+    const std::size_t taker = *robots_[i].taken_by;
+    return norm(robots_[i].position - claims_->place_of(taker)) - scenario_.robots[taker].radius -
+           scenario_.robots[i].radius;
   }
 
   /// Beside the taken goal, or beside one that stays there for the same reason.
@@ -191,7 +199,7 @@ class KinematicRun {
   /// So slowly that half-planes do not push off its goal who has taken it; out of that, where the robot is in it.
   Vec2 beside_taken_goal(std::size_t i, Vec2 preferred) const {
     const double gap = gap_to_taken(i) - scenario_.margins.robot;
-    const Vec2 from_goal = robots_[i].position - scenario_.robots[*robots_[i].taken_by].goals.back();
+    const Vec2 from_goal = robots_[i].position - claims_->place_of(*robots_[i].taken_by);
     if (gap < 0.0 && norm(from_goal) > 0.0)
       return straight_for(i, robots_[i].position - gap / norm(from_goal) * from_goal);
     if (robots_[i].rests_beside) return {};
@@ -201,7 +209,14 @@ class KinematicRun {
 
   /// "R1 was first at its goal, 0.3 m from that of R2, which leaves no room for both".
   std::string taken_words(std::size_t i) const {
-    return first_at_goal_words(scenario_, *robots_[i].taken_by, i) + ", which leaves no room for both";
+    const std::size_t first = *robots_[i].taken_by;
+    const std::string room = ", which leaves no room for both";
+    if (!robots_[i].nearest && !robots_[first].nearest) return first_at_goal_words(scenario_, first, i) + room;
+    const double apart = norm(claims_->place_of(first) - end_of(i));
+    const std::string& id = scenario_.robots[first].id;
+    if (apart == 0.0) return id + " was first at the nearest place that both can reach" + room;
+    return id + " was first where it stays, " + metres(apart) + " from where " + scenario_.robots[i].id +
+           " was to come" + room;
   }
 
   void pass_waypoint(std::size_t i, double time) {
@@ -337,7 +352,7 @@ class KinematicRun {
       return step;
     }
     Vec2 preferred = steer(i, time, step);
-    if (r.taken_by && !r.rests_beside && !at_goal(i)) preferred = beside_taken_goal(i, preferred);
+    if (r.taken_by && !r.rests_beside && !is_at_end(i)) preferred = beside_taken_goal(i, preferred);
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
   }
@@ -365,7 +380,7 @@ class KinematicRun {
     KinematicRobot& r = robots_[i];
     const double missing = 1.0 - dot(r.velocity, preferred) / squared_norm(preferred);
     r.held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - r.held_up);
-    const double far = std::min(1.0, norm(goal_of(i) - r.position) / (kNearGoal * scenario_.robots[i].radius));
+    const double far = std::min(1.0, norm(end_of(i) - r.position) / (kNearGoal * scenario_.robots[i].radius));
     return geometry::rotated(preferred, -far * (kLeast + kMost * r.held_up));
   }
 
@@ -482,7 +497,8 @@ class KinematicRun {
   std::string why_not_there(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
     if (!r.nearest) return r.no_way;
-    return r.no_way + ", and " + (r.has_come_nearest ? "went" : "was on its way") + " as near as it can: it ends " +
+    const bool is_there = r.has_come_nearest || r.rests_beside;
+    return r.no_way + ", and " + (is_there ? "went" : "was on its way") + " as near as it can: it ends " +
            metres(norm(r.position - goal_of(i))) + " from it; the nearest place that it can reach is " +
            words_of(*r.nearest);
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Last goals that are too near to each other for all who have them: who is there first keeps its own for good, the
-/// others stay beside it.
+/// Where ways end, at last goals or as near to them as robots can get: places too near to each other for all who have
+/// them. Who is there first keeps its own for good, the others stay beside it.
 
 #include <cstddef>
 #include <optional>
@@ -19,40 +19,56 @@ class GoalClaims {
  public:
   /// `scenario` must outlive it. REQUIRES: robots with goals.
   explicit GoalClaims(const Scenario& scenario)
-      : scenario_(scenario), largest_(detail::largest_radius(scenario)), by_goal_(4.0 * largest_) {}
+      : scenario_(scenario),
+        largest_(detail::largest_radius(scenario)),
+        places_(scenario.robots.size()),
+        claimed_(4.0 * largest_) {}
 
   double largest_radius() const { return largest_; }  ///< m, of all robots
 
   /// Whether any two last goals are too near to each other.
   bool are_needed() const {
     Cells<std::size_t> goals(4.0 * largest_);
+    const auto goal_of = [&](std::size_t i) { return scenario_.robots[i].goals.back(); };
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
-      if (nearest_in(goals, i)) return true;
-      goals.add(scenario_.robots[i].goals.back(), i);
+      if (nearest_in(goals, goal_of, i, goal_of(i))) return true;
+      goals.add(goal_of(i), i);
     }
     return false;
   }
 
-  /// Robot `i` is at its last goal, which nobody has taken.
-  void claim(std::size_t i) { by_goal_.add(scenario_.robots[i].goals.back(), i); }
+  /// Robot `i` is where its way ends, a place that nobody has taken.
+  void claim(std::size_t i, Vec2 place) {
+    places_[i] = place;
+    claimed_.add(place, i);
+  }
+  /// REQUIRES: robot `i` has claimed it.
+  Vec2 place_of(std::size_t i) const { return places_[i]; }
 
-  /// Who was first at a last goal too near to that of robot `i`; of several the nearest.
-  std::optional<std::size_t> taken_by(std::size_t i) const { return nearest_in(by_goal_, i); }
+  /// Who was first at a place too near to that where the way of robot `i` ends; of several the nearest.
+  std::optional<std::size_t> taken_by(std::size_t i, Vec2 place) const {
+    return nearest_in(
+        claimed_, [&](std::size_t j) { return places_[j]; }, i, place);
+  }
 
  private:
-  std::optional<std::size_t> nearest_in(const Cells<std::size_t>& goals, std::size_t i) const {
-    const Vec2 goal = scenario_.robots[i].goals.back();
+  template <class PlaceOf>
+  std::optional<std::size_t> nearest_in(const Cells<std::size_t>& others, const PlaceOf& place_of, std::size_t i,
+                                        Vec2 place) const {
     std::optional<std::size_t> nearest;
-    const auto distance_of = [&](std::size_t j) { return norm(scenario_.robots[j].goals.back() - goal); };
-    goals.for_each_about(goal, scenario_.robots[i].radius + largest_, [&](std::size_t j) {
-      if (j != i && are_too_near(scenario_, i, j) && (!nearest || distance_of(j) < distance_of(*nearest))) nearest = j;
+    const auto distance_of = [&](std::size_t j) { return norm(place_of(j) - place); };
+    others.for_each_about(place, scenario_.robots[i].radius + largest_, [&](std::size_t j) {
+      if (j != i && are_too_near(scenario_, i, j, distance_of(j)) &&
+          (!nearest || distance_of(j) < distance_of(*nearest)))
+        nearest = j;
     });
     return nearest;
   }
 
   const Scenario& scenario_;
-  double largest_;  ///< m
-  Cells<std::size_t> by_goal_;
+  double largest_;            ///< m
+  std::vector<Vec2> places_;  ///< by robot; of those that have claimed one
+  Cells<std::size_t> claimed_;
 };
 
 }  // namespace exactvo::formation::detail

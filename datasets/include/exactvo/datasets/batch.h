@@ -149,7 +149,4 @@ bool under_mpi();
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch = {});
 
-/// "MPI 3.1" (the standard), or "none".
-std::string mpi_release();
-
 }  // namespace exactvo::datasets
