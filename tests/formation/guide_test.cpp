@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "audited.h"
 #include "exactvo/datasets/generators.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
@@ -143,9 +144,22 @@ TEST(Guidance, ThatNoPlaceWithinReachIsFreeIsProvenOrSaidNotToBe) {
     EXPECT_THAT(guided(s).metrics.outcome, AllOf(HasSubstr("cannot reach"), Not(HasSubstr("no proof")))) << depth;
     EXPECT_THAT(warnings_before(s), testing::SizeIs(1)) << depth;
   }
-  // A corner: free places within reach lie between the directions that are tried.
+  // A corner: what is free within reach is very small.
   s.robots[0].goals = {{5.5 + 0.0701, 5.5 + 0.0701}};
+  EXPECT_TRUE(guided(s).metrics.all_arrived);
+  s.robots[0].goals = {{5.5 + 0.0707, 5.5 + 0.0707}};
   EXPECT_THAT(guided(s).metrics.outcome, HasSubstr("no place within 0.1 m of it was found"));
+}
+
+/// A goal on the way counts within the robot's radius. From within a solid, that is proven too little.
+TEST(Guidance, AGoalOnTheWayWithinASolidIsProvenOutOfReach) {
+  Scenario s;
+  s.robots.resize(1);
+  s.robots[0] = {"R", {-5, 0}, {}, 0.8, 1.0, {{0, 0.2}, {5, 0}}};
+  s.obstacles.push_back({"box", geometry::Polygon{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}}});
+  const std::string outcome = guided(s).metrics.outcome;
+  EXPECT_THAT(outcome, testing::HasSubstr("R cannot reach its goal 1: the goal lies inside obstacle 'box'"));
+  EXPECT_THAT(outcome, testing::Not(testing::HasSubstr("no proof")));
 }
 
 TEST(Guidance, WhoStartsWithoutRoomMovesAwayAndArrives) {
@@ -320,6 +334,24 @@ TEST(Guidance, WithoutObstaclesNoPlaceIsTooFar) {
     s.robots[1].goals = {where + Vec2{5, 3}};
     EXPECT_TRUE(guided(s).metrics.all_arrived) << where.x;
   }
+}
+
+/// Once the cart rests at the end of its path.
+TEST(Guidance, ARunWithAMovingObstacleEndsWhenThatRestsAndNobodyGoesOn) {
+  Scenario s;
+  s.robots.resize(2);
+  s.robots[0] = {"R", {-5, 0}, {}, 0.5, 1.0, {{0, 0}}};
+  s.robots[1] = {"S", {-5, 4}, {}, 0.5, 1.0, {{5, 4}}};
+  s.obstacles.push_back({"box", geometry::Polygon{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}}});
+  s.moving_obstacles.push_back(
+      {"cart", geometry::Polygon{{{7, 7}, {8, 7}, {8, 8}, {7, 8}}, {}}, {{{7, 7}, {7, -13}}, 1.0}});
+  const GuidedRun run = guided(s);
+  EXPECT_THAT(run.metrics.outcome, testing::StartsWith("1 of 2 robots did not arrive; R cannot reach its goal: "));
+  EXPECT_NEAR(run.recording.steps.back().time, 20.0, 1.0);
+  EXPECT_TRUE(audits_clean(s, run.recording));
+  Recording shorter = run.recording;
+  shorter.steps.resize(shorter.steps.size() - 60);  // it ends while the cart moves
+  EXPECT_FALSE(audits_clean(s, shorter));
 }
 
 TEST(Guidance, ARunEndsWhenNobodyGoesOn) {

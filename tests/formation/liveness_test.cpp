@@ -8,9 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "audited.h"
 #include "decision/decision.h"
-#include "exactvo/datasets/audit.h"
-#include "exactvo/datasets/run_info.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
@@ -440,7 +439,7 @@ TEST(Liveness, TwoPassEachOtherWhereTheyHaveJustRoomSideBySide) {
     const Recording run = simulate(s);
     EXPECT_EQ(measure(s, run).outcome, "all robots arrived") << width;
     EXPECT_EQ(relaxed(run), 0u) << width;
-    EXPECT_TRUE(datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean()) << width;
+    EXPECT_TRUE(audits_clean(s, run)) << width;
   }
 }
 

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "exactvo/datasets/audit.h"
-#include "exactvo/datasets/run_info.h"
+#include "audited.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/stuck.h"
@@ -17,10 +16,6 @@ namespace {
 
 using test_scenes::kTurn;
 using test_scenes::robot;
-
-bool audits_clean(const Scenario& s, const Recording& run) {
-  return datasets::audit({datasets::run_info(s, {}, {}), s, run}).clean();
-}
 
 /// They pushed each other off it, by nineteen plans, until the time limit: the first one drove 278 m.
 TEST(TakenGoals, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {

@@ -103,10 +103,12 @@ struct End {
 bool has_ended(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     if (has_arrived(s.robots[i], end.last.robots[i].position, s.arrival_tolerance)) continue;
-    if (!end.stayed(i) || !s.moving_obstacles.empty()) return false;
+    if (!end.stayed(i)) return false;
     somebody_stays = true;
   }
-  return true;
+  return !somebody_stays || std::all_of(s.moving_obstacles.begin(), s.moving_obstacles.end(), [&](const auto& o) {
+    return exact::ExactWay(o.motion).rests_from(Rational(end.last.time));
+  });
 }
 
 /// A run ends at its time limit, when nobody goes on, or when a formation has left every bound.

@@ -200,6 +200,11 @@ ExactWay::ExactWay(const formation::Leader& motion) {
   standing(exactly(motion.path.back()) - start, from, std::nullopt, Rational(0));
 }
 
+bool ExactWay::rests_from(const Rational& time) const {
+  const Piece& last = pieces_.back();
+  return !last.to && sgn(last.leg.x) == 0 && sgn(last.leg.y) == 0 && last.from <= time;
+}
+
 std::size_t ExactWay::piece_at(const Rational& time) const {
   const auto found = std::upper_bound(pieces_.begin(), pieces_.end(), time,
                                       [](const Rational& t, const Piece& piece) { return !piece.to || t < *piece.to; });

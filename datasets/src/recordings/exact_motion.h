@@ -89,6 +89,8 @@ class ExactWay {
   /// The velocities that it has at some time within `slack` (s) of this one, up to 2^-180 of them: several at a corner
   /// or a jump of its speed.
   std::vector<Point> velocities(const Rational& time, const Rational& slack) const;
+  /// Whether it stands from this time on, for ever.
+  bool rests_from(const Rational& time) const;
 
  private:
   struct Stretch {

@@ -81,12 +81,15 @@ std::string words_of(const NearestPlace& nearest) {
   return least > 0.0 ? at + " (no place nearer than " + metres(least) + " can be reached)" : at;
 }
 
-/// Of the goal on the outlines of single edges.
-std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 goal) const {
+/// Of the goal on the outlines of single edges. Of which a place nearer to the goal is `offset` away is itself no
+/// farther than both together.
+std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 goal, double nearer_than) const {
   constexpr int kDirections = 16;  // about a vertex in which the goal lies: then all are as near
   std::vector<Candidate> all;
-  const auto add = [&](Vec2 place) { all.push_back({norm(place - goal), place}); };
-  for (const Segment& edge : edges_->all()) {
+  const auto add = [&](Vec2 place) {
+    if (norm(place - goal) < nearer_than) all.push_back({norm(place - goal), place});
+  };
+  const auto add_feet_of = [&](const Segment& edge) {
     const Outline outline = outline_of(edge, offset);
     for (const Segment& side : {outline.left, outline.right})
       if (!(side.a == side.b)) add(geometry::nearest_point(side, goal));
@@ -99,12 +102,15 @@ std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 go
       for (int k = 0; k < kDirections; ++k)
         add(centre + geometry::rotated({offset, 0.0}, 2.0 * geometry::kPi * k / kDirections));
     }
-  }
+  };
+  if (std::isinf(nearer_than))
+    for (const Segment& edge : edges_->all()) add_feet_of(edge);
+  else
+    edges_->grid().for_each_within(goal, nearer_than + offset, [&](std::size_t k) { add_feet_of((*edges_)[k]); });
   return all;
 }
 
-/// Where the outlines of two edges meet. An edge of which a place nearer to the goal is `offset` away is itself no
-/// farther than both together.
+/// Where the outlines of two edges meet.
 std::vector<NearestPlaces::Candidate> NearestPlaces::crossings(double offset, Vec2 goal, double nearer_than) const {
   std::vector<Candidate> all;
   std::vector<Vec2> points;
@@ -138,19 +144,40 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
   return std::nullopt;
 }
 
-std::optional<NearestPlace> NearestPlaces::nearest(double radius, double room, Vec2 from, Vec2 goal) {
-  if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return std::nullopt;
-  if (!reach_.plan(radius + room).is_reachable(from, from)) return std::nullopt;
+/// Whether it has these places, and the disc is free at the first. REQUIRES of all that follows: it is.
+bool NearestPlaces::is_map_for(double radius, Vec2 from, Vec2 goal) {
+  if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return false;
+  if (!reach_.plan(radius).is_reachable(from, from)) return false;
   if (!edges_) edges_.emplace(scenario_.obstacles);
-  const double offset = radius + 1.5 * room;  // half of the room is left for rounding
-  std::vector<Candidate> all = feet(offset, goal);
+  return true;
+}
+
+/// From edges: half of the room is left for rounding.
+double offset_for(double radius, double room) {
+  return radius + 1.5 * room;
+}
+
+std::optional<NearestPlace> NearestPlaces::nearest(double radius, double room, Vec2 from, Vec2 goal) {
+  if (!is_map_for(radius + room, from, goal)) return std::nullopt;
+  const double offset = offset_for(radius, room);
+  std::vector<Candidate> all = feet(offset, goal, std::numeric_limits<double>::infinity());
   all.push_back({norm(from - goal), from});
   std::optional<Candidate> best = first_reachable(std::move(all), radius + room, from);
   if (!best) return std::nullopt;
   all = crossings(offset, goal, best->distance);
   all.push_back(*best);
   best = first_reachable(std::move(all), radius + room, from);
-  return NearestPlace{best->place, best->distance, std::min(best->distance, proven_distance(radius, from, goal))};
+  return NearestPlace{best->place, best->distance, std::min(best->distance, at_least(radius, from, goal))};
+}
+
+std::optional<Vec2> NearestPlaces::within_reach(double radius, double room, Vec2 from, const Destination& to) {
+  constexpr double kWithin = 0.999;  // of the reach, for rounding
+  if (!is_map_for(radius + room, from, to.place)) return std::nullopt;
+  const double offset = offset_for(radius, room);
+  std::vector<Candidate> all = feet(offset, to.place, kWithin * to.reach);
+  for (const Candidate& c : crossings(offset, to.place, kWithin * to.reach)) all.push_back(c);
+  const std::optional<Candidate> best = first_reachable(std::move(all), radius + room, from);
+  return best ? std::optional(best->place) : std::nullopt;
 }
 
 /// The straight way from the goal to a free place x beyond the chain crosses the chain in some point z. That is at
@@ -166,8 +193,8 @@ double NearestPlaces::distance_beyond(const geometry::Separated& answer, double 
   return least;
 }
 
-/// m: how near to the goal a free place that can be reached may be.
-double NearestPlaces::proven_distance(double radius, Vec2 from, Vec2 goal) {
+double NearestPlaces::at_least(double radius, Vec2 from, Vec2 goal) {
+  if (!is_map_for(radius, from, goal)) return 0.0;
   const geometry::RouteAnswer answer = reach_.plan(radius).query(from, goal);
   if (const auto* separated = std::get_if<geometry::Separated>(&answer))
     return distance_beyond(*separated, radius, goal);

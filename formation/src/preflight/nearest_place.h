@@ -35,15 +35,22 @@ class NearestPlaces {
   /// none. REQUIRES: the goal cannot be reached; radius and room no more than `reach` has its map for.
   std::optional<NearestPlace> nearest(double radius, double room, Vec2 from, Vec2 goal);
 
+  /// A place within reach of the destination that can be reached, with room as above; the nearest of those tried.
+  /// REQUIRES: as above.
+  std::optional<Vec2> within_reach(double radius, double room, Vec2 from, const Destination& to);
+
+  /// m: no place that a disc can reach is nearer to the goal; proven up to rounding. REQUIRES: as above.
+  double at_least(double radius, Vec2 from, Vec2 goal);
+
  private:
   struct Candidate {
     double distance;  ///< m, from the goal
     Vec2 place;       ///< m
   };
   std::optional<Candidate> first_reachable(std::vector<Candidate> all, double radius, Vec2 from);
-  std::vector<Candidate> feet(double offset, Vec2 goal) const;
+  bool is_map_for(double radius, Vec2 from, Vec2 goal);
+  std::vector<Candidate> feet(double offset, Vec2 goal, double nearer_than) const;
   std::vector<Candidate> crossings(double offset, Vec2 goal, double nearer_than) const;
-  double proven_distance(double radius, Vec2 from, Vec2 goal);
   double distance_beyond(const geometry::Separated& answer, double radius, Vec2 goal) const;
 
   const Scenario& scenario_;

@@ -141,9 +141,10 @@ std::string Reachability::why_not(double radius, Vec2 from, const Destination& t
   const RouteAnswer answer = plan(radius).query(from, to.place);
   if (const auto* blocked = std::get_if<Blocked>(&answer)) {
     const bool of_start = blocked->end == Blocked::End::start;
-    const std::string what = of_start ? "the robot" : goal, id = scenario_.obstacles[blocked->by.obstacle].id;
-    return blocked->inside ? what + " lies inside obstacle '" + id + "'"
-                           : what + " is nearer than the robot's radius to obstacle '" + id + "'";
+    const SceneObstacle& by = scenario_.obstacles[blocked->by.obstacle];
+    const std::string what = of_start ? "the robot" : goal;
+    const bool is_inside = blocked->inside || geometry::signed_distance(by.shape, of_start ? from : to.place) < 0.0;
+    return what + (is_inside ? " lies inside" : " is nearer than the robot's radius to") + " obstacle '" + by.id + "'";
   }
   return words_of(std::get<Separated>(answer), radius, goal, to.place);
 }

@@ -8,6 +8,7 @@
 #include "decision/decision.h"
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
+#include "motion/leader.h"
 #include "runs/joint_decisions.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
@@ -64,6 +65,8 @@ class KinematicRun {
       groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
                       [this] { return schedule_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
+    for (const MovingObstacle& o : scenario.moving_obstacles)
+      moving_until_ = std::max(moving_until_, leader_arrival(o.motion));
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -398,9 +401,10 @@ class KinematicRun {
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
   bool nobody_goes_on() const {
+    if (now_ < moving_until_) return false;
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i) && !stays(i)) return false;
-    return scenario_.moving_obstacles.empty();
+    return true;
   }
 
   /// Along its course; a robot without one stays, and so does one whose course has led it as near as it can get.
@@ -523,7 +527,8 @@ class KinematicRun {
   Liveness liveness_;
   Scene scene_;
   RunSchedule schedule_;
-  double now_ = 0.0;  ///< s, of the present row
+  double now_ = 0.0;           ///< s, of the present row
+  double moving_until_ = 0.0;  ///< s: from then on all moving obstacles rest at the ends of their paths
   OwnDecision own_;
   std::vector<KinematicRobot> robots_;
   ObstacleSpace open_space_{{}};

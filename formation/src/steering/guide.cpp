@@ -64,7 +64,8 @@ CourseAnswer Guide::course_to(double radius, Vec2 from, const Destination& to) {
     answer.course = direct(radius, from, to);
     return answer;
   }
-  const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
+  std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
+  if (!end && to.reach > 0.0) end = nearest_.within_reach(radius, kSkins, from, to);
   if (!end) {
     answer.why_not = why_not(radius, from, to);
     answer.start_is_blocked = !has_room(radius, from);
@@ -130,7 +131,9 @@ std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
   if (reach_.reachable_place(radius, from, to))
     return "the widest way leaves the robot less than " + metres(kSkins) + " of room, too little to drive";
   std::string text = reach_.why_not(radius, from, to, "the goal");
-  if (to.reach > 0.0 && has_room(radius, from) && !reach_.is_proven_out_of_reach(radius, from, to))
+  const bool asks_for_places_about = to.reach > 0.0 && has_room(radius, from);
+  if (asks_for_places_about && !reach_.is_proven_out_of_reach(radius, from, to) &&
+      !(nearest_.at_least(radius, from, to.place) > to.reach))
     text += "; no place within " + metres(to.reach) + " of it was found that can be reached, which is no proof";
   return text;
 }
