@@ -257,9 +257,12 @@ TEST(BadInput, GoalsNearerThanTheMarginAreSaid) {
   }
   EXPECT_THAT(warnings_before(s),
               testing::ElementsAre("goal of E, (0, 0.84), and goal of W, (0, 0), are 0.84 m apart, and "
-                                   "radii and margin take 1.04 m: the second to come may find no room"));
-  s.robots[1].goals = {{0.0, 1.05}};
-  EXPECT_TRUE(warnings_before(s).empty());
+                                   "radii and margin take 1.04 m: the second to come finds no room"));
+  // From 0.86 m on both find room where they stand aside, within 0.09 m of their goals.
+  for (const double apart : {0.861, 0.95, 1.05}) {
+    s.robots[1].goals = {{0.0, apart}};
+    EXPECT_TRUE(warnings_before(s).empty()) << apart;
+  }
   s.robots[1].goals = {{0.0, 0.7}};
   EXPECT_THAT(warnings_before(s), testing::ElementsAre(HasSubstr("too near to each other")));
 }

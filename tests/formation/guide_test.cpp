@@ -572,6 +572,22 @@ TEST(CutRoutes, WithoutAWayRoundItWaitsUntilTheCartGoesOn) {
   EXPECT_EQ(notes_of(run).find("waits"), notes_of(run).rfind("waits")) << "said once";
 }
 
+TEST(CutRoutes, WithoutAWayRoundWhatRestsForGoodItStaysAndTheRunEnds) {
+  Scenario s = two_doors(0.0);
+  s.obstacles.push_back({"second door", Polyline{{{0, -5}, {0, -3}}}});
+  const GuidedRun run = guided(s);
+  EXPECT_THAT(run.metrics.outcome, testing::StartsWith("the robot did not arrive; moving obstacle 'cart' stands on the "
+                                                       "route of R, and none leads round it"));
+  EXPECT_LT(run.recording.steps.back().time, 20.0);
+  const Step& decided = run.recording.steps[run.recording.steps.size() - 2];
+  EXPECT_EQ(decided.robots[0].mode, Mode::staying);
+  EXPECT_LT(geometry::norm(decided.robots[0].position - Vec2{0, 3}), 2.0) << "it has come up to the cart";
+  EXPECT_TRUE(audits_clean(s, run.recording));
+  Scenario other = s;  // the cart goes on much later: the run waits for it
+  other.moving_obstacles = two_doors(60.0).moving_obstacles;
+  EXPECT_TRUE(guided(other).metrics.all_arrived);
+}
+
 TEST(CutRoutes, AreTheSameInEveryRun) {
   const GuidedRun one = guided(two_doors(2.5)), other = guided(two_doors(2.5));
   ASSERT_EQ(one.recording.steps.size(), other.recording.steps.size());

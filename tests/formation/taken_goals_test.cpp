@@ -10,6 +10,8 @@
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/stuck.h"
 #include "liveness_scenes.h"
+#include "steering/last_places.h"
+#include "support/seeded_random.h"
 
 namespace exactvo::formation {
 namespace {
@@ -116,6 +118,54 @@ TEST(TakenGoals, ASmallRobotStaysBesideALargeOneThatStays) {
   EXPECT_NE(m.outcome.find("R2 stays: R0 was first at the goal that both have"), std::string::npos) << m.outcome;
   EXPECT_LT(run.steps.back().time, s.time_limit / 2);
   EXPECT_TRUE(audits_clean(s, run));
+}
+
+/// With radii of 0.5 m, a margin of 0.04 m and a tolerance of 0.1 m. Below 0.86 m one stays; from there on both stand
+/// aside. Between 0.8 and 0.98 m most pairs pressed against each other until time ran out.
+TEST(TakenGoals, GoalsNearerThanRadiiAndMarginAreBothReachedOrOneStays) {
+  test::SeededRandom random(2207);
+  for (const double apart : {0.79, 0.8, 0.83, 0.855, 0.861, 0.88, 0.92, 0.96, 1.0, 1.03, 1.05}) {
+    for (int k = 0; k < 6; ++k) {
+      Scenario s;
+      s.time_limit = 60.0;
+      for (const double x : {0.0, apart}) {
+        const Vec2 from =
+            random.uniform(6.0, 9.0) * geometry::rotated({1.0, 0.0}, random.uniform(0.0, 3.0) + (x > 0.0 ? 3.2 : 0.0));
+        s.robots.push_back(robot(x > 0.0 ? "R2" : "R1", from, {x, 0}));
+      }
+      const Recording run = simulate(s);
+      EXPECT_LT(run.steps.back().time, s.time_limit / 2) << apart;
+      const Metrics m = measure(s, run);
+      EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, apart < 0.86 ? 1 : 2) << apart << " " << m.outcome;
+      EXPECT_TRUE(audits_clean(s, run));
+    }
+  }
+}
+
+TEST(TakenGoals, LastPlacesAreWithinReachOfGoals) {
+  test::SeededRandom random(2208);
+  for (int k = 0; k < 50; ++k) {
+    Scenario s;
+    for (int i = 0; i < 12; ++i) s.robots.push_back(robot("R" + std::to_string(i), {}, random.in_box(2.0)));
+    s.robots[1].goals = s.robots[0].goals;
+    const std::vector<Vec2> places = detail::last_places(s);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_LE(norm(places[i] - s.robots[i].goals.back()), 0.9 * s.arrival_tolerance + 1e-12);
+  }
+}
+
+TEST(TakenGoals, LastPlacesOfTwoLeaveRoomForBothWhereThereIsAny) {
+  test::SeededRandom random(2209);
+  for (int k = 0; k < 200; ++k) {
+    Scenario s;
+    const Vec2 goal = random.in_box(5.0);
+    const double apart = random.uniform(0.7, 1.3);
+    s.robots = {robot("R1", {}, goal), robot("R2", {}, goal + apart * random.direction())};
+    const std::vector<Vec2> places = detail::last_places(s);
+    const bool is_moved = places[0] != s.robots[0].goals[0] || places[1] != s.robots[1].goals[0];
+    EXPECT_EQ(is_moved, apart > 0.86 && apart < 1.04) << apart;
+    EXPECT_GE(norm(places[1] - places[0]), is_moved ? 1.04 - 1e-6 : 0.0) << apart;
+  }
 }
 
 /// Of robots that go as near as they can to goals out of reach, those that find the place taken stay beside it. They

@@ -202,7 +202,9 @@ ExactWay::ExactWay(const formation::Leader& motion) {
 
 bool ExactWay::rests_from(const Rational& time) const {
   const Piece& last = pieces_.back();
-  return !last.to && sgn(last.leg.x) == 0 && sgn(last.leg.y) == 0 && last.from <= time;
+  const bool stands = sgn(last.leg.x) == 0 && sgn(last.leg.y) == 0;
+  const bool has_no_speed = sgn(last.stretch.speed) == 0 && sgn(last.stretch.rate) == 0;
+  return !last.to && (stands || has_no_speed) && last.from <= time;
 }
 
 std::size_t ExactWay::piece_at(const Rational& time) const {

@@ -9,6 +9,7 @@
 #include "motion/leader.h"
 #include "scene/number_text.h"
 #include "steering/goals.h"
+#include "steering/last_places.h"
 
 namespace exactvo::formation {
 namespace {
@@ -175,7 +176,9 @@ std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t 
   std::optional<std::size_t> first;
   const auto from_goal = [&](std::size_t j) { return norm(scenario.robots[j].goals.back() - row.robots[j].position); };
   for (std::size_t j = 0; j < row.robots.size(); ++j) {
-    if (j == robot || row.robots[j].mode == Mode::staying || !detail::are_too_near(scenario, robot, j)) continue;
+    const double apart = norm(scenario.robots[j].goals.back() - scenario.robots[robot].goals.back());
+    const bool is_rival = j != robot && detail::leave_no_room(scenario, robot, j, apart);
+    if (!is_rival || row.robots[j].mode == Mode::staying) continue;
     const double pushed =
         scenario.unreachable == Unreachable::nearest ? 0.0 : scenario.robots[robot].radius + scenario.robots[j].radius;
     const double about = scenario.arrival_tolerance + 2.0 * pushed;

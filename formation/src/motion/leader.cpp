@@ -40,4 +40,10 @@ double leader_arrival(const Leader& leader) {
   return leader.speed > 0.0 ? length / leader.speed : std::numeric_limits<double>::infinity();
 }
 
+double rests_from(const Leader& leader) {
+  const double arrival = leader_arrival(leader);
+  if (leader.profile.empty()) return leader.speed > 0.0 ? arrival : 0.0;
+  return leader.profile.back().speed > 0.0 ? arrival : std::min(arrival, leader.profile.back().time);
+}
+
 }  // namespace exactvo::formation::detail

@@ -18,4 +18,7 @@ LeaderState leader_at(const Leader& leader, double time);
 /// s; when the end of the path is reached (0 for a single point, infinite at speed 0).
 double leader_arrival(const Leader& leader);
 
+/// s; from when on it rests for good, at the end of its path or because its speed is 0 from then on; else infinite.
+double rests_from(const Leader& leader);
+
 }  // namespace exactvo::formation::detail

@@ -17,6 +17,7 @@
 #include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
 #include "steering/goals.h"
+#include "steering/last_places.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -91,18 +92,20 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
     out.push_back(geometry::counted(pairs - kNamed, "more pair") + " of goals too near to each other");
 }
 
-/// Last goals where there is room for both, but not with the margin between them: the second to come finds the first
-/// one too near, if that has not stopped at the edge of its goal's reach.
+/// Last goals where there is room for both, but not with the margin between them, also where they stand aside within
+/// reach of their goals: the second to come finds the first one too near.
 void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
   std::size_t pairs = 0;
+  const std::vector<Vec2> places = s.liveness == Liveness::off ? std::vector<Vec2>{} : last_places(s);
   for (std::size_t i = 0; i < last.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double radii = s.robots[i].radius + s.robots[j].radius, apart = norm(last[i].place - last[j].place);
-      if (are_too_near(s, i, j) || !(apart < radii + s.margins.robot) || ++pairs > kNamed) continue;
+      const double aside = places.empty() ? apart : norm(places[i] - places[j]);
+      if (are_too_near(s, i, j) || !leave_no_room(s, i, j, aside) || ++pairs > kNamed) continue;
       out.push_back(last[i].name + ", and " + last[j].name + ", are " + metres(apart) +
                     " apart, and radii and margin take " + metres(radii + s.margins.robot) +
-                    ": the second to come may find no room");
+                    ": the second to come finds no room");
     }
   }
   if (pairs > kNamed)

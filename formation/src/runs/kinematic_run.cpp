@@ -19,6 +19,7 @@
 #include "steering/goal_claims.h"
 #include "steering/goals.h"
 #include "steering/guide.h"
+#include "steering/last_places.h"
 #include "steering/standing.h"
 #include "steering/steering.h"
 
@@ -38,6 +39,8 @@ struct KinematicRobot : OwnWay {
   bool has_new_course = false;               ///< nobody has looked whether something stands on it
   std::optional<std::size_t> cut_by = {};    ///< the moving obstacle that stands on it, without a way round
   double looks_again = 0.0;                  ///< s: then it looks again for one
+  double waits_since = 0.0;                  ///< s: from then on it stood before that, which rests for good
+  bool waits_for_good = false;               ///< so long that it stays there
   std::string no_way = {};                   ///< why it has no course to its goal
   std::optional<NearestPlace> nearest = {};  ///< where its course ends that does not lead to its goal
   bool has_come_nearest = false;             ///< it is there
@@ -66,7 +69,8 @@ class KinematicRun {
                       [this] { return schedule_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (const MovingObstacle& o : scenario.moving_obstacles)
-      moving_until_ = std::max(moving_until_, leader_arrival(o.motion));
+      moving_until_ = std::max(moving_until_, rests_from(o.motion));
+    if (liveness_ != Liveness::off) last_places_ = last_places(scenario);
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -74,7 +78,7 @@ class KinematicRun {
       look_at_goal(i, 0.0);
     }
     const bool may_end_elsewhere = guide && scenario.unreachable == Unreachable::nearest;
-    if (liveness_ != Liveness::off && (may_end_elsewhere || GoalClaims(scenario).are_needed()))
+    if (liveness_ != Liveness::off && (may_end_elsewhere || GoalClaims(scenario).are_needed(last_places_)))
       claims_.emplace(scenario);
   }
 
@@ -101,9 +105,12 @@ class KinematicRun {
  private:
   Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[robots_[i].goal]; }
 
+  /// Within reach of its goal.
+  Vec2 aim_of(std::size_t i) const { return has_last_goal(i) && !last_places_.empty() ? last_places_[i] : goal_of(i); }
+
   void look_at_goal(std::size_t i, double time) {
     const Robot& spec = scenario_.robots[i];
-    robots_[i].head_for(goal_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
+    robots_[i].head_for(aim_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
     if (guide_) plan_course(i);
     outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
   }
@@ -142,7 +149,7 @@ class KinematicRun {
   bool at_goal(std::size_t i) const { return has_last_goal(i) && is_within_reach(i); }
 
   /// Where its way to its present goal ends.
-  Vec2 end_of(std::size_t i) const { return robots_[i].nearest ? robots_[i].nearest->place : goal_of(i); }
+  Vec2 end_of(std::size_t i) const { return robots_[i].nearest ? robots_[i].nearest->place : aim_of(i); }
 
   bool is_at_end(std::size_t i) const { return at_goal(i) || robots_[i].has_come_nearest; }
 
@@ -264,7 +271,9 @@ class KinematicRun {
     }
   }
 
-  Destination destination(std::size_t i) const { return {goal_of(i), reach_of_goal(i)}; }
+  Destination destination(std::size_t i) const {
+    return {aim_of(i), std::max(0.0, reach_of_goal(i) - norm(aim_of(i) - goal_of(i)))};
+  }
 
   /// What it went round stands there no longer.
   void take_up_route(std::size_t i) {
@@ -302,6 +311,13 @@ class KinematicRun {
     ++routes_.cut;
   }
 
+  void look_whether_it_waits(std::size_t i, double time) {
+    constexpr double kForGood = 2.0;  // s
+    KinematicRobot& r = robots_[i];
+    if (!r.cut_by || time < moving_until_ || !is_at_rest(i) || goes_by_plan(i)) r.waits_since = time;
+    r.waits_for_good = time - r.waits_since >= kForGood;
+  }
+
   // --- Robots that go by plan ---
 
   void look_at_groups(double time) {
@@ -310,14 +326,14 @@ class KinematicRun {
       const KinematicRobot& r = robots_[i];
       // Without a way to its goal it stays where it is, and makes way.
       const bool has_no_way = guide_ && !r.course && !r.waits_for_room;
-      const Vec2 goal = has_no_way ? r.position : r.course ? r.course->points.back() : goal_of(i);
+      const Vec2 goal = has_no_way ? r.position : r.course ? r.course->points.back() : aim_of(i);
       now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.rests_beside || has_no_way,
                      scenario_.robots[i].cooperates && !r.waits_for_room, r.goal,
                      has_no_way || r.nearest || r.taken_by});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
-      return r.course ? guide_->way_left(*r.course, r.position) : norm(goal_of(i) - r.position);
+      return r.course ? guide_->way_left(*r.course, r.position) : norm(aim_of(i) - r.position);
     });
   }
 
@@ -341,6 +357,7 @@ class KinematicRun {
 
   RobotStep decide_one(std::size_t i, double time) {
     pass_waypoint(i, time);
+    look_whether_it_waits(i, time);
     if (!goes_by_plan(i)) look(i);
     add_moving_constraints(scenario_, viewpoint(i), scene_, joint_.others[i]);
     KinematicRobot& r = robots_[i];
@@ -393,10 +410,14 @@ class KinematicRun {
 
   bool stays(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
-    constexpr double kAtRest = 0.01;  // of the greatest speed
     if (goes_by_plan(i)) return false;
-    if (r.rests_beside) return norm(r.velocity) <= kAtRest * scenario_.robots[i].max_speed;
-    return (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
+    if (r.rests_beside) return is_at_rest(i);
+    return r.waits_for_good || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
+  }
+
+  bool is_at_rest(std::size_t i) const {
+    constexpr double kAtRest = 0.01;  // of the greatest speed
+    return norm(robots_[i].velocity) <= kAtRest * scenario_.robots[i].max_speed;
   }
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
@@ -416,8 +437,9 @@ class KinematicRun {
       plan_course(i);
     }
     r.has_come_nearest = r.nearest && norm(r.position - r.nearest->place) <= scenario_.arrival_tolerance;
-    if (step.mode == Mode::direct) step.mode = r.course && !r.has_come_nearest ? Mode::guided : Mode::staying;
-    if (!r.course) return {};
+    const bool goes_on = r.course && !r.has_come_nearest && !r.waits_for_good;
+    if (step.mode == Mode::direct) step.mode = goes_on ? Mode::guided : Mode::staying;
+    if (!r.course || r.waits_for_good) return {};
     const Heading to = (r.detour ? *r.detour : *guide_).heading(*r.course, radius, r.position);
     r.field->set_margin(to.margin);  // from the next step on
     if (to.is_new) {
@@ -433,7 +455,7 @@ class KinematicRun {
       step.mode = Mode::staying;
       return beside_taken_goal(i, {});
     }
-    if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), goal_of(i), at_goal(i)}, step);
+    if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), aim_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
   }
@@ -528,11 +550,12 @@ class KinematicRun {
   Scene scene_;
   RunSchedule schedule_;
   double now_ = 0.0;           ///< s, of the present row
-  double moving_until_ = 0.0;  ///< s: from then on all moving obstacles rest at the ends of their paths
+  double moving_until_ = 0.0;  ///< s: from then on all moving obstacles rest for good
   OwnDecision own_;
   std::vector<KinematicRobot> robots_;
   ObstacleSpace open_space_{{}};
-  std::optional<GoalClaims> claims_;  ///< where last goals are too near to each other, but with Liveness::off
+  std::vector<Vec2> last_places_;     ///< empty with Liveness::off
+  std::optional<GoalClaims> claims_;  ///< where these are too near to each other, but with Liveness::off
   std::optional<Groups> groups_;      ///< of several robots, but with Liveness::off
   JointDecisions joint_;
   std::vector<Outlook> outlooks_;

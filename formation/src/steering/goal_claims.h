@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Where ways end, at last goals or as near to them as robots can get: places too near to each other for all who have
-/// them. Who is there first keeps its own for good, the others stay beside it.
+/// Where ways end, at last goals (last_places.h) or as near to them as robots can get: places too near to each other
+/// for all who have them. Who is there first keeps its own for good, the others stay beside it.
 
 #include <cstddef>
 #include <optional>
@@ -12,6 +12,7 @@
 #include "exactvo/formation/scenario.h"
 #include "liveness/cells.h"
 #include "steering/goals.h"
+#include "steering/last_places.h"
 
 namespace exactvo::formation::detail {
 
@@ -26,13 +27,12 @@ class GoalClaims {
 
   double largest_radius() const { return largest_; }  ///< m, of all robots
 
-  /// Whether any two last goals are too near to each other.
-  bool are_needed() const {
-    Cells<std::size_t> goals(4.0 * largest_);
-    const auto goal_of = [&](std::size_t i) { return scenario_.robots[i].goals.back(); };
-    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
-      if (nearest_in(goals, goal_of, i, goal_of(i))) return true;
-      goals.add(goal_of(i), i);
+  /// Whether any two of these places are too near to each other; a place a robot.
+  bool are_needed(const std::vector<Vec2>& places) const {
+    Cells<std::size_t> before(4.0 * largest_);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (nearest_in(before, places, i, places[i])) return true;
+      before.add(places[i], i);
     }
     return false;
   }
@@ -47,18 +47,17 @@ class GoalClaims {
 
   /// Who was first at a place too near to that where the way of robot `i` ends; of several the nearest.
   std::optional<std::size_t> taken_by(std::size_t i, Vec2 place) const {
-    return nearest_in(
-        claimed_, [&](std::size_t j) { return places_[j]; }, i, place);
+    return nearest_in(claimed_, places_, i, place);
   }
 
  private:
-  template <class PlaceOf>
-  std::optional<std::size_t> nearest_in(const Cells<std::size_t>& others, const PlaceOf& place_of, std::size_t i,
-                                        Vec2 place) const {
+  std::optional<std::size_t> nearest_in(const Cells<std::size_t>& others, const std::vector<Vec2>& places,
+                                        std::size_t i, Vec2 place) const {
     std::optional<std::size_t> nearest;
-    const auto distance_of = [&](std::size_t j) { return norm(place_of(j) - place); };
-    others.for_each_about(place, scenario_.robots[i].radius + largest_, [&](std::size_t j) {
-      if (j != i && are_too_near(scenario_, i, j, distance_of(j)) &&
+    const auto distance_of = [&](std::size_t j) { return norm(places[j] - place); };
+    const double reach = scenario_.robots[i].radius + largest_ + scenario_.margins.robot;
+    others.for_each_about(place, reach, [&](std::size_t j) {
+      if (j != i && leave_no_room(scenario_, i, j, distance_of(j)) &&
           (!nearest || distance_of(j) < distance_of(*nearest)))
         nearest = j;
     });

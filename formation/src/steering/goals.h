@@ -31,13 +31,10 @@ inline double reach_of(const Scenario& scenario, const Robot& robot, std::size_t
                                         : std::max(scenario.arrival_tolerance, robot.radius);
 }
 
-/// Whether two robots cannot both be where they are to end, `apart` from each other, m: they would overlap.
-inline bool are_too_near(const Scenario& scenario, std::size_t i, std::size_t j, double apart) {
-  return apart + 2.0 * scenario.arrival_tolerance < scenario.robots[i].radius + scenario.robots[j].radius;
-}
-/// The same of their last goals.
+/// Whether two robots cannot both be at their last goals: they would overlap.
 inline bool are_too_near(const Scenario& scenario, std::size_t i, std::size_t j) {
-  return are_too_near(scenario, i, j, norm(scenario.robots[i].goals.back() - scenario.robots[j].goals.back()));
+  const Robot &a = scenario.robots[i], &b = scenario.robots[j];
+  return norm(a.goals.back() - b.goals.back()) + 2.0 * scenario.arrival_tolerance < a.radius + b.radius;
 }
 
 /// "R1 was first at its goal, 0.3 m from that of R2".
