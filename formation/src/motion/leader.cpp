@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "motion/leader.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "exactvo/formation/speed_profile.h"
