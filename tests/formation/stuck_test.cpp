@@ -224,7 +224,7 @@ TEST(Stuck, WhoStaysSaysWhy) {
   ends[0].goal = ends[1].goal;
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)),
               HasSubstr("it stays, since R2 was first at the goal that both have"));
-  ends[0].goal = ends[1].goal + Vec2{0.9, 0.0};
+  ends[0].goal = ends[1].goal + Vec2{1.1, 0.0};
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("it stays, since its goal is out of reach"));
 }
 
