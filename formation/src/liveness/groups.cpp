@@ -11,6 +11,7 @@
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
+#include "scene/near_pairs.h"
 #include "steering/goals.h"
 #include "steering/steering.h"
 

@@ -23,10 +23,6 @@
 
 namespace exactvo::formation::detail {
 
-/// Two robots can hold each other up if their gap is less than this many times `margins.robot`: with a wide margin a
-/// robot stops at that distance.
-inline constexpr double kNearMargins = 1.5;
-
 /// Whether a sorted list has `x`.
 inline bool contains(const std::vector<std::size_t>& sorted, std::size_t x) {
   return std::binary_search(sorted.begin(), sorted.end(), x);

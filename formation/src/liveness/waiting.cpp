@@ -5,8 +5,8 @@
 #include <array>
 
 #include "decision/decision.h"
-#include "liveness/groups.h"
 #include "motion/leader.h"
+#include "scene/near_pairs.h"
 #include "scene/number_text.h"
 #include "steering/goals.h"
 #include "steering/last_places.h"

@@ -46,10 +46,7 @@ struct KinematicRobot : OwnWay {
   bool has_come_nearest = false;             ///< it is there
   bool waits_for_room = false;               ///< it has to be pushed out before its course can be planned
   // With liveness.
-  double held_up = 0.0;                      ///< 0 .. 1: how little of its preference it drove of late
-  bool has_claim = false;                    ///< it was first at its last goal (goal_claims.h)
-  std::optional<std::size_t> taken_by = {};  ///< who was first at a goal too near to its own
-  bool rests_beside = false;                 ///< it stays beside its goal, which is taken
+  double held_up = 0.0;  ///< 0 .. 1: how little of its preference it drove of late
 };
 
 class KinematicRun {
@@ -159,74 +156,25 @@ class KinematicRun {
     return true;
   }
 
-  /// Who finds its goal taken comes beside it and stays there, instead of pressing for it for ever.
   void look_at_claims() {
-    Cells<std::size_t> resting(4.0 * claims_->largest_radius());
+    std::vector<EndNow> now;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      KinematicRobot& r = robots_[i];
-      if (r.rests_beside) resting.add(r.position, i);
-      if (r.has_claim || !(has_last_goal(i) || r.nearest)) continue;
-      r.taken_by = claims_->taken_by(i, end_of(i));
-      if (r.taken_by || !is_at_end(i)) continue;
-      r.has_claim = true;
-      claims_->claim(i, end_of(i));
+      const KinematicRobot& r = robots_[i];
+      now.push_back({r.position, end_of(i), has_last_goal(i) || r.nearest, !r.nearest, is_at_end(i), !goes_by_plan(i)});
     }
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      KinematicRobot& r = robots_[i];
-      const bool rests = r.taken_by && !goes_by_plan(i) && !is_at_end(i) && is_beside_its_goal(i, resting);
-      if (rests && !r.rests_beside) add_note(r.note, "stays: " + taken_words(i));
-      r.rests_beside = rests;
-    }
+    claims_->look(std::move(now));
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (claims_->has_come_to_rest(i)) add_note(robots_[i].note, "stays: " + claims_->words(i));
   }
 
-  /// m: what half-planes leave between the rims of two robots that come as near as they can, about.
-  double gap_beside(double radii) const {
-    constexpr double kOfRadii = 0.25;
-    return kOfRadii * radii + kNearMargins * scenario_.margins.robot;
-  }
+  /// Its place is taken by another robot.
+  bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
+  bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
 
-  /// m, between the rims of a robot and of the one that has taken its goal, were that there.
-  double gap_to_taken(std::size_t i) const {
-    const std::size_t taker = *robots_[i].taken_by;
-    return norm(robots_[i].position - claims_->place_of(taker)) - scenario_.robots[taker].radius -
-           scenario_.robots[i].radius;
-  }
-
-  /// Beside the taken goal, or beside one that stays there for the same reason.
-  bool is_beside_its_goal(std::size_t i, const Cells<std::size_t>& resting) const {
-    const KinematicRobot& r = robots_[i];
-    const double radius = scenario_.robots[i].radius;
-    bool is_beside = gap_to_taken(i) <= gap_beside(radius + scenario_.robots[*r.taken_by].radius);
-    const double most = radius + claims_->largest_radius();
-    resting.for_each_about(r.position, most + gap_beside(most), [&](std::size_t j) {
-      const double radii = radius + scenario_.robots[j].radius;
-      is_beside = is_beside || (j != i && robots_[j].taken_by == r.taken_by &&
-                                norm(robots_[j].position - r.position) - radii <= gap_beside(radii));
-    });
-    return is_beside;
-  }
-
-  /// So slowly that half-planes do not push off its goal who has taken it; out of that, where the robot is in it.
-  Vec2 beside_taken_goal(std::size_t i, Vec2 preferred) const {
-    const double gap = gap_to_taken(i) - scenario_.margins.robot;
-    const Vec2 from_goal = robots_[i].position - claims_->place_of(*robots_[i].taken_by);
-    if (gap < 0.0 && norm(from_goal) > 0.0)
-      return straight_for(i, robots_[i].position - gap / norm(from_goal) * from_goal);
-    if (robots_[i].rests_beside) return {};
-    const double most = std::max(gap, 0.0) / scenario_.horizons.robots, speed = norm(preferred);
-    return speed > most ? most / speed * preferred : preferred;
-  }
-
-  /// "R1 was first at its goal, 0.3 m from that of R2, which leaves no room for both".
-  std::string taken_words(std::size_t i) const {
-    const std::size_t first = *robots_[i].taken_by;
-    const std::string room = ", which leaves no room for both";
-    if (!robots_[i].nearest && !robots_[first].nearest) return first_at_goal_words(scenario_, first, i) + room;
-    const double apart = norm(claims_->place_of(first) - end_of(i));
-    const std::string& id = scenario_.robots[first].id;
-    if (apart == 0.0) return id + " was first at the nearest place that both can reach" + room;
-    return id + " was first where it stays, " + metres(apart) + " from where " + scenario_.robots[i].id +
-           " was to come" + room;
+  /// Out of the taken place, where the robot is in it.
+  Vec2 beside_taken_place(std::size_t i, Vec2 preferred) const {
+    if (const std::optional<Vec2> out = claims_->way_out(i)) return straight_for(i, *out);
+    return rests_beside(i) ? Vec2{} : claims_->slowed(i, preferred);
   }
 
   void pass_waypoint(std::size_t i, double time) {
@@ -327,9 +275,9 @@ class KinematicRun {
       // Without a way to its goal it stays where it is, and makes way.
       const bool has_no_way = guide_ && !r.course && !r.waits_for_room;
       const Vec2 goal = has_no_way ? r.position : r.course ? r.course->points.back() : aim_of(i);
-      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || r.rests_beside || has_no_way,
+      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest || rests_beside(i) || has_no_way,
                      scenario_.robots[i].cooperates && !r.waits_for_room, r.goal,
-                     has_no_way || r.nearest || r.taken_by});
+                     has_no_way || r.nearest || is_taken(i)});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
@@ -372,7 +320,7 @@ class KinematicRun {
       return step;
     }
     Vec2 preferred = steer(i, time, step);
-    if (r.taken_by && !r.rests_beside && !is_at_end(i)) preferred = beside_taken_goal(i, preferred);
+    if (is_taken(i) && !rests_beside(i) && !is_at_end(i)) preferred = beside_taken_place(i, preferred);
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
   }
@@ -411,7 +359,7 @@ class KinematicRun {
   bool stays(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
     if (goes_by_plan(i)) return false;
-    if (r.rests_beside) return is_at_rest(i);
+    if (rests_beside(i)) return is_at_rest(i);
     return r.waits_for_good || (guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room)));
   }
 
@@ -451,9 +399,9 @@ class KinematicRun {
   }
 
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
-    if (robots_[i].rests_beside) {
+    if (rests_beside(i)) {
       step.mode = Mode::staying;
-      return beside_taken_goal(i, {});
+      return beside_taken_place(i, {});
     }
     if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), aim_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
@@ -496,10 +444,10 @@ class KinematicRun {
       if (at_goal(i)) continue;
       const KinematicRobot& r = robots_[i];
       all_there = false;
-      if (!r.rests_beside) waiting.push_back(i);
-      if (r.taken_by)
-        text +=
-            "; " + scenario_.robots[i].id + (r.rests_beside ? " stays: " : " cannot reach its goal: ") + taken_words(i);
+      if (!rests_beside(i)) waiting.push_back(i);
+      if (is_taken(i))
+        text += "; " + scenario_.robots[i].id + (rests_beside(i) ? " stays: " : " cannot reach its goal: ") +
+                claims_->words(i);
       if (r.cut_by)
         text += "; moving obstacle '" + scenario_.moving_obstacles[*r.cut_by].id + "' stands on the route of " +
                 scenario_.robots[i].id + ", and none leads round it";
@@ -523,7 +471,7 @@ class KinematicRun {
   std::string why_not_there(std::size_t i) const {
     const KinematicRobot& r = robots_[i];
     if (!r.nearest) return r.no_way;
-    const bool is_there = r.has_come_nearest || r.rests_beside;
+    const bool is_there = r.has_come_nearest || rests_beside(i);
     return r.no_way + ", and " + (is_there ? "went" : "was on its way") + " as near as it can: it ends " +
            metres(norm(r.position - goal_of(i))) + " from it; the nearest place that it can reach is " +
            words_of(*r.nearest);

@@ -14,6 +14,10 @@
 
 namespace exactvo::formation::detail {
 
+/// Two robots can hold each other up if their gap is less than this many times `margins.robot`: with a wide margin a
+/// robot stops at that distance.
+inline constexpr double kNearMargins = 1.5;
+
 /// Calls visit(i, j), i < j, for all pairs of places at most `reach` (m) apart and for some that are farther, in the
 /// order of i, then of j. Quadratic where there are few places, one of them is not finite, or the reach is not.
 template <class Visit>
