@@ -7,11 +7,11 @@
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/trap.h"
+#include "support/json_layout.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
-#include "support/unsigned_zero.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -28,65 +28,42 @@ struct TrapFlags {
   bool json = false;
 };
 
-/// JSON has no word for infinity: null, as for what does not apply.
-std::string number(double x) {
-  return std::isfinite(x) ? fmt::format("{}", unsigned_zero(x)) : "null";
-}
-std::string number(const std::optional<double>& x) {
-  return x ? number(*x) : "null";
-}
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
+OrderedJson json_of(const Equilibrium& e, double max_speed) {
+  return {{"position", json_point(e.position)},
+          {"radius_of_curvature", e.radius_of_curvature},
+          {"distance", e.distance},
+          {"stable", e.stable},
+          {"rate", e.rate_at(max_speed)}};
 }
 
-std::string json_of(const Equilibrium& e, double max_speed) {
-  return fmt::format(
-      "{{ \"position\": [{}, {}], \"radius_of_curvature\": {}, \"distance\": {}, \"stable\": {}, \"rate\": {} }}",
-      number(e.position.x), number(e.position.y), number(e.radius_of_curvature), number(e.distance), e.stable,
-      number(e.rate_at(max_speed)));
+OrderedJson json_of(const formation::Scenario& scenario, const TrapPlace& place) {
+  OrderedJson ids = OrderedJson::array();
+  for (const std::size_t k : place.enclosure.obstacles) ids.push_back(scenario.obstacles[k].id);
+  return {{"enclosure", place.number},
+          {"obstacles", ids},
+          {"grade", name(place.enclosure.grade)},
+          {"shape", geometry::to_string(place.enclosure.shape)}};
 }
 
-std::string ids_of(const formation::Scenario& scenario, const TrapPlace& place, const char* between) {
-  std::string text;
-  for (std::size_t k : place.enclosure.obstacles)
-    text += (text.empty() ? "" : between) + quoted(scenario.obstacles[k].id);
-  return text;
-}
-
-std::string json_of(const formation::Scenario& scenario, const TrapPlace& place) {
-  return fmt::format("\"enclosure\": {}, \"obstacles\": [{}], \"grade\": \"{}\", \"shape\": {}", place.number,
-                     ids_of(scenario, place, ", "), name(place.enclosure.grade),
-                     quoted(geometry::to_string(place.enclosure.shape)));
-}
-
-std::string json_of(const formation::Scenario& scenario, const TrapFinding& f) {
+OrderedJson json_of(const formation::Scenario& scenario, const TrapFinding& f) {
   const formation::Robot& robot = scenario.robots[f.robot];
-  std::string equilibria;
-  for (const Equilibrium& e : f.equilibria)
-    equilibria += (equilibria.empty() ? "" : ", ") + json_of(e, robot.max_speed);
-  const std::string other = f.overlapping ? "{ " + json_of(scenario, *f.overlapping) + " }" : "null";
-  return fmt::format(
-      "  {{ \"robot\": {}, \"goal\": [{}, {}], {},\n"
-      "    \"overlapping\": {},\n"
-      "    \"stall_possible\": {}, \"margin\": {}, \"start_clear\": {}, \"goal_clear\": {}, \"slide_time\": {},\n"
-      "    \"equilibria\": [{}] }}",
-      quoted(robot.id), f.goal.x, f.goal.y, json_of(scenario, f.place), other, f.stall_possible, number(f.margin),
-      f.start_clear, f.goal_clear, number(f.slide_time), equilibria);
+  OrderedJson json{{"robot", robot.id}, {"goal", json_point(f.goal)}};
+  json.update(json_of(scenario, f.place));
+  json["overlapping"] = f.overlapping ? json_of(scenario, *f.overlapping) : OrderedJson();
+  json["stall_possible"] = f.stall_possible;
+  json["margin"] = json_or_null(f.margin);
+  json["start_clear"] = f.start_clear;
+  json["goal_clear"] = f.goal_clear;
+  json["slide_time"] = json_or_null(f.slide_time);
+  json["equilibria"] = OrderedJson::array();
+  for (const Equilibrium& e : f.equilibria) json["equilibria"].push_back(json_of(e, robot.max_speed));
+  return json;
 }
 
-std::string json_of(const formation::Scenario& scenario, const std::vector<TrapFinding>& findings) {
-  std::string text = "[";
-  for (std::size_t k = 0; k < findings.size(); ++k) text += (k ? ",\n" : "\n") + json_of(scenario, findings[k]);
-  return text + (findings.empty() ? "]\n" : "\n]\n");
+OrderedJson json_of(const formation::Scenario& scenario, const std::vector<TrapFinding>& findings) {
+  OrderedJson list = OrderedJson::array();
+  for (const TrapFinding& f : findings) list.push_back(json_of(scenario, f));
+  return list;
 }
 
 std::string curvature_words(double radius) {
@@ -156,7 +133,7 @@ ExitCode trap(const TrapFlags& flags) {
   const std::vector<TrapFinding> findings = tested(scenario, options);
   std::string text;
   if (flags.json) {
-    text = json_of(scenario, findings);
+    text = laid_out(json_of(scenario, findings));
   } else {
     const bool orca = flags.simulation.method == formation::name(formation::Method::orca);
     for (const TrapFinding& f : findings) text += words_of(scenario, f, orca);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/vo/answer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/predicates.h"
-#include "support/unsigned_zero.h"
 
 namespace exactvo::tools {
 
@@ -46,43 +43,29 @@ constexpr geometry::Names<Taken, 5> kTaken{{{Taken::itself, "itself"},
 
 // --- JSON ---
 
-std::string json(double x) {
-  return std::isfinite(x) ? fmt::format("{}", unsigned_zero(x)) : "null";
-}
-std::string json(Vec2 v) {
-  return fmt::format("[{}, {}]", json(v.x), json(v.y));
-}
-std::string json(bool b) {
-  return b ? "true" : "false";
-}
-std::string json(const geometry::Bracket& b) {
-  return fmt::format("[{}, {}]", json(b.low), json(b.high));
-}
-std::string json(const std::optional<HalfPlane>& h) {
-  if (!h) return "null";
-  return fmt::format("{{\"normal\": {}, \"offset\": {}}}", json(h->normal), json(h->offset));
+using Json = OrderedJson;
+
+Json json_of(const std::optional<HalfPlane>& h) {
+  return h ? Json{{"normal", json_point(h->normal)}, {"offset", h->offset}} : Json();
 }
 
-std::string leg_json(const char* side, const vo::Leg& leg) {
-  return fmt::format(
-      "{{\"side\": \"{}\", \"direction\": {}, \"touch\": {}, \"bracket\": {{\"inside\": {}, \"outside\": {}}}}}", side,
-      json(leg.direction), json(leg.touch), json(leg.normal), json(leg.normal_outside));
+Json json_of(const char* side, const vo::Leg& leg) {
+  return {{"side", side},
+          {"direction", json_point(leg.direction)},
+          {"touch", json_point(leg.touch)},
+          {"bracket", {{"inside", json_point(leg.normal)}, {"outside", json_point(leg.normal_outside)}}}};
 }
 
-std::string legs_json(const ConeAnswer& a) {
-  if (a.overlaps) return "null";
-  const auto legs = a.cone.legs();
-  if (!legs) return "null";
-  return fmt::format("[{},\n           {}]", leg_json("left", legs->left), leg_json("right", legs->right));
+Json legs_json(const ConeAnswer& a) {
+  const auto legs = a.overlaps ? std::nullopt : a.cone.legs();
+  return legs ? Json::array({json_of("left", legs->left), json_of("right", legs->right)}) : Json();
 }
 
-std::string boundary_json(const ConeAnswer& a) {
-  if (!a.nearest) return "\"nearest_boundary\": null,\n  \"u\": null";
-  return fmt::format(
-      "\"nearest_boundary\": {{\"part\": \"{}\", \"normal\": {}, \"signed_distance\": {}, \"point\": {}}},\n"
-      "  \"u\": {}",
-      name(a.nearest->part), json(a.nearest->normal), json(a.nearest->signed_distance),
-      json(a.encounter.velocity + a.nearest->u), json(a.nearest->u));
+Json boundary_json(const ConeAnswer& a) {
+  return {{"part", name(a.nearest->part)},
+          {"normal", json_point(a.nearest->normal)},
+          {"signed_distance", a.nearest->signed_distance},
+          {"point", json_point(a.encounter.velocity + a.nearest->u)}};
 }
 
 std::string text_of(const vo::Certificate& c) {
@@ -93,182 +76,174 @@ std::string text_of(const vo::Containment& c) {
 }
 
 template <class Certificate>
-std::string json(const std::optional<Certificate>& c) {
-  if (!c) return "null";
-  return fmt::format("{{\"verdict\": \"{}\", \"margin\": {}, \"text\": \"{}\"}}", name(check(*c)), json(c->margin),
-                     text_of(*c));
+Json certificate_json(const std::optional<Certificate>& c) {
+  return c ? Json{{"verdict", name(check(*c))}, {"margin", c->margin}, {"text", text_of(*c)}} : Json();
 }
 
-std::string half_planes_json(const ConeAnswer& a) {
+void add_half_planes(const ConeAnswer& a, Json& json) {
   const char* why = why_no_certificate(a);
-  return fmt::format(
-      "\"half_plane\": {},\n  \"contact_half_plane\": {},\n  \"certificate\": {},\n  \"why_no_certificate\": {}",
-      json(a.half_plane), json(a.contact), json(a.certificate), why ? fmt::format("\"{}\"", why) : "null");
+  json["half_plane"] = json_of(a.half_plane);
+  json["contact_half_plane"] = json_of(a.contact);
+  json["certificate"] = certificate_json(a.certificate);
+  json["why_no_certificate"] = why ? Json(why) : Json();
 }
 
-std::string shared_json(const ConeAnswer& a) {
-  if (a.encounter.share >= 1.0) return "";
-  return fmt::format(
-      "\"shared_half_plane\": {{\"alpha\": {}, \"half_plane\": {}, \"certificate\": null,\n"
-      "    \"holds\": \"only if the other side takes its share\"}},\n  ",
-      json(a.encounter.share), json(a.shared));
+void add_shared(const ConeAnswer& a, Json& json) {
+  if (a.encounter.share >= 1.0) return;
+  json["shared_half_plane"] = {{"alpha", a.encounter.share},
+                               {"half_plane", json_of(a.shared)},
+                               {"certificate", nullptr},
+                               {"holds", "only if the other side takes its share"}};
 }
 
-std::string member_json(const vo::Member& m, Vec2 velocity) {
-  const auto answer = m.allows(velocity);
-  std::string text =
-      fmt::format("{{\"variant\": \"{}\", \"allows_velocity\": {}", name(m.variant), answer ? json(*answer) : "null");
-  if (m.cone)
-    text += fmt::format(", \"apex\": {}, \"time_horizon\": {}", json(m.cone->apex), json(m.cone->cone.time_horizon()));
-  if (m.half_plane) text += fmt::format(", \"half_plane\": {}", json(m.half_plane));
-  return text + "}";
-}
-
-std::string members_json(const VoAnswer& a) {
-  if (a.members.empty()) return "";
-  std::string text = "  \"variants\": [";
-  for (std::size_t i = 0; i < a.members.size(); ++i)
-    text += (i == 0 ? "\n    " : ",\n    ") + member_json(a.members[i], a.question.velocity);
-  return text + "],\n";
-}
-
-std::string stages_json() {
-  const geometry::StageCounts counts = geometry::stage_counts();
-  return fmt::format("\"stage_counts\": {{\"filter\": {}, \"exact\": {}}}", counts.filter, counts.exact);
+Json member_json(const vo::Member& m, Vec2 velocity) {
+  Json json{{"variant", name(m.variant)}, {"allows_velocity", json_or_null(m.allows(velocity))}};
+  if (m.cone) {
+    json["apex"] = json_point(m.cone->apex);
+    json["time_horizon"] = m.cone->cone.time_horizon();
+  }
+  if (m.half_plane) json["half_plane"] = json_of(m.half_plane);
+  return json;
 }
 
 /// Of what the certificate is: the obstacle's convex shape, and a robot that is no disc.
-std::string shape_json(const ConeAnswer& a) {
-  const auto& robot = a.encounter.robot;
-  const std::string grown_by =
-      robot ? fmt::format("\"robot\": \"{}\",\n  ", to_string(geometry::ConvexShape{*robot})) : "";
-  return fmt::format("\"shape\": \"{}\",\n  {}", to_string(a.encounter.obstacle), grown_by);
+void add_shape(const ConeAnswer& a, Json& json) {
+  json["shape"] = to_string(a.encounter.obstacle);
+  if (a.encounter.robot) json["robot"] = to_string(geometry::ConvexShape{*a.encounter.robot});
 }
 
-std::string verdict_json(bool overlaps, bool contains) {
-  return fmt::format("\"overlaps\": {},\n  \"contains_velocity\": {},\n  ", json(overlaps),
-                     overlaps ? "null" : json(contains));
+void add_verdict(bool overlaps, bool contains, Json& json) {
+  json["overlaps"] = overlaps;
+  json["contains_velocity"] = overlaps ? Json() : Json(contains);
 }
 
-std::string relative_json(const ConeAnswer& a) {
-  return fmt::format("\"apex\": {},\n  \"time_horizon\": {},\n  ", json(a.encounter.obstacle_velocity),
-                     json(a.encounter.time_horizon));
+void add_relative(const ConeAnswer& a, Json& json) {
+  json["apex"] = json_point(a.encounter.obstacle_velocity);
+  json["time_horizon"] = a.encounter.time_horizon;
 }
 
 /// Where they were asked for.
-std::string exact_json(const ConeAnswer& a) {
-  return a.exact_legs ? fmt::format("\"exact_legs\": {},\n  ", exact_legs_json(*a.exact_legs)) : "";
+void add_exact_legs(const ConeAnswer& a, Json& json) {
+  if (a.exact_legs) json["exact_legs"] = exact_legs_json(*a.exact_legs);
 }
 
-std::string bounds_json(const ConeAnswer& a) {
-  return fmt::format("\"legs\": {},\n  {}{},\n  {}{}", legs_json(a), exact_json(a), boundary_json(a), shared_json(a),
-                     half_planes_json(a));
+void add_bounds(const ConeAnswer& a, Json& json) {
+  json["legs"] = legs_json(a);
+  add_exact_legs(a, json);
+  json["nearest_boundary"] = a.nearest ? boundary_json(a) : Json();
+  json["u"] = a.nearest ? json_point(a.nearest->u) : Json();
+  add_shared(a, json);
+  add_half_planes(a, json);
 }
 
 /// What stands for the obstacle.
-std::string taken_json(const VoQuestion& q, const AskedObstacle& o) {
-  const auto enclosed = enclosed_of(q, o);
-  const std::string proof = enclosed ? fmt::format(", \"vertices\": {}, \"contained\": {},\n    \"certificate\": {}",
-                                                   enclosed->vertices, enclosed->contained, json(enclosed->certificate))
-                                     : "";
-  return fmt::format("\"taken_as\": {{\"what\": \"{}\", \"convex_shapes\": {}{}}},\n  ",
-                     geometry::name_in(kTaken, o.taken), o.encounters, proof);
+Json taken_json(const VoQuestion& q, const AskedObstacle& o) {
+  Json json{{"what", geometry::name_in(kTaken, o.taken)}, {"convex_shapes", o.encounters}};
+  if (const auto enclosed = enclosed_of(q, o)) {
+    json["vertices"] = enclosed->vertices;
+    json["contained"] = enclosed->contained;
+    json["certificate"] = certificate_json(enclosed->certificate);
+  }
+  return json;
 }
-
-std::string cone_json(const ConeAnswer& a) {
-  return shape_json(a) + verdict_json(a.overlaps, a.contains) + relative_json(a) + bounds_json(a);
-}
-
-std::string joined(const std::vector<std::string>& items) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "\n    " : ",\n    ") + item;
-  return text;
-}
-
-/// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
-constexpr const char* kKindsOfCone =
-    "\"kinds\": {\n    \"exact\": [\"shape\", \"robot\", \"taken_as\", \"overlaps\", \"contains_velocity\", "
-    "\"apex\"],\n"
-    "    \"certified\": [\"half_plane\", \"contact_half_plane\", \"certificate\", \"why_no_certificate\", "
-    "\"legs/bracket\"],\n"
-    "    \"rounded\": [\"legs/direction\", \"legs/touch\", \"nearest_boundary\", \"u\", \"shared_half_plane\", "
-    "\"variants\"]},\n  ";
-constexpr const char* kKindsOfFree =
-    "\"kinds\": {\n    \"exact\": [\"obstacles/shape\", \"obstacles/robot\", \"obstacles/taken_as\", "
-    "\"obstacles/overlaps\", "
-    "\"velocity_is_free\",\n      \"exact/components\", \"exact/region_inside\", \"exact/pieces/arcs/kind\", "
-    "\"exact/pieces/arcs/obstacle\", \"exact/pieces/arcs/cone\", \"exact/pieces/arcs/turn\"],\n"
-    "    \"certified\": [\"obstacles/half_plane\", \"obstacles/contact_half_plane\", \"obstacles/certificate\", "
-    "\"obstacles/why_no_certificate\", "
-    "\"area\",\n      \"least_components\", \"region/inside\", \"region/area\", \"region/given_away\", "
-    "\"region/lost/area\",\n      \"exact/area\", \"exact/pieces/area\", \"exact/pieces/arcs/from\", "
-    "\"exact/pieces/arcs/to\"],\n"
-    "    \"rounded\": [\"region/lost/farthest\", \"exact/pieces/arcs/center\", \"exact/pieces/arcs/radius\"]},\n  ";
 
 bool has_exact_legs(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.exact_legs.has_value(); });
 }
 
-/// With the fields that were asked for besides.
-std::string kinds(const char* always, const VoAnswer& a) {
-  std::string text = always;
-  const std::string exact = "\"exact\": [";
-  if (has_exact_legs(a)) {
-    const std::string more = a.free ? "\"obstacles/exact_legs\", \"legs_by_angle\", " : "\"exact_legs\", ";
-    text.insert(text.find(exact) + exact.size(), more);
-  }
-  return text;
+/// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
+Json kinds_of_cone(const VoAnswer& a) {
+  Json exact{"shape", "robot", "taken_as", "overlaps", "contains_velocity", "apex"};
+  if (has_exact_legs(a)) exact.insert(exact.begin(), "exact_legs");
+  return {{"exact", exact},
+          {"certified", {"half_plane", "contact_half_plane", "certificate", "why_no_certificate", "legs/bracket"}},
+          {"rounded", {"legs/direction", "legs/touch", "nearest_boundary", "u", "shared_half_plane", "variants"}}};
+}
+
+Json kinds_of_free(const VoAnswer& a) {
+  Json exact{"obstacles/shape",        "obstacles/robot",        "obstacles/taken_as",
+             "obstacles/overlaps",     "velocity_is_free",       "exact/components",
+             "exact/region_inside",    "exact/pieces/arcs/kind", "exact/pieces/arcs/obstacle",
+             "exact/pieces/arcs/cone", "exact/pieces/arcs/turn"};
+  if (has_exact_legs(a)) exact.insert(exact.begin(), {"obstacles/exact_legs", "legs_by_angle"});
+  return {
+      {"exact", exact},
+      {"certified",
+       {"obstacles/half_plane", "obstacles/contact_half_plane", "obstacles/certificate", "obstacles/why_no_certificate",
+        "area", "least_components", "region/inside", "region/area", "region/given_away", "region/lost/area",
+        "exact/area", "exact/pieces/area", "exact/pieces/arcs/from", "exact/pieces/arcs/to"}},
+      {"rounded", {"region/lost/farthest", "exact/pieces/arcs/center", "exact/pieces/arcs/radius"}}};
+}
+
+void add_stages(Json& json) {
+  const geometry::StageCounts counts = geometry::stage_counts();
+  json["stage_counts"] = {{"filter", counts.filter}, {"exact", counts.exact}};
 }
 
 /// A cone a convex shape; where the obstacle is one of those, its fields stand at the top.
-std::string single_json(const VoAnswer& a) {
-  const AskedObstacle& o = a.question.obstacles.front();
-  const std::string head = "{\n  " + taken_json(a.question, o);
-  const std::string tail = ",\n" + members_json(a) + "  " + kinds(kKindsOfCone, a) + stages_json() + "\n}\n";
-  if (a.cones.size() == 1) return head + cone_json(a.cones.front()) + tail;
-  std::vector<std::string> cones;
-  for (const ConeAnswer& cone : a.cones)
-    cones.push_back("{" + shape_json(cone) + verdict_json(cone.overlaps, cone.contains) + bounds_json(cone) + "}");
-  return head + verdict_json(any_overlaps(a), any_contains(a)) + relative_json(a.cones.front()) + "\"cones\": [" +
-         joined(cones) + "]" + tail;
+Json single_json(const VoAnswer& a) {
+  const ConeAnswer& first = a.cones.front();
+  Json json{{"taken_as", taken_json(a.question, a.question.obstacles.front())}};
+  if (a.cones.size() == 1) add_shape(first, json);
+  add_verdict(any_overlaps(a), any_contains(a), json);
+  add_relative(first, json);
+  if (a.cones.size() == 1) {
+    add_bounds(first, json);
+  } else {
+    for (const ConeAnswer& cone : a.cones) {
+      Json& one = json["cones"].emplace_back(Json::object());
+      add_shape(cone, one);
+      add_verdict(cone.overlaps, cone.contains, one);
+      add_bounds(cone, one);
+    }
+  }
+  for (const vo::Member& m : a.members) json["variants"].push_back(member_json(m, a.question.velocity));
+  json["kinds"] = kinds_of_cone(a);
+  add_stages(json);
+  return json;
 }
 
 // --- The same of --free ---
 
-std::string piece_json(const ConeAnswer& a) {
-  return shape_json(a) + fmt::format("\"overlaps\": {}, ", json(a.overlaps)) + exact_json(a) + half_planes_json(a);
+void add_piece(const ConeAnswer& a, Json& json) {
+  add_shape(a, json);
+  json["overlaps"] = a.overlaps;
+  add_exact_legs(a, json);
+  add_half_planes(a, json);
 }
 
-std::string obstacle_json(const VoAnswer& a, const AskedObstacle& o) {
-  const std::string head = "{" + taken_json(a.question, o);
-  if (o.encounters == 1) return head + piece_json(a.cones[o.first_encounter]) + "}";
-  std::vector<std::string> pieces;
-  bool overlaps = false;
-  for (std::size_t k = 0; k < o.encounters; ++k) {
-    pieces.push_back("{" + piece_json(a.cones[o.first_encounter + k]) + "}");
-    overlaps = overlaps || a.cones[o.first_encounter + k].overlaps;
+Json obstacle_json(const VoAnswer& a, const AskedObstacle& o) {
+  Json json{{"taken_as", taken_json(a.question, o)}};
+  const auto first = a.cones.begin() + static_cast<std::ptrdiff_t>(o.first_encounter);
+  const auto last = first + static_cast<std::ptrdiff_t>(o.encounters);
+  if (o.encounters == 1) {
+    add_piece(*first, json);
+    return json;
   }
-  return head + fmt::format("\"overlaps\": {}, \"cones\": [{}]}}", json(overlaps), joined(pieces));
+  json["overlaps"] = std::any_of(first, last, [](const ConeAnswer& c) { return c.overlaps; });
+  for (auto cone = first; cone != last; ++cone) add_piece(*cone, json["cones"].emplace_back(Json::object()));
+  return json;
 }
 
-std::string lost_json(const VoAnswer& a, const vo::LostPiece& piece) {
-  const auto [obstacle, cone] = place_of(a, piece);
-  return fmt::format("{{\"area\": {}, \"farthest\": {}, \"obstacle\": {}, \"cone\": {}}}", json(piece.area),
-                     json(piece.farthest), obstacle, cone);
-}
-
-std::string region_json(const VoAnswer& a) {
-  if (!a.free->report) return "null";
+Json region_json(const VoAnswer& a) {
+  if (!a.free->report) return nullptr;
   const vo::RegionReport& report = *a.free->report;
-  std::vector<std::string> lost;
-  for (const vo::LostPiece& piece : report.lost) lost.push_back(lost_json(a, piece));
-  return fmt::format("{{\n    \"inside\": \"{}\",\n    \"area\": {},\n    \"given_away\": {},\n    \"lost\": [{}]}}",
-                     name(report.inside), json(report.area), json(report.given_away), joined(lost));
+  Json lost = Json::array();
+  for (const vo::LostPiece& piece : report.lost) {
+    const auto [obstacle, cone] = place_of(a, piece);
+    lost.push_back({{"area", json_bracket(piece.area)},
+                    {"farthest", json_point(piece.farthest)},
+                    {"obstacle", obstacle},
+                    {"cone", cone}});
+  }
+  return {{"inside", name(report.inside)},
+          {"area", json_bracket(report.area)},
+          {"given_away", json_bracket(report.given_away)},
+          {"lost", lost}};
 }
 
 /// Which cones share a leg: numbered as in `obstacles`, the cones of each in their order.
-std::string by_angle_json(const VoAnswer& a) {
-  if (!has_exact_legs(a)) return "";
+std::vector<LegsOfCone> legs_of_cones(const VoAnswer& a) {
   std::vector<LegsOfCone> legs;
   for (std::size_t i = 0; i < a.question.obstacles.size(); ++i) {
     const AskedObstacle& o = a.question.obstacles[i];
@@ -277,19 +252,24 @@ std::string by_angle_json(const VoAnswer& a) {
       if (exact) legs.push_back({i, k, &*exact});
     }
   }
-  return fmt::format("\"legs_by_angle\": {},\n  ", legs_by_angle_json(legs));
+  return legs;
 }
 
-std::string free_json(const VoAnswer& a) {
+Json free_json(const VoAnswer& a) {
   const FreeAnswer& f = *a.free;
-  std::vector<std::string> obstacles;
-  for (const AskedObstacle& o : a.question.obstacles) obstacles.push_back(obstacle_json(a, o));
-  return fmt::format(
-      "{{\n  \"obstacles\": [{}],\n  \"max_speed\": {},\n  \"velocity_is_free\": {},\n  \"area\": {},\n"
-      "  \"least_components\": {},\n  \"region\": {},\n  {},\n  {}{}{}\n}}\n",
-      joined(obstacles), json(f.max_speed), json(f.free.contains(a.question.velocity)), json(f.free.area()),
-      f.free.least_components(), region_json(a), exact_free_json(f.exact, a.question), by_angle_json(a),
-      kinds(kKindsOfFree, a), stages_json());
+  Json json{{"obstacles", Json::array()}};
+  for (const AskedObstacle& o : a.question.obstacles) json["obstacles"].push_back(obstacle_json(a, o));
+  json["max_speed"] = f.max_speed;
+  json["velocity_is_free"] = f.free.contains(a.question.velocity);
+  json["area"] = json_bracket(f.free.area());
+  json["least_components"] = f.free.least_components();
+  json["region"] = region_json(a);
+  json["exact"] = exact_free_json(f.exact, a.question);
+  json["why_not_exact"] = f.exact.free ? Json() : Json(f.exact.why_not);
+  if (has_exact_legs(a)) json["legs_by_angle"] = legs_by_angle_json(legs_of_cones(a));
+  json["kinds"] = kinds_of_free(a);
+  add_stages(json);
+  return json;
 }
 
 }  // namespace
@@ -384,7 +364,7 @@ VoAnswer answer_of(const VoQuestion& question) {
 }
 
 std::string to_json(const VoAnswer& a) {
-  return a.free ? free_json(a) : single_json(a);
+  return laid_out(a.free ? free_json(a) : single_json(a));
 }
 
 }  // namespace exactvo::tools

@@ -18,6 +18,7 @@
 #include "exactvo/vo/free_arrangement.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure.h"
+#include "support/json_layout.h"
 #include "verbs/vo/question.h"
 
 namespace exactvo::tools {
@@ -32,8 +33,8 @@ struct ExactFree {
 ExactFree exact_free_of(const std::vector<vo::ShiftedCone>& cones, const VoQuestion& question,
                         const std::vector<geometry::HalfPlane>* half_planes);
 
-/// `exact`, an object or null, and `why_not_exact`, null or words.
-std::string exact_free_json(const ExactFree& exact, const VoQuestion& question);
+/// Null where there is none.
+OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question);
 
 /// One line or two.
 std::string exact_free_words(const ExactFree& exact);
@@ -45,11 +46,11 @@ struct LegsOfCone {
 };
 
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
-std::string exact_legs_json(const vo::ExactLegs& legs);
+OrderedJson exact_legs_json(const vo::ExactLegs& legs);
 
 /// All of them counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
 /// cones share a leg.
-std::string legs_by_angle_json(const std::vector<LegsOfCone>& legs);
+OrderedJson legs_by_angle_json(const std::vector<LegsOfCone>& legs);
 
 std::string exact_legs_words(const vo::ExactLegs& legs);
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
-#include "support/unsigned_zero.h"
 
 namespace exactvo::tools {
 namespace {
@@ -52,43 +51,34 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
   }
 }
 
-std::string bracket_json(const Bracket& b) {
-  return fmt::format("[{}, {}]", unsigned_zero(b.low), unsigned_zero(b.high));
-}
-std::string bracket_json(const vo::PointBracket& p) {
-  return fmt::format("[{}, {}]", bracket_json(p.x), bracket_json(p.y));
+OrderedJson json_of(const vo::PointBracket& p) {
+  return OrderedJson::array({json_bracket(p.x), json_bracket(p.y)});
 }
 
-std::string owner_json(const vo::FreeArc& arc, const VoQuestion& question) {
-  if (arc.kind == vo::ArcKind::speed_circle) return "\"obstacle\": null, \"cone\": null";
-  const Place place = place_of(question, arc.cone);
-  return fmt::format("\"obstacle\": {}, \"cone\": {}", place.obstacle, place.cone);
+OrderedJson json_of(const vo::FreeArc& arc, const VoQuestion& question) {
+  OrderedJson json{{"kind", name(arc.kind)}, {"obstacle", nullptr}, {"cone", nullptr}};
+  if (arc.kind != vo::ArcKind::speed_circle) {
+    const Place place = place_of(question, arc.cone);
+    json["obstacle"] = place.obstacle;
+    json["cone"] = place.cone;
+  }
+  json["from"] = json_of(arc.from);
+  json["to"] = json_of(arc.to);
+  if (arc.turn == 0) return json;
+  json["center"] = json_point(arc.center);
+  json["radius"] = arc.radius;
+  json["turn"] = arc.turn;
+  return json;
 }
 
-std::string circle_json(const vo::FreeArc& arc) {
-  if (arc.turn == 0) return "";
-  return fmt::format(", \"center\": [{}, {}], \"radius\": {}, \"turn\": {}", unsigned_zero(arc.center.x),
-                     unsigned_zero(arc.center.y), arc.radius, arc.turn);
-}
-
-std::string arc_json(const vo::FreeArc& arc, const VoQuestion& question) {
-  return fmt::format("{{\"kind\": \"{}\", {},\n         \"from\": {}, \"to\": {}{}}}", name(arc.kind),
-                     owner_json(arc, question), bracket_json(arc.from), bracket_json(arc.to), circle_json(arc));
-}
-
-std::string piece_json(const vo::FreePiece& piece, const VoQuestion& question) {
-  std::string arcs;
-  for (const vo::FreeArc& arc : piece.boundary)
-    arcs += (arcs.empty() ? "\n        " : ",\n        ") + arc_json(arc, question);
-  return fmt::format("{{\"area\": {}, \"arcs\": [{}]}}", bracket_json(piece.area), arcs);
+OrderedJson json_of(const vo::FreePiece& piece, const VoQuestion& question) {
+  OrderedJson arcs = OrderedJson::array();
+  for (const vo::FreeArc& arc : piece.boundary) arcs.push_back(json_of(arc, question));
+  return {{"area", json_bracket(piece.area)}, {"arcs", arcs}};
 }
 
 const char* word_of(bool inside) {
   return inside ? "yes" : "no";
-}
-
-std::string inside_json(const std::optional<bool>& inside) {
-  return inside ? fmt::format("\"{}\"", word_of(*inside)) : "null";
 }
 
 // --- Legs ---
@@ -96,19 +86,13 @@ std::string inside_json(const std::optional<bool>& inside) {
 /// Of the slope: narrower than a double of it.
 constexpr double kWidth = 0x1p-60;
 
-std::string joined(const std::vector<std::string>& items, const char* between) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "" : between) + item;
-  return text;
-}
-
-std::string leg_json(const char* side, const AlgebraicDirection& leg) {
+OrderedJson leg_json(const char* side, const AlgebraicDirection& leg) {
   const AlgebraicDirection fine = leg.refined(kWidth);
-  const geometry::Vec2 d = fine.rounded();
-  return fmt::format(
-      "{{\"side\": \"{}\", \"polynomial\": [\"{}\"], \"slope\": [\"{}\", \"{}\"], \"quarter_turns\": {}, "
-      "\"direction\": [{}, {}]}}",
-      side, joined(fine.polynomial(), "\", \""), fine.low(), fine.high(), fine.quarter_turns(), d.x, d.y);
+  return {{"side", side},
+          {"polynomial", fine.polynomial()},
+          {"slope", {fine.low(), fine.high()}},
+          {"quarter_turns", fine.quarter_turns()},
+          {"direction", json_point(fine.rounded())}};
 }
 
 std::string polynomial_words(const std::vector<std::string>& coefficients) {
@@ -161,15 +145,14 @@ ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion&
   return exact;
 }
 
-std::string exact_free_json(const ExactFree& exact, const VoQuestion& question) {
-  if (!exact.free) return fmt::format("\"exact\": null,\n  \"why_not_exact\": \"{}\"", exact.why_not);
-  std::string pieces;
-  for (const vo::FreePiece& piece : exact.free->pieces())
-    pieces += (pieces.empty() ? "\n      " : ",\n      ") + piece_json(piece, question);
-  return fmt::format(
-      "\"exact\": {{\n    \"components\": {},\n    \"area\": {},\n    \"region_inside\": {},\n    \"pieces\": [{}]}},\n"
-      "  \"why_not_exact\": null",
-      exact.free->pieces().size(), bracket_json(exact.free->area()), inside_json(exact.region_inside), pieces);
+OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question) {
+  if (!exact.free) return nullptr;
+  OrderedJson pieces = OrderedJson::array();
+  for (const vo::FreePiece& piece : exact.free->pieces()) pieces.push_back(json_of(piece, question));
+  return {{"components", pieces.size()},
+          {"area", json_bracket(exact.free->area())},
+          {"region_inside", exact.region_inside ? OrderedJson(word_of(*exact.region_inside)) : OrderedJson()},
+          {"pieces", pieces}};
 }
 
 std::string exact_free_words(const ExactFree& exact) {
@@ -183,20 +166,18 @@ std::string exact_free_words(const ExactFree& exact) {
                      : "\n");
 }
 
-std::string exact_legs_json(const vo::ExactLegs& legs) {
-  return fmt::format("[{},\n           {}]", leg_json("left", legs.left), leg_json("right", legs.right));
+OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
+  return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
 }
 
-std::string legs_by_angle_json(const std::vector<LegsOfCone>& legs) {
+OrderedJson legs_by_angle_json(const std::vector<LegsOfCone>& legs) {
   const std::vector<NamedLeg> all = in_order(legs);
-  std::string text;
+  OrderedJson groups = OrderedJson::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool equal = i > 0 && compare(*all[i - 1].leg, *all[i].leg) == Sign::zero;
-    text += i == 0 ? "[" : equal ? ", " : "], [";
-    text += fmt::format("{{\"obstacle\": {}, \"cone\": {}, \"side\": \"{}\"}}", all[i].of->obstacle, all[i].of->cone,
-                        all[i].side);
+    if (i == 0 || compare(*all[i - 1].leg, *all[i].leg) != Sign::zero) groups.push_back(OrderedJson::array());
+    groups.back().push_back({{"obstacle", all[i].of->obstacle}, {"cone", all[i].of->cone}, {"side", all[i].side}});
   }
-  return "[" + text + (all.empty() ? "]" : "]]");
+  return groups;
 }
 
 std::string exact_legs_words(const vo::ExactLegs& legs) {
