@@ -132,8 +132,9 @@ std::string contact_words(const Decision& d, const RecordedConstraint& c) {
   if (!contact && takes_preferred(d) && effect_of(d, c) == Effect::binding)
     return away + ", passed closely at the chosen velocity";
   if (!contact) return away + ", not touched at the preferred velocity";
-  return fmt::format("{}, reached in {} s at the preferred velocity, horizon {} s", away, number(*contact),
-                     number(c.tau));
+  constexpr double kLong = 3600.0;  // s
+  const std::string in = *contact > kLong ? "more than an hour" : number(*contact) + " s";
+  return fmt::format("{}, reached in {} at the preferred velocity, horizon {} s", away, in, number(c.tau));
 }
 
 std::string proof_words(const RecordedConstraint& c) {

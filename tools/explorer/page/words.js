@@ -48,7 +48,8 @@ function contactWords(d, h) {
   const contact = timeToContact(h, d.anchor, d.preferred[0] - h.ux, d.preferred[1] - h.uy);
   const away = `${number(distance)} m from the robot's rim`;
   if (contact === null) return `${away}, not touched at the preferred velocity`;
-  return `${away}, reached in ${number(contact)} s at the preferred velocity, horizon ${number(h.tau)} s`;
+  const reached = contact > 3600 ? 'more than an hour' : `${number(contact)} s`;
+  return `${away}, reached in ${reached} at the preferred velocity, horizon ${number(h.tau)} s`;
 }
 
 function signed(x) {

@@ -119,13 +119,15 @@ void warn(const std::vector<std::string>& warnings) {
 }
 
 /// How fast a formation can form, said before the run.
-void announce(const formation::Scenario& scenario) {
+void announce(const formation::Scenario& scenario, formation::Integrator integrator) {
   if (!scenario.formation) return;
   const formation::Stability s = stability_of(*scenario.formation);
-  message(fmt::format(
-      "formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s; "
-      "explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
-      s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
+  const bool has_limit = integrator == formation::Integrator::euler;
+  message(fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s{}",
+                      s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate,
+                      has_limit ? fmt::format("; explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
+                                              s.euler_step_limit, scenario.time_step)
+                                : ""));
 }
 
 /// Into the folder, which may be none, or as a recording alone.
@@ -207,7 +209,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
   }
-  announce(scenario);
+  announce(scenario, options.integrator);
   const FinishedRun finished = flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
                                                  : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
