@@ -39,6 +39,7 @@ enum class FieldKind {
 };
 inline constexpr FieldKind kFieldKinds[] = {FieldKind::scattered, FieldKind::boxes, FieldKind::lattice,
                                             FieldKind::maze,      FieldKind::bars,  FieldKind::rounded};
+inline constexpr const char* kFieldKindNames[] = {"scattered", "boxes", "lattice", "maze", "bars", "rounded"};
 
 /// A closed wall, so that nothing leaves.
 inline Polyline fence(const std::vector<Vec2>& ring) {

@@ -51,7 +51,8 @@ TEST_P(RoutesAtCriticalRadii, Property1_EveryAnswerIsRightAndProven) {
   // Ties are the worst: where the disc just fits everywhere, it crosses gates straight and the bound does not know.
   EXPECT_LT(campaign.sum_of_ratios / static_cast<double>(campaign.routes), 1.02);
 }
-INSTANTIATE_TEST_SUITE_P(Routes, RoutesAtCriticalRadii, testing::ValuesIn(test::kFieldKinds));
+INSTANTIATE_TEST_SUITE_P(Routes, RoutesAtCriticalRadii, testing::ValuesIn(test::kFieldKinds),
+                         [](const auto& kind) { return test::kFieldKindNames[kind.index]; });
 
 TEST(Routes, AGapOfExactlyTwoRadiiIsPassedAndTheNextDoubleIsNot) {
   const std::vector<Obstacle> door{Polyline{{{0, -5}, {0, -0.5}}}, Polyline{{{0, 0.5}, {0, 5}}},

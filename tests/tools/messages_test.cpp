@@ -32,6 +32,12 @@ struct Mistake {
   const char* message;
 };
 
+/// The command, as words of a test's name.
+std::string name_of(const testing::TestParamInfo<Mistake>& mistake) {
+  return std::to_string(mistake.index) + "_" +
+         std::regex_replace(mistake.param.command, std::regex("[^A-Za-z0-9]+"), "_");
+}
+
 class Mistyped : public testing::TestWithParam<Mistake> {};
 
 TEST_P(Mistyped, IsAnsweredInPlainWords) {
@@ -73,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"--quiet=no simulate s.json", "--quiet: found 'no', expected no value"},
         Mistake{"simulate -h=3", "found '3', expected no value"},
         Mistake{"simulate ''", "scenario: found '', expected a value: JSON file"},
-        Mistake{"paper", "missing option --out: "}, Mistake{"audit", "found 'neither a path nor --certificate'"}));
+        Mistake{"paper", "missing option --out: "}, Mistake{"audit", "found 'neither a path nor --certificate'"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Obstacles, Mistyped,
@@ -100,7 +107,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"batch p.wkt --out o --jobs 0", "--jobs: found '0', expected a whole number from 1 to 4096"},
         Mistake{"batch p.wkt --out o --jobs x", "--jobs: found 'x', expected a whole number from 1 to 4096"},
         Mistake{"batch p.wkt --out o --limit-memory much", "--limit-memory: found 'much', expected "},
-        Mistake{"batch p.wkt --out o --limit-memory 2XB", "--limit-memory: found '2XB', expected a number of bytes"}));
+        Mistake{"batch p.wkt --out o --limit-memory 2XB", "--limit-memory: found '2XB', expected a number of bytes"}),
+    name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Velocities, Mistyped,
@@ -116,7 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"audit o --certificate", "--certificate: no value given"},
                     Mistake{"audit o p", "unexpected argument 'p'"}, Mistake{"--verison", "did you mean '--version'?"},
                     Mistake{"-x", "unknown option '-x'"}, Mistake{"--quiet", "no verb was given"},
-                    Mistake{"help simulte", "help: found 'simulte'"}));
+                    Mistake{"help simulte", "help: found 'simulte'"}),
+    name_of);
 
 TEST(Help, OfAVerbComesEitherWay) {
   const Outcome help = place().run("help simulate"), option = place().run("simulate --help");
