@@ -86,6 +86,14 @@ if(EXACTVO_SANITIZE)
   target_compile_options(exactvo_build_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 
+# Links a module: what it holds of the libraries stays its own; nothing may be missing but what sanitizers bring.
+function(exactvo_link_module module)
+  target_link_options(${module} PRIVATE LINKER:--exclude-libs,ALL)
+  if(NOT EXACTVO_SANITIZE)
+    target_link_options(${module} PRIVATE LINKER:--no-undefined)
+  endif()
+endfunction()
+
 # Sources of CGAL that are compiled together where sources are (EXACTVO_UNITY): those that make the same of its templates.
 function(exactvo_compile_together group)
   set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})

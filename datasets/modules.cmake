@@ -21,9 +21,7 @@ foreach(part IN LISTS parts)
   target_include_directories(${module} PRIVATE src ${EXACTVO_PROVENANCE_DIR})
   target_compile_definitions(${module} PRIVATE ${build})
   target_link_libraries(${module} PRIVATE exactvo_datasets_${part} exactvo_datasets exactvo_build_flags)
-  # What it holds of this library stays its own; nothing may be missing but what sanitizers bring.
-  target_link_options(${module} PRIVATE LINKER:--exclude-libs,ALL
-    $<$<STREQUAL:${EXACTVO_SANITIZE},>:LINKER:--no-undefined>)
+  exactvo_link_module(${module})
   set_target_properties(${module} PROPERTIES PREFIX "" OUTPUT_NAME exactvo_${part} CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/${EXACTVO_MODULE_FOLDER})
   add_dependencies(${module} exactvo_provenance)

@@ -130,7 +130,7 @@ TEST(LeaderRoute, WhatMeansNothingIsRefused) {
       {R"({"to": "there", "speed": 1})", DataCode::wrong_type, "/formation/leader/to", "a list ([x, y], m)"},
       {R"({"to": [20, 1e10], "speed": 1})", DataCode::out_of_range, "/formation/leader/to/1", "1000000000"},
       {R"({"to": [20, 0], "path": [[0, 0]], "speed": 1})", DataCode::no_alternative, "/formation/leader",
-       "more than one kind"},
+       "keys of several kinds: \"path\", \"to\""},
       {R"({"to": [20, 0], "from": [0, null], "speed": 1})", DataCode::wrong_type, "/formation/leader/from/1", "null"},
       {R"({"to": [20, 0]})", DataCode::no_alternative, "/formation/leader", "speed"},
       {R"({"to": [20, 0], "profile": {"legs": [1, 2]}})", DataCode::scenario, "/formation/leader/profile/legs",

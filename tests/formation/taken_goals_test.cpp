@@ -148,7 +148,7 @@ TEST(TakenGoals, LastPlacesAreWithinReachOfGoals) {
     Scenario s;
     for (int i = 0; i < 12; ++i) s.robots.push_back(robot("R" + std::to_string(i), {}, random.in_box(2.0)));
     s.robots[1].goals = s.robots[0].goals;
-    const std::vector<Vec2> places = detail::last_places(s);
+    const std::vector<Vec2> places = detail::last_places(s, detail::room_at_ends(s));
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_LE(norm(places[i] - s.robots[i].goals.back()), 0.9 * s.arrival_tolerance + 1e-12);
   }
@@ -161,7 +161,7 @@ TEST(TakenGoals, LastPlacesOfTwoLeaveRoomForBothWhereThereIsAny) {
     const Vec2 goal = random.in_box(5.0);
     const double apart = random.uniform(0.7, 1.3);
     s.robots = {robot("R1", {}, goal), robot("R2", {}, goal + apart * random.direction())};
-    const std::vector<Vec2> places = detail::last_places(s);
+    const std::vector<Vec2> places = detail::last_places(s, detail::room_at_ends(s));
     const bool is_moved = places[0] != s.robots[0].goals[0] || places[1] != s.robots[1].goals[0];
     EXPECT_EQ(is_moved, apart > 0.86 && apart < 1.04) << apart;
     EXPECT_GE(norm(places[1] - places[0]), is_moved ? 1.04 - 1e-6 : 0.0) << apart;

@@ -148,10 +148,31 @@ TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
   EXPECT_FALSE(metrics["without_route"][0]["why"].get<std::string>().empty());
   EXPECT_EQ(metrics["pushed_off"], 0);
   // Both goals are one place: who comes second pushes off who came first.
-  here.write("one.json", R"({"name": "one", "time_limit": 60, "guidance": "none", "horizons": {"least": 0.5},
+  here.write("one.json",
+             R"({"name": "one", "time_limit": 60, "guidance": "none", "horizons": {"least": 0.5}, "liveness": "off",
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
   const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
   EXPECT_EQ(one["pushed_off"].get<int>(), one["arrived"].get<int>() - 1) << one;
+}
+
+TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
+  const Workplace here;
+  here.write("one.json", R"({"name": "one", "time_limit": 60, "horizons": {"least": 0.5},
+      "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
+  const Outcome words = here.run("simulate one.json --engine crowd");
+  EXPECT_THAT(words.out, HasSubstr("1 of 2 robots arrived, 0 without a route, 1 whose goal is taken\n"
+                                   "  goal taken   b: a was first at the goal that both have"));
+  const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
+  EXPECT_EQ(one["goal_taken"],
+            json::parse(
+                R"([{"robot": "b", "why": "a was first at the goal that both have, which leaves no room for both"}])"));
+  EXPECT_EQ(one["pushed_off"], 0);
+  EXPECT_LT(one["time"], 20.0);
+  here.write("street.json", R"({"name": "street", "robots": [
+      {"id": "a", "position": [0, 0], "goal": [10, 0], "radius": 0.3}, {"id": "b", "position": [10, 0], "goal": [0, 0], "radius": 0.3}],
+      "obstacles": [{"id": "u", "polyline": [[-2, 0.5], [12, 0.5]]}, {"id": "l", "polyline": [[-2, -0.5], [12, -0.5]]}]})");
+  EXPECT_THAT(here.run("simulate street.json --engine crowd").out, HasSubstr("  standstill   2 robots: nothing moves"));
+  EXPECT_EQ(json::parse(here.run("simulate street.json --engine crowd --json").out)["stands_still"], true);
 }
 
 TEST(CrowdVerb, DrawMakesMapsAndSaysThatARecordingWasCutOff) {

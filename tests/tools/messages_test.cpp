@@ -148,7 +148,8 @@ TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
                                "obstacles": [{"id": "U", "disc": [1, 2]}]})");
   EXPECT_THAT(
       place().run("simulate bad.json").err,
-      HasSubstr(R"(found none of these keys, expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
+      HasSubstr(
+          R"(found only the keys "id", "disc", expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
 }
 
 TEST(Messages, AMistypedGeneratorIsAnsweredWithThoseThereAre) {
@@ -164,8 +165,13 @@ TEST(Messages, AMistypedGeneratorIsAnsweredWithThoseThereAre) {
        R"(/robots/0/Grid: found an unknown key "Grid", expected a known key; did you mean "grid"?)"},
       {R"([{"randm": {"count": 4}}])",
        R"(/robots/0/randm: found an unknown key "randm", expected a known key; did you mean "random"?)"},
-      {R"([{"type": "ring", "count": 4}])", "/robots/0: found none of these keys, expected " + all},
-      {R"([{"count": 4, "radius": 9}])", "/robots/0: found none of these keys, expected " + all},
+      {R"([{"type": "ring", "count": 4}])", R"(/robots/0: found only the keys "type", "count", expected )" + all},
+      {R"([{"count": 4, "radius": 9}])", R"(/robots/0: found only the keys "count", "radius", expected )" + all},
+      {"[{}]", "/robots/0: found an empty object, expected " + all},
+      {R"([{"a": 1, "b": 1, "c": 1, "d": 1, "e": 1}])",
+       R"(/robots/0: found only the keys "a", "b", "c", "d", ..., expected )" + all},
+      {R"([{"circle": {"count": 4, "radius": 3}, "grid": {}}])",
+       R"(/robots/0: found keys of several kinds: "circle", "grid", expected )" + all},
       {R"([{"circle": {"count": 4, "radus": 9}}])",
        R"(/robots/0/circle/radus: found an unknown key "radus", expected a known key; did you mean "radius"?)"},
       {R"([{"circle": 4}])", "/robots/0/circle: found 4, expected an object"}};

@@ -338,7 +338,6 @@ std::string campaign_csv(const std::vector<VariantResult>& results) {
 
 std::string campaign_json(const std::string& what, const std::vector<VariantResult>& results,
                           const CampaignOptions& options) {
-  using Json = nlohmann::ordered_json;
   const datasets::Provenance p = datasets::make_provenance({}, options.seed);
   Json rows = Json::array();
   for (const VariantResult& v : results) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 
 namespace exactvo::datasets {

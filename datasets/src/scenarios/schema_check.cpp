@@ -289,7 +289,27 @@ class Checker {
       if (const Json* likely = likeliest(rule, value)) meant.push_back(likely);
     if (meant.empty()) refuse_mistyped(rule, value, at);
     if (meant.size() == 1) return check(value, *meant.front(), at);
-    refuse(DataCode::no_alternative, at, meant.empty() ? "none of these keys" : "the keys of more than one kind", keys);
+    refuse(DataCode::no_alternative, at,
+           meant.empty() ? keys_of(value) : "keys of several kinds: " + telling_keys(meant), keys);
+  }
+
+  /// The first keys of an object that has none of those that tell what is meant.
+  static std::string keys_of(const Json& value) {
+    constexpr std::size_t kMost = 4;
+    if (value.empty()) return "an empty object";
+    std::string words = value.size() == 1 ? "only the key " : "only the keys ";
+    std::size_t count = 0;
+    for (const auto& [key, member] : value.items()) {
+      if (count == kMost) return words + ", ...";
+      words += (count++ == 0 ? "" : ", ") + Json(key).dump();
+    }
+    return words;
+  }
+
+  static std::string telling_keys(const std::vector<const Json*>& alternatives) {
+    std::string words;
+    for (const Json* alternative : alternatives) words += (words.empty() ? "" : ", ") + listed_keys(*alternative);
+    return words;
   }
 
   /// Where no key tells what is meant: one that is nearly a key that would have told.

@@ -350,7 +350,7 @@ class RVOSimulator::State {
   std::optional<Crowd> crowd_, before_crowd_;
   Before before_;
   CrowdOptions before_options_;
-  const Explained none_;
+  const Explained none_{};
   std::mutex explaining_;
   std::map<std::size_t, Explained> explained_;
   std::vector<Segment> edges_;  ///< by the vertex that begins them

@@ -97,7 +97,7 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
 void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
   std::size_t pairs = 0;
-  const std::vector<Vec2> places = s.liveness == Liveness::off ? std::vector<Vec2>{} : last_places(s);
+  const std::vector<Vec2> places = s.liveness == Liveness::off ? std::vector<Vec2>{} : last_places(s, room_at_ends(s));
   for (std::size_t i = 0; i < last.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double radii = s.robots[i].radius + s.robots[j].radius, apart = norm(last[i].place - last[j].place);

@@ -13,20 +13,19 @@
 #include <utility>
 #include <vector>
 
-#include "crowd/snapshot_bytes.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
+#include "motion/leader.h"
+#include "runs/crowd_way.h"
 #include "scene/number_text.h"
+#include "steering/goal_claims.h"
+#include "steering/goals.h"
 #include "steering/guide.h"
+#include "steering/last_places.h"
 
 namespace exactvo::formation {
-
-template <>
-inline constexpr std::size_t crowd::doubles_of<detail::Destination> = 3;
-template <>
-inline constexpr std::size_t crowd::doubles_of<detail::NearestPlace> = 4;
 
 namespace {
 
@@ -50,9 +49,6 @@ constexpr double kLongestMotion = 0x1p22;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
 constexpr double kFastestBody = 0x1p14;
-
-/// Of snapshots.
-constexpr const char* kExpected = "those of a run of this scenario and these options";
 
 /// m: what lies farther out than robots, goals and obstacles is not gone to.
 double extent(const Scenario& s) {
@@ -109,12 +105,15 @@ class CrowdRun {
         ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
     add_robots();
     for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
-    for (const MovingObstacle& o : scenario.moving_obstacles)
+    for (const MovingObstacle& o : scenario.moving_obstacles) {
       moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
+      moving_until_ = std::max(moving_until_, rests_from(o.motion));
+    }
     if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
     ways_.resize(scenario.robots.size());
     preferred_.resize(scenario.robots.size());
     crowd_.positions(at_);
+    make_claims();
   }
 
   CrowdRunReport run() {
@@ -134,21 +133,31 @@ class CrowdRun {
   }
 
  private:
-  /// How far a robot has come.
-  struct Way {
-    std::size_t goal = 0;
-    std::optional<Course> course;
-    Vec2 heading;
-    std::optional<double> arrived;  ///< s
-    bool stays = false;
-    std::string why_not;                  ///< it stays, or goes as near as it can
-    std::optional<NearestPlace> nearest;  ///< as near as it can get
-  };
-
   void begin() {
     report_.robots = ways_.size();
     for (std::size_t i = own_begin(); i < own_end(); ++i) set_out(i);
     if (sink_) sink_->begin(crowd_);
+  }
+
+  /// Where goals are nearer to each other than radii take.
+  void make_claims() {
+    if (scenario_.liveness == Liveness::off) return;
+    const RoomAtEnds room;
+    if (any_leave_no_room(scenario_, goals(), room)) last_places_ = last_places(scenario_, room);
+    const bool may_end_elsewhere = guide_ && scenario_.unreachable == Unreachable::nearest;
+    if (!may_end_elsewhere && (last_places_.empty() || !any_leave_no_room(scenario_, goals(), room))) return;
+    claims_.emplace(scenario_, room, scenario_.horizons.orca);
+    now_.resize(ways_.size());
+  }
+
+  /// Of all robots, the last ones where these stand aside.
+  std::vector<RobotPlace> goals() const {
+    std::vector<RobotPlace> all;
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      for (const Vec2 goal : scenario_.robots[i].goals) all.push_back({i, goal});
+      if (!last_places_.empty()) all.back().place = last_places_[i];
+    }
+    return all;
   }
 
   // --- Ranks: each looks where robots own_begin() to own_end() are to go ---
@@ -175,8 +184,8 @@ class CrowdRun {
     const std::vector<std::string> all = ranks_->gather(own.str());
     for (std::size_t r = 1; r < all.size(); ++r) {
       std::istringstream bytes(all[r]);
-      SnapshotReader from(bytes, kExpected);
-      for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) ways_[i] = get_way(from, i);
+      SnapshotReader from(bytes, kSnapshotOfRun);
+      for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) ways_[i] = get_way_of(from, i);
     }
     count_arrived();
     return is_first();
@@ -184,7 +193,7 @@ class CrowdRun {
 
   void count_arrived() {
     report_.arrived = static_cast<std::size_t>(
-        std::count_if(ways_.begin(), ways_.end(), [](const Way& way) { return way.arrived.has_value(); }));
+        std::count_if(ways_.begin(), ways_.end(), [](const CrowdWay& way) { return way.arrived.has_value(); }));
   }
 
   void require_same_states() const {
@@ -205,7 +214,10 @@ class CrowdRun {
     SnapshotWriter of_run(run), to(whole);
     of_run.put(static_cast<std::uint64_t>(ways_.size()));
     for_each_count(report_, [&](const auto& count) { of_run.put(count); });
-    for (const Way& way : ways_) put(of_run, way);
+    put_count(of_run, moved_);
+    put_count(of_run, claimed_);
+    for (const CrowdWay& way : ways_) put(of_run, way);
+    if (claims_) put(of_run, *claims_);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
     for (const std::string& part : {run.str(), crowd.str(), sink.str()}) to.put_list(part);
@@ -215,14 +227,17 @@ class CrowdRun {
 
   void restore(const std::string& bytes) {
     std::istringstream whole(bytes);
-    SnapshotReader from(whole, kExpected);
+    SnapshotReader from(whole, kSnapshotOfRun);
     std::istringstream run(from.get_list<std::string>()), crowd(from.get_list<std::string>()),
         sink(from.get_list<std::string>());
     from.finish();
-    SnapshotReader of_run(run, kExpected);
+    SnapshotReader of_run(run, kSnapshotOfRun);
     require(is_at_end(whole) && of_run.get<std::uint64_t>() == ways_.size());
     for_each_count(report_, [&](auto& count) { count = of_run.get<std::decay_t<decltype(count)>>(); });
-    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way(of_run, i);
+    moved_ = get_count(of_run);
+    claimed_ = get_count(of_run);
+    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way_of(of_run, i);
+    if (claims_) get_claims(of_run, *claims_);
     const CrowdOptions wanted = crowd_.options();
     crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
@@ -232,9 +247,13 @@ class CrowdRun {
     if (sink_) sink_->restore(crowd_, sink);
   }
 
+  CrowdWay get_way_of(SnapshotReader& from, std::size_t i) const {
+    return get_way(from, scenario_.robots[i].goals.size(), guide_.has_value());
+  }
+
   static bool is_at_end(std::istream& from) { return from.peek() == std::istream::traits_type::eof(); }
   static void require(bool holds) {
-    if (!holds) refuse_snapshot("other bytes", kExpected);
+    if (!holds) refuse_snapshot("other bytes", kSnapshotOfRun);
   }
 
   /// What adds up from step to step.
@@ -244,48 +263,6 @@ class CrowdRun {
                         &r.half_planes, &r.edges, &r.bodies})
       visit(*count);
     for (auto* number : {&r.time, &r.path_length}) visit(*number);
-  }
-
-  static void put(SnapshotWriter& to, const Way& way) {
-    to.put(static_cast<std::uint64_t>(way.goal));
-    to.put(way.heading);
-    to.put(way.arrived.has_value());
-    to.put(way.arrived.value_or(0.0));
-    to.put(way.stays);
-    to.put_list(way.why_not);
-    to.put(way.nearest.has_value());
-    to.put(way.nearest.value_or(NearestPlace{}));
-    to.put(way.course.has_value());
-    if (!way.course) return;
-    to.put_list(way.course->points);
-    to.put_list(way.course->keeps);
-    to.put(way.course->to);
-    to.put(static_cast<std::uint64_t>(way.course->next));
-  }
-
-  Way get_way(SnapshotReader& from, std::size_t robot) const {
-    Way way;
-    way.goal = static_cast<std::size_t>(from.get<std::uint64_t>());
-    require(way.goal < scenario_.robots[robot].goals.size());
-    way.heading = from.get<Vec2>();
-    const bool has_arrived = from.get<bool>();
-    const auto arrived = from.get<double>();
-    if (has_arrived) way.arrived = arrived;
-    way.stays = from.get<bool>();
-    way.why_not = from.get_list<std::string>();
-    const bool has_nearest = from.get<bool>();
-    const auto nearest = from.get<NearestPlace>();
-    if (has_nearest) way.nearest = nearest;
-    const bool has_course = from.get<bool>();
-    require(!has_course || guide_.has_value());
-    if (!has_course) return way;
-    Course& course = way.course.emplace();
-    course.points = from.get_list<std::vector<Vec2>>();
-    course.keeps = from.get_list<std::vector<double>>();
-    course.to = from.get<Destination>();
-    course.next = static_cast<std::size_t>(from.get<std::uint64_t>());
-    require(course.next < course.points.size() && course.keeps.size() == course.points.size());
-    return way;
   }
 
   void add_robots() {
@@ -321,12 +298,17 @@ class CrowdRun {
 
   Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[ways_[i].goal]; }
 
+  bool has_last_goal(std::size_t i) const { return ways_[i].goal + 1 == scenario_.robots[i].goals.size(); }
+  Vec2 aim_of(std::size_t i) const { return has_last_goal(i) && !last_places_.empty() ? last_places_[i] : goal_of(i); }
+
   /// For the present goal.
   void set_out(std::size_t i) {
-    Way& way = ways_[i];
-    way.heading = goal_of(i);
+    CrowdWay& way = ways_[i];
+    const Vec2 aim = aim_of(i);
+    const double reach = std::max(0.0, reach_of(scenario_, scenario_.robots[i], way.goal) - norm(aim - goal_of(i)));
+    way.heading = aim;
     if (!guide_) return;
-    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {goal_of(i), scenario_.arrival_tolerance});
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {aim, reach});
     way.course = std::move(answer.course);
     way.stays = !way.course;
     way.nearest = answer.nearest;
@@ -334,23 +316,66 @@ class CrowdRun {
   }
 
   void look(std::size_t i) {
-    Way& way = ways_[i];
-    if (norm(at_[i] - goal_of(i)) <= scenario_.arrival_tolerance) pass(i);
+    CrowdWay& way = ways_[i];
+    const auto aim = [&] { return std::tuple(way.goal, way.heading.x, way.heading.y, way.stays); };
+    const auto before = aim();
+    const std::size_t next = way.course ? way.course->next : 0;
+    bool is_new = false;
+    if (has_reached_goal(i)) pass(i);
     const bool looks = way.course && !way.arrived && (report_.steps + i) % kLookAgain == 0;
     if (way.nearest) way.stays = norm(at_[i] - way.nearest->place) <= scenario_.arrival_tolerance;
-    if (looks) way.heading = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]).place;
+    if (looks) {
+      const Heading to = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]);
+      way.heading = to.place;
+      is_new = to.is_new;
+    }
+    if (is_new || aim() != before || (way.course && way.course->next != next)) way.turned = report_.steps;
   }
+
+  bool is_at_goal(std::size_t i) const {
+    return norm(at_[i] - goal_of(i)) <= reach_of(scenario_, scenario_.robots[i], ways_[i].goal);
+  }
+  /// A goal on the way that is taken is passed beside it.
+  bool has_reached_goal(std::size_t i) const { return is_at_goal(i) || (!has_last_goal(i) && rests_beside(i)); }
 
   /// Its goal is reached: on to the next.
   void pass(std::size_t i) {
-    Way& way = ways_[i];
+    CrowdWay& way = ways_[i];
     if (way.goal + 1 < scenario_.robots[i].goals.size()) {
       ++way.goal;
       set_out(i);
     } else if (!way.arrived) {
       way.arrived = report_.time;
-      way.heading = goal_of(i);
+      way.heading = aim_of(i);
     }
+  }
+
+  // --- Ends that are taken ---
+
+  Vec2 end_of(std::size_t i) const { return ways_[i].nearest ? ways_[i].nearest->place : aim_of(i); }
+
+  void look_at_claims() {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) {
+      const CrowdWay& way = ways_[i];
+      const bool counts = way.nearest || way.course || !guide_, is_last = counts && ends_here(i);
+      const bool is_there = way.nearest ? way.stays : is_at_goal(i);
+      now_[i] = {at_[i], end_of(i), counts, is_last, !way.nearest, is_there, true};
+    }
+    if (ranks_) ranks_->share({{now_.data(), in_bytes(ends_, sizeof(EndNow))}});
+    if (claims_->look(now_)) claimed_ = report_.steps;
+  }
+
+  /// It goes to no other goal.
+  bool ends_here(std::size_t i) const { return has_last_goal(i) || ways_[i].nearest; }
+  bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
+  bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
+
+  Vec2 preferred_of(std::size_t i) const {
+    const Vec2 way = ways_[i].heading - at_[i];
+    const double length = norm(way);
+    const double speed = std::min(scenario_.robots[i].max_speed, length / scenario_.time_step);
+    const Vec2 preferred = ways_[i].stays || length == 0.0 ? Vec2{} : (speed / length) * way;
+    return is_taken(i) && !now_[i].is_there ? claims_->beside_taken_place(i, preferred) : preferred;
   }
 
   /// Straight on to where each is at the end of the step, up to half a step of the lattice.
@@ -364,13 +389,9 @@ class CrowdRun {
 
   void step() {
     set_out_obstacles();
-    for (std::size_t i = own_begin(); i < own_end(); ++i) {
-      look(i);
-      const Vec2 way = ways_[i].heading - at_[i];
-      const double length = norm(way);
-      const double speed = std::min(scenario_.robots[i].max_speed, length / scenario_.time_step);
-      preferred_[i] = ways_[i].stays || length == 0.0 ? Vec2{} : (speed / length) * way;
-    }
+    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
+    if (claims_) look_at_claims();
+    for (std::size_t i = own_begin(); i < own_end(); ++i) preferred_[i] = preferred_of(i);
     share_preferred();
     crowd_.set_preferred(preferred_);
     const StepReport s = crowd_.step();
@@ -386,38 +407,60 @@ class CrowdRun {
     before_.swap(at_);
     crowd_.positions(at_);
     for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
+    if (at_ != before_ || report_.time < moving_until_ + 2.0 * scenario_.time_step) moved_ = report_.steps;
     if (sink_) sink_->add_step(crowd_, report_.steps);
   }
 
   /// The least of what the ranks want.
   enum class After { stop, step, nothing };
-  After what_follows(bool is_stopped) const {
+  After what_follows(bool is_stopped) {
     After own = After::stop;
     if (!is_stopped) own = someone_goes_on() ? After::step : After::nothing;
-    return ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
+    const After all = ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
+    report_.stands_still = all == After::step && repeats_itself();
+    return report_.stands_still ? After::nothing : all;
   }
 
   /// Of the own ones.
   bool someone_goes_on() const {
-    const auto at = [this](std::size_t i) { return ways_.begin() + static_cast<std::ptrdiff_t>(i); };
-    return std::any_of(at(own_begin()), at(own_end()), [](const Way& w) { return !w.arrived && !w.stays; });
+    for (std::size_t i = own_begin(); i < own_end(); ++i)
+      if (!ways_[i].arrived && !ways_[i].stays && !(rests_beside(i) && ends_here(i))) return true;
+    return false;
   }
 
+  /// Whether no step changes anything any more. What a step does follows from places, velocities, aims and claims, and
+  /// from whose turn it is to look along its route. In as many steps as there are turns none of these has changed, from
+  /// velocities of 0 on: so the next ones do what they have done.
+  bool repeats_itself() const {
+    const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
+    if (!is_long_ago(std::max(moved_, claimed_))) return false;
+    bool is_so = true;
+    for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(ways_[i].turned);
+    return (ranks_ ? ranks_->least(is_so) : is_so) != 0;
+  }
+
+  // --- The end ---
+
   std::string why_not_there(std::size_t i) const {
-    const Way& way = ways_[i];
+    const CrowdWay& way = ways_[i];
     if (!way.nearest) return way.why_not;
+    if (!way.stays && rests_beside(i)) return way.why_not + "; it stays, since " + claims_->words(i);
     return way.why_not + "; it " + (way.stays ? "went" : "was on its way") + " as near as it can, " +
            words_of(*way.nearest);
   }
 
   void finish() {
     report_.digest = crowd_.digest();
+    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
+    if (claims_) look_at_claims();
     if (!gather_ways()) return;
     std::vector<double> times;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
-      look(i);
       report_.pushed_off += ways_[i].arrived && norm(at_[i] - goal_of(i)) > scenario_.arrival_tolerance;
-      if (ways_[i].stays || ways_[i].nearest) report_.without_route.push_back({i, why_not_there(i)});
+      if (ways_[i].stays || ways_[i].nearest)
+        report_.without_route.push_back({i, why_not_there(i)});
+      else if (!ways_[i].arrived && is_taken(i))
+        report_.goal_taken.push_back({i, claims_->words(i)});
       if (ways_[i].arrived) times.push_back(*ways_[i].arrived);
     }
     report_.staying = report_.without_route.size();
@@ -434,9 +477,15 @@ class CrowdRun {
   Crowd crowd_;
   std::vector<std::size_t> ends_;  ///< of the shares of the robots, by rank
   std::optional<Guide> guide_;
-  std::vector<Way> ways_;
+  std::vector<CrowdWay> ways_;
   std::vector<ObstacleId> moving_;
   std::vector<Vec2> at_, before_, preferred_;
+  std::vector<Vec2> last_places_;  ///< empty: their last goals
+  std::optional<GoalClaims> claims_;
+  std::vector<EndNow> now_;    ///< with claims
+  double moving_until_ = 0.0;  ///< s, the obstacles
+  std::size_t moved_ = 0;      ///< the last step in which something moved
+  std::size_t claimed_ = 0;    ///< step at which a claim changed last
   CrowdRunReport report_;
 };
 

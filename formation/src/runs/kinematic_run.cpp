@@ -67,7 +67,7 @@ class KinematicRun {
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (const MovingObstacle& o : scenario.moving_obstacles)
       moving_until_ = std::max(moving_until_, rests_from(o.motion));
-    if (liveness_ != Liveness::off) last_places_ = last_places(scenario);
+    if (liveness_ != Liveness::off) last_places_ = last_places(scenario, room_at_ends(scenario));
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -75,8 +75,12 @@ class KinematicRun {
       look_at_goal(i, 0.0);
     }
     const bool may_end_elsewhere = guide && scenario.unreachable == Unreachable::nearest;
-    if (liveness_ != Liveness::off && (may_end_elsewhere || GoalClaims(scenario).are_needed(last_places_)))
-      claims_.emplace(scenario);
+    const RoomAtEnds room = room_at_ends(scenario);
+    std::vector<RobotPlace> ends;
+    for (std::size_t i = 0; i < last_places_.size(); ++i) ends.push_back({i, last_places_[i]});
+    if (liveness_ != Liveness::off && (may_end_elsewhere || any_leave_no_room(scenario, ends, room)))
+      claims_.emplace(scenario, room,
+                      options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots);
   }
 
   void run(Recording& recording, RunSink& sink) {
@@ -160,7 +164,8 @@ class KinematicRun {
     std::vector<EndNow> now;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       const KinematicRobot& r = robots_[i];
-      now.push_back({r.position, end_of(i), has_last_goal(i) || r.nearest, !r.nearest, is_at_end(i), !goes_by_plan(i)});
+      const bool is_last = has_last_goal(i) || r.nearest;
+      now.push_back({r.position, end_of(i), is_last, is_last, !r.nearest, is_at_end(i), !goes_by_plan(i)});
     }
     claims_->look(std::move(now));
     for (std::size_t i = 0; i < robots_.size(); ++i)
@@ -170,12 +175,6 @@ class KinematicRun {
   /// Its place is taken by another robot.
   bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
   bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
-
-  /// Out of the taken place, where the robot is in it.
-  Vec2 beside_taken_place(std::size_t i, Vec2 preferred) const {
-    if (const std::optional<Vec2> out = claims_->way_out(i)) return straight_for(i, *out);
-    return rests_beside(i) ? Vec2{} : claims_->slowed(i, preferred);
-  }
 
   void pass_waypoint(std::size_t i, double time) {
     if (has_last_goal(i) || !is_within_reach(i)) return;
@@ -320,7 +319,7 @@ class KinematicRun {
       return step;
     }
     Vec2 preferred = steer(i, time, step);
-    if (is_taken(i) && !rests_beside(i) && !is_at_end(i)) preferred = beside_taken_place(i, preferred);
+    if (is_taken(i) && !rests_beside(i) && !is_at_end(i)) preferred = claims_->beside_taken_place(i, preferred);
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
   }
@@ -353,7 +352,7 @@ class KinematicRun {
   }
 
   Vec2 straight_for(std::size_t i, Vec2 place) const {
-    return detail::straight_for(viewpoint(i), place, scenario_.time_step);
+    return detail::straight_for(robots_[i].position, scenario_.robots[i].max_speed, place, scenario_.time_step);
   }
 
   bool stays(std::size_t i) const {
@@ -401,7 +400,7 @@ class KinematicRun {
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
     if (rests_beside(i)) {
       step.mode = Mode::staying;
-      return beside_taken_place(i, {});
+      return claims_->beside_taken_place(i, {});
     }
     if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), aim_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;

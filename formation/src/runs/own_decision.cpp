@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "runs/own_decision.h"
 
-#include <algorithm>
+#include "steering/goals.h"
 
 namespace exactvo::formation::detail {
 
@@ -9,12 +9,6 @@ using geometry::norm;
 
 std::string passed_goal_words(std::size_t next) {
   return "goal " + std::to_string(next) + " passed: heads for the next";
-}
-
-Vec2 straight_for(const Viewpoint& here, Vec2 place, double time_step) {
-  const Vec2 way = place - here.position;
-  const double speed = std::min(here.max_speed, norm(way) / time_step);
-  return speed * geometry::normalized(way);
 }
 
 void OwnDecision::reserve(std::size_t statics, std::size_t others) {
@@ -38,7 +32,7 @@ DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const st
 
 Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   const Viewpoint& here = errand.here;
-  const Vec2 preferred = straight_for(here, errand.goal, scenario_.time_step);
+  const Vec2 preferred = straight_for(here.position, here.max_speed, errand.goal, scenario_.time_step);
   if (errand.has_arrived) {
     decision.mode = Mode::arrived;
     return preferred;

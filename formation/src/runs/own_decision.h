@@ -42,9 +42,6 @@ struct Errand {
 /// That it heads for goal number `next` (from 0) from now on.
 std::string passed_goal_words(std::size_t next);
 
-/// m/s: straight for a place, to be there after a step or as soon as the speed allows.
-Vec2 straight_for(const Viewpoint& here, Vec2 place, double time_step);
-
 /// Decides for one robot after the other, in memory of its own: `look`, `steer`, `choose`.
 class OwnDecision {
  public:

@@ -13,6 +13,7 @@
 
 #include "exactvo/formation/scenario.h"
 #include "liveness/cells.h"
+#include "steering/last_places.h"
 
 namespace exactvo::formation::detail {
 
@@ -20,7 +21,8 @@ namespace exactvo::formation::detail {
 struct EndNow {
   Vec2 position;          ///< m
   Vec2 end;               ///< m, where its way to its present goal ends
-  bool is_last = false;   ///< it goes to no other goal after that
+  bool counts = false;    ///< it may be taken
+  bool is_last = false;   ///< it goes to no other goal after that, and may take it
   bool is_goal = true;    ///< the goal, not a place as near to it as it can get
   bool is_there = false;  ///< within reach of it
   bool may_rest = false;  ///< it goes by no plan
@@ -28,14 +30,12 @@ struct EndNow {
 
 class GoalClaims {
  public:
-  /// `scenario` must outlive it. REQUIRES: robots with goals.
-  explicit GoalClaims(const Scenario& scenario);
+  /// `horizon`: s, for which half-planes between robots look ahead. `scenario` must outlive it. REQUIRES: robots with
+  /// goals.
+  GoalClaims(const Scenario& scenario, const RoomAtEnds& room, double horizon);
 
-  /// Whether any two of these places are too near to each other; a place a robot.
-  bool are_needed(const std::vector<Vec2>& places) const;
-
-  /// Before the decisions of a step, an entry a robot.
-  void look(std::vector<EndNow> now);
+  /// Before the decisions of a step, an entry a robot. Whether a claim came, or somebody's rest came or went.
+  bool look(std::vector<EndNow> now);
 
   /// Who was first at a place too near to its own.
   std::optional<std::size_t> taken_by(std::size_t i) const { return robots_[i].taken_by; }
@@ -46,31 +46,44 @@ class GoalClaims {
 
   // REQUIRES of what follows: its place is taken.
 
-  /// Where it goes to leave the taken place to who has it; nothing where it does.
-  std::optional<Vec2> way_out(std::size_t i) const;
-  /// So slowly that half-planes do not push off its place who has taken it.
-  Vec2 slowed(std::size_t i, Vec2 preferred) const;
+  /// In place of a velocity that it prefers: out of the taken place, where it is in it; none, where it rests; else so
+  /// slow that half-planes do not push off its place who has taken it.
+  Vec2 beside_taken_place(std::size_t i, Vec2 preferred) const;
   /// "R1 was first at its goal, 0.3 m from that of R2, which leaves no room for both".
   std::string words(std::size_t i) const;
 
- private:
+  /// What is remembered of a robot from step to step.
   struct OfRobot {
     bool has_claim = false;
     Vec2 place;           ///< m, claimed
     bool is_goal = true;  ///< the claimed place
     std::optional<std::size_t> taken_by = {};
     bool rests = false, has_come_to_rest = false;
+    std::size_t seen = 0;  ///< how many claims there were when `taken_by` was found, for `end`
+    Vec2 end;
   };
+  /// But for `has_come_to_rest`, `seen` and `end`, which follow.
+  const std::vector<OfRobot>& remembered() const { return robots_; }
+  /// Goes on from there. REQUIRES: an entry a robot; who has taken a place has a claim.
+  void remember(std::vector<OfRobot> robots);
+
+ private:
   template <class PlaceOf>
   std::optional<std::size_t> nearest_in(const Cells<std::size_t>& others, const PlaceOf& place_of, std::size_t i,
                                         Vec2 place) const;
   double gap_beside(double radii) const;
   double gap_to_taken(std::size_t i) const;
-  bool is_beside(std::size_t i, const Cells<std::size_t>& resting) const;
+  std::optional<Vec2> way_out(std::size_t i) const;
+  void claim(std::size_t i);
+  struct Resting;
+  bool is_beside(std::size_t i, const Resting& resting) const;
 
   const Scenario& scenario_;
+  RoomAtEnds room_;
+  double horizon_;  ///< s
   double largest_;  ///< m, the radius
   Cells<std::size_t> claimed_;
+  std::size_t claims_ = 0;
   std::vector<OfRobot> robots_;
   std::vector<EndNow> now_;
 };

@@ -31,6 +31,12 @@ inline double reach_of(const Scenario& scenario, const Robot& robot, std::size_t
                                         : std::max(scenario.arrival_tolerance, robot.radius);
 }
 
+/// m/s: straight for a place, to be there after a step or as soon as the speed allows.
+inline Vec2 straight_for(Vec2 here, double max_speed, Vec2 place, double time_step) {
+  const Vec2 way = place - here;
+  return std::min(max_speed, norm(way) / time_step) * geometry::normalized(way);
+}
+
 /// Whether two robots cannot both be at their last goals: they would overlap.
 inline bool are_too_near(const Scenario& scenario, std::size_t i, std::size_t j) {
   const Robot &a = scenario.robots[i], &b = scenario.robots[j];

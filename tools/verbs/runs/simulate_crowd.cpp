@@ -44,10 +44,12 @@ double share(std::size_t count, const CrowdRunReport& r) {
   return decisions > 0.0 ? static_cast<double>(count) / decisions : 0.0;
 }
 
-nlohmann::ordered_json without_route(const CrowdRunReport& r, const formation::Scenario& scenario) {
+using RobotsNotThere = std::vector<formation::RobotNotThere>;
+
+nlohmann::ordered_json to_json(const RobotsNotThere& robots, const formation::Scenario& scenario) {
   auto list = nlohmann::ordered_json::array();
-  for (const formation::RobotWithoutRoute& stays : r.without_route)
-    list.push_back({{"robot", scenario.robots[stays.robot].id}, {"why", stays.why}});
+  for (const formation::RobotNotThere& r : robots)
+    list.push_back({{"robot", scenario.robots[r.robot].id}, {"why", r.why}});
   return list;
 }
 
@@ -56,33 +58,45 @@ std::string to_json(const CrowdRunReport& r, const formation::Scenario& scenario
   return fmt::format(
       "{{\"scenario\": {}, \"engine\": \"crowd\", \"method\": \"orca\", \"robots\": {}, \"arrived\": {}, "
       "\"pushed_off\": {}, "
-      "\"staying\": {}, \"without_route\": {}, "
+      "\"staying\": {}, \"without_route\": {}, \"goal_taken\": {}, \"stands_still\": {}, "
       "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
       "\"decisions\": {{\"relaxed\": {}, \"touching\": {}, \"widened\": {}, \"stopped\": {}}}, "
       "\"half_planes\": {{\"robots\": {}, \"edges\": {}, \"moving\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
       "\"provenance\": {}}}\n",
       nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.pushed_off, r.staying,
-      without_route(r, scenario).dump(), r.steps, r.time, or_null(r.median_arrival), or_null(r.last_arrival),
-      r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.bodies, r.digest,
-      r.wall_time, datasets::to_json(provenance));
+      to_json(r.without_route, scenario).dump(), to_json(r.goal_taken, scenario).dump(), r.stands_still, r.steps,
+      r.time, or_null(r.median_arrival), or_null(r.last_arrival), r.path_length, r.relaxed, r.touching, r.widened,
+      r.stopped, r.half_planes, r.edges, r.bodies, r.digest, r.wall_time, datasets::to_json(provenance));
 }
 
 /// The first of them; --json has all.
-std::string lines_without_route(const CrowdRunReport& r, const formation::Scenario& scenario) {
+std::string lines_of(const char* title, const RobotsNotThere& robots, const formation::Scenario& scenario) {
   constexpr std::size_t kMost = 10;
   std::string text;
-  for (std::size_t k = 0; k < std::min(r.staying, kMost); ++k)
-    text += fmt::format("  no route     {}: {}\n", shown(scenario.robots[r.without_route[k].robot].id),
-                        shown(r.without_route[k].why));
-  if (r.staying > kMost) text += fmt::format("  no route     and {} more: --json has all\n", r.staying - kMost);
+  for (std::size_t k = 0; k < std::min(robots.size(), kMost); ++k)
+    text += fmt::format("  {:<12} {}: {}\n", title, shown(scenario.robots[robots[k].robot].id), shown(robots[k].why));
+  if (robots.size() > kMost)
+    text += fmt::format("  {:<12} and {} more: --json has all\n", title, robots.size() - kMost);
   return text;
+}
+
+/// Of who neither arrived nor is in a list.
+std::string line_of_others(const CrowdRunReport& r) {
+  const std::size_t others = r.robots - r.arrived - r.staying - r.goal_taken.size();
+  if (others == 0) return "";
+  if (r.stands_still)
+    return fmt::format(
+        "  standstill   {}: nothing moves, and every further step would repeat the last; the standard engine makes "
+        "joint plans\n",
+        counted(others, "robot"));
+  return fmt::format("  on the way   {} when time ran out\n", counted(others, "robot"));
 }
 
 std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario) {
   const double decisions = static_cast<double>(r.robots) * static_cast<double>(r.steps);
   return fmt::format(
-      "{}, engine crowd, method orca: {} of {} arrived{}, {} without a route\n"
-      "{}"
+      "{}, engine crowd, method orca: {} of {} arrived{}, {} without a route{}\n"
+      "{}{}{}"
       "  arrival      median {}, last {}\n"
       "  decisions    {:.3g} % relaxed, {:.3g} % touching or overlapping another, {:.3g} % stopped before an edge\n"
       "  half-planes  {:.3g} against robots, {:.3g} against edges and {:.3g} against moving obstacles in a decision\n"
@@ -90,7 +104,9 @@ std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario
       "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
       shown(scenario.name), r.arrived, counted(r.robots, "robot"),
       r.pushed_off > 0 ? fmt::format(" ({} of them pushed off their goals again)", r.pushed_off) : "", r.staying,
-      lines_without_route(r, scenario), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
+      r.goal_taken.empty() ? "" : fmt::format(", {} whose goal is taken", r.goal_taken.size()),
+      lines_of("no route", r.without_route, scenario), lines_of("goal taken", r.goal_taken, scenario),
+      line_of_others(r), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
       100.0 * share(r.touching, r), 100.0 * share(r.stopped, r), share(r.half_planes, r), share(r.edges, r),
       share(r.bodies, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time, decisions / r.wall_time);
 }

@@ -10,7 +10,10 @@
 /// Along routes (Guidance::route) a robot heads for the farthest point of its route that it sees, looked for at every
 /// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
-/// stays. Deterministic, with any number of threads and of ranks.
+/// stays. Where two last goals are too near to each other for both robots (and `Scenario::liveness` is not off), these
+/// stand aside within their tolerance; where that is not enough, who is there first keeps its goal, and the other stays
+/// beside it. A run ends when nobody goes on, or when nothing changes
+/// any more. Deterministic, with any number of threads and of ranks.
 ///
 /// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
@@ -51,21 +54,25 @@ struct CrowdRunOptions {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
-/// A robot whose goal is out of reach: it stays, or goes as near as it can (`Scenario::unreachable`).
-struct RobotWithoutRoute {
+/// Why a robot does not come to its goal.
+struct RobotNotThere {
   std::size_t robot = 0;  ///< in the order of the scenario
   std::string why;        ///< in words, for people
 };
 
 /// What a run came to. Times in s, lengths in m.
 struct CrowdRunReport {
-  std::size_t robots = 0;                        ///< of the scenario
-  std::size_t arrived = 0;                       ///< were within the arrival tolerance of their last goal
-  std::size_t pushed_off = 0;                    ///< of these: are farther from it at the end
-  std::size_t staying = 0;                       ///< have no route to a goal
-  std::vector<RobotWithoutRoute> without_route;  ///< these, in the order of the scenario
-  std::size_t steps = 0;                         ///< time steps that were taken
-  double time = 0.0;                             ///< simulated
+  std::size_t robots = 0;      ///< of the scenario
+  std::size_t arrived = 0;     ///< were within the arrival tolerance of their last goal
+  std::size_t pushed_off = 0;  ///< of these: are farther from it at the end
+  std::size_t staying = 0;     ///< have no route to a goal
+  /// These, in the order of the scenario: each stays, or goes as near as it can (`Scenario::unreachable`).
+  std::vector<RobotNotThere> without_route;
+  /// Others that did not arrive, of whom each stays beside its goal or was on its way there: another robot is there,
+  /// or at a goal so near that the two cannot both be at theirs.
+  std::vector<RobotNotThere> goal_taken;
+  std::size_t steps = 0;  ///< time steps that were taken
+  double time = 0.0;      ///< simulated
   /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
   std::optional<double> median_arrival;
   std::optional<double> last_arrival;  ///< s: of those that arrived
@@ -78,6 +85,7 @@ struct CrowdRunReport {
   std::size_t edges = 0;               ///< half-planes against edges of obstacles
   std::size_t bodies = 0;              ///< half-planes against moving obstacles
   std::uint64_t digest = 0;            ///< Crowd::digest at the end
+  bool stands_still = false;           ///< it ended early: no step changes anything any more (exact)
   bool interrupted = false;            ///< progress stopped it
   double wall_time = 0.0;              ///< s, of the whole call
 };
