@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of scenarios on a crowd in which robots have goals too near to each other.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/simulation.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::formation {
+namespace {
+
+using geometry::Vec2;
+using testing::HasSubstr;
+
+Robot robot(std::string id, Vec2 position, std::vector<Vec2> goals, double radius = 0.3) {
+  Robot r;
+  r.id = std::move(id);
+  r.position = position;
+  r.goals = std::move(goals);
+  r.radius = radius;
+  r.max_speed = 1.0;
+  return r;
+}
+
+Scenario scenario_of(std::vector<Robot> robots) {
+  Scenario s;
+  s.name = "ends";
+  s.robots = std::move(robots);
+  s.time_limit = 120.0;
+  return s;
+}
+
+/// Positions at the end of a run.
+struct LastRow final : CrowdSink {
+  std::vector<Vec2> places;
+  void begin(const Crowd& crowd) override { crowd.positions(places); }
+  void add_step(const Crowd& crowd, std::size_t) override { crowd.positions(places); }
+};
+
+TEST(CrowdEnds, RobotsStandAsideForGoalsThatAreALittleTooNear) {
+  const Scenario s = scenario_of({robot("a", {-5.0, 0.0}, {{0.0, 0.0}}), robot("b", {5.0, 0.0}, {{0.5, 0.0}})});
+  LastRow last;
+  const CrowdRunReport r = run_crowd(s, {}, &last);
+  EXPECT_EQ(r.arrived, 2U);
+  EXPECT_TRUE(r.goal_taken.empty());
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(norm(last.places[i] - s.robots[i].goals.back()), 0.15);
+}
+
+TEST(CrowdEnds, WhoComesSecondStaysBesideAndDoesNotMoveWhoWasFirst) {
+  const Scenario s = scenario_of({robot("a", {-2.0, 0.0}, {{0.0, 0.0}}), robot("b", {9.0, 0.1}, {{0.0, 0.0}})});
+  LastRow last;
+  const CrowdRunReport r = run_crowd(s, {}, &last);
+  EXPECT_EQ(r.arrived, 1U);
+  EXPECT_EQ(r.pushed_off, 0U);
+  ASSERT_EQ(r.goal_taken.size(), 1U);
+  EXPECT_EQ(r.goal_taken[0].robot, 1U);
+  EXPECT_THAT(r.goal_taken[0].why, HasSubstr("a was first at the goal that both have"));
+  EXPECT_LT(norm(last.places[0]), 1e-3);
+  EXPECT_LT(norm(last.places[1]), 1.0);
+  EXPECT_LT(r.time, 30.0);
+}
+
+TEST(CrowdEnds, AGoalOnTheWayThatIsTakenIsPassedBesideIt) {
+  const Scenario s =
+      scenario_of({robot("a", {0.0, 0.0}, {{0.0, 0.0}}), robot("b", {5.0, 0.0}, {{0.0, 0.0}, {0.0, 5.0}})});
+  const CrowdRunReport r = run_crowd(s, {});
+  EXPECT_EQ(r.arrived, 2U);
+  EXPECT_LT(r.time, 30.0);
+}
+
+TEST(CrowdEnds, WithLivenessOffRobotsPush) {
+  Scenario s = scenario_of({robot("a", {-2.0, 0.0}, {{0.0, 0.0}}), robot("b", {9.0, 0.1}, {{0.0, 0.0}})});
+  s.liveness = Liveness::off;
+  const CrowdRunReport r = run_crowd(s, {});
+  EXPECT_TRUE(r.goal_taken.empty());
+  EXPECT_EQ(r.arrived, 2U);
+  EXPECT_EQ(r.pushed_off, 1U);
+}
+
+/// Ten robots with goals among fewer places, some with a goal on the way.
+Scenario random_scenario(std::uint64_t seed) {
+  test::SeededRandom random(seed);
+  std::vector<Vec2> goals;
+  for (int count = random.integer(1, 8); count > 0; --count) goals.push_back(random.in_box(8.0));
+  const auto goal = [&] {
+    return goals[static_cast<std::size_t>(random.integer(1, static_cast<int>(goals.size()))) - 1];
+  };
+  std::vector<Robot> robots;
+  while (robots.size() < 10) {
+    const Vec2 place = random.in_box(8.0);
+    Robot r = robot("r" + std::to_string(robots.size()), place, {goal()}, 0.1 * random.integer(2, 4));
+    if (random.integer(1, 4) == 1) r.goals.push_back(goal());
+    const bool is_free = std::none_of(robots.begin(), robots.end(), [&](const Robot& o) {
+      return norm(o.position - place) <= o.radius + r.radius + 0.05;
+    });
+    if (is_free) robots.push_back(std::move(r));
+  }
+  return scenario_of(std::move(robots));
+}
+
+/// Every robot arrives, or its goal is taken, and by a robot whose goal leaves no room for both; and runs end.
+TEST(CrowdEnds, RandomCrowdsWithTooFewGoalsComeToAnEnd) {
+  std::size_t taken = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Scenario s = random_scenario(seed);
+    const CrowdRunReport r = run_crowd(s, {});
+    EXPECT_EQ(r.arrived + r.goal_taken.size(), s.robots.size()) << "seed " << seed;
+    EXPECT_LT(r.time, s.time_limit) << "seed " << seed;
+    taken += r.goal_taken.size();
+    for (const RobotNotThere& t : r.goal_taken) {
+      const Robot& other = s.robots[t.robot];
+      const std::string first = t.why.substr(0, t.why.find(' '));
+      const auto taker = std::find_if(s.robots.begin(), s.robots.end(), [&](const Robot& o) { return o.id == first; });
+      ASSERT_NE(taker, s.robots.end()) << t.why;
+      EXPECT_LT(norm(taker->goals.back() - other.goals.back()), taker->radius + other.radius) << seed << ": " << t.why;
+    }
+  }
+  EXPECT_GT(taken, 100U);
+}
+
+}  // namespace
+}  // namespace exactvo::formation
