@@ -24,10 +24,10 @@ using lp::Proven;
 using lp::Solver;
 
 struct Counts {
-  unsigned long problems = 0, accepted = 0, unproven = 0, refused = 0, apart = 0;
+  unsigned long problems = 0, accepted = 0, unproven = 0, refused = 0, disagreeing = 0;
   unsigned long tampered = 0, overlooked = 0;
 
-  bool is_clean() const { return unproven + refused + apart + overlooked == 0; }
+  bool is_clean() const { return unproven + refused + disagreeing + overlooked == 0; }
 };
 
 /// Each voids any certificate it applies to; false where it does not apply.
@@ -98,7 +98,7 @@ void audit(const std::vector<Problem>& problems, Counts& counts) {
     prove(problems[i], answers.front()[i]);
     for (const auto& of_solver : answers) {
       audit(problems[i], of_solver[i], counts);
-      if (is_feasible(of_solver[i]) != is_feasible(answers.back()[i])) ++counts.apart;
+      if (is_feasible(of_solver[i]) != is_feasible(answers.back()[i])) ++counts.disagreeing;
     }
   }
   counts.problems += problems.size();
@@ -133,8 +133,8 @@ int run(unsigned long wanted, unsigned long seed, const std::vector<std::string>
     audit(of_files[k], counts);
     say(files[k], counts);
   }
-  std::printf("problems %lu\naccepted %lu\nunproven %lu\nrefused %lu\napart %lu\ntampered %lu\noverlooked %lu\n",
-              counts.problems, counts.accepted, counts.unproven, counts.refused, counts.apart, counts.tampered,
+  std::printf("problems %lu\naccepted %lu\nunproven %lu\nrefused %lu\ndisagreeing %lu\ntampered %lu\noverlooked %lu\n",
+              counts.problems, counts.accepted, counts.unproven, counts.refused, counts.disagreeing, counts.tampered,
               counts.overlooked);
   return counts.is_clean() ? 0 : 1;
 }

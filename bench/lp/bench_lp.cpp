@@ -27,8 +27,9 @@ namespace exactvo::bench {
 namespace {
 
 constexpr int kRounds = 11;
-/// Velocities further apart than this are counted as different: float carries 2^-24 of 2 m/s, a sharp vertex 100 times.
-constexpr double kApart = 1e-4;
+/// Velocities farther from the exact ones than this, m/s, are counted as inaccurate: float carries 2^-24 of 2 m/s, a
+/// sharp vertex 100 times.
+constexpr double kInaccurate = 1e-4;
 
 struct Flags {
   std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
@@ -168,7 +169,7 @@ struct Run {
   std::vector<double> times;     ///< ns a solve, one a round
   std::size_t wrong = 0;         ///< verdicts
   double worst_violation = 0.0;  ///< m/s, in exact arithmetic, of answers rightly called feasible
-  std::size_t apart = 0;
+  std::size_t inaccurate = 0;
 };
 
 void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& run) {
@@ -179,7 +180,7 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
     const bool feasible = is_feasible(truth.solutions[i]);
     run.wrong += answer.feasible != feasible;
     if (!feasible || !answer.feasible || run.entry.feasible_only) continue;
-    run.apart += norm(answer.velocity - truth.solutions[i].velocity) > kApart;
+    run.inaccurate += norm(answer.velocity - truth.solutions[i].velocity) > kInaccurate;
     run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i].constraints, answer.velocity));
   }
 }
@@ -217,13 +218,13 @@ void print(const Set& set, const Truth& truth, const std::vector<Run>& runs) {
   const auto feasible = std::count_if(truth.solutions.begin(), truth.solutions.end(), is_feasible);
   std::printf("\n%s: %zu problems, %td feasible, %zu by the exact stage\n", set.name.c_str(), set.problems.size(),
               feasible, truth.exact_stage);
-  std::printf("  %-20s %10s %16s %9s %7s %7s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "wrong", "apart",
-              "violation");
+  std::printf("  %-20s %10s %16s %9s %7s %10s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "wrong",
+              "inaccurate", "violation");
   const double textbook = quantile(runs.front().times, 0.5);
   for (const Run& run : runs) {
     const double median = quantile(run.times, 0.5);
-    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %7zu %7zu %11.2g\n", run.entry.name.c_str(), median,
-                quantile(run.times, 0.1), quantile(run.times, 0.9), textbook / median, run.wrong, run.apart,
+    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %7zu %10zu %11.2g\n", run.entry.name.c_str(), median,
+                quantile(run.times, 0.1), quantile(run.times, 0.9), textbook / median, run.wrong, run.inaccurate,
                 run.worst_violation);
   }
   std::fflush(stdout);
@@ -248,7 +249,7 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"ratio_to_textbook", textbook / median},
                                  {"problems", run.competitor->count()},
                                  {"wrong_verdicts", run.wrong},
-                                 {"apart", run.apart},
+                                 {"inaccurate", run.inaccurate},
                                  {"worst_violation", run.worst_violation}});
   }
 }
@@ -351,8 +352,8 @@ constexpr const char* kFooter =
     "file, filef, filei: whole, and its feasible and infeasible part; all three are run unless --sets names some. "
     "With\n"
     "--table it takes the place of C10.\n"
-    "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `apart` velocities more than 1e-4\n"
-    "m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic.\n"
+    "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `inaccurate` velocities more than\n"
+    "1e-4 m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic.\n"
     "docs/guide/linear-program.md says what the sets and solvers are.";
 
 /// Of the names that Highway has, those that this build and this machine have.

@@ -26,7 +26,7 @@ using Times = std::map<std::string, std::map<std::string, double>>;
 
 /// One solver on one set: what the page says beside its time.
 struct Accuracy {
-  double wrong = 0.0, apart = 0.0, violation = 0.0;
+  double wrong = 0.0, inaccurate = 0.0, violation = 0.0;
 };
 using Accuracies = std::map<std::string, std::map<std::string, Accuracy>>;
 
@@ -73,7 +73,7 @@ Accuracies accuracies_of(const json& arena) {
   for (const json& row : arena.at("benchmarks")) {
     const std::string name = row.at("name");
     const std::size_t slash = name.find('/');
-    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.value("apart", 0.0),
+    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.value("inaccurate", 0.0),
                                                           row.at("worst_violation")};
   }
   return all;
@@ -276,8 +276,10 @@ void write_times(std::ostream& page, const Times& times, const std::vector<std::
 }
 
 void write_accuracies(std::ostream& page, const Accuracies& all, const std::vector<std::string>& solvers) {
-  page << "<h2>Wrong / apart / violation</h2>\n<p><b>Wrong</b>: verdicts (feasible or not) that are not the exact one. "
-          "<b>Apart</b>: velocities, of problems rightly called feasible, more than 10<sup>-4</sup> m/s from the exact "
+  page << "<h2>Wrong / inaccurate / violation</h2>\n<p><b>Wrong</b>: verdicts (feasible or not) that are not the exact "
+          "one. "
+          "<b>Inaccurate</b>: velocities, of problems rightly called feasible, more than 10<sup>-4</sup> m/s from the "
+          "exact "
           "optimum. <b>Violation</b>: the worst of a half-plane by such a velocity, m/s, in exact arithmetic; 0 where "
           "none is broken at all. Slow solvers see a part of each set.</p>\n<table>"
        << header_of(solvers);
@@ -291,7 +293,7 @@ void write_accuracies(std::ostream& page, const Accuracies& all, const std::vect
       }
       const Accuracy& a = found->second;
       page << "<td class=\"" << (a.wrong > 0.0 ? "bad" : "good") << "\">" << number("%.0f", a.wrong)
-           << number(" / %.0f", a.apart) << number(" / %.1g", a.violation) << "</td>";
+           << number(" / %.0f", a.inaccurate) << number(" / %.1g", a.violation) << "</td>";
     }
     page << "</tr>\n";
   }
