@@ -19,38 +19,14 @@ namespace {
 
 using geometry::ObstacleShapes;
 
-struct Outlines {
-  std::vector<Points> solids, rings, walls;
-
-  void add(const geometry::Obstacle& obstacle) {
-    if (const auto* line = std::get_if<geometry::Polyline>(&obstacle)) return walls.push_back(line->points);
-    const auto& polygon = std::get<geometry::Polygon>(obstacle);
-    solids.push_back(tied_together(polygon));
-    rings.push_back(polygon.outer);
-    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-  }
-};
-
-std::string solid_fill() {
-  return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill);
-}
-
-std::vector<Points> pieces_with_inside(const ObstacleShapes& shapes) {
-  std::vector<Points> pieces;
-  for (const geometry::ConvexShape& piece : shapes.pieces) {
-    Points ring = outline(piece);
-    if (ring.size() > 2) pieces.push_back(std::move(ring));
-  }
-  return pieces;
-}
-
 /// Neighbouring pieces in different colours, as far as taking turns does that.
 void draw_pieces(const std::vector<ObstacleShapes>& obstacles, MapLayers& map) {
   constexpr std::size_t kColours = 4;
   std::vector<std::vector<Points>> by_colour(kColours);
   for (const ObstacleShapes& shapes : obstacles) {
-    const std::vector<Points> pieces = pieces_with_inside(shapes);
-    for (std::size_t k = 0; k < pieces.size(); ++k) by_colour[k % kColours].push_back(pieces[k]);
+    std::size_t turn = 0;
+    for (const geometry::ConvexShape& piece : shapes.pieces)
+      if (const Points ring = outline(piece); ring.size() > 2) by_colour[turn++ % kColours].push_back(ring);
   }
   bool in_key = true;
   for (std::size_t k = 0; k < kColours; ++k) {
@@ -60,13 +36,6 @@ void draw_pieces(const std::vector<ObstacleShapes>& obstacles, MapLayers& map) {
                true, in_key);
     in_key = in_key && by_colour[k].empty();
   }
-}
-
-template <class Pick>
-std::vector<Points> gathered(const std::vector<ObstacleShapes>& obstacles, const Pick& pick) {
-  std::vector<Points> curves;
-  for (const ObstacleShapes& shapes : obstacles) pick(shapes, curves);
-  return curves;
 }
 
 // --- Repairs ---
@@ -178,6 +147,10 @@ class Panels {
 
 }  // namespace
 
+std::string solid_fill(const std::string& colour) {
+  return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", colour);
+}
+
 std::string line_style(double width, const std::string& colour, const std::string& dash) {
   return fmt::format("with lines lw {} lc rgb '{}'{}", width, colour, dash);
 }
@@ -232,11 +205,20 @@ int MapLayers::write(const Layer& layer, DataFile& data) {
 }
 
 void add_obstacles(const std::vector<geometry::Obstacle>& obstacles, bool with_edges, MapLayers& map) {
-  Outlines outlines;
-  for (const geometry::Obstacle& obstacle : obstacles) outlines.add(obstacle);
-  map.curves("obstacle", outlines.solids, solid_fill(), true);
-  if (with_edges) map.curves("edges", outlines.rings, line_style(1, kObstacleLine), true, false);
-  map.curves("wall", outlines.walls, line_style(2.5, kObstacleLine), false);
+  std::vector<Points> solids, rings, walls;
+  for (const geometry::Obstacle& obstacle : obstacles) {
+    if (const auto* line = std::get_if<geometry::Polyline>(&obstacle)) {
+      walls.push_back(line->points);
+      continue;
+    }
+    const auto& polygon = std::get<Polygon>(obstacle);
+    solids.push_back(tied_together(polygon));
+    rings.push_back(polygon.outer);
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  }
+  map.curves("obstacle", solids, solid_fill(kObstacleFill), true);
+  if (with_edges) map.curves("edges", rings, line_style(1, kObstacleLine), true, false);
+  map.curves("wall", walls, line_style(2.5, kObstacleLine), false);
 }
 
 Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title) {
@@ -255,31 +237,19 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
   const bool crowded = obstacles.size() > kMostDrawnBold;
   add_obstacles(all, false, map);
   draw_pieces(obstacles, map);
-  map.curves("facade ellipses",
-             gathered(obstacles,
-                      [](const ObstacleShapes& s, std::vector<Points>& out) {
-                        for (const geometry::FacadeEnclosure& e : s.facade_ellipses) out.push_back(outline(e.ellipse));
-                      }),
-             line_style(crowded ? 0.4 : 0.8, "#56B4E9"), true);
-  map.curves(
-      "hulls",
-      gathered(obstacles, [](const ObstacleShapes& s, std::vector<Points>& out) { out.push_back(s.hull.vertices); }),
-      line_style(1.6, "#009E73", " dt (8,5)"), true);
-  map.curves("smallest ellipses",
-             gathered(obstacles, [](const ObstacleShapes& s,
-                                    std::vector<Points>& out) { out.push_back(outline(s.smallest_ellipse)); }),
-             line_style(1.8, "#0072B2"), true);
-  map.curves("trap-free ellipses",
-             gathered(obstacles,
-                      [](const ObstacleShapes& s, std::vector<Points>& out) {
-                        if (s.trap_free.ellipse) out.push_back(outline(*s.trap_free.ellipse));
-                      }),
-             line_style(1.8, "#CC79A7", " dt (3,3)"), true);
-  map.curves("facades",
-             gathered(obstacles,
-                      [](const ObstacleShapes& s, std::vector<Points>& out) {
-                        for (const geometry::Segment& f : s.facades.facades) out.push_back({f.a, f.b});
-                      }),
+  std::vector<Points> of_facades, hulls, smallest, trap_free, facades;
+  for (const ObstacleShapes& s : obstacles) {
+    for (const geometry::FacadeEnclosure& e : s.facade_ellipses) of_facades.push_back(outline(e.ellipse));
+    hulls.push_back(s.hull.vertices);
+    smallest.push_back(outline(s.smallest_ellipse));
+    if (s.trap_free.ellipse) trap_free.push_back(outline(*s.trap_free.ellipse));
+    for (const geometry::Segment& f : s.facades.facades) facades.push_back({f.a, f.b});
+  }
+  map.curves("facade ellipses", of_facades, line_style(crowded ? 0.4 : 0.8, "#56B4E9"), true);
+  map.curves("hulls", hulls, line_style(1.6, "#009E73", " dt (8,5)"), true);
+  map.curves("smallest ellipses", smallest, line_style(1.8, "#0072B2"), true);
+  map.curves("trap-free ellipses", trap_free, line_style(1.8, "#CC79A7", " dt (3,3)"), true);
+  map.curves("facades", facades,
              crowded ? line_style(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
   return map.figure(title);
 }
@@ -287,8 +257,7 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
 Figure repair_figure(const std::vector<RepairedPolygon>& polygons) {
   EXACTVO_REQUIRE(!polygons.empty(), std::string("no polygon"));
   Panels panels;
-  const std::size_t rows = std::min(polygons.size(), kMostRepairedDrawn);
-  for (std::size_t k = 0; k < rows; ++k) panels.row(polygons[k]);
+  for (const RepairedPolygon& polygon : polygons) panels.row(polygon);
   return std::move(panels).figure();
 }
 

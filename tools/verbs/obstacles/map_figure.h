@@ -47,7 +47,8 @@ class MapLayers {
   Box view_;
 };
 
-/// "with lines ..." for MapLayers::curves.
+/// "with ..." for MapLayers::curves.
+std::string solid_fill(const std::string& colour);
 std::string line_style(double width, const std::string& colour, const std::string& dash = "");
 
 /// Solid grey with holes left free, and walls as lines.
@@ -68,10 +69,10 @@ struct RepairedPolygon {
   std::vector<geometry::Polygon> after;  ///< empty where it could not be repaired
 };
 
-/// At most so many are drawn, a row each.
+/// As many as go onto a sheet.
 inline constexpr std::size_t kMostRepairedDrawn = 6;
 
-/// REQUIRES: at least one.
+/// A row each. REQUIRES: at least one.
 Figure repair_figure(const std::vector<RepairedPolygon>& polygons);
 
 }  // namespace exactvo::tools

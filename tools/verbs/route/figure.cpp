@@ -40,14 +40,10 @@ Points capsule(Vec2 a, Vec2 b, double radius) {
   return ring;
 }
 
-std::string fill(const char* colour) {
-  return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", colour);
-}
-
 void add_swept(const Points& points, double radius, MapLayers& map) {
   std::vector<Points> pieces;
   for (std::size_t k = 1; k < points.size(); ++k) pieces.push_back(capsule(points[k - 1], points[k], radius));
-  map.curves("swept by the disc", pieces, fill(kSweptColour), true);
+  map.curves("swept by the disc", pieces, solid_fill(kSweptColour), true);
 }
 
 /// Along edges and across gaps, each gap with its width where there is room for all of them.
