@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "exactvo/geometry/counted.h"
 
 namespace exactvo::tools {
 
@@ -28,187 +31,153 @@ constexpr const char* kStatuses[] = {"route", "separated", "blocked"};  // in th
 
 // --- Writing ---
 
-RouteJson json_of(Vec2 p) {
-  return RouteJson::array({p.x, p.y});
-}
-
-RouteJson json_of(const std::vector<Vec2>& points) {
-  RouteJson list = RouteJson::array();
-  for (const Vec2 p : points) list.push_back(json_of(p));
-  return list;
+OrderedJson json_of(Vec2 p) {
+  return json_point(p);
 }
 
 /// [x, y], or [x, y, "n/d", "n/d"] where a coordinate is no double; "" for one that is.
-RouteJson json_of(const ExactPoint& p) {
-  RouteJson list = json_of(p.rounded);
+OrderedJson json_of(const ExactPoint& p) {
+  OrderedJson list = json_of(p.rounded);
   if (p.x.empty() && p.y.empty()) return list;
   list.push_back(p.x);
   list.push_back(p.y);
   return list;
 }
 
-RouteJson json_of(const formation::SceneObstacle& obstacle) {
-  RouteJson json{{"id", obstacle.id}};
+OrderedJson json_of(const ChainPoint& p) {
+  return {{"point", json_of(p.point)}, {"obstacle", p.on.obstacle}, {"edge", p.on.edge}, {"gap", p.gap_follows}};
+}
+
+OrderedJson json_of(const formation::SceneObstacle& obstacle);
+
+template <typename Value>
+OrderedJson json_of(const std::vector<Value>& values) {
+  OrderedJson list = OrderedJson::array();
+  for (const Value& value : values) list.push_back(json_of(value));
+  return list;
+}
+
+OrderedJson json_of(const formation::SceneObstacle& obstacle) {
+  OrderedJson json{{"id", obstacle.id}};
   if (const auto* wall = std::get_if<Polyline>(&obstacle.shape)) {
     json["polyline"] = json_of(wall->points);
     return json;
   }
   const auto& polygon = std::get<Polygon>(obstacle.shape);
   json["polygon"] = json_of(polygon.outer);
-  if (polygon.holes.empty()) return json;
-  json["holes"] = RouteJson::array();
-  for (const geometry::Ring& hole : polygon.holes) json["holes"].push_back(json_of(hole));
+  if (!polygon.holes.empty()) json["holes"] = json_of(polygon.holes);
   return json;
 }
 
-void add(const Route& route, RouteJson& json) {
+void add(const Route& route, OrderedJson& json) {
   json["length"] = route.length;
   json["lower_bound"] = route.lower_bound;
-  json["points"] = RouteJson::array();
-  for (const ExactPoint& p : route.points) json["points"].push_back(json_of(p));
+  json["points"] = json_of(route.points);
 }
 
-void add(const Separated& separated, RouteJson& json) {
-  json["chain"] = RouteJson::array();
-  for (const ChainPoint& p : separated.chain)
-    json["chain"].push_back(
-        {{"point", json_of(p.point)}, {"obstacle", p.on.obstacle}, {"edge", p.on.edge}, {"gap", p.gap_follows}});
+void add(const Separated& separated, OrderedJson& json) {
+  json["chain"] = json_of(separated.chain);
 }
 
-void add(const Blocked& blocked, RouteJson& json) {
+void add(const Blocked& blocked, OrderedJson& json) {
   json["end"] = blocked.end == Blocked::End::start ? "start" : "goal";
   json["inside"] = blocked.inside;
   json["obstacle"] = blocked.by.obstacle;
   if (!blocked.inside) json["edge"] = blocked.by.edge;
 }
 
-// --- Reading: nothing where a member is missing or of another type ---
+// --- Reading. What is missing or of another type throws OrderedJson::exception, what has no such value
+// std::invalid_argument. (No number that was parsed is infinite.) ---
 
-const RouteJson* member(const RouteJson& object, const char* key) {
+void require_readable(bool holds) {
+  if (!holds) throw std::invalid_argument("");
+}
+
+/// Nothing where `read` throws either.
+template <typename Read>
+auto read_or_nothing(const Read& read) -> std::optional<decltype(read())> try {
+  return read();
+} catch (const OrderedJson::exception&) {
+  return std::nullopt;
+} catch (const std::invalid_argument&) {
+  return std::nullopt;
+}
+
+Vec2 pair_in(const OrderedJson& json) {
+  require_readable(json.is_array() && json.size() == 2);
+  return {json[0].get<double>(), json[1].get<double>()};
+}
+
+ExactPoint point_in(const OrderedJson& json) {
+  require_readable(json.is_array() && (json.size() == 2 || json.size() == 4));
+  ExactPoint point{{json[0].get<double>(), json[1].get<double>()}, "", ""};
+  if (json.size() == 2) return point;
+  json[2].get_to(point.x);
+  json[3].get_to(point.y);
+  return point;
+}
+
+/// A list of what `read` reads, at least `least` long.
+template <typename Read>
+auto list_in(const OrderedJson& json, std::size_t least, const Read& read) {
+  require_readable(json.is_array() && json.size() >= least);
+  std::vector<decltype(read(json))> list;
+  for (const OrderedJson& item : json) list.push_back(read(item));
+  return list;
+}
+
+Obstacle obstacle_in(const OrderedJson& json) {
+  constexpr std::size_t kLeastOfWall = 2, kLeastOfRing = 3;
+  const bool is_wall = json.contains("polyline");
+  require_readable(is_wall != json.contains("polygon"));
+  if (is_wall) return Polyline{list_in(json["polyline"], kLeastOfWall, pair_in)};
+  const auto ring_in = [](const OrderedJson& ring) { return list_in(ring, kLeastOfRing, pair_in); };
+  Polygon polygon{ring_in(json["polygon"]), {}};
+  if (json.contains("holes")) polygon.holes = list_in(json["holes"], 0, ring_in);
+  return polygon;
+}
+
+/// Neither negative nor a fraction, which `get` would convert.
+std::size_t number_in(const OrderedJson& json) {
+  return json.get_ref<const OrderedJson::number_unsigned_t&>();
+}
+
+ChainPoint chain_point_in(const OrderedJson& json) {
+  return {point_in(json.at("point")),
+          {number_in(json.at("obstacle")), number_in(json.at("edge"))},
+          json.at("gap").get<bool>()};
+}
+
+/// Inside a polygon no edge of it counts.
+Blocked blocked_in(const OrderedJson& json) {
+  const bool is_start = json.at("end") == "start", is_inside = json.at("inside").get<bool>();
+  require_readable(is_start || json.at("end") == "goal");
+  return {is_start ? Blocked::End::start : Blocked::End::goal, is_inside,
+          EdgeName{number_in(json.at("obstacle")), is_inside ? 0 : number_in(json.at("edge"))}};
+}
+
+RouteAnswer answer_in(const OrderedJson& json) {
+  const OrderedJson& kind = json.at("kind");
+  if (kind == "separated") return Separated{list_in(json.at("chain"), 1, chain_point_in)};
+  if (kind == "blocked") return blocked_in(json);
+  return Route{list_in(json.at("points"), 1, point_in), json.at("length").get<double>(),
+               json.at("lower_bound").get<double>()};
+}
+
+RouteQuestion question_in(const OrderedJson& json) {
+  const RouteQuestion question{json.at("radius").get<double>(), pair_in(json.at("start")), pair_in(json.at("goal"))};
+  require_readable(question.radius >= 0.0);
+  return question;
+}
+
+/// Null where there is none.
+const OrderedJson* member(const OrderedJson& object, const char* key) {
   if (!object.is_object()) return nullptr;
   const auto found = object.find(key);
   return found == object.end() ? nullptr : &*found;
 }
 
-std::optional<double> number_in(const RouteJson* json) {
-  if (json == nullptr || !json->is_number()) return std::nullopt;
-  const double value = json->get<double>();
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-std::optional<Vec2> pair_in(const RouteJson* json) {
-  if (json == nullptr || !json->is_array() || json->size() != 2) return std::nullopt;
-  const std::optional<double> x = number_in(&(*json)[0]), y = number_in(&(*json)[1]);
-  return x && y ? std::optional(Vec2{*x, *y}) : std::nullopt;
-}
-
-std::optional<ExactPoint> point_in(const RouteJson* json) {
-  if (json == nullptr || !json->is_array() || (json->size() != 2 && json->size() != 4)) return std::nullopt;
-  const std::optional<double> x = number_in(&(*json)[0]), y = number_in(&(*json)[1]);
-  if (!x || !y) return std::nullopt;
-  ExactPoint point{{*x, *y}, "", ""};
-  if (json->size() == 2) return point;
-  if (!(*json)[2].is_string() || !(*json)[3].is_string()) return std::nullopt;
-  point.x = (*json)[2].get<std::string>();
-  point.y = (*json)[3].get<std::string>();
-  return point;
-}
-
-/// A list of what `read` reads, at least `least` long.
-template <typename Value, typename Read>
-std::optional<std::vector<Value>> list_in(const RouteJson* json, std::size_t least, const Read& read) {
-  if (json == nullptr || !json->is_array() || json->size() < least) return std::nullopt;
-  std::vector<Value> list;
-  for (const RouteJson& item : *json) {
-    std::optional<Value> value = read(&item);
-    if (!value) return std::nullopt;
-    list.push_back(std::move(*value));
-  }
-  return list;
-}
-
-std::optional<std::vector<Vec2>> points_in(const RouteJson* json, std::size_t least) {
-  return list_in<Vec2>(json, least, pair_in);
-}
-
-std::optional<Obstacle> obstacle_in(const RouteJson* json) {
-  constexpr std::size_t kLeastOfWall = 2, kLeastOfRing = 3;
-  if (member(*json, "polyline") && member(*json, "polygon")) return std::nullopt;
-  if (const RouteJson* wall = member(*json, "polyline")) {
-    auto points = points_in(wall, kLeastOfWall);
-    return points ? std::optional<Obstacle>(Polyline{std::move(*points)}) : std::nullopt;
-  }
-  auto outer = points_in(member(*json, "polygon"), kLeastOfRing);
-  if (!outer) return std::nullopt;
-  Polygon polygon{std::move(*outer), {}};
-  if (const RouteJson* holes = member(*json, "holes")) {
-    const auto ring_in = [](const RouteJson* ring) { return points_in(ring, kLeastOfRing); };
-    auto rings = list_in<geometry::Ring>(holes, 0, ring_in);
-    if (!rings) return std::nullopt;
-    polygon.holes = std::move(*rings);
-  }
-  return polygon;
-}
-
-std::optional<std::size_t> number_of(const RouteJson& json, const char* key) {
-  const RouteJson* number = member(json, key);
-  if (number == nullptr || !number->is_number_unsigned()) return std::nullopt;
-  return number->get<std::size_t>();
-}
-
-std::optional<EdgeName> edge_in(const RouteJson& json) {
-  const std::optional<std::size_t> obstacle = number_of(json, "obstacle"), edge = number_of(json, "edge");
-  return obstacle && edge ? std::optional(EdgeName{*obstacle, *edge}) : std::nullopt;
-}
-
-std::optional<ChainPoint> chain_point_in(const RouteJson* json) {
-  const std::optional<ExactPoint> point = point_in(member(*json, "point"));
-  const std::optional<EdgeName> on = edge_in(*json);
-  const RouteJson* gap = member(*json, "gap");
-  if (!point || !on || gap == nullptr || !gap->is_boolean()) return std::nullopt;
-  return ChainPoint{*point, *on, gap->get<bool>()};
-}
-
-std::optional<RouteAnswer> route_in(const RouteJson& json) {
-  auto points = list_in<ExactPoint>(member(json, "points"), 1, point_in);
-  const std::optional<double> length = number_in(member(json, "length"));
-  const std::optional<double> lower_bound = number_in(member(json, "lower_bound"));
-  if (!points || !length || !lower_bound) return std::nullopt;
-  return Route{std::move(*points), *length, *lower_bound};
-}
-
-std::optional<RouteAnswer> separated_in(const RouteJson& json) {
-  auto chain = list_in<ChainPoint>(member(json, "chain"), 1, chain_point_in);
-  if (!chain) return std::nullopt;
-  return Separated{std::move(*chain)};
-}
-
-/// Inside a polygon no edge of it counts.
-std::optional<RouteAnswer> blocked_in(const RouteJson& json) {
-  const RouteJson *end = member(json, "end"), *inside = member(json, "inside");
-  if (end == nullptr || (*end != "start" && *end != "goal") || inside == nullptr || !inside->is_boolean())
-    return std::nullopt;
-  const bool is_inside = inside->get<bool>();
-  const std::optional<std::size_t> obstacle = number_of(json, "obstacle"), edge = number_of(json, "edge");
-  if (!obstacle || (!is_inside && !edge)) return std::nullopt;
-  return Blocked{*end == "start" ? Blocked::End::start : Blocked::End::goal, is_inside,
-                 EdgeName{*obstacle, edge.value_or(0)}};
-}
-
-std::optional<RouteAnswer> answer_in(const RouteJson& json) {
-  const std::string kind = json.at("kind").get<std::string>();
-  if (kind == "route") return route_in(json);
-  return kind == "separated" ? separated_in(json) : blocked_in(json);
-}
-
-std::optional<RouteQuestion> question_in(const RouteJson& json) {
-  const std::optional<double> radius = number_in(member(json, "radius"));
-  const std::optional<Vec2> start = pair_in(member(json, "start")), goal = pair_in(member(json, "goal"));
-  if (!radius || !(*radius >= 0.0) || !start || !goal) return std::nullopt;
-  return RouteQuestion{*radius, *start, *goal};
-}
-
-bool is_status(const RouteJson* json) {
+bool is_status(const OrderedJson* json) {
   return json != nullptr &&
          std::any_of(std::begin(kStatuses), std::end(kStatuses), [&](const char* status) { return *json == status; });
 }
@@ -216,46 +185,49 @@ bool is_status(const RouteJson* json) {
 // --- What stands beside it ---
 
 /// Whether `beside` has no such member, or it is `value`.
-bool agrees(const RouteJson& beside, const char* key, const RouteJson& value) {
-  const RouteJson* said = member(beside, key);
+bool agrees(const OrderedJson& beside, const char* key, const OrderedJson& value) {
+  const OrderedJson* said = member(beside, key);
   return said == nullptr || *said == value;
 }
 
 /// Whether the widest radius, where it stands beside, has a route exactly if it is no less than that of the question.
-bool agrees_in_widest(const RouteJson& beside, double radius, bool is_route) {
-  const RouteJson* widest = member(beside, "widest_radius");
+bool agrees_in_widest(const OrderedJson& beside, double radius, bool is_route) {
+  const OrderedJson* widest = member(beside, "widest_radius");
   if (widest == nullptr) return true;
-  const std::optional<double> number = number_in(widest);
-  return number && (*number >= radius && *number > 0.0) == is_route;
+  if (!widest->is_number()) return false;
+  const double number = widest->get<double>();
+  return (number >= radius && number > 0.0) == is_route;
 }
 
 /// Whether the gaps that stand beside start at those points of the chain behind which there is one.
-bool agrees_in_gaps(const RouteJson& beside, const RouteAnswer& answer) {
-  const RouteJson* gaps = member(beside, "gaps");
+bool agrees_in_gaps(const OrderedJson& beside, const RouteAnswer& answer) {
+  const OrderedJson* gaps = member(beside, "gaps");
   if (gaps == nullptr) return true;
   std::vector<Vec2> expected;
   if (const auto* separated = std::get_if<Separated>(&answer))
     for (const ChainPoint& p : separated->chain)
       if (p.gap_follows) expected.push_back(p.point.rounded);
-  const auto from_of = [](const RouteJson* gap) { return pair_in(member(*gap, "from")); };
-  const std::optional<std::vector<Vec2>> found = list_in<Vec2>(gaps, 0, from_of);
-  return found && *found == expected;
+  const auto begins_at = [](const OrderedJson& gap, Vec2 p) {
+    const OrderedJson* from = member(gap, "from");
+    return from != nullptr && *from == json_of(p);
+  };
+  return gaps->is_array() && std::equal(gaps->begin(), gaps->end(), expected.begin(), expected.end(), begins_at);
 }
 
-bool agrees_in_end(const RouteJson& beside, const RouteJson& certificate) {
-  const RouteJson* blocked = member(beside, "blocked");
+bool agrees_in_end(const OrderedJson& beside, const OrderedJson& certificate) {
+  const OrderedJson* blocked = member(beside, "blocked");
   if (blocked == nullptr) return true;
   const auto same = [&](const char* key) {
-    const RouteJson *said = member(*blocked, key), *proven = member(certificate, key);
+    const OrderedJson *said = member(*blocked, key), *proven = member(certificate, key);
     return said && proven && *said == *proven;
   };
   return same("end") && same("inside");
 }
 
-bool is_of_this_answer(const RouteJson& beside, const RouteJson& certificate, const RouteQuestion& question,
+bool is_of_this_answer(const OrderedJson& beside, const OrderedJson& certificate, const RouteQuestion& question,
                        const RouteAnswer& answer) {
   const auto* route = std::get_if<Route>(&answer);
-  const RouteJson none = nullptr;
+  const OrderedJson none = nullptr;
   return agrees(beside, "status", certificate.at("kind")) && agrees(beside, "radius", certificate.at("radius")) &&
          agrees(beside, "start", certificate.at("start")) && agrees(beside, "goal", certificate.at("goal")) &&
          agrees(beside, "length", route ? certificate.at("length") : none) &&
@@ -267,8 +239,8 @@ bool is_of_this_answer(const RouteJson& beside, const RouteJson& certificate, co
 
 std::string claim_words(const RouteQuestion& q, const RouteAnswer& answer, std::size_t obstacles) {
   const std::string from_to =
-      fmt::format("radius {:.6g} m from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}), {} obstacle{}", q.radius, q.start.x,
-                  q.start.y, q.goal.x, q.goal.y, obstacles, obstacles == 1 ? "" : "s");
+      fmt::format("radius {:.6g} m from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}), {}", q.radius, q.start.x, q.start.y,
+                  q.goal.x, q.goal.y, geometry::counted(obstacles, "obstacle"));
   if (const auto* route = std::get_if<Route>(&answer))
     return fmt::format("a route of {:.6g} m, {}", route->length, from_to);
   if (const auto* chain = std::get_if<Separated>(&answer))
@@ -283,47 +255,46 @@ const char* status_of(const RouteAnswer& answer) {
   return kStatuses[answer.index()];
 }
 
-RouteJson rounded_json(const std::vector<ExactPoint>& points) {
-  RouteJson list = RouteJson::array();
+OrderedJson rounded_json(const std::vector<ExactPoint>& points) {
+  OrderedJson list = OrderedJson::array();
   for (const ExactPoint& p : points) list.push_back(json_of(p.rounded));
   return list;
 }
 
-RouteJson certificate_json(const RouteQuestion& question, const RouteAnswer& answer,
-                           const std::vector<formation::SceneObstacle>* obstacles) {
-  RouteJson json{{"kind", status_of(answer)},
-                 {"radius", question.radius},
-                 {"start", json_of(question.start)},
-                 {"goal", json_of(question.goal)}};
+OrderedJson certificate_json(const RouteQuestion& question, const RouteAnswer& answer,
+                             const std::vector<formation::SceneObstacle>* obstacles) {
+  OrderedJson json{{"kind", status_of(answer)},
+                   {"radius", question.radius},
+                   {"start", json_of(question.start)},
+                   {"goal", json_of(question.goal)}};
   std::visit([&](const auto& kind) { add(kind, json); }, answer);
   if (obstacles == nullptr) return json;
-  json["obstacles"] = RouteJson::array();
-  for (const formation::SceneObstacle& obstacle : *obstacles) json["obstacles"].push_back(json_of(obstacle));
+  json["obstacles"] = json_of(*obstacles);
   return json;
 }
 
-bool RouteChecker::is_one(const RouteJson& certificate) {
+bool RouteChecker::is_one(const OrderedJson& certificate) {
   return is_status(member(certificate, "kind"));
 }
 
-bool RouteChecker::lacks_one(const RouteJson& object) {
-  const RouteJson* certificate = member(object, "certificate");
+bool RouteChecker::lacks_one(const OrderedJson& object) {
+  const OrderedJson* certificate = member(object, "certificate");
   return is_status(member(object, "status")) && (certificate == nullptr || certificate->is_null());
 }
 
-CheckedCertificate RouteChecker::check_one(const RouteJson& certificate, const RouteJson& beside) {
-  const std::optional<RouteQuestion> question = question_in(certificate);
-  const std::optional<RouteAnswer> answer = answer_in(certificate);
-  if (!question || !answer) return {"not a certificate", "", false};
-  if (const RouteJson* listed = member(certificate, "obstacles")) {
-    obstacles_ = list_in<Obstacle>(listed, 0, obstacle_in);
+CheckedCertificate RouteChecker::check_one(const OrderedJson& certificate, const OrderedJson& beside) {
+  const auto read = read_or_nothing([&] { return std::pair(question_in(certificate), answer_in(certificate)); });
+  if (!read) return {"not a certificate", "", false};
+  const auto& [question, answer] = *read;
+  if (const OrderedJson* listed = member(certificate, "obstacles")) {
+    obstacles_ = read_or_nothing([&] { return list_in(*listed, 0, obstacle_in); });
     if (!obstacles_) return {"obstacles that cannot be read", "", false};
   }
   if (!obstacles_) return {"no obstacles: neither in it nor in one before it", "", false};
-  const std::string claim = claim_words(*question, *answer, obstacles_->size());
-  const std::string why = geometry::check(*obstacles_, *question, *answer);
+  const std::string claim = claim_words(question, answer, obstacles_->size());
+  const std::string why = geometry::check(*obstacles_, question, answer);
   if (!why.empty()) return {"not proven: " + why, claim, false};
-  if (!is_of_this_answer(beside, certificate, *question, *answer)) return {"of another answer", claim, false};
+  if (!is_of_this_answer(beside, certificate, question, answer)) return {"of another answer", claim, false};
   return {"valid", claim, true};
 }
 

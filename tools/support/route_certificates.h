@@ -8,41 +8,39 @@
 ///
 /// Neighbours: certificates.h checks whole files, geometry/route_certificate.h decides.
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/route_certificate.h"
 #include "support/certificates.h"
+#include "support/json_layout.h"
 
 namespace exactvo::tools {
-
-using RouteJson = nlohmann::ordered_json;
 
 /// "route", "separated" or "blocked".
 const char* status_of(const geometry::RouteAnswer& answer);
 
 /// [x, y], the rounded coordinates.
-RouteJson rounded_json(const std::vector<geometry::ExactPoint>& points);
+OrderedJson rounded_json(const std::vector<geometry::ExactPoint>& points);
 
 /// `obstacles` null: those of an earlier certificate in the same file.
-RouteJson certificate_json(const geometry::RouteQuestion& question, const geometry::RouteAnswer& answer,
-                           const std::vector<formation::SceneObstacle>* obstacles);
+OrderedJson certificate_json(const geometry::RouteQuestion& question, const geometry::RouteAnswer& answer,
+                             const std::vector<formation::SceneObstacle>* obstacles);
 
 /// Checks the certificates of one file in order.
 class RouteChecker {
  public:
   /// Whether an object claims to be one: it has a `kind` that is a status.
-  static bool is_one(const RouteJson& certificate);
+  static bool is_one(const OrderedJson& certificate);
 
   /// Whether an object answers a question of a route, by its `status`, and has no certificate for it.
-  static bool lacks_one(const RouteJson& object);
+  static bool lacks_one(const OrderedJson& object);
 
   /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points, lengths,
   /// gaps, the blocked end and the widest radius must agree with the certificate; else the verdict is "of another
   /// answer". REQUIRES: is_one(certificate).
-  CheckedCertificate check_one(const RouteJson& certificate, const RouteJson& beside);
+  CheckedCertificate check_one(const OrderedJson& certificate, const OrderedJson& beside);
 
  private:
   std::optional<std::vector<geometry::Obstacle>> obstacles_;  ///< of the last certificate that had any

@@ -105,20 +105,12 @@ std::string listed(const std::vector<Gap>& gaps, const AskedMap& map) {
   return text;
 }
 
-/// By the parity of crossings of the chain as rounded.
-bool goes_round(const std::vector<ChainPoint>& chain, Vec2 p) {
-  bool inside = false;
-  for (std::size_t k = 0; k < chain.size(); ++k) {
-    const Vec2 a = chain[k].point.rounded, b = chain[(k + 1) % chain.size()].point.rounded;
-    if ((a.y > p.y) == (b.y > p.y)) continue;
-    inside ^= (geometry::orientation(a, b, p) == geometry::Sign::positive) == (b.y > a.y);
-  }
-  return inside;
-}
-
 /// "start" or "goal"; nothing where the rounded chain cannot tell.
 const char* enclosed_end(const Separated& separated, const geometry::RouteQuestion& question) {
-  const bool start = goes_round(separated.chain, question.start), goal = goes_round(separated.chain, question.goal);
+  geometry::Polygon chain;
+  for (const ChainPoint& p : separated.chain) chain.outer.push_back(p.point.rounded);
+  const auto goes_round = [&](Vec2 p) { return geometry::locate(chain, p) == geometry::Place::inside; };
+  const bool start = goes_round(question.start), goal = goes_round(question.goal);
   if (start == goal) return nullptr;
   return start ? "start" : "goal";
 }
@@ -162,17 +154,13 @@ std::string words_of(const Blocked& blocked, const AskedMap& map, const geometry
 
 // --- JSON ---
 
-OrderedJson xy_json(Vec2 p) {
-  return OrderedJson::array({p.x, p.y});
-}
-
 /// For people and their programs: the certificate alone is what is proven.
 OrderedJson gaps_json(const Separated& separated, const AskedMap& map) {
   OrderedJson list = OrderedJson::array();
   for (const Gap& gap : gaps_of(separated))
     list.push_back({{"width", gap.width},
-                    {"from", xy_json(gap.from)},
-                    {"to", xy_json(gap.to)},
+                    {"from", json_point(gap.from)},
+                    {"to", json_point(gap.to)},
                     {"between", {map.obstacles[gap.from_obstacle].id, map.obstacles[gap.to_obstacle].id}}});
   return list;
 }
@@ -275,7 +263,7 @@ std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in
   }
   if (answered.widest) {
     if (answered.answer) text += in_full ? "\n" : "; ";
-    text += answered.has_no_obstacle
+    text += map.shapes.empty()
                 ? "widest radius: any, there is no obstacle"
                 : fmt::format("widest radius: {}{} m", answered.is_widest_of_map ? "at least " : "", *answered.widest);
   }
@@ -289,8 +277,8 @@ std::string json_of(const AnsweredRoute& answered, const AskedMap& map, bool wit
     json["status"] = status_of(*answered.answer);
     json["radius"] = answered.question.radius;
   }
-  json["start"] = xy_json(answered.question.start);
-  json["goal"] = xy_json(answered.question.goal);
+  json["start"] = json_point(answered.question.start);
+  json["goal"] = json_point(answered.question.goal);
   if (answered.widest) json["widest_radius"] = *answered.widest;
   if (answered.is_widest_of_map) json["widest_radius_is_bound_of_map"] = true;
   if (answered.answer) add_answer(answered, map, with_obstacles, json);

@@ -54,7 +54,6 @@ struct AnsweredRoute {
   std::optional<geometry::RouteAnswer> answer;  ///< with a radius
   std::optional<double> widest;                 ///< m, with --widest
   bool is_widest_of_map = false;                ///< even the largest radius of the map fits
-  bool has_no_obstacle = false;                 ///< any radius fits
 
   /// Whether there is a route: for the radius, or without one for any.
   bool is_route() const;

@@ -177,17 +177,12 @@ void check(const RouteFlags& flags) {
 
 // --- Points ---
 
-Vec2 pair_in(const char* option, const std::string& text, const AskedMap& map) {
+Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) {
   const std::vector<std::string_view> fields = fields_of(text);
   const bool are_two = fields.size() == 2 && text.find(',') != std::string::npos;
   const std::optional<double> x = are_two ? number_in(fields[0]) : std::nullopt;
   const std::optional<double> y = are_two ? number_in(fields[1]) : std::nullopt;
-  if (!x || !y) throw UsageError(option, text, map.accepted_points());
-  return {*x, *y};
-}
-
-Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) {
-  const std::optional<Vec2> metres = map.in_metres(pair_in(option, text, map));
+  const std::optional<Vec2> metres = x && y ? map.in_metres({*x, *y}) : std::nullopt;
   if (!metres) throw UsageError(option, text, map.accepted_points());
   return *metres;
 }
@@ -229,12 +224,11 @@ class Answers {
   bool covers(Vec2 point) const { return routes_.covers(point); }
 
   AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) const {
-    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false, false};
+    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false};
     if (plan_) answered.answer = plan_->query(start, goal);
     if (!flags_.widest) return answered;
     answered.widest = routes_.widest_radius(start, goal);
     answered.is_widest_of_map = *answered.widest == routes_.largest_radius();
-    answered.has_no_obstacle = asked_.shapes.empty();
     return answered;
   }
 
