@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <csignal>
 #include <iterator>
 #include <utility>
@@ -53,34 +55,16 @@ struct BatchFlags {
   std::string goal;
 };
 
-datasets::Units units_named(const std::string& text) {
-  datasets::Units units{};
-  if (!parse(text, units)) throw UsageError("--units", text, "automatic, metres or degrees");
-  return units;
-}
-
-geometry::PartitionMethod partition_named(const std::string& text) {
-  return parse_choice<geometry::PartitionMethod>("--partition", text, geometry::partition_method_names());
-}
-
 void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
   const std::vector<std::string> known{"geopackage", "geojson", "pictures", "figures"};
-  configuration.geopackage = configuration.geojson = configuration.pictures = false;
-  std::size_t start = 0;
-  while (start <= text.size()) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    const std::string word = text.substr(start, end - start);
-    if (word == "geopackage")
-      configuration.geopackage = true;
-    else if (word == "geojson")
-      configuration.geojson = true;
-    else if (word == "pictures")
-      configuration.pictures = true;
-    else if (word != "figures") {
-      throw UsageError("--write", word, "geopackage, geojson, pictures, figures" + suggestion(word, known));
-    }
-    start = end + 1;
-  }
+  std::vector<std::string> words;
+  for (const std::string& word : boost::split(words, text, boost::is_any_of(",")))
+    require(std::count(known.begin(), known.end(), word) > 0, "--write", word,
+            "geopackage, geojson, pictures, figures" + suggestion(word, known));
+  const auto has = [&](const char* word) { return std::count(words.begin(), words.end(), word) > 0; };
+  configuration.geopackage = has("geopackage");
+  configuration.geojson = has("geojson");
+  configuration.pictures = has("pictures");
 }
 
 void check_numbers(const BatchFlags& flags) {
@@ -112,9 +96,10 @@ BatchConfiguration configuration_of(const BatchFlags& flags) {
   configuration.reading.format = flags.format;
   configuration.reading.repair = flags.repair;
   configuration.reading.cell_size = flags.cell_size;
-  configuration.reading.units = units_named(flags.units);
+  require(parse(flags.units, configuration.reading.units), "--units", flags.units, "automatic, metres or degrees");
   configuration.shapes.facades.tolerance = flags.tolerance;
-  configuration.shapes.partition = partition_named(flags.partition);
+  configuration.shapes.partition =
+      parse_choice<geometry::PartitionMethod>("--partition", flags.partition, geometry::partition_method_names());
   configuration.memory_limit = flags.limit_memory;
   configuration.robot = robot_of(flags);
   choose_outputs(flags.write, configuration);
@@ -228,11 +213,6 @@ std::string words_of(const BatchSummary& s, const std::string& out, bool with_ra
   return text;
 }
 
-std::string words_of_shard(const BatchRun& run) {
-  return fmt::format("shard {}/{} is through, others are not: nothing is put together yet; the last one does that",
-                     run.shard, run.shards);
-}
-
 /// On stderr, so that nobody takes a batch of bad files for a good one; all of them are in summary.json.
 void name_rejected(const BatchSummary& summary, const std::string& out) {
   constexpr std::size_t kMostNamed = 20;
@@ -257,7 +237,10 @@ void note_earlier_batches(const datasets::BatchResult& result) {
 
 /// Nothing of this process's own to tell: the last of several puts the parts together.
 void say_incomplete(const BatchFlags& flags, const BatchRun& run) {
-  if (run.shards > 1) return message(words_of_shard(run));
+  if (run.shards > 1)
+    return message(
+        fmt::format("shard {}/{} is through, others are not: nothing is put together yet; the last one does that",
+                    run.shard, run.shards));
   if (!datasets::under_mpi())
     message("another process took the parts of this batch from " + flags.out + " and left no summary");
 }

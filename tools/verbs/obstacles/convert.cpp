@@ -95,7 +95,7 @@ void declare_convert(CLI::App& app, ConvertFlags& flags) {
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)")
       ->required();
   declare_reading_flags(app, flags.reading, "--from");
-  app.add_option("--to", flags.to, "What to write:" + listed(datasets::writable_formats()));
+  app.add_option("--to", flags.to, fmt::format("What to write: {}", fmt::join(datasets::writable_formats(), " ")));
   declare_metres(app, flags.metres);
   app.add_flag("--repair", flags.repair, "Repair invalid geometry (exactvo repair lists the changes)");
   app.add_flag("--skip", flags.skip, "Omit invalid obstacles, and end with status 1");

@@ -36,25 +36,17 @@ FileAnswer read_one(const std::string& file, const datasets::ReadOptions& option
   }
 }
 
-OrderedJson pair_json(geometry::Vec2 p) {
-  return {json_number(p.x), json_number(p.y)};
-}
-
-/// The place in the file's own numbers, which are metres unless said.
-OrderedJson in_file_json(const RingFinding& f) {
-  return pair_json(f.in_file ? f.in_file->where : f.where);
-}
-
 OrderedJson problem_json(const RingFinding& f) {
+  const geometry::Vec2 in_file = f.in_file ? f.in_file->where : f.where;  // the file's numbers are metres unless said
   return {{"code", datasets::code_name(f.code)},
           {"place", f.place},
           {"feature", f.feature},
           {"ring", f.ring},
           {"vertex", f.vertex},
-          {"x", json_number(f.where.x)},
-          {"y", json_number(f.where.y)},
-          {"in_file", in_file_json(f)},
-          {"at_vertex", pair_json(f.at_vertex)},
+          {"x", unsigned_zero(f.where.x)},
+          {"y", unsigned_zero(f.where.y)},
+          {"in_file", json_point(unsigned_zero(in_file))},
+          {"at_vertex", json_point(unsigned_zero(f.at_vertex))},
           {"found", datasets::words_of(f)},
           {"repaired", f.repaired}};
 }
@@ -81,56 +73,12 @@ std::vector<const DataError*> other_refusals(const ObstacleFile& content) {
   return others;
 }
 
-OrderedJson problems_json(const FileAnswer& answer) {
-  OrderedJson problems = OrderedJson::array();
-  if (answer.error) problems.push_back(problem_json(*answer.error));
-  if (!answer.content) return problems;
-  for (const RingFinding& f : answer.content->findings) problems.push_back(problem_json(f));
-  for (const DataError* error : other_refusals(*answer.content)) problems.push_back(problem_json(*error));
-  return problems;
-}
-
-OrderedJson unlisted_json(const FileAnswer& answer) {
-  OrderedJson counts = OrderedJson::object();
-  if (!answer.content) return counts;
-  for (const auto& [code, count] : answer.content->unlisted) counts[datasets::code_name(code)] = count;
-  return counts;
-}
-
-OrderedJson notes_json(const FileAnswer& answer) {
-  OrderedJson notes = OrderedJson::array();
-  if (!answer.content) return notes;
-  for (const datasets::DataNote& note : answer.content->notes) {
-    if (!note.code) notes.push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
-  }
-  return notes;
-}
-
-/// Where degrees were projected to metres: round what place.
-OrderedJson origin_json(const FileAnswer& answer) {
-  if (!answer.content || !answer.content->origin) return nullptr;
-  return {{"longitude", json_number(answer.content->origin->longitude)},
-          {"latitude", json_number(answer.content->origin->latitude)}};
-}
-
-OrderedJson code_of(const FileAnswer& answer) {
-  if (answer.error) return datasets::code_name(answer.error->code());
-  if (answer.is_whole()) return nullptr;
-  return datasets::code_name(answer.content->rejected.front().code());
-}
-
 }  // namespace
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += " " + word;
-  return text;
-}
-
 void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name) {
-  app.add_option(
-      format_name, flags.format,
-      "Input format:" + listed(datasets::readable_formats()) + "; by default detected from content, then name");
+  app.add_option(format_name, flags.format,
+                 fmt::format("Input format: {}; by default detected from content, then name",
+                             fmt::join(datasets::readable_formats(), " ")));
   app.add_option("--units", flags.units, "Units of coordinates: automatic, metres or degrees");
   app.add_option("--cell-size", flags.cell_size, "Cell size of scans, point lists and grids without a scale, m");
 }
@@ -161,10 +109,12 @@ void refuse_input_as_output(const std::string& in, const std::string& format, co
   }
 }
 
-std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format) {
+std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format,
+                                                 const std::string& out) {
   std::vector<std::filesystem::path> all;
   for (const std::string& file : files)
     for (std::filesystem::path& read : datasets::files_read_with(file, format)) all.push_back(std::move(read));
+  if (!out.empty()) all.emplace_back(out);
   return all;
 }
 
@@ -232,38 +182,41 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict) {
   return std::all_of(answers.begin(), answers.end(), passes) ? ExitCode::success : ExitCode::negative;
 }
 
-std::string verdict_of(const FileAnswer& answer) {
-  if (!answer.content) return "unreadable";
-  const datasets::ReadCounts& n = answer.content->counts;
-  if (n.rejected > 0) return "invalid";
-  return n.repaired > 0 ? "repaired" : "valid";
-}
-
-OrderedJson json_of(const datasets::ReadCounts& n) {
-  return {{"read", n.read},
-          {"done", n.done},
-          {"repaired", n.repaired},
-          {"passed_over", n.passed_over},
-          {"rejected", n.rejected}};
-}
-
 OrderedJson json_of(const FileAnswer& answer) {
-  return {{"file", answer.file},
-          {"format", answer.content ? OrderedJson(answer.content->format) : OrderedJson(nullptr)},
-          {"verdict", verdict_of(answer)},
-          {"code", code_of(answer)},
-          {"counts", answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr)},
-          {"problems", problems_json(answer)},
-          {"unlisted", unlisted_json(answer)},
-          {"origin", origin_json(answer)},
-          {"notes", notes_json(answer)}};
+  const auto empty = OrderedJson::array();
+  OrderedJson json{{"file", answer.file}, {"format", nullptr}, {"verdict", "unreadable"},           {"code", nullptr},
+                   {"counts", nullptr},   {"problems", empty}, {"unlisted", OrderedJson::object()}, {"origin", nullptr},
+                   {"notes", empty}};
+  if (answer.error) {
+    json["code"] = datasets::code_name(answer.error->code());
+    json["problems"].push_back(problem_json(*answer.error));
+  }
+  if (!answer.content) return json;
+  const ObstacleFile& content = *answer.content;
+  const datasets::ReadCounts& n = content.counts;
+  json["format"] = content.format;
+  json["verdict"] = n.rejected > 0 ? "invalid" : n.repaired > 0 ? "repaired" : "valid";
+  if (n.rejected > 0) json["code"] = datasets::code_name(content.rejected.front().code());
+  json["counts"] = {{"read", n.read},
+                    {"done", n.done},
+                    {"repaired", n.repaired},
+                    {"passed_over", n.passed_over},
+                    {"rejected", n.rejected}};
+  for (const RingFinding& f : content.findings) json["problems"].push_back(problem_json(f));
+  for (const DataError* error : other_refusals(content)) json["problems"].push_back(problem_json(*error));
+  for (const auto& [code, count] : content.unlisted) json["unlisted"][datasets::code_name(code)] = count;
+  if (content.origin)
+    json["origin"] = {{"longitude", unsigned_zero(content.origin->longitude)},
+                      {"latitude", unsigned_zero(content.origin->latitude)}};
+  for (const datasets::DataNote& note : content.notes)
+    if (!note.code) json["notes"].push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
+  return json;
 }
 
-std::string lines_of(const FileAnswer& answer, bool with_repaired) {
+std::string lines_of(const FileAnswer& answer) {
   if (answer.error) return shown(answer.error->what() + guess_words(answer)) + "\n";
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
-    if (f.repaired && !with_repaired) continue;
     text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
                               datasets::words_of(f), datasets::code_name(f.code), f.repaired ? ", repaired" : "")) +
             "\n";
@@ -289,10 +242,6 @@ std::string counts_line(const FileAnswer& answer) {
 
 std::string text_of(const OrderedJson& json) {
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
-}
-
-OrderedJson json_number(double x) {
-  return std::isfinite(x) ? OrderedJson(unsigned_zero(x)) : OrderedJson(nullptr);
 }
 
 std::string projection_line(const datasets::ObstacleFile& file) {

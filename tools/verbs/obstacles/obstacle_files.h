@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,12 +14,10 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/formation/scenario.h"
+#include "support/json_layout.h"
 #include "verb.h"
 
 namespace exactvo::tools {
-
-/// Keys in the order of writing.
-using OrderedJson = nlohmann::ordered_json;
 
 struct ReadingFlags {
   std::string format;
@@ -33,9 +30,6 @@ void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string
 
 /// Throws UsageError with the nearest known word. Reading goes on past bad obstacles.
 datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name = "--format");
-
-/// Each with a space before it.
-std::string listed(const std::vector<std::string>& words);
 
 /// Throws UsageError where `format` is neither empty nor among `known`.
 void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known);
@@ -55,8 +49,10 @@ struct FileAnswer {
 void refuse_input_as_output(const std::string& in, const std::string& format, const std::string& option,
                             const std::string& out);
 
-/// Everything that is read with the files; `format` is that of all, empty if it is to be found out.
-std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format);
+/// Everything that is read with the files, and `out` unless that is empty: what a figure must not replace. `format` is
+/// that of all files, empty if it is to be found out.
+std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format,
+                                                 const std::string& out = "");
 
 /// --metres, of verbs that write GeoJSON.
 void declare_metres(CLI::App& app, bool& metres);
@@ -86,29 +82,22 @@ std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const d
 /// was wrong, repaired or not.
 ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict = false);
 
-/// "valid"; "repaired": every problem was; "invalid": some obstacles can't be used; "unreadable".
-std::string verdict_of(const FileAnswer& answer);
-
-/// {"file", "format", "verdict", "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
+/// {"file", "format", "verdict" ("valid"; "repaired": every problem was; "invalid": some obstacles can't be used;
+/// "unreadable"), "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
 /// "ring", "vertex", "x", "y", "in_file", "at_vertex", "found", "repaired"}], "origin", "notes"}: x and y in metres,
 /// "in_file" the same place in the file's own numbers (longitude, latitude), "at_vertex" the vertex as it is written.
 /// "origin" is round what place degrees were projected, or null. What is no ring's has "code", "place", "found",
 /// "expected" and "repaired". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired". `with_repaired`: also those.
-std::string lines_of(const FileAnswer& answer, bool with_repaired);
+/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired".
+std::string lines_of(const FileAnswer& answer);
 
 /// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 skipped, 0 rejected".
 std::string counts_line(const FileAnswer& answer);
 
-OrderedJson json_of(const datasets::ReadCounts& counts);
-
 /// Text of `json`, whatever bytes are in its strings.
 std::string text_of(const OrderedJson& json);
-
-/// A number, or null where it is none that JSON has.
-OrderedJson json_number(double x);
 
 /// Degrees that became metres: what nobody may take for granted, since GeoJSON without units is one of degrees.
 /// "FILE: degrees became metres round longitude X, latitude Y"; empty where nothing was projected.

@@ -118,9 +118,9 @@ OrderedJson json_of(const RepairFacts& facts) {
   return {{"polygons", facts.polygons},
           {"rings", facts.rings},
           {"vertices", facts.vertices},
-          {"area", facts.area < 0.0 ? OrderedJson(nullptr) : json_number(facts.area)},
-          {"outer_area", json_number(facts.outer_area)},
-          {"hole_area", json_number(facts.hole_area)}};
+          {"area", facts.area < 0.0 ? OrderedJson() : OrderedJson(unsigned_zero(facts.area))},
+          {"outer_area", unsigned_zero(facts.outer_area)},
+          {"hole_area", unsigned_zero(facts.hole_area)}};
 }
 
 OrderedJson json_of(const RepairRecord& r) {
@@ -131,7 +131,7 @@ OrderedJson json_of(const RepairRecord& r) {
           {"codes", codes},
           {"refused", r.refused ? OrderedJson(datasets::code_name(*r.refused)) : OrderedJson(nullptr)},
           {"recombined", r.recombined},
-          {"moved", json_number(r.moved)},
+          {"moved", unsigned_zero(r.moved)},
           {"before", json_of(r.before)},
           {"after", r.refused ? OrderedJson(nullptr) : json_of(r.after)}};
 }
@@ -248,35 +248,20 @@ std::vector<geometry::Vec2> places_of_problems(const ObstacleFile& file, const R
   return places;
 }
 
-std::size_t number_recombined(const std::vector<FileAnswer>& answers) {
-  std::size_t count = 0;
-  for (const FileAnswer& answer : answers) {
-    if (!answer.content) continue;
-    for (const RepairRecord& r : answer.content->repairs) count += r.recombined ? 1 : 0;
-  }
-  return count;
-}
-
-/// Those that are drawn: each takes a look at all findings and obstacles.
-std::vector<RepairedPolygon> recombined(const std::vector<FileAnswer>& answers) {
+void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
   std::vector<RepairedPolygon> polygons;
+  std::size_t number = 0;
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const RepairRecord& r : answer.content->repairs) {
-      if (!r.recombined) continue;
-      if (polygons.size() == kMostRepairedDrawn) return polygons;
+      // Those that are drawn alone: each takes a look at all findings and obstacles.
+      if (!r.recombined || ++number > kMostRepairedDrawn) continue;
       const std::string name = std::filesystem::path(answer.file).filename().string();
       polygons.push_back(
           {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
     }
   }
-  return polygons;
-}
-
-void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
-  const std::vector<RepairedPolygon> polygons = recombined(answers);
   if (polygons.empty()) return message("no figure: nothing had to be cut");
-  const std::size_t number = number_recombined(answers);
   if (number > polygons.size())
     message(
         fmt::format("the figure shows {} of {} that were cut", polygons.size(), geometry::counted(number, "polygon")));
@@ -285,18 +270,12 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
 
 // --- The verb ---
 
-/// What is read, and written beside the figure.
-std::vector<std::filesystem::path> other_files(const RepairFlags& flags) {
-  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
-  files.emplace_back(flags.out);
-  return files;
-}
-
 ExitCode repair(const RepairFlags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
   options.keep_properties = true;
-  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
+  if (!flags.figure.empty())
+    check_figure_name("--figure", flags.figure, all_read_with(flags.files, flags.reading.format, flags.out));
   if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = datasets::format_to_write(flags.out, flags.to);

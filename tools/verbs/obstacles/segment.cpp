@@ -48,18 +48,12 @@ struct TakenApart {
 
 // --- The work ---
 
-/// What is read, and written beside the figure.
-std::vector<std::filesystem::path> other_files(const SegmentFlags& flags) {
-  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
-  if (!flags.out.empty()) files.emplace_back(flags.out);
-  return files;
-}
-
 void check(const SegmentFlags& flags) {
   require_length("--tolerance", flags.tolerance);
   require_length("--radius", flags.radius);
   require_length("--facade-margin", flags.facade_margin);
-  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
+  if (!flags.figure.empty())
+    check_figure_name("--figure", flags.figure, all_read_with(flags.files, flags.reading.format, flags.out));
   const std::string extension = std::filesystem::path(flags.out).extension().string();
   if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
     throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");

@@ -29,7 +29,7 @@ ExitCode validate(const ValidateFlags& flags) {
     print(to_json(answers, flags.strict));
   } else {
     for (const FileAnswer& answer : answers) {
-      print(lines_of(answer, true));
+      print(lines_of(answer));
       if (answer.content) message(counts_line(answer));
     }
   }
