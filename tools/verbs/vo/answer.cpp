@@ -68,15 +68,8 @@ Json boundary_json(const ConeAnswer& a) {
           {"point", json_point(a.encounter.velocity + a.nearest->u)}};
 }
 
-std::string text_of(const vo::Certificate& c) {
-  return write_certificate(c);
-}
-std::string text_of(const vo::Containment& c) {
-  return write_containment(c);
-}
-
 template <class Certificate>
-Json certificate_json(const std::optional<Certificate>& c) {
+Json certificate_json(const std::optional<Certificate>& c, std::string (*text_of)(const Certificate&)) {
   return c ? Json{{"verdict", name(check(*c))}, {"margin", c->margin}, {"text", text_of(*c)}} : Json();
 }
 
@@ -84,7 +77,7 @@ void add_half_planes(const ConeAnswer& a, Json& json) {
   const char* why = why_no_certificate(a);
   json["half_plane"] = json_of(a.half_plane);
   json["contact_half_plane"] = json_of(a.contact);
-  json["certificate"] = certificate_json(a.certificate);
+  json["certificate"] = certificate_json(a.certificate, vo::write_certificate);
   json["why_no_certificate"] = why ? Json(why) : Json();
 }
 
@@ -142,7 +135,7 @@ Json taken_json(const VoQuestion& q, const AskedObstacle& o) {
   if (const auto enclosed = enclosed_of(q, o)) {
     json["vertices"] = enclosed->vertices;
     json["contained"] = enclosed->contained;
-    json["certificate"] = certificate_json(enclosed->certificate);
+    json["certificate"] = certificate_json(enclosed->certificate, vo::write_containment);
   }
   return json;
 }
@@ -242,19 +235,6 @@ Json region_json(const VoAnswer& a) {
           {"lost", lost}};
 }
 
-/// Which cones share a leg: numbered as in `obstacles`, the cones of each in their order.
-std::vector<LegsOfCone> legs_of_cones(const VoAnswer& a) {
-  std::vector<LegsOfCone> legs;
-  for (std::size_t i = 0; i < a.question.obstacles.size(); ++i) {
-    const AskedObstacle& o = a.question.obstacles[i];
-    for (std::size_t k = 0; k < o.encounters; ++k) {
-      const auto& exact = a.cones[o.first_encounter + k].exact_legs;
-      if (exact) legs.push_back({i, k, &*exact});
-    }
-  }
-  return legs;
-}
-
 Json free_json(const VoAnswer& a) {
   const FreeAnswer& f = *a.free;
   Json json{{"obstacles", Json::array()}};
@@ -266,7 +246,7 @@ Json free_json(const VoAnswer& a) {
   json["region"] = region_json(a);
   json["exact"] = exact_free_json(f.exact, a.question);
   json["why_not_exact"] = f.exact.free ? Json() : Json(f.exact.why_not);
-  if (has_exact_legs(a)) json["legs_by_angle"] = legs_by_angle_json(legs_of_cones(a));
+  if (has_exact_legs(a)) json["legs_by_angle"] = legs_by_angle_json(a);
   json["kinds"] = kinds_of_free(a);
   add_stages(json);
   return json;
@@ -297,8 +277,6 @@ std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
         geometry::dot(h->normal, u) + kFourRoundings * (std::fabs(h->normal.x * u.x) + std::fabs(h->normal.y * u.y));
   return h;
 }
-
-}  // namespace
 
 ConeAnswer answer_of(const vo::Encounter& e, double alpha) {
   ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}, {}, {}};
@@ -351,6 +329,8 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
   answer.exact = exact_free_of(answer.free.cones(), question, keep_something ? &answer.half_planes : nullptr);
   return answer;
 }
+
+}  // namespace
 
 VoAnswer answer_of(const VoQuestion& question) {
   VoAnswer a{question, {}, {}, {}};

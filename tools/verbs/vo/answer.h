@@ -39,18 +39,8 @@ OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question);
 /// One line or two.
 std::string exact_free_words(const ExactFree& exact);
 
-struct LegsOfCone {
-  std::size_t obstacle = 0;
-  std::size_t cone = 0;  ///< of the obstacle
-  const vo::ExactLegs* legs = nullptr;
-};
-
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
 OrderedJson exact_legs_json(const vo::ExactLegs& legs);
-
-/// All of them counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
-/// cones share a leg.
-OrderedJson legs_by_angle_json(const std::vector<LegsOfCone>& legs);
 
 std::string exact_legs_words(const vo::ExactLegs& legs);
 
@@ -68,8 +58,6 @@ struct ConeAnswer {
   std::optional<vo::ExactLegs> exact_legs;     ///< where they are asked for, and there is a cone
 };
 
-ConeAnswer answer_of(const vo::Encounter& encounter, double alpha);
-
 /// About all of them. Nothing is compared with half-planes where a cone has none.
 struct FreeAnswer {
   vo::FreeVelocities free;
@@ -79,8 +67,6 @@ struct FreeAnswer {
   std::optional<vo::RegionReport> report;
   ExactFree exact;
 };
-
-FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question);
 
 /// Whether the ellipse round an obstacle contains it: asked of every vertex by the exact predicate.
 struct Enclosed {
@@ -98,6 +84,10 @@ struct VoAnswer {
 };
 
 VoAnswer answer_of(const VoQuestion& question);
+
+/// The exact legs counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
+/// cones share a leg.
+OrderedJson legs_by_angle_json(const VoAnswer& answer);
 
 bool any_overlaps(const VoAnswer& answer);
 bool any_contains(const VoAnswer& answer);

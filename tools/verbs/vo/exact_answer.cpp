@@ -114,23 +114,6 @@ std::string leg_words(const char* side, const AlgebraicDirection& leg) {
                      leg.quarter_turns(), polynomial_words(leg.polynomial()));
 }
 
-struct NamedLeg {
-  const LegsOfCone* of;
-  const char* side;
-  const AlgebraicDirection* leg;
-};
-
-std::vector<NamedLeg> in_order(const std::vector<LegsOfCone>& legs) {
-  std::vector<NamedLeg> all;
-  for (const LegsOfCone& of : legs) {
-    all.push_back({&of, "left", &of.legs->left});
-    all.push_back({&of, "right", &of.legs->right});
-  }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const NamedLeg& a, const NamedLeg& b) { return compare(*a.leg, *b.leg) == Sign::negative; });
-  return all;
-}
-
 }  // namespace
 
 ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion& question,
@@ -170,12 +153,24 @@ OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
   return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
 }
 
-OrderedJson legs_by_angle_json(const std::vector<LegsOfCone>& legs) {
-  const std::vector<NamedLeg> all = in_order(legs);
+OrderedJson legs_by_angle_json(const VoAnswer& answer) {
+  std::vector<std::pair<const AlgebraicDirection*, OrderedJson>> legs;
+  for (std::size_t k = 0; k < answer.cones.size(); ++k) {
+    const std::optional<vo::ExactLegs>& exact = answer.cones[k].exact_legs;
+    if (!exact) continue;
+    const Place place = place_of(answer.question, k);
+    const auto add = [&](const char* side, const AlgebraicDirection& leg) {
+      legs.emplace_back(&leg, OrderedJson{{"obstacle", place.obstacle}, {"cone", place.cone}, {"side", side}});
+    };
+    add("left", exact->left);
+    add("right", exact->right);
+  }
+  std::stable_sort(legs.begin(), legs.end(),
+                   [](const auto& a, const auto& b) { return compare(*a.first, *b.first) == Sign::negative; });
   OrderedJson groups = OrderedJson::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i == 0 || compare(*all[i - 1].leg, *all[i].leg) != Sign::zero) groups.push_back(OrderedJson::array());
-    groups.back().push_back({{"obstacle", all[i].of->obstacle}, {"cone", all[i].of->cone}, {"side", all[i].side}});
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    if (i == 0 || compare(*legs[i - 1].first, *legs[i].first) != Sign::zero) groups.push_back(OrderedJson::array());
+    groups.back().push_back(legs[i].second);
   }
   return groups;
 }

@@ -2,10 +2,12 @@
 #include "verbs/vo/question.h"
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <locale>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -54,9 +56,8 @@ struct Call {
 };
 
 std::string word_before_bracket(const std::string& text) {
-  std::string word(trimmed(std::string_view(text).substr(0, text.find('('))));
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::toupper(c); });
-  return word;
+  return boost::to_upper_copy(std::string(trimmed(std::string_view(text).substr(0, text.find('(')))),
+                              std::locale::classic());
 }
 
 Call call_in(const std::string& text) {
@@ -65,15 +66,13 @@ Call call_in(const std::string& text) {
   if (whole.empty() || whole.back() != ')') return call;
   const auto open = whole.find('(');
   const std::string within = whole.substr(open + 1, whole.size() - open - 2);
-  std::size_t from = 0;
-  for (;;) {
-    const std::size_t comma = within.find(',', from);
-    const auto group = numbers_in(within.substr(from, comma == std::string::npos ? comma : comma - from));
-    if (!group) return {call.word, {}};
-    call.groups.push_back(*group);
-    if (comma == std::string::npos) return call;
-    from = comma + 1;
+  std::vector<std::string> texts;
+  for (const std::string& group : boost::split(texts, within, boost::is_any_of(","))) {
+    const auto numbers = numbers_in(group);
+    if (!numbers) return {call.word, {}};
+    call.groups.push_back(*numbers);
   }
+  return call;
 }
 
 geometry::Ellipse ellipse_by_axes(Vec2 center, double a, double b, double degrees) {
@@ -92,12 +91,6 @@ std::optional<ConvexShape> shape_of(const Call& call) {
   return std::nullopt;
 }
 
-datasets::ObstacleFile read_file(const std::string& name, const datasets::ReadOptions& options) {
-  datasets::ObstacleFile file = datasets::read_obstacles(name, options);
-  say_projection(file);
-  return file;
-}
-
 /// What begins WKT; EMPTY and Z, M are the reader's to judge.
 bool begins_wkt(const std::string& word) {
   for (const char* known :
@@ -107,12 +100,16 @@ bool begins_wkt(const std::string& word) {
 }
 
 bool ends_in_empty(const std::string& text) {
-  const std::string word = "EMPTY", whole = word_before_bracket(text);
-  return whole.size() > word.size() && whole.compare(whole.size() - word.size(), word.size(), word) == 0;
+  const std::string whole = word_before_bracket(text);
+  return whole != "EMPTY" && boost::ends_with(whole, "EMPTY");
 }
 
 datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
-  if (is_there(text)) return read_file(text, reading);
+  if (is_there(text)) {
+    datasets::ObstacleFile file = datasets::read_obstacles(text, reading);
+    say_projection(file);
+    return file;
+  }
   if ((text.find('(') == std::string::npos && !ends_in_empty(text)) || !begins_wkt(word_before_bracket(text)))
     throw UsageError(option, text, std::string("a file that is there, WKT (POLYGON(...), ...), ") + kShapeWords);
   return datasets::parse_wkt(text, option, {});

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cmath>
 #include <cstdio>
+#include <locale>
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
@@ -39,11 +41,8 @@ ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
   return fitted->ellipse;
 }
 
-/// A velocity obstacle is built of convex shapes.
-struct Shapes {
-  Taken taken = Taken::itself;
-  std::vector<ConvexShape> shapes;
-};
+/// What stands for an obstacle: a velocity obstacle is built of convex shapes.
+using Shapes = std::pair<Taken, std::vector<ConvexShape>>;
 
 Shapes shapes_of(const geometry::Obstacle& obstacle, const VoFlags& flags) {
   if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::smallest_ellipse(vertices_of(obstacle))}};
@@ -116,8 +115,7 @@ std::optional<double> horizon_of(const std::string& text, const vo::Encounter& e
 std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
   std::vector<vo::Variant> variants;
   for (const std::string& word : names) {
-    std::string upper = word;
-    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+    const std::string upper = boost::to_upper_copy(word, std::locale::classic());
     const auto* found = std::find_if(std::begin(vo::kVariants), std::end(vo::kVariants),
                                      [&](vo::Variant v) { return upper == name(v); });
     if (upper == "ALL") {
@@ -199,16 +197,16 @@ vo::Encounter robot_alone(const VoFlags& flags) {
 /// All pieces of an obstacle look as far ahead as the free one with the shortest horizon: for a rule that is the
 /// nearest. Where a rule finds all of them in contact there is none: what is proven of contact holds for any time.
 void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& flags, VoQuestion& q) {
-  Shapes taken = shapes_of(given, flags);
+  auto [taken, shapes] = shapes_of(given, flags);
   const std::size_t first = q.encounters.size();
   double horizon = kInfinity;
-  for (ConvexShape& shape : taken.shapes) {
+  for (ConvexShape& shape : shapes) {
     e.obstacle = std::move(shape);
     horizon = std::min(horizon, horizon_of(flags.time_horizon, e).value_or(kInfinity));
     q.encounters.push_back(e);
   }
   for (std::size_t k = first; k < q.encounters.size(); ++k) q.encounters[k].time_horizon = horizon;
-  q.obstacles.push_back({given, taken.taken, first, q.encounters.size() - first});
+  q.obstacles.push_back({given, taken, first, q.encounters.size() - first});
 }
 
 void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
