@@ -10,8 +10,6 @@
 #include <regex>
 #include <set>
 
-#include "paper/claims.h"
-#include "paper/equations.h"
 #include "run_program.h"
 #include "support/base64.h"
 

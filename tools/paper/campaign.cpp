@@ -165,10 +165,6 @@ std::vector<Json> run_scenes(const std::vector<Variant>& variants, const Campaig
   return rows;
 }
 
-std::string jitter_cell(const Json& run) {
-  return run["jitter"].is_null() ? "-" : fmt::format("{:.0f}", run["jitter"].get<double>());
-}
-
 /// Whether a scene ended formed and nothing was touched.
 bool formed_untouched(const Json& run) {
   const std::optional<double> error = value_of(run, "formation_position_error");
@@ -188,7 +184,7 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
     if (i == formation::remedy_ladder().size()) text += "\n";
     text += fmt::format("{:<22}{:>16}{:>9}{:>9}", v.name, v.good(), v.reached(), v.safe());
     for (const Json& run : scenes[i])
-      text += fmt::format("{:>9}{}", jitter_cell(run), formed_untouched(run) ? ' ' : '!');
+      text += fmt::format("{:>9}{}", shown(value_of(run, "jitter"), "{:.0f}"), formed_untouched(run) ? ' ' : '!');
     text += fmt::format("{:>14.0f}\n", v.median_jitter());
   }
   text += "!  not formed, or touched an obstacle or another robot\n";

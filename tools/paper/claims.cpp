@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "paper/claims.h"
+#include "paper/report.h"
 
 #include <fmt/format.h>
 
@@ -45,9 +45,13 @@ std::size_t count(const Runs& runs, const Holds& holds) {
   return static_cast<std::size_t>(std::count_if(runs.begin(), runs.end(), [&](const Json* r) { return holds(*r); }));
 }
 
+/// All of them, none of them, or some.
 template <typename Holds>
 Verdict judged(const Runs& runs, const Holds& holds) {
-  return complete(runs) ? share_verdict(count(runs, holds), runs.size()) : Verdict::not_run;
+  if (!complete(runs)) return Verdict::not_run;
+  const std::size_t held = count(runs, holds);
+  if (held == runs.size()) return Verdict::holds;
+  return held == 0 ? Verdict::fails : Verdict::holds_in_part;
 }
 
 /// "13 of 15".
@@ -90,26 +94,19 @@ auto no(const Holds& holds) {
 
 /// Nothing where a run or its number is missing.
 template <typename Measure>
-std::optional<double> extreme(const Runs& runs, const Measure& measure, bool greatest) {
-  std::optional<double> most;
-  for (const Json* r : runs) {
-    const std::optional<double> x = measure(*r);
-    if (!x) return std::nullopt;
-    most = !most ? *x : greatest ? std::max(*most, *x) : std::min(*most, *x);
-  }
-  return most;
-}
-template <typename Measure>
 std::optional<double> least(const Runs& runs, const Measure& measure) {
-  return extreme(runs, measure, false);
+  std::optional<double> least = measure(*runs.front());
+  for (const Json* r : runs) least = std::min(least, measure(*r));  // nothing is less than any number
+  return least;
 }
 template <typename Measure>
 std::optional<double> most(const Runs& runs, const Measure& measure) {
-  return extreme(runs, measure, true);
-}
-
-std::string shown(const std::optional<double>& x, const char* format) {
-  return x ? fmt::format(fmt::runtime(format), *x) : "-";
+  std::optional<double> most = measure(*runs.front());
+  for (const Json* r : runs) {
+    const std::optional<double> x = measure(*r);
+    most = most && x ? std::max(most, x) : std::nullopt;
+  }
+  return most;
 }
 
 auto number(const char* key) {
@@ -333,11 +330,6 @@ Claim open_problem(const ReportData& data) {
 const char* name(Verdict verdict) {
   constexpr const char* kNames[] = {"holds", "holds in part", "fails", "not run", "solved", "not solved"};
   return kNames[static_cast<std::size_t>(verdict)];
-}
-
-Verdict share_verdict(std::size_t held, std::size_t all) {
-  if (held == all) return Verdict::holds;
-  return held == 0 ? Verdict::fails : Verdict::holds_in_part;
 }
 
 std::vector<Claim> claims(const ReportData& data) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "paper/equations.h"
+#include "paper/report.h"
 
 namespace exactvo::tools {
 

@@ -12,8 +12,6 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stability.h"
 #include "explorer/page.h"
-#include "paper/claims.h"
-#include "paper/equations.h"
 #include "paper/expected.h"
 
 namespace exactvo::tools {
@@ -24,7 +22,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 namespace {
 
-std::string shown(geometry::Vec2 v) {
+std::string point_words(geometry::Vec2 v) {
   return fmt::format("({:g}, {:g})", v.x, v.y);
 }
 
@@ -96,7 +94,7 @@ std::string unless(bool as_expected) {
 }
 
 std::string compared(geometry::Vec2 seen, geometry::Vec2 paper) {
-  return shown(seen) + unless(seen == paper);
+  return point_words(seen) + unless(seen == paper);
 }
 std::string compared(double seen, double paper) {
   return fmt::format("{:g}", seen) + unless(seen == paper);
@@ -110,9 +108,9 @@ void add_robots(const std::vector<PaperRobot>& paper, const formation::Scenario&
   Rows rows;
   for (std::size_t i = 0; i < paper.size(); ++i) {
     const formation::Robot& r = s.robots.at(i);
-    rows.push_back({paper[i].name, shown(paper[i].start), compared(r.position, paper[i].start), shown(paper[i].target),
-                    compared(target_of(i), paper[i].target), "(0, 0)", compared(r.velocity, {}),
-                    fmt::format("{:g}", kPaperRadius), compared(r.radius, kPaperRadius)});
+    rows.push_back({paper[i].name, point_words(paper[i].start), compared(r.position, paper[i].start),
+                    point_words(paper[i].target), compared(target_of(i), paper[i].target), "(0, 0)",
+                    compared(r.velocity, {}), fmt::format("{:g}", kPaperRadius), compared(r.radius, kPaperRadius)});
   }
   d.table(
       {"robot", "initial position", "as run", target, "as run", "initial velocity", "as run", "radius [m]", "as run"},
@@ -149,8 +147,8 @@ void add_parameters(const formation::FormationSpec& spec, Document& d) {
       {{"k1, k2, k3", "0.25, 0.45, 37.5",
         fmt::format("{:g}, {:g}, {:g}", g.k1, g.k2, g.k3) + unless(are_near({g.k1, g.k2, g.k3}, {0.25, 0.45, 37.5}))},
        {"leader", "(0, 0) to (25, 25) at (3, 3) m/s",
-        fmt::format("{} to {} at {:.4f} m/s = |(3, 3)|", shown(leader.path.front()), shown(leader.path.back()),
-                    leader.speed) +
+        fmt::format("{} to {} at {:.4f} m/s = |(3, 3)|", point_words(leader.path.front()),
+                    point_words(leader.path.back()), leader.speed) +
             unless(same_path && is_near(leader.speed, paper_speed))},
        {"eigenvalues of L + B", "(1, 4, 4 follow from (21))",
         fmt::format("{:.6g}", fmt::join(stability.eigenvalues, ", ")) +
@@ -175,33 +173,28 @@ std::optional<double> arrival_of(const Json& run) {
 
 /// What was seen, what is expected of it, and a word where they differ. That nothing is touched is expected of every
 /// method but `orca`.
-std::string avoidance_cell(const Json& run, const std::string& expected, bool (*kept)(double, double), double promise,
-                           bool may_touch = false) {
+template <class Kept>
+std::string avoidance_cell(const Json& run, const std::string& expected, const Kept& kept, bool may_touch = false) {
   if (run.is_null()) return "not run";
   const std::optional<double> seen = arrival_of(run);
   const bool touched = formation::touched(least_clearance(run));
   return fmt::format("{}{} / {}{}", seen ? fmt::format("{:.1f}", *seen) : "X", touched ? "!" : "", expected,
-                     unless(kept(seen.value_or(kStuck), promise) && (may_touch || !touched)));
+                     unless(kept(seen.value_or(kStuck)) && (may_touch || !touched)));
 }
 
 std::string orca_cell(const Json& run, const Expected& e) {
   const bool stuck = e.orca == kStuck;
-  const auto kept = [](double seen, double promise) { return std::fabs(seen - promise) <= kOrcaTolerance; };
-  return avoidance_cell(run, stuck ? "X" : fmt::format("{:.1f} +- {:g}", e.orca, kOrcaTolerance), kept, e.orca, true);
+  const auto kept = [&](double seen) { return std::fabs(seen - e.orca) <= kOrcaTolerance; };
+  return avoidance_cell(run, stuck ? "X" : fmt::format("{:.1f} +- {:g}", e.orca, kOrcaTolerance), kept, true);
 }
 
 std::string arrives_cell(const Json& run, bool arrives) {
-  const auto kept = [](double seen, double promise) { return (seen == kStuck) == (promise == kStuck); };
-  return avoidance_cell(run, arrives ? "arrives" : "X", kept, arrives ? 0.0 : kStuck);
+  return avoidance_cell(run, arrives ? "arrives" : "X", [&](double seen) { return (seen != kStuck) == arrives; });
 }
 
 std::string default_cell(const Json& run) {
-  const auto kept = [](double seen, double promise) { return seen != kStuck && seen < promise; };
-  return avoidance_cell(run, fmt::format("below {:g}", kLatest), kept, kLatest);
-}
-
-std::string metres(const std::optional<double>& x) {
-  return x ? fmt::format("{:.3f}", *x) : "-";
+  const auto kept = [](double seen) { return seen != kStuck && seen < kLatest; };
+  return avoidance_cell(run, fmt::format("below {:g}", kLatest), kept);
 }
 
 void add_section_a(const ReportData& data, Document& d) {
@@ -216,7 +209,8 @@ void add_section_a(const ReportData& data, Document& d) {
     rows.push_back({e.scenario, orca_cell(data.run(e.scenario, "orca"), e),
                     arrives_cell(data.run(e.scenario, "ivo-edge"), e.edge_half),
                     arrives_cell(data.run(e.scenario, "ivo-cluster"), e.cluster), default_cell(ours),
-                    metres(value_of(ours, "min_obstacle_clearance")), metres(value_of(ours, "min_robot_clearance"))});
+                    shown(value_of(ours, "min_obstacle_clearance"), "{:.3f}"),
+                    shown(value_of(ours, "min_robot_clearance"), "{:.3f}")});
   }
   d.table({"scenario", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo", "ivo: minimum clearance to obstacles [m]",
            "between robots [m]"},
@@ -239,10 +233,6 @@ void add_section_a(const ReportData& data, Document& d) {
 
 // --- Section V.B ---
 
-std::string short_number(const std::optional<double>& x) {
-  return x ? fmt::format("{:.2g}", *x) : "-";
-}
-
 /// What is expected of a number, and a word where what was seen is not within the limits; `seen` is none of a number
 /// that is not finite.
 std::string expected_cell(const Json& run, const std::optional<double>& seen, double least, double most,
@@ -255,20 +245,17 @@ std::string expected_cell(const Json& run, const std::optional<double>& seen, do
 /// A clearance, and a word where something was touched that was not to be.
 std::string clearance_cell(const Json& run, const char* key, const ExpectedFormation& e) {
   const auto seen = value_of(run, key);
-  return metres(seen) + unless(!(e.untouched && formation::touched(seen)));
+  return shown(seen, "{:.3f}") + unless(!(e.untouched && formation::touched(seen)));
 }
 
 std::vector<std::string> formation_row(const Json& run, const char* scene, const ExpectedFormation& e) {
-  const auto whole = [&](const char* key) {
-    const auto x = value_of(run, key);
-    return x ? fmt::format("{:.0f}", *x) : std::string("-");
-  };
+  const auto whole = [&](const char* key) { return shown(value_of(run, key), "{:.0f}"); };
   const auto position = value_of(run, "formation_position_error"), velocity = value_of(run, "formation_velocity_error");
   return {scene,
           e.controller,
-          short_number(position),
+          shown(position, "{:.2g}"),
           expected_cell(run, position, e.least, e.most, e.words),
-          short_number(velocity),
+          shown(velocity, "{:.2g}"),
           expected_cell(run, velocity, 0.0, e.most_velocity_error, fmt::format("below {:g}", e.most_velocity_error)),
           clearance_cell(run, "min_obstacle_clearance", e),
           clearance_cell(run, "min_robot_clearance", e),
@@ -345,12 +332,8 @@ void add_ablations(const ReportData& data, Document& d) {
   for (const Json& row : data.ablations()["rows"]) {
     std::vector<std::string> cells{row["variant"].get<std::string>(), share(row),
                                    std::to_string(row["reached"].get<std::uint64_t>())};
-    for (const Json& run : row["scenes"]) {
-      const auto jitter = value_of(run, "jitter");
-      cells.push_back(jitter ? fmt::format("{:.0f}", *jitter) : "-");
-    }
-    const auto median = value_of(row, "median_jitter");
-    cells.push_back(median ? fmt::format("{:.0f}", *median) : "-");
+    for (const Json& run : row["scenes"]) cells.push_back(shown(value_of(run, "jitter"), "{:.0f}"));
+    cells.push_back(shown(value_of(row, "median_jitter"), "{:.0f}"));
     rows.push_back(cells);
   }
   d.table({"controller options", "reached and safe", "reached", "jitter J in B0 [m/s²]", "B1", "B2", "B3", "median J"},

@@ -17,6 +17,41 @@
 
 namespace exactvo::tools {
 
+// --- What it tells: the paper's equations (equations.cpp), and its claims, held against the runs (claims.cpp) ---
+
+struct EquationPlace {
+  std::string file;    ///< from the top of the sources
+  std::string symbol;  ///< a name that stands in it
+};
+
+struct Equation {
+  std::string number;       ///< "(15)"
+  std::string printed;      ///< the paper's, in plain text
+  std::string trouble;      ///< what is wrong with it; empty where nothing is
+  std::string implemented;  ///< what runs by default
+  std::vector<EquationPlace> places;
+};
+
+/// In the paper's order. A test sees that the files exist and hold the names.
+const std::vector<Equation>& equations();
+
+/// An open problem of the paper is solved or not; whatever runs are missing for is not run.
+enum class Verdict { holds, holds_in_part, fails, not_run, solved, not_solved };
+const char* name(Verdict verdict);  ///< "holds", "holds in part", "fails", "not run", "solved", "not solved"
+
+struct Claim {
+  std::string where;     ///< "Fig. 5, Section V.A"
+  std::string text;      ///< what the paper says
+  Verdict verdict;       ///< of the paper's own method (of the default, for what the paper leaves open), computed
+  std::string evidence;  ///< the numbers behind it, and what the default does
+  std::string figure;    ///< the picture that shows it, relative to the output folder
+  std::string judged;    ///< the method or controller whose runs the verdict is on
+};
+
+std::vector<Claim> claims(const ReportData& data);
+
+// --- The report ---
+
 /// Written block by block, in both formats at once.
 class Document {
  public:

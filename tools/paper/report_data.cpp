@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "paper/report_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <utility>
@@ -103,10 +105,6 @@ void check_campaign(const Place& all, const char* kind) {
   all.at("rows").each(check_row);
 }
 
-void check_random(const Place& all) {
-  check_campaign(all, "exactvo-random-fields");
-}
-
 void check_ablations(const Place& all) {
   check_campaign(all, "exactvo-ablations");
   all.at("rows").each([](const Place& row) {
@@ -157,7 +155,8 @@ std::string controller_of(const Json& run) {
 }  // namespace
 
 ReportData::ReportData(const fs::path& section_five, const fs::path& campaigns, fs::path scenarios)
-    : random_(read_json(campaigns / "random" / "random.json", check_random)),
+    : random_(read_json(campaigns / "random" / "random.json",
+                        [](const Place& all) { check_campaign(all, "exactvo-random-fields"); })),
       ablations_(read_json(campaigns / "ablations" / "ablations.json", check_ablations)),
       scenarios_(std::move(scenarios)) {
   const Json summary = read_json(section_five / "summary.json", [](const Place& all) { all.each(check_run); });
@@ -197,6 +196,10 @@ const Json& ReportData::random(const std::string& kind, const std::string& varia
 std::optional<double> value_of(const Json& run, const char* key) {
   if (run.is_null() || !run.contains(key) || !run[key].is_number()) return std::nullopt;
   return run[key].get<double>();
+}
+
+std::string shown(const std::optional<double>& x, const char* format) {
+  return x ? fmt::format(fmt::runtime(format), *x) : "-";
 }
 
 std::optional<double> least_clearance(const Json& run) {

@@ -56,6 +56,8 @@ class ReportData {
 
 /// A number of a run; nothing where it is null or the run is.
 std::optional<double> value_of(const ReportData::Json& run, const char* key);
+/// "-" where there is none.
+std::string shown(const std::optional<double>& x, const char* format);
 /// By how much nothing was touched: the lesser of both clearances; nothing where neither applies.
 std::optional<double> least_clearance(const ReportData::Json& run);
 

@@ -12,6 +12,7 @@
 #include "explorer/page.h"
 #include "figures/outlines.h"
 #include "figures/run_figures.h"
+#include "paper/report_data.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/terminal.h"
@@ -36,7 +37,7 @@ constexpr const char* kComparison = "A2";
 class Experiments {
  public:
   Experiments(SectionFiveOptions flags, fs::path out)
-      : flags_(std::move(flags)), scenarios_(flags_.scenarios), out_(std::move(out)), line_(kRuns, "runs") {}
+      : flags_(std::move(flags)), out_(std::move(out)), line_(kRuns, "runs") {}
 
   void run_all() {
     print(avoidance_head());
@@ -94,7 +95,7 @@ class Experiments {
   }
 
   FinishedRun run_one(const std::string& scenario_name, Method method, Controller controller) {
-    const fs::path file = scenarios_ / (scenario_name + ".json");
+    const fs::path file = flags_.scenarios / (scenario_name + ".json");
     formation::SimulationOptions options;
     options.method = method;
     options.controller = controller;
@@ -115,12 +116,8 @@ class Experiments {
     pages_.push_back({page_key(scenario + "-" + how), scenario + ", " + how, "", std::move(finished.packed)});
   }
 
-  static std::string number_or_dash(const std::optional<double>& value, const char* format) {
-    return value ? fmt::format(fmt::runtime(format), *value) : "-";
-  }
-
   static std::string arrival_cell(const formation::Metrics& m) {
-    const std::string text = m.all_arrived ? number_or_dash(m.last_arrival_time, "{:.1f}") : "X";
+    const std::string text = m.all_arrived ? shown(m.last_arrival_time, "{:.1f}") : "X";
     return fmt::format("{:>12}{}", text, touched(m) ? '!' : ' ');
   }
 
@@ -130,8 +127,8 @@ class Experiments {
     for (const Method method : kMethods) {
       FinishedRun finished = run_one(scenario, method, Controller::standard);
       row += arrival_cell(finished.metrics);
-      clearances = fmt::format("   {}, {}", number_or_dash(finished.metrics.min_obstacle_clearance, "{:.3f}"),
-                               number_or_dash(finished.metrics.min_robot_clearance, "{:.3f}"));
+      clearances = fmt::format("   {}, {}", shown(finished.metrics.min_obstacle_clearance, "{:.3f}"),
+                               shown(finished.metrics.min_robot_clearance, "{:.3f}"));
       keep_avoidance(scenario, std::move(finished), method);
     }
     print(row + clearances + "\n");
@@ -145,11 +142,10 @@ class Experiments {
       auto& [before, after] = jitter_[static_cast<std::size_t>(scenario.back() - '0')];
       if (controller == Controller::paper_signs) before = m.jitter;
       if (controller == Controller::standard) after = m.jitter;
-      print(fmt::format(
-          "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
-          number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
-          number_or_dash(m.min_obstacle_clearance, "{:.3f}"), number_or_dash(m.min_robot_clearance, "{:.3f}"), m.jitter,
-          touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
+      print(fmt::format("{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
+                        shown(m.formation_position_error, "{:.2g}"), shown(m.formation_velocity_error, "{:.2g}"),
+                        shown(m.min_obstacle_clearance, "{:.3f}"), shown(m.min_robot_clearance, "{:.3f}"), m.jitter,
+                        touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
       keep_formation(scenario, std::move(finished), controller);
     }
   }
@@ -173,7 +169,7 @@ class Experiments {
   /// `scenario` is the name of its file: the one within it may be anything, a way out of the folder too.
   void add_figures(const std::string& scenario, const FinishedRun& finished, const std::string& folder) {
     const fs::path target = out_ / "figures" / folder / scenario;
-    const std::vector<fs::path> scripts = write_figures(finished.file, target);
+    const std::vector<fs::path> scripts = write_figures(run_figures(finished.file), target);
     scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
   }
 
@@ -242,7 +238,6 @@ class Experiments {
   }
 
   SectionFiveOptions flags_;
-  fs::path scenarios_;
   fs::path out_;
   ProgressLine line_;
   std::vector<std::string> metrics_;

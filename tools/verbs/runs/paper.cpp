@@ -74,11 +74,6 @@ bool copy_pictures(const fs::path& from, const fs::path& to) {
   return any;
 }
 
-/// What the report will be made of, read before the work: a damaged file is told at once.
-void check_earlier_files(const PaperFlags& flags) {
-  ReportData(flags.out, flags.out, {});
-}
-
 /// What the report says of the campaigns changes with them.
 void renew_report(const PaperFlags& flags) {
   const ReportData data(flags.out, flags.out, scenarios_for(flags));
@@ -109,10 +104,6 @@ CampaignOptions campaign_options(const PaperFlags& flags, const char* folder, st
   return {fs::path(flags.out) / folder / "parts", fields, flags.seed, jobs};
 }
 
-void say(const PaperFlags& flags, const CampaignFiles& files) {
-  print(flags.json ? files.json : files.table);
-}
-
 /// What a request to stop leaves: the parts that are done.
 ExitCode kept_parts(const PaperFlags& flags) {
   std::error_code error;
@@ -122,22 +113,19 @@ ExitCode kept_parts(const PaperFlags& flags) {
   return ExitCode::interrupted;
 }
 
+/// Each in a folder of its own, which is called as its files are.
+void publish(const CampaignFiles& files, const char* name, const PaperFlags& flags) {
+  const fs::path folder = fs::path(flags.out) / name;
+  write_campaign(files, folder, name);
+  if (!flags.no_figures && !files.figures.empty()) draw(write_figures(files.figures, folder));
+  print(flags.json ? files.json : files.table);
+  message("wrote " + flags.out + "/" + name + "/");
+}
+
 ExitCode campaigns(const PaperFlags& flags) try {
-  if (flags.random > 0) {
-    const CampaignOptions options = campaign_options(flags, "random", flags.random);
-    const CampaignFiles files = random_fields(options);
-    write_campaign(files, fs::path(flags.out) / "random", "random");
-    say(flags, files);
-    message("wrote " + flags.out + "/random/");
-  }
-  if (flags.ablations) {
-    const CampaignOptions options = campaign_options(flags, "ablations", flags.fields);
-    const CampaignFiles files = ablations(options, scenarios_for(flags));
-    write_campaign(files, fs::path(flags.out) / "ablations", "ablations");
-    if (!flags.no_figures) draw(write_figures(files.figures, fs::path(flags.out) / "ablations"));
-    say(flags, files);
-    message("wrote " + flags.out + "/ablations/");
-  }
+  if (flags.random > 0) publish(random_fields(campaign_options(flags, "random", flags.random)), "random", flags);
+  if (flags.ablations)
+    publish(ablations(campaign_options(flags, "ablations", flags.fields), scenarios_for(flags)), "ablations", flags);
   renew_report(flags);
   return ExitCode::success;
 } catch (const Interrupted&) {
@@ -147,7 +135,7 @@ ExitCode campaigns(const PaperFlags& flags) try {
 ExitCode paper(const PaperFlags& flags) {
   check_output_folder(flags.out);
   note_unused(flags);
-  check_earlier_files(flags);
+  ReportData(flags.out, flags.out, {});  // read before the work: a damaged file is told at once
   return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
 }
 
