@@ -35,7 +35,7 @@ RecordingFile about(const formation::Scenario& scenario) {
 void expect_same(const std::string& scenario_file) {
   const formation::Scenario scenario = datasets::load_scenario(EXACTVO_SOURCE_DIR "/datasets/data/" + scenario_file);
   const test::Workplace here;
-  RunRecorder recorder(about(scenario), here.path());
+  RunRecorder recorder(about(scenario), {here.path()});
   RecordingFile shown;
   formation::Recording end = simulate(scenario, {}, recorder);
   EXPECT_TRUE(end.steps.empty());

@@ -14,9 +14,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "figures/gnuplot.h"
-#include "figures/run_figures.h"
 #include "support/files.h"
-#include "support/run_recorder.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
@@ -26,22 +24,6 @@ using formation::Scenario;
 using formation::SimulationOptions;
 
 namespace {
-
-/// Hands the warnings on before the first row.
-class WarningRecorder : public RunRecorder {
- public:
-  WarningRecorder(datasets::RecordingFile about, const RunOutput& output)
-      : RunRecorder(std::move(about), output.folder, output.figures,
-                    output.page ? std::optional(output.page_limits) : std::nullopt, output.recording),
-        warnings_(output.warnings) {}
-  void begin(const formation::Recording& run) override {
-    if (warnings_) warnings_(run.warnings);
-    RunRecorder::begin(run);
-  }
-
- private:
-  std::function<void(const std::vector<std::string>&)> warnings_;
-};
 
 bool has_recording(const fs::path& folder) {
   std::error_code unknown;
@@ -72,14 +54,6 @@ void refuse_run(const fs::path& path) {
                             "a scenario in JSON; draw, explain, view, serve and audit take runs");
 }
 
-datasets::LoadedScenario load(const std::string& path) {
-  if (path != "-") {
-    refuse_run(path);
-    return datasets::load_scenario_with_notes(path);
-  }
-  return datasets::parse_scenario_with_notes(datasets::read_file_or_input("-"), "-", fs::current_path());
-}
-
 }  // namespace
 
 std::string FinishedRun::metrics_json() const {
@@ -103,7 +77,7 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   datasets::RecordingFile about;
   about.info = datasets::run_info(scenario, options, provenance);
   about.scenario = scenario;
-  WarningRecorder recorder(std::move(about), output);
+  RunRecorder recorder(std::move(about), output);
   formation::Recording recording = simulate(scenario, options, recorder);
   if (interrupted()) throw Interrupted();
   FinishedRun finished;
@@ -165,10 +139,6 @@ std::optional<fs::path> recording_at(const fs::path& path) {
   return path.extension() == ".jsonl" ? std::optional(path) : std::nullopt;
 }
 
-std::vector<fs::path> write_figures(const datasets::RecordingFile& run, const fs::path& folder) {
-  return write_figures(run_figures(run), folder);
-}
-
 std::vector<fs::path> write_figures(const std::vector<Figure>& figures, const fs::path& folder) {
   make_folder(folder);
   std::vector<fs::path> scripts;
@@ -195,7 +165,10 @@ void draw(const std::vector<fs::path>& scripts) {
 }
 
 datasets::LoadedScenario read_scenario(const std::string& path) {
-  datasets::LoadedScenario loaded = load(path);
+  if (path != "-") refuse_run(path);
+  datasets::LoadedScenario loaded =
+      path != "-" ? datasets::load_scenario_with_notes(path)
+                  : datasets::parse_scenario_with_notes(datasets::read_file_or_input("-"), "-", fs::current_path());
   for (const std::string& note : loaded.notes) message(note);
   return loaded;
 }

@@ -5,20 +5,16 @@
 /// One run from a scenario to files: what `simulate` does once and `paper` many times.
 
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
-#include "explorer/packed_run.h"
 #include "figures/figure.h"
+#include "support/run_recorder.h"
 
 namespace exactvo::tools {
 
@@ -27,17 +23,6 @@ struct FinishedRun {
   formation::Metrics metrics;
   std::string packed = {};  ///< for a page (explorer/page.h), where one was asked for
   std::string metrics_json() const;
-};
-
-struct RunOutput {
-  std::filesystem::path folder = {};               ///< must exist; nothing is written where it is empty
-  bool figures = true;                             ///< whether any will be drawn
-  std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
-  /// Gets, before the first row, what can be said before the run (formation::warnings_before).
-  std::function<void(const std::vector<std::string>&)> warnings = nullptr;
-  bool page = false;                                          ///< whether a page will be made (explorer/page.h)
-  PackedRunLimits page_limits = {};                           ///< of what it holds
-  std::shared_ptr<datasets::AtomicFile> recording = nullptr;  ///< without a folder: takes the recording
 };
 
 /// What makes a page and nothing else.
@@ -68,9 +53,6 @@ void refuse_part_of_run(const std::filesystem::path& path);
 std::optional<std::filesystem::path> recording_at(const std::filesystem::path& path);
 
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.
-std::vector<std::filesystem::path> write_figures(const datasets::RecordingFile& run,
-                                                 const std::filesystem::path& folder);
-/// The same of any figures.
 std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figures,
                                                  const std::filesystem::path& folder);
 

@@ -70,19 +70,18 @@ struct RunRecorder::Files {
   std::optional<datasets::AtomicFile> lyapunov;
 };
 
-RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures,
-                         std::optional<PackedRunLimits> page, std::shared_ptr<datasets::AtomicFile> recording)
-    : about_(std::move(about)),
-      folder_(std::move(folder)),
-      recording_(std::move(recording)),
-      has_figures_(has_figures) {
-  if (page) packer_.emplace(*page);
+RunRecorder::RunRecorder(RecordingFile about, RunOutput output) : about_(std::move(about)), output_(std::move(output)) {
+  if (output_.page) packer_.emplace(output_.page_limits);
 }
 
 void RunRecorder::begin(const formation::Recording& run) {
+  if (output_.warnings) output_.warnings(run.warnings);
   about_.recording = run;
-  if (!folder_.empty()) files_ = std::make_shared<Files>(folder_, about_);
-  if (folder_.empty() && recording_) files_ = std::make_shared<Files>(std::move(recording_), about_);
+  if (!output_.folder.empty()) {
+    files_ = std::make_shared<Files>(output_.folder, about_);
+  } else if (output_.recording) {
+    files_ = std::make_shared<Files>(std::move(output_.recording), about_);
+  }
   evaluator_.emplace(about_.scenario, about_.recording,
                      [this](const Step& row, const LyapunovRow* lyapunov) { take(row, lyapunov); });
 }
@@ -94,7 +93,7 @@ void RunRecorder::add_row(Step row) {
 }
 
 void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
-  if (has_figures_) shown_.add(row, lyapunov);
+  if (output_.figures) shown_.add(row, lyapunov);
   if (packer_) packer_->add(row);
   if (!files_) return;
   for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);

@@ -9,8 +9,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -41,14 +43,21 @@ class ShownRows {
   bool last_is_extra_ = false;  ///< the last one is kept only until the next comes
 };
 
+struct RunOutput {
+  std::filesystem::path folder = {};               ///< must exist; nothing is written where it is empty
+  bool figures = true;                             ///< whether any will be drawn; without them no row is kept for them
+  std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
+  /// Gets, before the first row, what can be said before the run (formation::warnings_before).
+  std::function<void(const std::vector<std::string>&)> warnings = nullptr;
+  bool page = false;                                          ///< whether a page will be made (explorer/page.h)
+  PackedRunLimits page_limits = {};                           ///< of what it holds
+  std::shared_ptr<datasets::AtomicFile> recording = nullptr;  ///< without a folder: takes the recording
+};
+
 class RunRecorder : public formation::RunSink {
  public:
-  /// `about`: what is known before the run. `folder` must exist; nothing is written where it is empty, but for the
-  /// recording where it has a file of its own, `recording`. Without `has_figures` no row is kept for them, without
-  /// `page` none for a page.
-  RunRecorder(datasets::RecordingFile about, std::filesystem::path folder, bool has_figures = true,
-              std::optional<PackedRunLimits> page = std::nullopt,
-              std::shared_ptr<datasets::AtomicFile> recording = nullptr);
+  /// `about`: what is known before the run.
+  RunRecorder(datasets::RecordingFile about, RunOutput output);
 
   void begin(const formation::Recording& run) override;
   void add_body(const vo::Body& body) override { bodies_.push_back(body); }
@@ -68,9 +77,7 @@ class RunRecorder : public formation::RunSink {
   void take(const formation::Step& row, const formation::LyapunovRow* lyapunov);
 
   datasets::RecordingFile about_;
-  std::filesystem::path folder_;
-  std::shared_ptr<datasets::AtomicFile> recording_;
-  bool has_figures_;
+  RunOutput output_;
   std::shared_ptr<Files> files_;
   std::optional<formation::Evaluator> evaluator_;
   ShownRows shown_;

@@ -4,6 +4,7 @@
 
 #include "exactvo/datasets/recording_file.h"
 #include "figures/crowd_figures.h"
+#include "figures/run_figures.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/run_recorder.h"
@@ -46,17 +47,15 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
 }
 
 /// Whether the recording was cut off.
-bool draw_crowd_into(const fs::path& folder, const fs::path& recording) {
+bool draw_into(const fs::path& folder, const fs::path& recording) {
+  const TerminateOnSignal terminate_on_signal;
+  if (recording.extension() != ".evr") {
+    draw(write_figures(run_figures(read_shown(recording)), folder));
+    return false;
+  }
   const CrowdCourse course = course_of(recording);
   draw(write_figures(crowd_figures(course), folder));
   return course.cut_off;
-}
-
-bool draw_into(const fs::path& folder, const fs::path& recording) {
-  const TerminateOnSignal terminate_on_signal;
-  if (recording.extension() == ".evr") return draw_crowd_into(folder, recording);
-  draw(write_figures(read_shown(recording), folder));
-  return false;
 }
 
 ExitCode draw_figures(const DrawFlags& flags) {

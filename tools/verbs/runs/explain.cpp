@@ -181,14 +181,14 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
 /// Of a recording, or of a scenario that is run until then.
 Explained explained_by(const ExplainFlags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
-  if (const auto recording = recording_at(flags.scenario)) {
-    check_figure_name("--out", flags.out, {*recording});
-    check_figure_name("--map", flags.map, {*recording});
+  const auto recording = recording_at(flags.scenario);
+  const auto read = recording ? std::vector{*recording} : datasets::files_read_with(flags.scenario, "scenario");
+  check_figure_name("--out", flags.out, read);
+  check_figure_name("--map", flags.map, read);
+  if (recording) {
     note_recorded(flags.simulation);
     return decision_in(flags, *recording);
   }
-  check_figure_name("--out", flags.out, datasets::files_read_with(flags.scenario, "scenario"));
-  check_figure_name("--map", flags.map, datasets::files_read_with(flags.scenario, "scenario"));
   const Scenario scenario = read_scenario(flags.scenario).scenario;
   note_unused(flags.simulation, scenario);
   return decide(flags, scenario);

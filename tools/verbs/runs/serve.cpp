@@ -4,7 +4,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <algorithm>
+#include <map>
 #include <utility>
 
 #include "explorer/server.h"
@@ -38,10 +38,10 @@ void open_in_browser(const std::string& address) {
 
 /// Those of the page by their keys.
 OptionsOfRun options_by_key(const std::vector<MadeRun>& runs) {
-  std::vector<std::pair<std::string, std::optional<formation::SimulationOptions>>> all;
-  for (const MadeRun& made : runs) all.emplace_back(made.shown.key, made.options);
-  return [all](const std::string& key) -> std::optional<formation::SimulationOptions> {
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == key; });
+  std::map<std::string, std::optional<formation::SimulationOptions>> all;
+  for (const MadeRun& made : runs) all.emplace(made.shown.key, made.options);
+  return [all](const std::string& key) {
+    const auto found = all.find(key);
     return found == all.end() ? std::nullopt : found->second;
   };
 }

@@ -11,6 +11,7 @@
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
 #include "explorer/page.h"
+#include "figures/run_figures.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/rank_watch.h"
@@ -159,7 +160,7 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
     const TerminateOnSignal terminate_on_signal;
     ProgressLine line(0.0, "");
     line.say("drawing figures of " + read.scenario.name);
-    draw(write_figures(finished.file, folder.path() / "figures"));
+    draw(write_figures(run_figures(finished.file), folder.path() / "figures"));
     line.say("making explorer.html of " + read.scenario.name);
     const std::string title = in_words(datasets::run_info(read.scenario, options, {}));
     write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));

@@ -60,12 +60,6 @@ OrderedJson json_of(const formation::Scenario& scenario, const TrapFinding& f) {
   return json;
 }
 
-OrderedJson json_of(const formation::Scenario& scenario, const std::vector<TrapFinding>& findings) {
-  OrderedJson list = OrderedJson::array();
-  for (const TrapFinding& f : findings) list.push_back(json_of(scenario, f));
-  return list;
-}
-
 std::string curvature_words(double radius) {
   return std::isfinite(radius) ? fmt::format("radius of curvature {:.4g} m", radius) : "flat or concave";
 }
@@ -133,7 +127,9 @@ ExitCode trap(const TrapFlags& flags) {
   const std::vector<TrapFinding> findings = tested(scenario, options);
   std::string text;
   if (flags.json) {
-    text = laid_out(json_of(scenario, findings));
+    OrderedJson list = OrderedJson::array();
+    for (const TrapFinding& f : findings) list.push_back(json_of(scenario, f));
+    text = laid_out(list);
   } else {
     const bool orca = flags.simulation.method == formation::name(formation::Method::orca);
     for (const TrapFinding& f : findings) text += words_of(scenario, f, orca);

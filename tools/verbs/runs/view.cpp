@@ -102,12 +102,10 @@ formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
   parse(info.method, options.method);
   if (info.controller) parse(*info.controller, options.controller);
   if (info.integrator) parse(*info.integrator, options.integrator);
-  formation::Guidance guidance = formation::Guidance::none;
-  if (info.guidance) parse(*info.guidance, guidance);
-  options.guidance = guidance;
-  formation::Liveness liveness = formation::Liveness::off;
-  if (info.liveness) parse(*info.liveness, liveness);
-  options.liveness = liveness;
+  options.guidance = formation::Guidance::none;
+  if (info.guidance) parse(*info.guidance, *options.guidance);
+  options.liveness = formation::Liveness::off;
+  if (info.liveness) parse(*info.liveness, *options.liveness);
   options.remedies = file.recording.remedies;
   return options;
 }
