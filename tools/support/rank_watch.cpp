@@ -10,10 +10,11 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/stop.h"
 
 namespace exactvo::tools {
 
@@ -39,24 +40,6 @@ std::string machine() {
 bool is_gone(int rank) {
   const pid_t process = process_of[rank];
   return process != 0 && ::kill(process, 0) != 0 && errno == ESRCH;
-}
-
-void write_words(const char* words) {
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words, std::strlen(words));
-}
-
-void write_number(int n) {
-  char digits[12];
-  char* at = digits + sizeof digits;
-  *--at = '\0';
-  do *--at = static_cast<char>('0' + n % 10);
-  while ((n /= 10) > 0);
-  write_words(at);
-}
-
-void write_how_to_go_on() {
-  write_words(has_snapshots ? "; --resume goes on from the last snapshot [E_RANK_LOST]\n"
-                            : "; nothing was written [E_RANK_LOST]\n");
 }
 
 }  // namespace
@@ -102,15 +85,13 @@ void say_which_rank_is_lost() {
   int lost = 0;
   while (lost < all_ranks && !is_gone(lost)) ++lost;
   if (lost < all_ranks) {
-    write_words("rank ");
-    write_number(lost);
-    write_words(" of ");
-    write_number(all_ranks);
-    write_words(" is gone");
+    const fmt::format_int rank(lost), count(all_ranks);  // have buffers of their own
+    for (const char* some : {"rank ", rank.c_str(), " of ", count.c_str(), " is gone"}) write_words(some);
   } else {
     write_words("a rank is gone, or all were told to end");
   }
-  write_how_to_go_on();
+  write_words(has_snapshots ? "; --resume goes on from the last snapshot [E_RANK_LOST]\n"
+                            : "; nothing was written [E_RANK_LOST]\n");
   if (own_rank == 0) ::usleep(1000 * kAfterWords);
 }
 

@@ -91,11 +91,8 @@ TerminateOnSignal::TerminateOnSignal(const char* words) {
 TerminateOnSignal::~TerminateOnSignal() {
   --at_once;
 }
-bool terminates_on_signal() {
-  return at_once > 0;
-}
 const char* words_of_termination() {
-  return termination_words;
+  return at_once > 0 ? termination_words.load() : nullptr;
 }
 
 RemoveFolderOnSignal::RemoveFolderOnSignal(const std::string& folder) : slot_(-1) {
@@ -120,6 +117,10 @@ KillChildOnSignal::KillChildOnSignal(pid_t child) {
 }
 KillChildOnSignal::~KillChildOnSignal() {
   child_of_ours = 0;
+}
+
+void write_words(const char* words) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words, std::strlen(words));
 }
 
 void remove_what_is_unfinished() {

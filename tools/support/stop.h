@@ -22,8 +22,7 @@ class TerminateOnSignal {
   TerminateOnSignal(const TerminateOnSignal&) = delete;
   TerminateOnSignal& operator=(const TerminateOnSignal&) = delete;
 };
-bool terminates_on_signal();
-/// Of the one that was made last. Async-signal-safe.
+/// Of the one that was made last; null where none lives. Async-signal-safe.
 const char* words_of_termination();
 
 /// A folder that a signal removes with all in it, for as long as the object lives. Beyond a fixed number of them at a
@@ -47,6 +46,9 @@ class KillChildOnSignal {
   KillChildOnSignal(const KillChildOnSignal&) = delete;
   KillChildOnSignal& operator=(const KillChildOnSignal&) = delete;
 };
+
+/// On stderr. Async-signal-safe.
+void write_words(const char* words);
 
 /// Ends the child and removes the folders. Async-signal-safe.
 void remove_what_is_unfinished();

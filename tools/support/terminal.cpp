@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <system_error>
 #include <utility>
@@ -34,22 +33,18 @@ constexpr unsigned kGrace = 10;
 std::atomic<bool> ending{false};
 std::atomic<bool> stderr_is_terminal{false};
 
-void write_to_stderr(const char* text) {
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
-}
-
 /// Called by signal handlers.
 [[noreturn]] void end_now(const char* words, const char* more = "", const char* end = "") {
   while (ending.exchange(true)) ::pause();  // another thread's handler is at it
   remove_what_is_unfinished();
-  if (stderr_is_terminal) write_to_stderr("\r\033[K");  // over the progress line
-  for (const char* some : {words, more, end}) write_to_stderr(some);
+  if (stderr_is_terminal) write_words("\r\033[K");  // over the progress line
+  for (const char* some : {words, more, end}) write_words(some);
   ::_exit(128 + interrupt_seen);
 }
 
 extern "C" void on_interrupt(int signal) {
   interrupt_seen = signal;
-  if (terminates_on_signal()) end_now("exactvo: error: interrupted; ", words_of_termination(), "\n");
+  if (const char* words = words_of_termination()) end_now("exactvo: error: interrupted; ", words, "\n");
   if (watches_ranks())
     begin_end_of_rank();
   else
@@ -79,12 +74,6 @@ void handle(int signal, void (*handler)(int)) {
   ::sigaction(signal, &action, nullptr);
 }
 
-void put(const std::string& text) {
-  std::fflush(stdout);
-  std::fputs(text.c_str(), stderr);
-  std::fflush(stderr);
-}
-
 }  // namespace
 
 void set_quiet(bool value) {
@@ -92,7 +81,9 @@ void set_quiet(bool value) {
 }
 
 void print_to_stderr(const std::string& text) {
-  put(text);
+  std::fflush(stdout);
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
 }
 
 void print(const std::string& text) {
@@ -123,11 +114,11 @@ void throw_if_reader_left() {
 }
 
 void message(const std::string& text) {
-  if (!quiet) put("exactvo: " + shown_lines(text) + "\n");
+  if (!quiet) print_to_stderr("exactvo: " + shown_lines(text) + "\n");
 }
 
 void error_message(const std::string& text) {
-  put("exactvo: error: " + shown_lines(text) + "\n");
+  print_to_stderr("exactvo: error: " + shown_lines(text) + "\n");
 }
 
 void note_interrupts() {
@@ -168,16 +159,13 @@ void ProgressLine::show(double done, const std::string& doing) {
   if (!enabled_) return;
   const double seconds = elapsed();
   const std::string now = fmt::format("{:.4g} of {:.4g} {}: {}", done, total_, unit_, shown(doing));
-  std::string pace = how_long(now);
-  if (pace.empty() && done > 0.0 && seconds > 0.0) {
-    const double rate = done / seconds;
-    pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
-  }
-  put_line(now, pace);
+  const double rate = seconds > 0.0 ? done / seconds : 0.0;
+  put_line(now, rate > 0.0 ? fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate)
+                           : std::string());
 }
 
 void ProgressLine::say(const std::string& doing) {
-  if (enabled_) put_line(shown(doing), how_long(shown(doing)));
+  if (enabled_) put_line(shown(doing), "");
 }
 
 ProgressLine::~ProgressLine() {
@@ -191,23 +179,18 @@ ProgressLine::~ProgressLine() {
   clock_.join();
 }
 
-/// Of a line that is to be shown.
-std::string ProgressLine::how_long(const std::string& now) {
-  const std::lock_guard lock(mutex_);
-  if (now != line_) changed_at_ = elapsed();
-  return how_long_of_line();
-}
-
-/// Nothing as long as it is short. REQUIRES: the mutex is held.
-std::string ProgressLine::how_long_of_line() const {
+/// Of the line. Nothing as long as it is short. REQUIRES: the mutex is held.
+std::string ProgressLine::how_long() const {
   constexpr double kLong = 2.0;  // s
   const double since = elapsed() - changed_at_;
   return since < kLong ? "" : fmt::format("; at it for {:.0f} s", since);
 }
 
-void ProgressLine::put_line(const std::string& now, const std::string& more) {
+void ProgressLine::put_line(const std::string& now, const std::string& pace) {
   const std::lock_guard lock(mutex_);
-  put("\r\033[K" + now + more);
+  if (now != line_) changed_at_ = elapsed();
+  const std::string duration = how_long();
+  print_to_stderr("\r\033[K" + now + (duration.empty() ? pace : duration));
   line_ = now;
   if (clock_.joinable()) return;
   // Signals are for the thread that works: it is the one that waits for files and children.
@@ -221,14 +204,14 @@ void ProgressLine::put_line(const std::string& now, const std::string& more) {
 void ProgressLine::say_how_long() {
   std::unique_lock lock(mutex_);
   while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; })) {
-    const std::string more = line_.empty() ? "" : how_long_of_line();
-    if (!more.empty()) put("\r\033[K" + line_ + more);
+    const std::string more = line_.empty() ? "" : how_long();
+    if (!more.empty()) print_to_stderr("\r\033[K" + line_ + more);
   }
 }
 
 void ProgressLine::clear() {
   const std::lock_guard lock(mutex_);
-  if (!line_.empty()) put("\r\033[K");
+  if (!line_.empty()) print_to_stderr("\r\033[K");
   line_.clear();
 }
 

@@ -89,9 +89,9 @@ class ProgressLine {
   void clear();
 
  private:
-  void put_line(const std::string& now, const std::string& more);
-  std::string how_long(const std::string& now);
-  std::string how_long_of_line() const;
+  /// With the pace, or how long the line has been there.
+  void put_line(const std::string& now, const std::string& pace);
+  std::string how_long() const;
   void say_how_long();
 
   bool enabled_;
