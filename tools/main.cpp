@@ -48,30 +48,21 @@ std::string all_examples() {
   return text;
 }
 
-std::vector<std::string> verb_names() {
+/// What the parser is given: `help VERB` is `VERB --help`. Refuses an unknown verb before the parser does, to suggest a
+/// known one.
+std::vector<std::string> parsed_words() {
   std::vector<std::string> names;
   for (const Verb& verb : verbs()) names.push_back(verb.name);
-  return names;
-}
-
-/// Refuses an unknown verb before the parser does, to suggest a known one.
-void check_verb() {
-  std::vector<std::string> names = verb_names();
-  names.push_back(kHelp);
   const auto verb = std::find_if(words.begin() + 1, words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
-  if (verb != words.end()) require_known("verb", *verb, names);
-}
-
-/// What the parser is given: `help VERB` is `VERB --help`.
-std::vector<std::string> parsed_words() {
-  std::vector<std::string> out(words.begin(), words.end());
-  const auto help = std::find_if(out.begin() + 1, out.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
-  if (help == out.end() || *help != kHelp) return out;
-  const std::vector<std::string> names = verb_names();
-  const std::string verb = help + 1 == out.end() ? "" : *(help + 1);
-  if (verb.empty()) return {out.front(), "--help"};
-  require_known("help", verb, names);
-  return {out.front(), verb, "--help"};
+  if (verb == words.end()) return words;
+  if (*verb != kHelp) {
+    names.push_back(kHelp);
+    require_known("verb", *verb, names);
+    return words;
+  }
+  if (verb + 1 == words.end() || (verb + 1)->empty()) return {words.front(), "--help"};
+  require_known("help", *(verb + 1), names);
+  return {words.front(), *(verb + 1), "--help"};
 }
 
 ExitCode parse_and_run() {
@@ -121,7 +112,6 @@ ExitCode say_interrupted() {
 
 ExitCode guarded() {
   try {
-    check_verb();
     return parse_and_run();
   } catch (const UsageError& error) {
     error_message(error.what());

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
+#include <functional>
 
 #include "support/usage.h"
 
@@ -14,18 +15,18 @@ namespace exactvo::tools {
 
 namespace {
 
-const CLI::App* verb_of(const CLI::App& app) {
-  const std::vector<CLI::App*> parsed = app.get_subcommands();
-  return parsed.empty() ? nullptr : parsed.front();
-}
-
-std::vector<const CLI::Option*> options_of(const CLI::App& app) {
+/// Of the program, and of the verbs for which that holds.
+std::vector<const CLI::Option*> options_of(const CLI::App& app, const std::function<bool(const CLI::App*)>& is_meant) {
   std::vector<const CLI::Option*> all = app.get_options();
-  if (const CLI::App* verb = verb_of(app)) {
-    const std::vector<const CLI::Option*> more = static_cast<const CLI::App*>(verb)->get_options();
+  for (const CLI::App* verb : app.get_subcommands(is_meant)) {
+    const std::vector<const CLI::Option*> more = verb->get_options();
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
+}
+
+bool is_parsed(const CLI::App* verb) {
+  return verb->parsed();
 }
 
 std::vector<std::string> long_names(const std::vector<const CLI::Option*>& options) {
@@ -90,15 +91,15 @@ std::string value_of(const CLI::Option& option, const std::vector<std::string>& 
   return parsed;
 }
 
-/// Of an option with a CLI::Range, whose type is called "UINT:INT in [1 - 1000000]", or so; else empty.
+/// Of an option with a CLI::Range of whole numbers, whose type is called "UINT:INT in [1 - 1000000]", or so; else
+/// empty.
 std::string range_words(const std::string& type) {
   const std::string before = " in [", between = " - ";
   const std::size_t at = type.find(before), end = type.find(']', at);
   const std::size_t middle = type.find(between, at);
   if (at == std::string::npos || end == std::string::npos || middle > end) return "";
   const std::size_t low = at + before.size(), high = middle + between.size();
-  return fmt::format("{} from {} to {}", type.find("INT") < at ? "a whole number" : "a number",
-                     type.substr(low, middle - low), type.substr(high, end - high));
+  return fmt::format("a whole number from {} to {}", type.substr(low, middle - low), type.substr(high, end - high));
 }
 
 std::string kind_of_value(const CLI::Option& option) {
@@ -137,7 +138,7 @@ std::string missing_words(const CLI::Option* option) {
 }
 
 std::string words_of(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
-  const std::vector<const CLI::Option*> options = options_of(app);
+  const std::vector<const CLI::Option*> options = options_of(app, is_parsed);
   const std::string unknown = unknown_option(options, words);
   if (!unknown.empty()) return unknown;
   const std::string message = error.what();
@@ -158,17 +159,15 @@ std::string words_of(const CLI::App& app, const CLI::ParseError& error, const st
 }  // namespace
 
 std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
-  const CLI::App* verb = verb_of(app);
-  return words_of(app, error, words) + " (see 'exactvo " + (verb ? verb->get_name() + " " : "") + "--help')";
+  const std::vector<const CLI::App*> verbs = app.get_subcommands(is_parsed);
+  const std::string verb = verbs.empty() ? "" : verbs.front()->get_name() + " ";
+  return words_of(app, error, words) + " (see 'exactvo " + verb + "--help')";
 }
 
 void check_switches(const CLI::App& app, const std::vector<std::string>& words) {
-  std::vector<const CLI::Option*> options = app.get_options();
-  for (const CLI::App* verb : app.get_subcommands(nullptr)) {
-    if (std::find(words.begin(), words.end(), verb->get_name()) == words.end()) continue;
-    const std::vector<const CLI::Option*> more = verb->get_options();
-    options.insert(options.end(), more.begin(), more.end());
-  }
+  const std::vector<const CLI::Option*> options = options_of(app, [&](const CLI::App* verb) {
+    return std::find(words.begin(), words.end(), verb->get_name()) != words.end();
+  });
   for (const std::string& word : words) {
     if (word == "--") return;
     const std::size_t equals = word.find('=');
@@ -180,7 +179,7 @@ void check_switches(const CLI::App& app, const std::vector<std::string>& words) 
 }
 
 void check_no_empty_values(const CLI::App& app) {
-  for (const CLI::Option* option : options_of(app)) {
+  for (const CLI::Option* option : options_of(app, is_parsed)) {
     const std::vector<std::string>& values = option->results();
     if (is_flag(*option) || std::find(values.begin(), values.end(), "") == values.end()) continue;
     throw UsageError(option->get_name(), "", kind_of_value(*option));

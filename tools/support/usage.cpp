@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <locale>
 
 namespace exactvo::tools {
 
@@ -50,13 +52,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 namespace {
 
-std::string lower_case(std::string word) {
-  for (char& c : word) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return word;
-}
-
 std::size_t allowed(std::size_t letters) {
   const std::size_t few = letters < 2 ? 0 : letters < 5 ? 1 : 2;
   return std::max(few, letters / 3);
@@ -65,10 +60,12 @@ std::size_t allowed(std::size_t letters) {
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  const std::locale& classic = std::locale::classic();
   std::string best;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(lower_case(word), lower_case(candidate));
+    const std::size_t distance =
+        edit_distance(boost::to_lower_copy(word, classic), boost::to_lower_copy(candidate, classic));
     if (distance < least && distance <= allowed(std::min(word.size(), candidate.size()))) {
       least = distance;
       best = candidate;
