@@ -283,13 +283,9 @@ auto count_valid(const CheckedCertificates& checked) {
 
 }  // namespace
 
-CheckedCertificates check_certificates_in(const std::string& text) {
-  return is_json(text) ? checked_in_json(text) : checked_in_lines(text);
-}
-
 CheckedCertificates check_certificates(const std::string& file) {
   const std::string whole = datasets::read_file_or_input(file), text(without_mark(whole));
-  CheckedCertificates checked = check_certificates_in(text);
+  CheckedCertificates checked = is_json(text) ? checked_in_json(text) : checked_in_lines(text);
   const bool is_empty = checked.all.empty() && checked.none == 0;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
     throw UsageError("--certificate", file + ": no certificate", "a certificate a line");

@@ -24,17 +24,15 @@ struct CheckedCertificates {
   std::size_t none = 0;                 ///< places of JSON that say that there is none: "certificate": null
 };
 
-/// Every certificate of a text, which may be JSON, JSON lines or plain lines: one a line, where blank lines do not
-/// count and any other line is "not a certificate". Of JSON (first letter { or [) the text of every `certificate`,
-/// whatever it begins with, and every other string that begins as one; JSON that cannot be read is one that is not
-/// valid. The `half_plane` or `contact_half_plane` beside a certificate must be the one that it proves, number by
-/// number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum, made again by
-/// `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and the same one
-/// where that has a certificate of containment. In lines, nothing says which belong together, and this is not checked.
-CheckedCertificates check_certificates_in(const std::string& text);
-
-/// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where
-/// neither a certificate nor a place that says there is none is in it: no line begins as one, no JSON has any.
+/// Every certificate of a file, or of stdin where its name is "-". Its text may be JSON, JSON lines or plain lines: one
+/// a line, where blank lines do not count and any other line is "not a certificate". Of JSON (first letter { or [) the
+/// text of every `certificate`, whatever it begins with, and every other string that begins as one; JSON that cannot be
+/// read is one that is not valid. The `half_plane` or `contact_half_plane` beside a certificate must be the one that it
+/// proves, number by number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum,
+/// made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and
+/// the same one where that has a certificate of containment. In lines, nothing says which belong together, and this is
+/// not checked. Throws DataError where it can't be read, UsageError where neither a certificate nor a place that says
+/// there is none is in it: no line begins as one, no JSON has any.
 CheckedCertificates check_certificates(const std::string& file);
 
 std::string to_json(const CheckedCertificates& checked);
