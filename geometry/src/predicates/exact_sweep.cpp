@@ -27,20 +27,6 @@ bool in_hull(const std::vector<Point>& v, const Point& q) {
   return area;
 }
 
-/// Whether [0, end] comes within r of the hull of the vertices.
-bool hull_meets(const std::vector<Point>& v, const Exact& r, const Point& end) {
-  const Point start{Exact(0), Exact(0)};
-  if (in_hull(v, start) || in_hull(v, end)) return true;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const Point& a = v[i];
-    const Point& b = v[(i + 1) % v.size()];
-    if (distance_sign(a, start, end, r) != Sign::positive || distance_sign(start, a, b, r) != Sign::positive ||
-        distance_sign(end, a, b, r) != Sign::positive || cross_properly(a, b, start, end))
-      return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Sign distance_sign(const Point& q, const Point& a, const Point& b, const Exact& r) {
@@ -53,6 +39,19 @@ Sign distance_sign(const Point& q, const Point& a, const Point& b, const Exact& 
   const Point f = q - b;
   if (!(along < length2)) return sign_of(dot(f, f) - r2);
   return sign_of(squared(cross(e, d)) - r2 * length2);
+}
+
+bool hull_meets(const std::vector<Point>& v, const Exact& r, const Point& end) {
+  const Point start{Exact(0), Exact(0)};
+  if (in_hull(v, start) || in_hull(v, end)) return true;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const Point& a = v[i];
+    const Point& b = v[(i + 1) % v.size()];
+    if (distance_sign(a, start, end, r) != Sign::positive || distance_sign(start, a, b, r) != Sign::positive ||
+        distance_sign(end, a, b, r) != Sign::positive || cross_properly(a, b, start, end))
+      return true;
+  }
+  return false;
 }
 
 bool segment_meets_exactly(const GrownShape& s, const Vector<Exact>& d, const Exact& t) {

@@ -17,6 +17,7 @@
 
 #include "exact/exact_vector.h"
 #include "exactvo/geometry/support.h"
+#include "predicates/exact_sweep.h"
 
 namespace exactvo::geometry::detail {
 namespace {
@@ -49,17 +50,10 @@ Place place_of(Sign distance_minus_radius) {
   return static_cast<Place>(static_cast<int>(distance_minus_radius));
 }
 
+/// l22 = 0: the segment between the points +-(l11, l21), grown by r.
 Place locate_capsule(const Ellipse& e, const Vector<Exact>& u, const Exact& r) {
-  // l22 = 0: { (l11, l21) w }, seen from the point.
   const Vector<Exact> h{Exact(e.l11), Exact(e.l21)};
-  const Vector<Exact> a = u - h;
-  const Exact along = Exact(0) - dot(a, h);
-  const Exact length2 = dot(h, h);
-  // The foot of the point lies at a + 2 h along / (2 |h|^2).
-  if (sign_of(along) != Sign::positive) return place_of(sign_of(dot(a, a) - r * r));
-  const Vector<Exact> b{u.x + h.x, u.y + h.y};
-  if (!(along < Exact(2) * length2)) return place_of(sign_of(dot(b, b) - r * r));
-  return place_of(sign_of(squared(cross(h, a)) - r * r * length2));
+  return place_of(distance_sign({Exact(0), Exact(0)}, u - h, u + h, r));
 }
 
 /// l11 = 0: the vertical segment of squared half-length m = l21^2 + l22^2, grown by r.

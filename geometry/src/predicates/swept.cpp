@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exact/stages.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
@@ -43,15 +44,10 @@ double size_of(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
 }
 
-/// No point of the shape has a larger coordinate, up to rounding.
+/// No point of the shape has a larger coordinate.
 double extent_of(const ConvexShape& shape) {
-  if (const auto* d = std::get_if<Disc>(&shape)) return size_of(d->center) + d->radius;
-  if (const auto* e = std::get_if<Ellipse>(&shape))
-    return size_of(e->center) + std::fabs(e->l11) + std::fabs(e->l21) + std::fabs(e->l22);
-  if (const auto* s = std::get_if<Segment>(&shape)) return size_of(s->a) + size_of(s->b);
-  double largest = 0.0;
-  for (const Vec2 v : std::get<ConvexPolygon>(shape).vertices) largest = std::max(largest, size_of(v));
-  return largest;
+  const Box box = box_of(shape);
+  return std::max(size_of(box.low), size_of(box.high));
 }
 
 /// A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.
@@ -67,21 +63,11 @@ Exact finite_time(double t_max, const Point& d, double extent) {
 
 // --- A polygonal robot ---
 
-/// The corners of the robot at both ends of its way; their hull is the swept robot.
+/// The robot's corners where it starts, and how far it moves.
 struct Sweep {
-  std::vector<Point> start, end;
+  std::vector<Point> start;
   Point step;
 };
-
-Sweep sweep_of(const ConvexPolygon& robot, const Point& position, const Point& step) {
-  Sweep sweep{{}, {}, step};
-  for (const Vec2 b : robot.vertices) {
-    const Point corner{Exact(b.x) + position.x, Exact(b.y) + position.y};
-    sweep.start.push_back(corner);
-    sweep.end.push_back({corner.x + step.x, corner.y + step.y});
-  }
-  return sweep;
-}
 
 /// The hull of the vertices and, for an ellipse of no width along x, half a vertical segment of squared length `tall`
 /// to both sides of its centre.
@@ -122,41 +108,20 @@ bool apart(const Flat& a, const Sweep& b) {
   return false;
 }
 
-/// The plane mapped so that the ellipse becomes a disc of radius |det L| round 0: x -> adj(L) (x - centre).
-Point mapped(const Ellipse& e, const Point& x) {
-  const Point u = x - make<Exact>(e.center);
-  return {Exact(e.l22) * u.x, Exact(e.l11) * u.y - Exact(e.l21) * u.x};
-}
-
-/// Whether the disc round 0 meets the sweep: 0 lies in it or an edge comes within the radius.
-bool disc_meets(const Sweep& b, const Exact& radius) {
-  const Point zero{Exact(0), Exact(0)};
-  if (!apart({{zero}, Exact(0)}, b)) return true;
-  const auto near = [&](const Point& p, const Point& q) {
-    return detail::distance_sign(zero, p, q, radius) != Sign::positive;
-  };
-  for (std::size_t i = 0; i < b.start.size(); ++i) {
-    const std::size_t next = (i + 1) % b.start.size();
-    if (near(b.start[i], b.start[next]) || near(b.end[i], b.end[next]) || near(b.start[i], b.end[i])) return true;
-  }
-  return false;
-}
-
+/// Seen from the robot the disc moves, the other way.
 bool meets(const Disc& d, Sweep seen) {
-  const Point c = make<Exact>(d.center);
-  for (auto* corners : {&seen.start, &seen.end})
-    for (Point& p : *corners) p = p - c;
-  return disc_meets(seen, Exact(d.radius));
+  for (Point& p : seen.start) p = p - make<Exact>(d.center);
+  return detail::hull_meets(seen.start, Exact(d.radius), {-seen.step.x, -seen.step.y});
 }
 
-/// With a width and a height.
+/// With a width and a height. The plane is mapped so that the ellipse becomes a disc of radius det L round 0: x ->
+/// adj(L) (x - centre), without a mirror image: the columns of L may be turned round, so that det L > 0.
 bool meets(const Ellipse& e, const Sweep& sweep) {
-  Sweep seen;
-  for (const Point& p : sweep.start) seen.start.push_back(mapped(e, p));
-  for (const Point& p : sweep.end) seen.end.push_back(mapped(e, p));
-  seen.step = seen.end.front() - seen.start.front();
-  const Exact det = Exact(e.l11) * Exact(e.l22);
-  return disc_meets(seen, sign_of(det) == Sign::negative ? Exact(0) - det : det);
+  const Exact l11(std::fabs(e.l11)), l21(e.l11 < 0.0 ? -e.l21 : e.l21), l22(std::fabs(e.l22));
+  const auto mapped = [&](const Point& u) { return Point{l22 * u.x, l11 * u.y - l21 * u.x}; };
+  std::vector<Point> seen;
+  for (const Point& p : sweep.start) seen.push_back(mapped(p - make<Exact>(e.center)));
+  return detail::hull_meets(seen, l11 * l22, mapped({-sweep.step.x, -sweep.step.y}));
 }
 
 Flat flat_of(const Ellipse& e) {
@@ -205,7 +170,9 @@ bool sweep_meets(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 p
   const Point d = exact_sum(direction);
   const double extent = extent_of(obstacle) + extent_of(robot) + size_of(position);
   const Exact t = finite_time(t_max, d, extent);
-  return meets(obstacle, sweep_of(robot, make<Exact>(position), {t * d.x, t * d.y}));
+  Sweep sweep{{}, {t * d.x, t * d.y}};
+  for (const Vec2 b : robot.vertices) sweep.start.push_back(make<Exact>(b) + make<Exact>(position));
+  return meets(obstacle, sweep);
 }
 
 }  // namespace exactvo::geometry
