@@ -1,70 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rings/snap_rounding.h"
 
+#include <gmpxx.h>
+
 #include <algorithm>
 #include <optional>
+#include <utility>
 
-#include "exact/exact_number.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {
 namespace {
 
-// A parameter along an edge, num / den with den > 0, and whether it is left out.
-struct Bound {
-  Exact num;
-  Exact den;
-  bool open = false;
-};
+// A parameter t along an edge, and on which side of it a range of parameters begins or ends: {t, false} just before t,
+// {t, true} just behind it.
+using Bound = std::pair<mpq_class, bool>;
 
-int compare(const Bound& a, const Bound& b) {
-  return static_cast<int>(sign_of(a.num * b.den - b.num * a.den));
-}
-
+// From low to high; empty unless low < high. At first the edge with both its ends.
 struct Range {
-  Bound low{Exact(0), Exact(1), false};
-  Bound high{Exact(1), Exact(1), false};
-  bool empty = false;
-
-  void from(const Bound& b) {
-    const int order = compare(b, low);
-    if (order > 0 || (order == 0 && b.open)) low = b;
-  }
-  void to(const Bound& b) {
-    const int order = compare(b, high);
-    if (order < 0 || (order == 0 && b.open)) high = b;
-  }
-  bool holds_something() const {
-    const int order = compare(low, high);
-    return !empty && (order < 0 || (order == 0 && !low.open && !high.open));
-  }
+  Bound low{0, false};
+  Bound high{1, true};
 };
 
-// Keeps the parameters t with low <= a + t (b - a) < high.
-void clip(double a, double b, const Exact& low, const Exact& high, Range& range) {
-  const Exact start(a);
-  const Exact step = Exact(b) - start;
-  switch (sign_of(step)) {
-    case Sign::positive:
-      range.from({low - start, step, false});
-      range.to({high - start, step, true});
-      break;
-    case Sign::negative:
-      range.to({start - low, -step, false});
-      range.from({start - high, -step, true});
-      break;
-    default:
-      range.empty = range.empty || sign_of(start - low) == Sign::negative || sign_of(high - start) != Sign::positive;
+// Keeps the parameters t with from <= a + t (b - a) < to.
+void clip(double a, double b, const mpq_class& from, const mpq_class& to, Range& range) {
+  const mpq_class start(a), step = b - start;
+  if (sgn(step) == 0) {
+    if (start < from || start >= to) range.high = range.low;
+    return;
   }
+  const mpq_class at_from = (from - start) / step, at_to = (to - start) / step;
+  const bool up = sgn(step) > 0;
+  range.low = std::max(range.low, up ? Bound{at_from, false} : Bound{at_to, true});
+  range.high = std::min(range.high, up ? Bound{at_to, false} : Bound{at_from, true});
 }
 
 // Where the edge enters the pixel, if it meets it.
 std::optional<Bound> entry(const Segment& edge, Vec2 centre, double grid) {
-  const Exact half(grid / 2);
+  const mpq_class half(grid / 2);
   Range range;
-  clip(edge.a.x, edge.b.x, Exact(centre.x) - half, Exact(centre.x) + half, range);
-  clip(edge.a.y, edge.b.y, Exact(centre.y) - half, Exact(centre.y) + half, range);
-  if (!range.holds_something()) return std::nullopt;
+  clip(edge.a.x, edge.b.x, centre.x - half, centre.x + half, range);
+  clip(edge.a.y, edge.b.y, centre.y - half, centre.y + half, range);
+  if (!(range.low < range.high)) return std::nullopt;
   return range.low;
 }
 
@@ -72,12 +49,6 @@ struct Passed {
   Bound entry;
   Vec2 centre;
 };
-
-// Pixels are disjoint, so are the stretches of the edge in them.
-bool is_passed_before(const Passed& a, const Passed& b) {
-  const int order = compare(a.entry, b.entry);
-  return order < 0 || (order == 0 && !a.entry.open && b.entry.open);
-}
 
 void append_bent(const Segment& edge, const std::vector<Vec2>& hot, double grid, Ring& ring) {
   const double left = std::min(edge.a.x, edge.b.x) - grid, right = std::max(edge.a.x, edge.b.x) + grid;
@@ -88,7 +59,8 @@ void append_bent(const Segment& edge, const std::vector<Vec2>& hot, double grid,
     if (p->y < low || p->y > high) continue;
     if (const auto at = entry(edge, *p, grid)) passed.push_back({*at, *p});
   }
-  std::sort(passed.begin(), passed.end(), is_passed_before);
+  // Pixels are disjoint, so are the stretches of the edge in them.
+  std::sort(passed.begin(), passed.end(), [](const Passed& p, const Passed& q) { return p.entry < q.entry; });
   for (const Passed& p : passed) {
     if (ring.empty() || ring.back() != p.centre) ring.push_back(p.centre);
   }
