@@ -5,19 +5,16 @@
 #include "enclosure/ellipse_solver.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
+#include "rings/convexity.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry {
 
 namespace {
 
-// Stops at the third point in the common case.
-bool all_on_line(Vec2 a, Vec2 b, const std::vector<Vec2>& points) {
-  return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return orientation(a, b, p) == Sign::zero; });
-}
-
 FastEllipse of_collinear(const std::vector<Vec2>& points) {
   const auto [low, high] = std::minmax_element(points.begin(), points.end(), detail::lexicographically_less);
+  if (*low == *high) return {{*low, 0.0, 0.0, 0.0}, 0.0};
   return {detail::ellipse_of_segment(*low, *high), 0.0};
 }
 
@@ -25,10 +22,7 @@ FastEllipse of_collinear(const std::vector<Vec2>& points) {
 
 FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points) {
   detail::require_places(points);
-  const Vec2 first = points.front();
-  const auto other = std::find_if(points.begin(), points.end(), [&](Vec2 p) { return p != first; });
-  if (other == points.end()) return {{first, 0.0, 0.0, 0.0}, 0.0};
-  if (all_on_line(first, *other, points)) return of_collinear(points);
+  if (detail::on_one_line(points)) return of_collinear(points);
   const detail::EllipseCandidate candidate = detail::solve_smallest_ellipse(points);
   return {detail::certified_ellipse(candidate.frame, points), candidate.least_area};
 }

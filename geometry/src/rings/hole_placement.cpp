@@ -119,14 +119,13 @@ class PointLocator {
   // By the even-odd rule. Exact.
   Place locate(Vec2 p) const {
     if (!slabs_.empty() && (p.y < box_.low.y || p.y > box_.high.y)) return Place::outside;
-    bool odd = false, on_edge = false;
-    for_each_candidate(p.y, [&](std::size_t i) {
-      const Crossing c = crossing({ring_[i], ring_[(i + 1) % ring_.size()]}, p);
-      on_edge = on_edge || c == Crossing::on_edge;
-      odd = odd != (c == Crossing::right);
+    return even_odd_place(p, [&](const auto& visit) {
+      const auto visit_edge = [&](std::size_t i) { visit({ring_[i], ring_[(i + 1) % ring_.size()]}); };
+      if (slabs_.empty())
+        for (std::size_t i = 0; i < ring_.size(); ++i) visit_edge(i);
+      else
+        for (const std::size_t i : slabs_[slab_of(p.y)]) visit_edge(i);
     });
-    if (on_edge) return Place::boundary;
-    return odd ? Place::inside : Place::outside;
   }
 
   // Edges that `locate` looks at.
@@ -138,29 +137,16 @@ class PointLocator {
     const auto last = static_cast<double>(slabs_.size() - 1);
     return static_cast<std::size_t>(std::min(std::max(share, 0.0) * static_cast<double>(slabs_.size()), last));
   }
-  template <class Action>
-  void for_each_candidate(double y, const Action& action) const {
-    if (slabs_.empty()) {
-      for (std::size_t i = 0; i < ring_.size(); ++i) action(i);
-    } else {
-      for (const std::size_t i : slabs_[slab_of(y)]) action(i);
-    }
-  }
 
   const Ring& ring_;
   Box box_;
   std::vector<std::vector<std::size_t>> slabs_;
 };
 
-// The number of the lexicographically least vertex.
-std::size_t start_of(const Ring& ring) {
-  return static_cast<std::size_t>(std::min_element(ring.begin(), ring.end(), lexicographically_less) - ring.begin());
-}
-
 // From the least vertex on two equal rings of one winding have the same vertices.
 Ring from_least(const Ring& ring) {
   Ring turned = ring;
-  std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(start_of(ring)), turned.end());
+  std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(least_vertex(ring)), turned.end());
   return turned;
 }
 
@@ -204,7 +190,7 @@ class Search {
       const std::size_t ring = holes[k].second;
       if (!is_repeated) different_.push_back(ring);
       if (is_repeated || (k + 1 < holes.size() && holes[k].first == holes[k + 1].first))
-        report(ring, start_of(*rings_[ring]), holes[k].first.front());
+        report(ring, least_vertex(*rings_[ring]), holes[k].first.front());
     }
     std::sort(different_.begin(), different_.end());
   }
@@ -220,9 +206,11 @@ class Search {
     const bool is_complete = for_each_box_pair(chains, kMostContactPairs, [&](EdgeId first, EdgeId second) {
       std::optional<Key>& best = first_crossing[second.chain];
       const Key key{first.chain, first.edge, second.edge};
-      if (best && *best < key) return;
-      if (!intersect(chains[first.chain].edge(first.edge), chains[second.chain].edge(second.edge))) return;
-      if (is_crossing(*chains[first.chain].points, first.edge, *chains[second.chain].points, second.edge)) best = key;
+      if (first.chain != second.chain && (!best || key < *best) &&
+          intersect(chains[first.chain].edge(first.edge), chains[second.chain].edge(second.edge)) &&
+          is_crossing(*chains[first.chain].points, first.edge, *chains[second.chain].points, second.edge))
+        best = key;
+      return true;
     });
     for (std::size_t k = 0; k < chains.size(); ++k) {
       if (!first_crossing[k]) continue;

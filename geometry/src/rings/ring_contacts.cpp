@@ -40,14 +40,11 @@ auto key(const Contact& c) {
 }  // namespace
 
 bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
-                       const std::function<void(EdgeId first, EdgeId second)>& take) {
+                       const std::function<bool(EdgeId first, EdgeId second)>& take) {
   std::size_t pairs = 0;
   const auto report = [&](const Box& a, const Box& b) {
-    if (++pairs > most) throw TooMany{};
-    EdgeId first = a.info();
-    EdgeId second = b.info();
-    if (second.chain < first.chain) std::swap(first, second);
-    if (first.chain != second.chain) take(first, second);
+    const bool ordered = a.info().chain <= b.info().chain;
+    if (++pairs > most || !(ordered ? take(a.info(), b.info()) : take(b.info(), a.info()))) throw TooMany{};
   };
   try {
     without_cgal_failures(
@@ -67,7 +64,8 @@ std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains) {
   for_each_box_pair(chains, std::numeric_limits<std::size_t>::max(), [&](EdgeId first, EdgeId second) {
     const Segment s = chains[first.chain].edge(first.edge);
     const Segment t = chains[second.chain].edge(second.edge);
-    if (intersect(s, t)) contacts.push_back({first, second, common_point(s, t)});
+    if (first.chain != second.chain && intersect(s, t)) contacts.push_back({first, second, common_point(s, t)});
+    return true;
   });
   std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return key(a) < key(b); });
   return contacts;
@@ -76,24 +74,15 @@ std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains) {
 bool has_more_crossings_than(std::size_t most, const std::vector<Ring>& rings) {
   std::vector<Chain> chains;
   for (const Ring& ring : rings) chains.push_back(Chain{&ring});
-  std::vector<Box> boxes = boxes_of(chains);
   const auto are_neighbours = [&](EdgeId a, EdgeId b) {
     const std::size_t n = rings[a.chain].size();
     return a.chain == b.chain && ((a.edge + 1) % n == b.edge || (b.edge + 1) % n == a.edge);
   };
-  std::size_t pairs = 0, crossings = 0;
-  const auto count = [&](const Box& box_a, const Box& box_b) {
-    if (++pairs > kMostBoxPairs) throw TooMany{};
-    const EdgeId a = box_a.info(), b = box_b.info();
-    if (are_neighbours(a, b) || !intersect(chains[a.chain].edge(a.edge), chains[b.chain].edge(b.edge))) return;
-    if (++crossings > most) throw TooMany{};
-  };
-  try {
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), count);
-  } catch (const TooMany&) {
-    return true;
-  }
-  return false;
+  std::size_t crossings = 0;
+  return !for_each_box_pair(chains, kMostBoxPairs, [&](EdgeId a, EdgeId b) {
+    const bool cross = !are_neighbours(a, b) && intersect(chains[a.chain].edge(a.edge), chains[b.chain].edge(b.edge));
+    return !cross || ++crossings <= most;
+  });
 }
 
 }  // namespace exactvo::geometry::detail

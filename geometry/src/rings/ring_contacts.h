@@ -40,10 +40,11 @@ struct Contact {
 /// REQUIRES: no two consecutive vertices equal; closed chains have at least three.
 std::optional<Contact> find_contact(const std::vector<Chain>& chains);
 
-/// Gives pairs of edges of different chains whose boxes meet, the one of the earlier chain first, in no order to rely
-/// on. False where there are more than `most`: the others are not given. O(n log^2 n + pairs) (CGAL).
+/// Gives pairs of edges whose boxes meet, the one of the earlier chain first, in no order to rely on, until `take` says
+/// that it wants no more. False then, and where there are more than `most`: the others are not given. O(n log^2 n +
+/// pairs) (CGAL).
 bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
-                       const std::function<void(EdgeId first, EdgeId second)>& take);
+                       const std::function<bool(EdgeId first, EdgeId second)>& take);
 
 /// Every contact between edges of different chains, ordered. O(n log^2 n + candidates), by the edges' boxes (CGAL).
 std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains);
@@ -52,6 +53,9 @@ std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains);
 /// kMostBoxPairs pairs of boxes meet, which would take seconds to look through.
 bool has_more_crossings_than(std::size_t most, const std::vector<Ring>& rings);
 inline constexpr std::size_t kMostBoxPairs = std::size_t{1} << 26;
+
+/// The place of the lexicographically least point. REQUIRES: there is one.
+std::size_t least_vertex(const std::vector<Vec2>& points);
 
 /// A common point of two segments that meet: an end that lies on the other, else the crossing, rounded.
 Vec2 common_point(const Segment& s, const Segment& t);

@@ -135,11 +135,6 @@ class Sweep {
 /// Up to here looking at every pair of edges is quicker than sweeping.
 constexpr std::size_t kFewEdges = 24;
 
-bool boxes_meet(const Segment& s, const Segment& t) {
-  return std::max(s.a.x, s.b.x) >= std::min(t.a.x, t.b.x) && std::max(t.a.x, t.b.x) >= std::min(s.a.x, s.b.x) &&
-         std::max(s.a.y, s.b.y) >= std::min(t.a.y, t.b.y) && std::max(t.a.y, t.b.y) >= std::min(s.a.y, s.b.y);
-}
-
 /// Whether the second edge, which begins where the first ends, folds back onto it. Two that only share their vertex
 /// meet nowhere else.
 bool folds_back(const Segment& s, const Segment& t) {
@@ -155,10 +150,8 @@ bool keeps_apart(const Chain& chain) {
     const Segment edge = chain.edge(i);
     if (folds_back(edge, chain.edge((i + 1) % n))) return false;
     const std::size_t end = i == 0 ? n - 1 : n;  // the last edge is the first one's neighbour
-    for (std::size_t j = i + 2; j < end; ++j) {
-      const Segment other = chain.edge(j);
-      if (boxes_meet(edge, other) && intersect(edge, other)) return false;
-    }
+    for (std::size_t j = i + 2; j < end; ++j)
+      if (intersect(edge, chain.edge(j))) return false;
   }
   return true;
 }
@@ -168,6 +161,11 @@ bool keeps_apart(const Chain& chain) {
 std::optional<Contact> find_contact(const std::vector<Chain>& chains) {
   if (chains.size() == 1 && keeps_apart(chains.front())) return std::nullopt;
   return Sweep(chains).run();
+}
+
+std::size_t least_vertex(const std::vector<Vec2>& points) {
+  return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), lexicographically_less) -
+                                  points.begin());
 }
 
 bool lies_on(const Segment& s, Vec2 x) {

@@ -7,6 +7,7 @@
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
+#include "rings/convexity.h"
 #include "rings/hole_placement.h"
 #include "rings/ring_contacts.h"
 
@@ -71,14 +72,10 @@ std::size_t count_distinct(std::vector<Vec2> points) {
   return static_cast<std::size_t>(std::distance(points.begin(), std::unique(points.begin(), points.end())));
 }
 
-bool all_collinear(const Ring& ring) {
-  return std::all_of(ring.begin(), ring.end(), [&](Vec2 p) { return orientation(ring[0], ring[1], p) == Sign::zero; });
-}
-
 // The reason why a ring encloses nothing, if so.
 std::optional<RingProblemCode> degeneracy(const Ring& ring) {
   if (count_distinct(ring) < 3) return RingProblemCode::too_few_points;
-  if (all_collinear(ring)) return RingProblemCode::zero_area;
+  if (detail::on_one_line(ring)) return RingProblemCode::zero_area;
   return std::nullopt;
 }
 
@@ -128,11 +125,6 @@ bool lexicographically_less(const RingProblem& a, const RingProblem& b) {
 
 bool all_repaired(const Problems& problems) {
   return std::all_of(problems.begin(), problems.end(), [](const RingProblem& p) { return p.repaired; });
-}
-
-std::size_t lowest_vertex(const Ring& ring) {
-  const auto least = std::min_element(ring.begin(), ring.end(), detail::lexicographically_less);
-  return static_cast<std::size_t>(std::distance(ring.begin(), least));
 }
 
 }  // namespace
@@ -192,7 +184,7 @@ bool is_simple(const Ring& ring) {
 Sign winding(const Ring& ring) {
   EXACTVO_REQUIRE(ring.size() >= 3, excerpt(ring));
   const std::size_t n = ring.size();
-  const std::size_t i = lowest_vertex(ring);
+  const std::size_t i = detail::least_vertex(ring);
   return orientation(ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]);
 }
 

@@ -13,9 +13,6 @@
 namespace exactvo::geometry {
 namespace {
 
-using detail::Crossing;
-using detail::crossing;
-
 double length(Vec2 d) {
   return std::hypot(d.x, d.y);
 }
@@ -150,15 +147,7 @@ double rounding_of_distance(double largest_coordinate) {
 
 Place locate(const Polygon& polygon, Vec2 x) {
   EXACTVO_REQUIRE(is_finite(x), hex_text(x.x) + " " + hex_text(x.y));
-  bool odd = false;
-  bool on_edge = false;
-  for_each_edge(polygon, [&](const Segment& edge) {
-    const Crossing c = crossing(edge, x);
-    on_edge = on_edge || c == Crossing::on_edge;
-    odd = odd != (c == Crossing::right);
-  });
-  if (on_edge) return Place::boundary;
-  return odd ? Place::inside : Place::outside;
+  return detail::even_odd_place(x, [&](const auto& visit) { for_each_edge(polygon, visit); });
 }
 
 bool contains(const Polygon& polygon, Vec2 x) {

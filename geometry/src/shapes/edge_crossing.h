@@ -26,4 +26,17 @@ inline Crossing crossing(const Segment& edge, Vec2 x) {
   return right ? Crossing::right : Crossing::none;
 }
 
+/// Where x lies by the even-odd rule over the edges that `for_each_edge(visit)` visits. Exact.
+template <class ForEachEdge>
+Place even_odd_place(Vec2 x, const ForEachEdge& for_each_edge) {
+  bool odd = false, on_edge = false;
+  for_each_edge([&](const Segment& edge) {
+    const Crossing c = crossing(edge, x);
+    on_edge = on_edge || c == Crossing::on_edge;
+    odd = odd != (c == Crossing::right);
+  });
+  if (on_edge) return Place::boundary;
+  return odd ? Place::inside : Place::outside;
+}
+
 }  // namespace exactvo::geometry::detail

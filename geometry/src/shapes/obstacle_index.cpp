@@ -11,13 +11,6 @@
 namespace exactvo::geometry {
 namespace {
 
-Box box_of_edge(const Segment& s) {
-  Box box;
-  box.add(s.a);
-  box.add(s.b);
-  return box;
-}
-
 bool holds(const Box& box, Vec2 x) {
   return box.low.x <= x.x && x.x <= box.high.x && box.low.y <= x.y && x.y <= box.high.y;
 }
@@ -47,7 +40,7 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
   std::vector<Box> boxes;
   boxes.reserve(edges_.size());
   for (const Segment& e : edges_) {
-    boxes.push_back(box_of_edge(e));
+    boxes.push_back(box_of(e));
     box_.add(boxes.back());
     largest_ = std::max({largest_, largest(e.a), largest(e.b)});
   }
@@ -57,20 +50,16 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
 /// Of a polygon: by the edges that the ray towards +x may cross.
 bool ObstacleIndex::is_inside(Vec2 x) const {
   if (!has_interior_ || !holds(box_, x)) return false;
-  bool odd = false, on_edge = false;
-  edges_by_place_.for_each_meeting({x, {box_.high.x, x.y}}, [&](std::size_t e) {
-    const detail::Crossing c = detail::crossing(edges_[e], x);
-    on_edge = on_edge || c == detail::Crossing::on_edge;
-    odd = odd != (c == detail::Crossing::right);
-  });
-  return odd || on_edge;
+  return detail::even_odd_place(x, [&](const auto& visit) {
+           edges_by_place_.for_each_meeting({x, {box_.high.x, x.y}}, [&](std::size_t e) { visit(edges_[e]); });
+         }) != Place::outside;
 }
 
 /// Looks at the edges within a reach that doubles until it holds the nearest. An edge beyond a window is farther than
 /// its reach, rounding and all.
 double ObstacleIndex::edge_distance(const Segment& path, double enough) const {
   constexpr double kRounding = 1e-9;  // of a reach
-  const Box round = box_of_edge(path);
+  const Box round = box_of(path);
   const Vec2 size = round.high - round.low;
   const double rounding = rounding_of_distance(std::max({largest_, largest(path.a), largest(path.b)}));
   double least = kInfinity;
