@@ -7,6 +7,7 @@
 
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/shape_numbers.h"
 #include "rings/convexity.h"
 
 namespace exactvo::geometry {
@@ -55,19 +56,6 @@ double largest_entry(const Ellipse& e) {
 
 std::string text(Vec2 p) {
   return hex_text(p.x) + " " + hex_text(p.y);
-}
-
-std::string text(const Disc& d) {
-  return "disc " + text(d.center) + " " + hex_text(d.radius);
-}
-std::string text(const Segment& s) {
-  return "segment " + text(s.a) + " " + text(s.b);
-}
-std::string text(const ConvexPolygon& p) {
-  return "convex_polygon " + to_string(p.vertices);
-}
-std::string text(const Ellipse& e) {
-  return "ellipse " + text(e.center) + " " + hex_text(e.l11) + " " + hex_text(e.l21) + " " + hex_text(e.l22);
 }
 
 }  // namespace
@@ -154,7 +142,11 @@ std::string excerpt(const std::vector<Vec2>& points) {
 }
 
 std::string to_string(const ConvexShape& shape) {
-  return std::visit([](const auto& s) { return text(s); }, shape);
+  constexpr const char* kKinds[] = {"disc", "segment", "convex_polygon", "ellipse"};
+  std::string out = kKinds[shape.index()];
+  if (const auto* polygon = std::get_if<ConvexPolygon>(&shape)) return out + " " + to_string(polygon->vertices);
+  for (const double x : numbers_of(shape)) out += " " + hex_text(x);
+  return out;
 }
 
 }  // namespace exactvo::geometry
