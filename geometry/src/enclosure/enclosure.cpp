@@ -21,8 +21,6 @@
 namespace exactvo::geometry {
 namespace {
 
-using detail::TrapFreeFit;
-
 /// Unit vectors all round.
 template <std::size_t kCount>
 std::array<Vec2, kCount> unit_vectors() {
@@ -207,7 +205,7 @@ class Clustering {
  private:
   Cluster cluster(std::vector<std::size_t> which, std::vector<Vec2> hull) {
     Cluster c{std::move(which), std::move(hull), {}, {}, {}, made_++, {}};
-    c.fitted = fit_(c.hull, robot_radius_, start_, goal_, options_);
+    c.fitted = detail::fit_trap_free(memory_, c.hull, robot_radius_, start_, goal_, options_);
     if (c.fitted) c.grown = std::make_unique<Silhouette>(c.fitted->ellipse, robot_radius_);
     return c;
   }
@@ -294,7 +292,7 @@ class Clustering {
   std::vector<Box> boxes_;   ///< of the obstacles
   std::vector<bool> taken_;  ///< whether an obstacle is in a cluster
   std::vector<Cluster> clusters_;
-  TrapFreeFit fit_;
+  detail::FitMemory memory_;
   std::size_t made_ = 0;  ///< clusters
 };
 

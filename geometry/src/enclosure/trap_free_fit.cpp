@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "enclosure/candidate_search.h"
 #include "enclosure/ellipse_solver.h"
 #include "enclosure/trap_free_fit.h"
 #include "exactvo/geometry/distance.h"
@@ -19,40 +18,7 @@
 
 namespace exactvo::geometry {
 namespace detail {
-
-/// What a fit leaves to the next: memory.
-struct FitMemory {
-  std::vector<Vec2> points;    ///< the hull's corners from the first of them
-  std::vector<double> angles;  ///< of the coarse search
-  std::vector<Orientation> orientations;
-  // Of each candidate: orientation x semi-minor axis x offset across.
-  std::vector<Known::State> state;
-  std::vector<MajorFit> major;  ///< read where the state says so
-  Orientation here, aside;      ///< of the pattern search
-  std::vector<double> width;
-};
-
-}  // namespace detail
-
 namespace {
-
-using detail::Candidate;
-using detail::CandidateSearch;
-using detail::Ends;
-using detail::FitGoal;
-using detail::FitMemory;
-using detail::inflate_to_contain;
-using detail::kMinors;
-using detail::kMinorShares;
-using detail::Known;
-using detail::kOffsets;
-using detail::kOffsetShares;
-using detail::MajorFit;
-using detail::Orientation;
-using detail::Touching;
-using detail::Turn;
-using detail::turn_by;
-using detail::TurnedPoints;
 
 constexpr std::size_t kAngles = 18;
 
@@ -284,24 +250,14 @@ class LocalFit {
 
 }  // namespace
 
-const char* name(EnclosureGrade grade) {
-  constexpr const char* kNames[] = {"trap-free", "trap-free-thin", "containing", "tight"};
-  return kNames[static_cast<int>(grade)];
-}
-
-namespace detail {
-
-TrapFreeFit::TrapFreeFit() : memory_(std::make_unique<FitMemory>()) {}
-TrapFreeFit::~TrapFreeFit() = default;
-
-std::optional<FittedEllipse> TrapFreeFit::operator()(const std::vector<Vec2>& hull, double robot_radius, Vec2 start,
-                                                     Vec2 goal, const EnclosureOptions& options) {
+std::optional<FittedEllipse> fit_trap_free(FitMemory& memory, const std::vector<Vec2>& hull, double robot_radius,
+                                           Vec2 start, Vec2 goal, const EnclosureOptions& options) {
   const double most = options.most_inflation * grown_area(hull, robot_radius + options.margin) / kPi;
   const double clear = options.clear_of_ends;
   const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most, false};
   const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most, true};
   const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most, true};
-  LocalFit fit(*memory_, hull);
+  LocalFit fit(memory, hull);
   if (auto e = fit(full)) return FittedEllipse{*e, EnclosureGrade::trap_free};
   if (auto e = fit(thin)) return FittedEllipse{*e, EnclosureGrade::trap_free_thin};
   if (auto e = fit(bare)) return FittedEllipse{*e, EnclosureGrade::containing};
@@ -310,10 +266,16 @@ std::optional<FittedEllipse> TrapFreeFit::operator()(const std::vector<Vec2>& hu
 
 }  // namespace detail
 
+const char* name(EnclosureGrade grade) {
+  constexpr const char* kNames[] = {"trap-free", "trap-free-thin", "containing", "tight"};
+  return kNames[static_cast<int>(grade)];
+}
+
 std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
                                            const EnclosureOptions& options) {
   EXACTVO_REQUIRE(!points.empty(), "no points");
-  return detail::TrapFreeFit()(convex_hull(points).vertices, robot_radius, start, goal, options);
+  detail::FitMemory memory;
+  return detail::fit_trap_free(memory, convex_hull(points).vertices, robot_radius, start, goal, options);
 }
 
 }  // namespace exactvo::geometry
