@@ -19,16 +19,24 @@ Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
   return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
 }
 
+std::vector<std::vector<Vec2>> courses_of(const Obstacle& obstacle) {
+  if (const auto* wall = std::get_if<Polyline>(&obstacle)) return {wall->points};
+  const auto& polygon = std::get<Polygon>(obstacle);
+  std::vector<Ring> rings{polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  return rings;
+}
+
 }  // namespace detail
 
 namespace {
 
 using detail::attempt;
+using detail::courses_of;
 using detail::divide;
 using detail::enclose_free_of_traps;
 using detail::kNotInside;
 using detail::split;
-using detail::Subject;
 using detail::verdict;
 using detail::verdict_of;
 
@@ -38,10 +46,11 @@ bool contains_all(const ConvexPolygon& hull, const std::vector<Vec2>& points) {
 
 // --- Enclosures ---
 
-void enclose_hull(const Subject& subject, ObstacleShapes& out) {
+void enclose_hull(ObstacleShapes& out) {
   attempt(out.hull_contains, [&] {
-    out.hull = convex_hull(subject.points);
-    out.hull_contains = verdict(contains_all(out.hull, subject.points), kNotInside);
+    const std::vector<Vec2> points = vertices_of(out.obstacle);
+    out.hull = convex_hull(points);
+    out.hull_contains = verdict(contains_all(out.hull, points), kNotInside);
   });
 }
 
@@ -86,13 +95,15 @@ double length_of(const std::vector<Vec2>& course, bool closed) {
   return sum;
 }
 
-void measure(const Subject& subject, ObstacleShapes& out) {
+void measure(ObstacleShapes& out) {
   ShapeFigures& f = out.figures;
-  f.vertices = subject.points.size();
-  f.holes = subject.closed ? subject.courses.size() - 1 : 0;
-  for (const std::vector<Vec2>& course : subject.courses) {
-    if (subject.closed) f.area += 0.5 * doubled_area(course);
-    f.perimeter += length_of(course, subject.closed);
+  const bool closed = has_interior(out.obstacle);
+  const std::vector<std::vector<Vec2>> courses = courses_of(out.obstacle);
+  f.holes = courses.size() - 1;
+  for (const std::vector<Vec2>& course : courses) {
+    f.vertices += course.size();
+    if (closed) f.area += 0.5 * doubled_area(course);
+    f.perimeter += length_of(course, closed);
   }
   f.hull_area = 0.5 * doubled_area(out.hull.vertices);
   f.ellipse_area = area(out.smallest_ellipse);
@@ -100,27 +111,6 @@ void measure(const Subject& subject, ObstacleShapes& out) {
   const EllipseAxes axes = axes_of(out.smallest_ellipse);
   const double reach = (axes.a - axes.b) * (axes.a + axes.b);
   f.trap_free_beyond = axes.b > 0.0 ? reach / axes.b : reach > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
-}
-
-void enclose_and_measure(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
-  enclose_hull(subject, out);
-  enclose_all(options, out);
-  enclose_facades(options, out);
-  enclose_free_of_traps(options, out);
-  measure(subject, out);
-}
-
-Subject subject_of(const Obstacle& obstacle) {
-  Subject subject;
-  subject.points = vertices_of(obstacle);
-  if (const auto* polygon = std::get_if<Polygon>(&obstacle)) {
-    subject.closed = true;
-    subject.courses.push_back(polygon->outer);
-    subject.courses.insert(subject.courses.end(), polygon->holes.begin(), polygon->holes.end());
-  } else {
-    subject.courses.push_back(std::get<Polyline>(obstacle).points);
-  }
-  return subject;
 }
 
 /// False where something can't be repaired: then there is no obstacle.
@@ -132,10 +122,7 @@ bool put_right(const Obstacle& given, ObstacleShapes& out) {
     out.obstacle = std::move(normal.polyline);
     return out.valid;
   }
-  const auto& polygon = std::get<Polygon>(given);
-  std::vector<Ring> rings{polygon.outer};
-  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-  NormalizedPolygon normal = normalize(rings);
+  NormalizedPolygon normal = normalize(courses_of(given));
   out.valid = normal.ok();
   out.problems = std::move(normal.problems);
   // A ring of an obstacle never repeats its first point, so that it does not is no finding.
@@ -171,10 +158,13 @@ ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) 
     out.obstacle = obstacle;
     out.valid = true;
   }
-  const Subject subject = subject_of(out.obstacle);
-  divide(subject, options, out);
-  split(subject, options, out);
-  enclose_and_measure(subject, options, out);
+  divide(options, out);
+  split(options, out);
+  enclose_hull(out);
+  enclose_all(options, out);
+  enclose_facades(options, out);
+  enclose_free_of_traps(options, out);
+  measure(out);
   return out;
 }
 

@@ -56,38 +56,38 @@ class CourseWalk {
   std::size_t steps_ = 0;
 };
 
-bool facades_follow(const FacadeSet& set, const Subject& subject) {
+bool facades_follow(const FacadeSet& set, const Obstacle& obstacle) {
   std::size_t next = 0;
-  for (const std::vector<Vec2>& course : subject.courses) {
-    if (!CourseWalk(course, subject.closed, set).keeps(next)) return false;
+  for (const std::vector<Vec2>& course : courses_of(obstacle)) {
+    if (!CourseWalk(course, has_interior(obstacle), set).keeps(next)) return false;
   }
   return next == set.facades.size();
 }
 
 /// A wall's own edges, straight runs merged: what half-planes of pieces keep clear of must not be simplified.
-void split_wall(const Subject& subject, ObstacleShapes& out) {
+void split_wall(ObstacleShapes& out) {
   const FacadeSet edges = out.facades.deviation > 0.0 ? divide_into_facades(out.obstacle) : out.facades;
   out.pieces.assign(edges.facades.begin(), edges.facades.end());
-  out.pieces_cover = verdict(edges.deviation == 0.0 && facades_follow(edges, subject), "an edge is not covered");
+  out.pieces_cover = verdict(edges.deviation == 0.0 && facades_follow(edges, out.obstacle), "an edge is not covered");
 }
 
 }  // namespace
 
-void divide(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
+void divide(const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.facades_follow, [&] {
     out.facades = divide_into_facades(out.obstacle, options.facades);
     const bool within = out.facades.deviation <= options.facades.tolerance;
-    out.facades_follow = verdict(within && facades_follow(out.facades, subject), "a facade leaves the boundary");
+    out.facades_follow = verdict(within && facades_follow(out.facades, out.obstacle), "a facade leaves the boundary");
   });
 }
 
-void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
+void split(const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.pieces_cover, [&] {
     if (const auto* polygon = std::get_if<Polygon>(&out.obstacle)) {
       for (ConvexPolygon& piece : convex_pieces(*polygon, options.partition)) out.pieces.emplace_back(std::move(piece));
       out.pieces_cover = {true, {}};  // convex_pieces gives no partition that it has not proved
     } else {
-      split_wall(subject, out);
+      split_wall(out);
     }
   });
 }

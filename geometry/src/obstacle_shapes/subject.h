@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What the steps of obstacle_shapes.cpp share: what is looked at, and how a step says that it holds or why not.
+/// The steps of obstacle_shapes.cpp, and how a step says that it holds or why not.
 
 #include <exception>
 #include <vector>
@@ -14,12 +14,8 @@ namespace exactvo::geometry::detail {
 
 inline constexpr const char* kNotInside = "a point lies outside";
 
-/// What must lie in the enclosures, and the course that the facades must keep to.
-struct Subject {
-  std::vector<Vec2> points;                ///< every vertex
-  std::vector<std::vector<Vec2>> courses;  ///< rings and chains
-  bool closed = false;                     ///< courses are rings
-};
+/// What the facades must keep to: a polygon's rings, or a wall's one chain.
+std::vector<std::vector<Vec2>> courses_of(const Obstacle& obstacle);
 
 /// Runs `action`; a failure inside becomes the verdict's reason.
 template <class Action>
@@ -39,10 +35,10 @@ inline Verdict verdict(bool holds, const char* reason) {
 Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out);
 
 /// Facades of the courses, certified to follow them.
-void divide(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out);
+void divide(const ShapeOptions& options, ObstacleShapes& out);
 
 /// Convex pieces; of a wall its own edges.
-void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out);
+void split(const ShapeOptions& options, ObstacleShapes& out);
 
 /// The ellipse that traps no robot on its way, or on any. REQUIRES: hull and smallest ellipse are in `out`.
 void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out);

@@ -7,6 +7,7 @@
 #include "exact/exact_number.h"
 #include "exact/running_error.h"
 #include "exact/stages.h"
+#include "exactvo/geometry/pieces.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "obstacle_shapes/subject.h"
@@ -63,15 +64,10 @@ void free_for_every_goal(ObstacleShapes& out) {
     out.trap_free = {free, EnclosureGrade::trap_free, true, TrapFreeAnswer::found};
 }
 
-ConvexShape shape_of_hull(const ConvexPolygon& hull) {
-  if (hull.vertices.size() > 2) return hull;
-  return Segment{hull.vertices.front(), hull.vertices.back()};
-}
-
 /// Whether the robot at one end is as near to the hull as the options forbid.
 bool leaves_no_room(const ShapeOptions& options, const ConvexPolygon& hull) {
   const double near = options.robot_radius + options.enclosure.clear_of_ends + options.enclosure.least_margin;
-  const ConvexShape shape = shape_of_hull(hull);
+  const ConvexShape shape = hull_shape(hull.vertices);
   const auto is_near = [&](Vec2 x) { return locate({shape, x, near}, {0.0, 0.0}) != Place::outside; };
   return is_near(options.way->start) || is_near(options.way->goal);
 }
