@@ -77,7 +77,6 @@ TEST(RouteMapForChainsOnly, AnswersAsTheWholeMapDoes) {
     options.chains_only = true;
     options.largest_radius = random.uniform(0.02, 0.6);
     const RouteMap narrow(field.obstacles, options);
-    EXPECT_TRUE(narrow.is_for_chains_only());
     EXPECT_EQ(narrow.largest_radius(), options.largest_radius);
     EXPECT_LE(narrow.cell_count(), whole.cell_count());
     for (const double share : {1.0, 0.7, 0.3}) {

@@ -85,8 +85,12 @@ class CellMap {
   /// beside it.
   CellMap(PlanarGraph graph, const Vec2 (&corners)[4], double widest_gate = kAllGates);
 
-  /// The cells of point_cells.h.
   struct ForPoints {};
+  /// The cells as a point needs them (point_cells.cpp). No gate is too narrow for one, so that Links cut nothing, and
+  /// triangles are joined across their sides as long as what comes out is convex: a search has a third of the cells to
+  /// look at. Vertices, triangles and sides keep their numbers. A corner of a cell is straight only where no straight
+  /// piece from inside one portal to inside another can pass it: such a piece runs inside the cell. REQUIRES:
+  /// `map.has_all_gates()`.
   CellMap(const CellMap& map, ForPoints);
   /// The cells that some of its Links make, by their numbers; the others cut nothing. REQUIRES: ascending.
   CellMap(const CellMap& map, const std::vector<int>& kept_links);

@@ -12,7 +12,6 @@
 #include <map>
 #include <unordered_map>
 
-#include "routes/edge_numbers.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -137,6 +136,9 @@ class Vertices {
   std::map<Vector<Rational>, int, Less> fractions_;
 };
 
+/// Numbers of a graph's edges by their ends, the lesser one first.
+using EdgeNumbers = std::unordered_map<std::pair<int, int>, std::size_t, boost::hash<std::pair<int, int>>>;
+
 void add_pieces(CutEdge& edge, Vertices& vertices, EdgeNumbers& by_ends, PlanarGraph& graph) {
   const Segment& s = edge.segment;
   std::sort(edge.cuts.begin(), edge.cuts.end(),
@@ -146,10 +148,9 @@ void add_pieces(CutEdge& edge, Vertices& vertices, EdgeNumbers& by_ends, PlanarG
   for (const Point& p : edge.cuts) {
     const int to = vertices.number_of(p, edge.name);
     if (to == from) continue;
-    const int number = by_ends.emplace(from, to, static_cast<int>(graph.edges.size()));
-    const bool fresh = number == static_cast<int>(graph.edges.size());
+    const auto [known, fresh] = by_ends.emplace(std::minmax(from, to), graph.edges.size());
     if (fresh) graph.edges.push_back({from, to, 0, edge.name});
-    PlanarGraph::Edge& piece = graph.edges[static_cast<std::size_t>(number)];
+    PlanarGraph::Edge& piece = graph.edges[known->second];
     piece.winding += piece.a == from ? edge.winding : -edge.winding;
     from = to;
   }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "routes/point_cells.h"
-
 #include <algorithm>
-#include <numeric>
+#include <boost/pending/disjoint_sets.hpp>
 
+#include "routes/cell_map.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -15,13 +14,12 @@ constexpr int kMostPortals = 12;
 /// The borders of cells as rings of half-edges. Half-edge 3 f + i is side i of triangle f, which lies to its left.
 class CellJoiner {
  public:
-  explicit CellJoiner(const CellMap& map) : map_(map), removed_(3 * map.triangles.size(), 0) {
+  explicit CellJoiner(const CellMap& map)
+      : map_(map), removed_(3 * map.triangles.size(), 0), cells_(map.triangles.size()) {
     const std::size_t count = removed_.size();
     next_.resize(count);
     previous_.resize(count);
     portals_.resize(map.triangles.size());
-    cell_.resize(map.triangles.size());
-    std::iota(cell_.begin(), cell_.end(), 0);
     for (int h = 0; h < static_cast<int>(count); ++h) {
       const int first = h - h % 3;
       next_[h] = first + (h + 1) % 3;
@@ -50,10 +48,7 @@ class CellJoiner {
     return t.free && t.wall[h % 3] < 0 && t.neighbour[h % 3] >= 0;
   }
   /// One of its triangles.
-  int cell_of(int triangle) {
-    while (cell_[triangle] != triangle) triangle = cell_[triangle] = cell_[cell_[triangle]];
-    return triangle;
-  }
+  std::size_t cell_of(int triangle) { return cells_.find_set(triangle); }
 
  private:
   int turn(int a, int b) const { return orient(map_.vertex(origin(a)), map_.vertex(origin(b)), map_.vertex(end(b))); }
@@ -69,14 +64,16 @@ class CellJoiner {
   }
 
   void join_across(int h) {
-    const int t = twin(h), one = cell_of(h / 3), other = cell_of(t / 3);
-    if (one == other || portals_[one] + portals_[other] - 2 > kMostPortals) return;
+    const int t = twin(h);
+    const std::size_t one = cell_of(h / 3), other = cell_of(t / 3);
+    const int portals = portals_[one] + portals_[other] - 2;
+    if (one == other || portals > kMostPortals) return;
     if (!may_follow(previous_[h], next_[t]) || !may_follow(previous_[t], next_[h])) return;
     link(previous_[h], next_[t]);
     link(previous_[t], next_[h]);
     removed_[h] = removed_[t] = 1;
-    cell_[std::max(one, other)] = std::min(one, other);
-    portals_[std::min(one, other)] = portals_[one] + portals_[other] - 2;
+    cells_.link(one, other);
+    portals_[cell_of(h / 3)] = portals;
   }
   void link(int a, int b) {
     next_[a] = b;
@@ -86,7 +83,8 @@ class CellJoiner {
   const CellMap& map_;
   std::vector<char> removed_;
   std::vector<int> next_, previous_;
-  std::vector<int> cell_, portals_;  ///< of a triangle: another one of its cell; how many portals that has
+  boost::disjoint_sets_with_storage<> cells_;  ///< of triangles
+  std::vector<int> portals_;                   ///< of the triangle that stands for a cell
 };
 
 }  // namespace
@@ -119,10 +117,6 @@ CellMap::CellMap(const CellMap& map, ForPoints) : CellMap(map, Uncut{}) {
   cell_chords.resize(cell_portals.size());
   for (std::size_t f = 0; f < triangles.size(); ++f) first_cell.push_back(number[joiner.cell_of(static_cast<int>(f))]);
   first_cell.push_back(static_cast<int>(cell_portals.size()));
-}
-
-CellMap cells_for_points(const CellMap& map) {
-  return CellMap(map, CellMap::ForPoints{});
 }
 
 }  // namespace exactvo::geometry::routing

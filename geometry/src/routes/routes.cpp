@@ -7,14 +7,13 @@
 #include <optional>
 
 #include "exactvo/geometry/box.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
 #include "routes/chain.h"
-#include "routes/point_cells.h"
 #include "routes/point_route.h"
 #include "routes/realise.h"
 #include "routes/signs.h"
 #include "routes/widest.h"
-#include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry {
 
@@ -111,10 +110,6 @@ double RouteMap::largest_radius() const {
   return parts_->asked_radius;
 }
 
-bool RouteMap::is_for_chains_only() const {
-  return parts_->chains_only;
-}
-
 bool RouteMap::covers(Vec2 p) const {
   const Box& b = parts_->box;
   const double m = parts_->margin;
@@ -140,7 +135,7 @@ struct RoutePlan::State {
   static std::optional<CellMap> cells_for(const RouteMap::Parts& parts, double radius) {
     constexpr std::size_t kWorthIt = 2;  // times as many Links as are needed: cutting anew takes a few plans' time
     if (parts.chains_only) return std::nullopt;
-    if (radius == 0.0) return routing::cells_for_points(parts.cells);
+    if (radius == 0.0) return CellMap(parts.cells, CellMap::ForPoints{});
     const std::vector<int> needed = parts.cells.needed_links(radius);
     if (kWorthIt * needed.size() >= parts.cells.links.size()) return std::nullopt;
     return CellMap(parts.cells, needed);
@@ -205,10 +200,8 @@ EdgeName name_of(const CellMap& map, int piece) {
 /// The first polygon that holds x, which lies on no edge; the number of obstacles if there is none.
 std::size_t polygon_round(const std::vector<Obstacle>& obstacles, Vec2 x) {
   const auto holds = [&](const Obstacle& obstacle) {
-    if (!has_interior(obstacle)) return false;
-    bool inside = false;
-    for (const Segment& e : edges_of(obstacle)) inside ^= detail::crossing(e, x) == detail::Crossing::right;
-    return inside;
+    const auto* polygon = std::get_if<Polygon>(&obstacle);
+    return polygon != nullptr && contains(*polygon, x);
   };
   return static_cast<std::size_t>(std::find_if(obstacles.begin(), obstacles.end(), holds) - obstacles.begin());
 }
@@ -250,7 +243,7 @@ double length_of(const std::vector<Point>& points) {
 }  // namespace
 
 double RouteMap::widest_radius(Vec2 start, Vec2 goal) const {
-  EXACTVO_REQUIRE(!is_for_chains_only(), "a map for chains only");
+  EXACTVO_REQUIRE(!parts_->chains_only, "a map for chains only");
   EXACTVO_REQUIRE(covers(start) && covers(goal), to_string({start, goal}));
   const CellMap& cells = parts_->cells;
   const int s = triangle_of(cells, parts_->grid, start), t = triangle_of(cells, parts_->grid, goal);

@@ -8,11 +8,11 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <limits>
 #include <sstream>
+#include <unordered_map>
 #include <utility>
-
-#include "routes/edge_numbers.h"
 
 namespace exactvo::geometry::routing {
 namespace {
@@ -53,11 +53,12 @@ std::vector<Triangle> triangles_over(const PlanarGraph& graph, const Vec2 (&corn
   cdt.insert(points.begin(), points.end());
   std::vector<typename Cdt::Vertex_handle> handle(points.size());
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) handle[v->info()] = v;
-  EdgeNumbers wall_of(graph.edges.size());
+  using Ends = std::pair<int, int>;  // the lesser one first
+  std::unordered_map<Ends, int, boost::hash<Ends>> wall_of(graph.edges.size());
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PlanarGraph::Edge& e = graph.edges[i];
     cdt.insert_constraint(handle[e.a], handle[e.b]);
-    wall_of.set(e.a, e.b, static_cast<int>(i));
+    wall_of.emplace(std::minmax(e.a, e.b), static_cast<int>(i));
   }
   int count = 0;
   for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f) f->info() = cdt.is_infinite(f) ? -1 : count++;
@@ -70,7 +71,7 @@ std::vector<Triangle> triangles_over(const PlanarGraph& graph, const Vec2 (&corn
       t.wall[i] = -1;
       if (!f->is_constrained(i)) continue;
       const int a = f->vertex(Cdt::ccw(i))->info(), b = f->vertex(Cdt::cw(i))->info();
-      t.wall[i] = wall_of.at(a, b);
+      t.wall[i] = wall_of.at(std::minmax(a, b));
     }
   }
   return triangles;

@@ -109,15 +109,14 @@ class RouteMap {
   std::size_t vertex_count() const;
   /// The convex cells that the free plane is cut into: O(vertices), in practice three to ten times as many.
   std::size_t cell_count() const;
-  double largest_radius() const;    ///< m
-  bool is_for_chains_only() const;  ///< `RouteMapOptions::chains_only`
+  double largest_radius() const;  ///< m
   /// Whether a start or goal may lie there.
   bool covers(Vec2 point) const;
 
   /// The largest double for which a disc of that radius has a route, in metres; 0 if none has. Exact: `RoutePlan` finds
   /// a route for it, and for the next double a chain, or that an end is blocked. `largest_radius` where even that fits.
   /// O(n log n) for the first question, then O(log n) and the time to look up what is near. REQUIRES: `covers` both;
-  /// not `is_for_chains_only`.
+  /// the map is not for chains only.
   double widest_radius(Vec2 start, Vec2 goal) const;
 
   struct Parts;
@@ -136,7 +135,7 @@ class RoutePlan {
   /// m, as it was given.
   double radius() const;
 
-  /// REQUIRES: both within the map (`covers`); no route where the map `is_for_chains_only`. Throws RouteNotProven.
+  /// REQUIRES: both within the map (`covers`); no route where the map is for chains only. Throws RouteNotProven.
   RouteAnswer query(Vec2 start, Vec2 goal) const;
 
   /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: both within the map.
