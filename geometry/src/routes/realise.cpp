@@ -15,28 +15,16 @@ class Realiser {
   Realiser(const ClearancePlan& plan, const Way& way) : plan_(plan), map_(plan.map()), way_(way), straight_(plan) {}
 
   std::optional<std::vector<Point>> operator()(Vec2 s, Vec2 t) {
-    split();
-    std::vector<std::vector<Point>> before, after;  // of each gate: points on the straight way into it and out of it
-    for (const Gate& gate : gates_) {
-      before.push_back(straight_.approach(gate, -1));
-      after.push_back(straight_.approach(gate, 1));
-    }
-    const std::size_t n = gates_.size();
+    split(s, t);
     route_.assign(1, Point(s));
-    for (std::size_t i = 0; i <= n; ++i) {
-      const std::vector<Point> from = i > 0 ? after[i - 1] : straight_.departures(s);
-      const std::vector<Point> to = i < n ? before[i] : straight_.departures(t);
-      const auto far_from = [&] {
-        return i > 0 ? straight_.far_approach(gates_[i - 1], 1, to.back()) : straight_.far_departures(s, to.back());
-      };
-      const auto far_to = [&] {
-        return i < n ? straight_.far_approach(gates_[i], -1, from.back()) : straight_.far_departures(t, from.back());
-      };
-      if (!straight_to_next_gate(i) && !between(from, to, legs_[i]) &&
-          !between_far(far_from(), from, far_to(), to, legs_[i]) && !in_parts(from, to, legs_[i]) &&
-          !by_the_middles(from, to, legs_[i]))
+    for (std::size_t i = 0; i < legs_.size(); ++i) {
+      const Leg& leg = legs_[i];
+      const std::vector<Point> from = straight_.near(leg.from), to = straight_.near(leg.to);
+      const bool is_between_gates = i > 0 && i + 1 < legs_.size();
+      if (!(is_between_gates && plan_.is_clear(leg.from.at, leg.to.at)) && !between(from, to, leg) &&
+          !between_far(from, to, leg) && !in_parts(from, to, leg) && !by_the_middles(from, to, leg))
         return std::nullopt;
-      append(i < n ? gates_[i].middle : Point(t));
+      append(leg.to.at);
     }
     return std::move(route_);
   }
@@ -46,10 +34,12 @@ class Realiser {
   struct Leg {
     std::vector<Circle> circles;
     std::size_t first = 0, last = 0;  ///< its portals
+    Stop from{}, to{};
   };
 
-  void split() {
+  void split(Vec2 s, Vec2 t) {
     legs_.assign(1, {});
+    legs_.back().from = straight_.end_at(s);
     for (const Waypoint& w : way_.waypoints) {
       if (w.portal < 0) {
         legs_.back().circles.push_back(
@@ -57,12 +47,14 @@ class Realiser {
         continue;
       }
       if (!straight_.is_gabriel(w.portal)) continue;
-      gates_.push_back(straight_.gate_of(w.portal, w.from_left));
       legs_.back().last = static_cast<std::size_t>(w.at);
+      legs_.back().to = straight_.gate_of(w.portal, !w.from_left);
       legs_.emplace_back();
       legs_.back().first = static_cast<std::size_t>(w.at) + 1;
+      legs_.back().from = straight_.gate_of(w.portal, w.from_left);
     }
     legs_.back().last = way_.portals.size();
+    legs_.back().to = straight_.end_at(t);
   }
 
   void append(const Point& p) {
@@ -71,10 +63,6 @@ class Realiser {
   }
   void append(const std::vector<Point>& points) {
     for (const Point& p : points) append(p);
-  }
-
-  bool straight_to_next_gate(std::size_t i) {
-    return i > 0 && i < gates_.size() && plan_.is_clear(gates_[i - 1].middle, gates_[i].middle);
   }
 
   /// A proven polyline, its ends included.
@@ -122,8 +110,8 @@ class Realiser {
   }
 
   /// The same from points farther out, where there are any.
-  bool between_far(std::vector<Point> far_from, const std::vector<Point>& from, std::vector<Point> far_to,
-                   const std::vector<Point>& to, const Leg& leg) {
+  bool between_far(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
+    std::vector<Point> far_from = straight_.far(leg.from, leg.to.at), far_to = straight_.far(leg.to, leg.from.at);
     if (far_from.empty() && far_to.empty()) return false;
     far_from.insert(far_from.end(), from.begin(), from.end());
     far_to.insert(far_to.end(), to.begin(), to.end());
@@ -247,7 +235,7 @@ class Realiser {
     const bool whole_side = portal.link < 0 && portal.from.vertex >= 0 && portal.to.vertex >= 0 &&
                             map_.is_site(portal.from.vertex) && map_.is_site(portal.to.vertex);
     const bool short_link = portal.link >= 0 && map_.links[portal.link].length < 4.0 * plan_.radius();
-    if (whole_side || short_link) return straight_.gate_of(number, true).middle;
+    if (whole_side || short_link) return straight_.gate_of(number, true).at;
     const ShrunkPortal& q = plan_.shrunk(number);
     return Point(0.5 * (q.from + q.to));
   }
@@ -256,8 +244,7 @@ class Realiser {
   const CellMap& map_;
   const Way& way_;
   StraightWays straight_;
-  std::vector<Gate> gates_;
-  std::vector<Leg> legs_;  ///< one more than gates
+  std::vector<Leg> legs_;
   std::vector<Point> route_;
 };
 

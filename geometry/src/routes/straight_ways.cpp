@@ -12,18 +12,9 @@ namespace {
 /// Radii that a gate or an end is left straight, if that is clear: the farther the less room rounding takes.
 constexpr double kStraight[] = {0.15, 0.05, 0.01, 1e-3, 1e-5};
 
-Vector<Rational> scaled(const Vector<Rational>& v, double share) {
-  const Rational k(share);
-  return {Rational(k * v.x), Rational(k * v.y)};
-}
-
 Point moved(const Point& p, const Vector<Rational>& by) {
   const Vector<Rational> x = p.exact();
   return Point(Rational(x.x + by.x), Rational(x.y + by.y));
-}
-
-double length_of(const Vector<Rational>& v) {
-  return std::hypot(v.x.get_d(), v.y.get_d());
 }
 
 /// Whether the inside of the segment ab meets the closed disc with the diameter pq, given that its ends do not.
@@ -45,7 +36,7 @@ bool meets_disc_inside(const Point& p, const Point& q, const Point& a, const Poi
 
 }  // namespace
 
-Gate StraightWays::gate_of(int number, bool from_left) const {
+Stop StraightWays::gate_of(int number, bool from_left) const {
   const Portal& portal = map_.portals[number];
   Point p, q;  // as the portal runs
   if (portal.link >= 0) {
@@ -63,8 +54,7 @@ Gate StraightWays::gate_of(int number, bool from_left) const {
   // Across it to the right of p -> q leads from its left cell to its right one.
   const int sense = from_left ? 1 : -1;
   return {Point(Rational((a.x + b.x) / 2), Rational((a.y + b.y) / 2)),
-          {Rational(sense * d.y), Rational(-sense * d.x)},
-          length_of(d)};  // of the exact difference: gates of crossings of walls may lie in one double
+          {{Rational(sense * d.y), Rational(-sense * d.x)}}};
 }
 
 bool StraightWays::is_gabriel(int number) const {
@@ -75,7 +65,7 @@ bool StraightWays::is_gabriel(int number) const {
   const Vec2 middle = 0.5 * (p.rounded() + q.rounded());
   constexpr double kMore = 1.0 + 1e-6;  // than rounding makes of the disc
   return plan_.grid().for_each_near(middle, middle, 0.5 * kMore * norm(q.rounded() - p.rounded()), [&](int piece) {
-    const auto [a, b] = plan_.ends_of(piece);
+    const auto [a, b] = map_.ends_of(piece);
     for (const int v : {a, b}) {
       const Point& x = map_.vertex(v);
       const auto to_both = [&](auto to) -> NumberOf<decltype(to)> { return dot(to(p) - to(x), to(q) - to(x)); };
@@ -87,56 +77,52 @@ bool StraightWays::is_gabriel(int number) const {
   });
 }
 
-std::vector<Point> StraightWays::approach(const Gate& gate, int sense) const {
+/// A share of the radius along a way.
+Vector<Rational> StraightWays::stretch(const Vector<Rational>& way, double share) const {
+  // The length of the exact difference: gates of crossings of walls may lie in one double.
+  const Rational k(share * plan_.radius() / std::hypot(way.x.get_d(), way.y.get_d()));
+  return {Rational(k * way.x), Rational(k * way.y)};
+}
+
+std::vector<Point> StraightWays::near(const Stop& stop) const {
   std::vector<Point> out;
   for (const double share : kStraight) {
-    const Point p = moved(gate.middle, scaled(gate.through, sense * share * plan_.radius() / gate.width));
-    if (plan_.is_clear(p, gate.middle)) out.push_back(p);
+    for (const Vector<Rational>& way : stop.ways) {
+      const Point p = moved(stop.at, stretch(way, share));
+      if (plan_.is_clear(p, stop.at)) out.push_back(p);
+    }
   }
-  out.push_back(gate.middle);
+  out.push_back(stop.at);
   return out;
 }
 
 /// Along the sites that the disc touches at x, or nearly; parallel ones once.
-std::vector<Vector<Rational>> StraightWays::tangents_at(Vec2 x) const {
+Stop StraightWays::end_at(Vec2 x) const {
   constexpr double kContact = 1.0 + 1e-6;
-  std::vector<Vector<Rational>> tangents;
+  Stop stop{x, {}};
   for (const int piece : plan_.pieces_within(x, kContact * plan_.radius())) {
-    const auto [i, j] = plan_.ends_of(piece);
+    const auto [i, j] = map_.ends_of(piece);
     const Point &a = map_.vertex(i), &b = map_.vertex(j);
     const bool at_a = along(x, a, a, b) <= 0, at_b = along(x, b, a, b) >= 0;
     const Vector<Rational> away = Point(x).exact() - (at_a ? a : b).exact();
     const Vector<Rational> tangent =
         at_a || at_b ? Vector<Rational>{Rational(away.y), Rational(-away.x)} : b.exact() - a.exact();
-    const bool known = std::any_of(tangents.begin(), tangents.end(), [&](const Vector<Rational>& t) {
-      const Rational turn = cross(t, tangent);
+    const bool known = std::any_of(stop.ways.begin(), stop.ways.end(), [&](const Vector<Rational>& way) {
+      const Rational turn = cross(way, tangent);
       return sgn(turn) == 0;
     });
-    if (!known) tangents.push_back(tangent);
+    if (known) continue;
+    stop.ways.push_back(tangent);
+    stop.ways.push_back({Rational(-tangent.x), Rational(-tangent.y)});
   }
-  return tangents;
-}
-
-std::vector<Point> StraightWays::departures(Vec2 x) const {
-  const std::vector<Vector<Rational>> tangents = tangents_at(x);
-  std::vector<Point> out;
-  for (const double share : kStraight) {
-    for (const Vector<Rational>& tangent : tangents) {
-      for (const double sense : {1.0, -1.0}) {
-        const Point p = moved(x, scaled(tangent, sense * share * plan_.radius() / length_of(tangent)));
-        if (plan_.is_clear(p, x)) out.push_back(p);
-      }
-    }
-  }
-  out.emplace_back(x);
-  return out;
+  return stop;
 }
 
 /// Points x + k step, k >= 1, as far as the way there is clear; first the one beside the goal, then the farthest.
 void StraightWays::add_straight_on(const Point& x, const Vector<Rational>& step, const Point& goal,
                                    std::vector<Point>& out) const {
   constexpr int kDoublings = 24, kHalvings = 8;
-  const auto at = [&](double steps) { return moved(x, scaled(step, steps)); };
+  const auto at = [&](double steps) { return moved(x, {Rational(steps * step.x), Rational(steps * step.y)}); };
   std::vector<Point> found;
   double clear = 1.0, far = 2.0;
   for (int k = 0; k < kDoublings && plan_.is_clear(x, at(far)); ++k, far *= 2.0) found.push_back(at(clear = far));
@@ -155,17 +141,9 @@ void StraightWays::add_straight_on(const Point& x, const Vector<Rational>& step,
   out.insert(out.end(), found.rbegin(), found.rend());
 }
 
-std::vector<Point> StraightWays::far_approach(const Gate& gate, int sense, const Point& goal) const {
+std::vector<Point> StraightWays::far(const Stop& stop, const Point& goal) const {
   std::vector<Point> out;
-  add_straight_on(gate.middle, scaled(gate.through, sense * kStraight[0] * plan_.radius() / gate.width), goal, out);
-  return out;
-}
-
-std::vector<Point> StraightWays::far_departures(Vec2 end, const Point& goal) const {
-  std::vector<Point> out;
-  for (const Vector<Rational>& tangent : tangents_at(end))
-    for (const double sense : {1.0, -1.0})
-      add_straight_on(end, scaled(tangent, sense * kStraight[0] * plan_.radius() / length_of(tangent)), goal, out);
+  for (const Vector<Rational>& way : stop.ways) add_straight_on(stop.at, stretch(way, kStraight[0]), goal, out);
   return out;
 }
 
