@@ -192,12 +192,11 @@ ArcGraph::ArcGraph(const ClearancePlan& plan) {
     if (side.right >= 0 && !plan.side_admits(static_cast<int>(k)) && map.triangles[side.left].free)
       pairs.push_back({side.a, side.b, kSide});
   }
-  foot_of_.assign(map.links.size(), -1);
+  feet_.resize(map.links.size());
   for (std::size_t k = 0; k < map.links.size(); ++k) {
     const Link& link = map.links[k];
     if (plan.link_admits(static_cast<int>(k))) continue;
-    foot_of_[k] = static_cast<int>(feet_.size());
-    feet_.push_back(map.foot(link));
+    feet_[k] = map.foot(link);
     pairs.push_back({link.vertex, vertices + link.wall, static_cast<int>(k)});
   }
   first_.assign(map.graph.vertices.size() + map.graph.edges.size() + 1, 0);

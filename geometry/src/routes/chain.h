@@ -26,13 +26,12 @@ class ArcGraph {
   int size() const { return static_cast<int>(first_.size()) - 1; }
   const Arc* begin(int node) const { return arcs_.data() + first_[node]; }
   const Arc* end(int node) const { return arcs_.data() + first_[node + 1]; }
-  const Point& foot(int link) const { return feet_[foot_of_[link]]; }
+  const Point& foot(int link) const { return feet_[link]; }
 
  private:
   std::vector<int> first_;
   std::vector<Arc> arcs_;
-  std::vector<int> foot_of_;  ///< of a closed link
-  std::vector<Point> feet_;
+  std::vector<Point> feet_;  ///< of closed links
 };
 
 /// REQUIRES: s and t are free and lie in cells of different components. A short chain, not the shortest.

@@ -40,35 +40,26 @@ Corridor::Strip Corridor::strip_round(const std::vector<Vec2>& points) {
 const Corridor::Block& Corridor::block(int level, int number) {
   const std::size_t row = static_cast<std::size_t>(level - kBlock);
   if (blocks_.size() <= row) blocks_.resize(row + 1);
-  const auto strip_of = [&](int first, const auto& add) {
-    scratch_.clear();
-    add(first);
-    add(first + 1);
-    return strip_round(scratch_);
-  };
   for (int k = static_cast<int>(blocks_[row].size()); k <= number; ++k) {
     Block made;
-    if (level == kBlock) {
-      const int first = k << kBlock, last = (k + 1) << kBlock;
-      for (int i = first; i < last; ++i) made.size = std::max(made.size, (*this)[i].size);
-      for (const bool is_left : {true, false}) {
-        scratch_.clear();
-        for (int i = first; i < last; ++i) scratch_.push_back(is_left ? (*this)[i].left : (*this)[i].right);
-        (is_left ? made.left : made.right) = strip_round(scratch_);
+    const bool is_lowest = level == kBlock;
+    if (!is_lowest) block(level - 1, 2 * k + 1);  // makes the one before it too
+    const int parts = is_lowest ? 1 << kBlock : 2;
+    for (const bool is_left : {true, false}) {
+      scratch_.clear();
+      for (int i = k * parts; i < (k + 1) * parts; ++i) {
+        if (is_lowest) {
+          scratch_.push_back(is_left ? (*this)[i].left : (*this)[i].right);
+          made.size = std::max(made.size, (*this)[i].size);
+          continue;
+        }
+        const Block& half = blocks_[row - 1][static_cast<std::size_t>(i)];
+        const Strip& s = is_left ? half.left : half.right;
+        for (const double u : {-1.0, 1.0})
+          for (const double v : {-1.0, 1.0}) scratch_.push_back(s.middle + u * s.along + v * s.across);
+        made.size = std::max(made.size, half.size);
       }
-    } else {
-      block(level - 1, 2 * k + 1);  // makes the one before it too
-      const std::vector<Block>& halves = blocks_[row - 1];
-      for (const bool is_left : {true, false}) {
-        const auto corners_of = [&](int child) {
-          const Block& half = halves[static_cast<std::size_t>(child)];
-          const Strip& s = is_left ? half.left : half.right;
-          for (const double i : {-1.0, 1.0})
-            for (const double j : {-1.0, 1.0}) scratch_.push_back(s.middle + i * s.along + j * s.across);
-          made.size = std::max(made.size, half.size);
-        };
-        (is_left ? made.left : made.right) = strip_of(2 * k, corners_of);
-      }
+      (is_left ? made.left : made.right) = strip_round(scratch_);
     }
     blocks_[row].push_back(made);
   }

@@ -81,17 +81,10 @@ class LinkSearch {
   void from(int triangle, int corner) {
     vertex_ = map_.triangles[triangle].vertex[corner];
     if (!map_.triangles[triangle].free || !map_.is_site(vertex_)) return;
-    path_.clear();
-    todo_.clear();
     const int* v = map_.triangles[triangle].vertex;
     if (!map_.is_site(v[(corner + 1) % 3]) || !map_.is_site(v[(corner + 2) % 3])) return;
-    todo_.push_back({triangle, corner, 0, v[(corner + 1) % 3], v[(corner + 2) % 3]});
-    while (!todo_.empty()) {
-      const Step step = todo_.back();
-      todo_.pop_back();
-      path_.resize(step.depth);
-      through(step);
-    }
+    depth_first({triangle, corner, 0, v[(corner + 1) % 3], v[(corner + 2) % 3]},
+                [&](const Step& step) { through(step); });
   }
 
   /// The same from a wall, a side of a triangle: through all sides of which a piece is seen straight across from it, to
@@ -101,15 +94,7 @@ class LinkSearch {
     const Triangle& t = map_.triangles[triangle];
     if (!t.free || t.wall[side] < 0) return;
     const Facing wall{t.wall[side], t.vertex[(side + 1) % 3], t.vertex[(side + 2) % 3]};
-    path_.clear();
-    todo_.clear();
-    todo_.push_back({triangle, side, 0, wall.b, wall.a});
-    while (!todo_.empty()) {
-      const Step step = todo_.back();
-      todo_.pop_back();
-      path_.resize(step.depth);
-      away_from(wall, step);
-    }
+    depth_first({triangle, side, 0, wall.b, wall.a}, [&](const Step& step) { away_from(wall, step); });
   }
 
   std::vector<Link> links;
@@ -127,6 +112,18 @@ class LinkSearch {
   static constexpr std::size_t kLongWay = 8;
 
   const Point& point(int v) const { return map_.vertex(v); }
+
+  /// `visit` takes a step, and puts those that follow from it into `todo_`.
+  template <typename Visit>
+  void depth_first(const Step& first, const Visit& visit) {
+    todo_.assign(1, first);
+    while (!todo_.empty()) {
+      const Step step = todo_.back();
+      todo_.pop_back();
+      path_.resize(step.depth);
+      visit(step);
+    }
+  }
 
   void through(const Step& step) {
     ++steps;
@@ -287,7 +284,11 @@ class LinkSearch {
   bool meets(int x, int y, int a, int b, const DiametralDisc& disc) const {
     for (const int u : {x, y})
       if (u != vertex_ && u != a && u != b && disc.holds(point(u))) return true;
-    if (x == y) return false;
+    return x != y && meets_inside(x, y, disc);
+  }
+
+  /// The inside of it, given that no end but v lies in the disc.
+  bool meets_inside(int x, int y, const DiametralDisc& disc) const {
     return x == vertex_ || y == vertex_ ? disc.entered_from_v_towards(point(x == vertex_ ? y : x))
                                         : disc.meets_inside(point(x), point(y));
   }
@@ -307,9 +308,7 @@ class LinkSearch {
       const int x = t.vertex[(i + 1) % 3], y = t.vertex[(i + 2) % 3];
       const bool is_wall = t.wall[i] >= 0;
       if (is_wall ? x == a && y == b : t.neighbour[i] < 0 || reached_in_[t.neighbour[i]] == searches_) continue;
-      const bool crossed = x == vertex_ || y == vertex_ ? disc.entered_from_v_towards(point(x == vertex_ ? y : x))
-                                                        : disc.meets_inside(point(x), point(y));
-      if (!crossed) continue;
+      if (!meets_inside(x, y, disc)) continue;
       if (is_wall) return false;
       reach(t.neighbour[i]);
     }

@@ -182,17 +182,13 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
 /// Where a Link crosses a side four portals meet. Where all of them are open up to the crossing, no shortest path turns
 /// there.
 void ClearancePlan::find_turns() {
-  struct End {
-    int portal;
-    bool is_from;
-  };
   std::vector<std::size_t> first{0};  // of a Link's crossings
   for (const Link& link : map_->links) first.push_back(first.back() + link.exits.size());
   struct Crossing {
-    End ends[4];
+    int ends[4];  // of portals, as `sector` numbers them
     int count = 0;
     void add(int portal, bool is_from) {
-      if (count < 4) ends[count] = {portal, is_from};
+      if (count < 4) ends[count] = 2 * portal + (is_from ? 0 : 1);
       ++count;
     }
   };
@@ -218,12 +214,12 @@ void ClearancePlan::find_turns() {
   for (std::size_t l = 0; l < map_->links.size(); ++l) {
     for (std::size_t k = first[l]; k + 1 < first[l + 1]; ++k) {  // the last lies on the wall
       const Crossing& c = meeting[k];
-      const bool all_reach = c.count == 4 && std::all_of(c.ends, c.ends + 4, [&](const End& e) {
-                               const ShrunkPortal& q = shrunk_[e.portal];
-                               return q.open && !(e.is_from ? q.from_moved : q.to_moved);
+      const bool all_reach = c.count == 4 && std::all_of(c.ends, c.ends + 4, [&](int end) {
+                               const ShrunkPortal& q = shrunk_[end / 2];
+                               return q.open && !(end % 2 ? q.to_moved : q.from_moved);
                              });
       if (!all_reach) continue;
-      for (const End& e : c.ends) (e.is_from ? shrunk_[e.portal].from_turns : shrunk_[e.portal].to_turns) = false;
+      for (const int end : c.ends) (end % 2 ? shrunk_[end / 2].to_turns : shrunk_[end / 2].from_turns) = false;
     }
   }
 }
@@ -336,7 +332,7 @@ class Strip {
 int ClearancePlan::piece_too_near(const Point& x) const {
   int found = -1;
   grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {
-    const auto [a, b] = ends_of(piece);
+    const auto [a, b] = map_->ends_of(piece);
     if ((found < 0 || piece < found) && is_too_near(x, map_->vertex(a), map_->vertex(b), radius_)) found = piece;
     return true;
   });
@@ -346,7 +342,7 @@ int ClearancePlan::piece_too_near(const Point& x) const {
 std::vector<int> ClearancePlan::pieces_within(Vec2 x, double r) const {
   std::vector<int> found;
   grid_->for_each_near(x, x, r, [&](int piece) {
-    const auto [a, b] = ends_of(piece);
+    const auto [a, b] = map_->ends_of(piece);
     if (compare_segment_distance(x, map_->vertex(a), map_->vertex(b), r) < 0) found.push_back(piece);
     return true;
   });
@@ -358,7 +354,7 @@ std::vector<int> ClearancePlan::pieces_within(Vec2 x, double r) const {
 bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
   const Strip strip(p.rounded(), q.rounded(), radius_);
   return grid_->for_each_near(p.rounded(), q.rounded(), radius_, [&](int piece) {
-    const auto [i, j] = ends_of(piece);
+    const auto [i, j] = map_->ends_of(piece);
     const Point &a = map_->vertex(i), &b = map_->vertex(j);
     return strip.is_clearly_apart(a.rounded(), b.rounded()) || keeps_clear(p, q, a, b, radius_);
   });

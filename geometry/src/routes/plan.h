@@ -90,8 +90,6 @@ class ClearancePlan {
   bool is_clear(const Point& p, const Point& q) const;
   /// The pieces nearer than r to x, each once, ascending.
   std::vector<int> pieces_within(Vec2 x, double r) const;
-  /// The ends of a piece of the grid, as vertices; twice the same for an isolated one.
-  std::pair<int, int> ends_of(int piece) const { return map_->ends_of(piece); }
 
  private:
   void decide_gates();

@@ -111,7 +111,7 @@ class WaySearch {
   int corner_at(int portal, Vec2 x) const;
   void trace(int number, Vec2 t, Way& way) const;
 
-  void drop_repeated(std::vector<Waypoint>& list) const;
+  void set_waypoints(const std::vector<Waypoint>& turns, const std::vector<bool>& from_left, Way& way) const;
   void pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const;
 
   const ClearancePlan& plan_;

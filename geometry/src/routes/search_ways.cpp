@@ -51,26 +51,19 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
     pass(n->portal, n->cell);
     last_of.push_back(way.portals.size() - 1);
   }
-  const auto vertex_at = [&](int corner) {
-    const ShrunkPortal& q = plan_.shrunk(corner / 2);
-    return corner % 2 ? q.to_corner : q.from_corner;
-  };
   const auto place_of = [&](int portal, std::size_t otherwise) {
     const auto found = first_place.find(portal);
     return found == first_place.end() ? otherwise : found->second;
   };
-  std::vector<Waypoint> list;
+  std::vector<Waypoint> turns;
   const auto add_vertex = [&](int corner, std::size_t otherwise) {
     const std::size_t at = place_of(corner / 2, otherwise);
-    const int vertex = vertex_at(corner);
-    if (vertex < 0 || plan_.shrunk(corner / 2).tight) return;
+    const ShrunkPortal& q = plan_.shrunk(corner / 2);
+    const int vertex = corner % 2 ? q.to_corner : q.from_corner;
+    if (vertex < 0 || q.tight) return;
     // Its portal's left cell sees `to` on the left.
-    list.push_back({-1, false, vertex, from_left[at] == (corner % 2 == 1), static_cast<int>(at)});
+    turns.push_back({-1, false, vertex, from_left[at] == (corner % 2 == 1), static_cast<int>(at)});
   };
-
-  for (std::size_t k = 0; k < way.portals.size(); ++k)
-    if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
   int last = -1;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k]->corner < 0 || nodes[k]->corner == last) continue;
@@ -87,14 +80,18 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
   else if (cross(n.right - n.root, goal - n.root) < 0.0)
     corner = corner_at(n.portal, n.right);
   if (corner >= 0 && corner != last) add_vertex(corner, way.portals.size() - 1);
-
-  std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
-  way.waypoints = std::move(list);
-  drop_repeated(way.waypoints);
+  set_waypoints(turns, from_left, way);
 }
 
-/// Of waypoints in a row that are pieces of one gate, or the same turn, the first.
-void WaySearch::drop_repeated(std::vector<Waypoint>& list) const {
+/// The turns and the tight gates, along the way; of those in a row that are pieces of one gate, or the same turn, the
+/// first.
+void WaySearch::set_waypoints(const std::vector<Waypoint>& turns, const std::vector<bool>& from_left, Way& way) const {
+  std::vector<Waypoint>& list = way.waypoints;
+  for (std::size_t k = 0; k < way.portals.size(); ++k)
+    if (plan_.shrunk(way.portals[k]).tight)
+      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
+  list.insert(list.end(), turns.begin(), turns.end());
+  std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
   const auto same = [&](const Waypoint& a, const Waypoint& b) {
     if ((a.portal < 0) != (b.portal < 0)) return false;
     if (a.portal < 0) return a.vertex == b.vertex && a.on_left == b.on_left;
@@ -152,20 +149,14 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
 
 /// The waypoints of the shortest curve through the portals of a way.
 void WaySearch::pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const {
-  std::vector<Waypoint> list;
-  for (std::size_t k = 0; k < way.portals.size(); ++k)
-    if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
+  std::vector<Waypoint> turns;
   const PortalRow row(plan_, way.portals, from_left);
   for (const Turn& turn : turns_through(row, s, t)) {
     const int vertex = row.vertex(turn.at, turn.left);
     if (vertex >= 0 && !plan_.shrunk(row.portal(turn.at)).tight)
-      list.push_back({-1, false, vertex, turn.left, static_cast<int>(turn.at)});
+      turns.push_back({-1, false, vertex, turn.left, static_cast<int>(turn.at)});
   }
-  for (const Waypoint& w : list) way.waypoints.push_back(w);
-  std::stable_sort(way.waypoints.begin(), way.waypoints.end(),
-                   [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
-  drop_repeated(way.waypoints);
+  set_waypoints(turns, from_left, way);
 }
 
 }  // namespace exactvo::geometry::routing

@@ -33,7 +33,9 @@ bool TautString::pull() {
   constexpr int kMostRounds = 400;
   for (int round = 0; round < kMostRounds; ++round) {
     drop_loose_circles();
-    find_tangents();
+    tangents_.clear();
+    for (std::size_t i = 0; i <= circles_.size(); ++i)
+      tangents_.push_back(tangent(i > 0 ? &circles_[i - 1] : nullptr, i < circles_.size() ? &circles_[i] : nullptr));
     if (!take_up_cut_vertices()) return true;
   }
   return false;
@@ -42,11 +44,11 @@ bool TautString::pull() {
 std::vector<Point> TautString::corners(double step) const {
   std::vector<Point> out;
   for (std::size_t i = 0; i < circles_.size(); ++i) {
-    const double turn = wrapped(angles_[i + 1] - angles_[i]);
+    const double turn = wrapped(tangents_[i + 1].angle - tangents_[i].angle);
     const int count = std::max(1, static_cast<int>(std::ceil(std::fabs(turn) / step)));
     const double half = 0.5 * turn / count, reach = radius_ / std::cos(half);
     for (int j = 0; j < count; ++j) {
-      const double angle = angles_[i] + (2 * j + 1) * half;
+      const double angle = tangents_[i].angle + (2 * j + 1) * half;
       const double out_of_centre = circles_[i].sense * reach;
       out.emplace_back(circles_[i].centre + Vec2{out_of_centre * std::sin(angle), -out_of_centre * std::cos(angle)});
     }
@@ -60,17 +62,6 @@ TautString::Tangent TautString::tangent(const Circle* from, const Circle* to) co
   const double angle = std::atan2(b.y - a.y, b.x - a.x) + std::asin(std::clamp((ra - rb) / norm(b - a), -1.0, 1.0));
   const Vec2 right{std::sin(angle), -std::cos(angle)};
   return {angle, {a + ra * right, b + rb * right}};
-}
-
-void TautString::find_tangents() {
-  const std::size_t n = circles_.size();
-  angles_.assign(n + 1, 0.0);
-  pieces_.assign(n + 1, {});
-  for (std::size_t i = 0; i <= n; ++i) {
-    const Tangent t = tangent(i > 0 ? &circles_[i - 1] : nullptr, i < n ? &circles_[i] : nullptr);
-    angles_[i] = t.angle;
-    pieces_[i] = t.piece;
-  }
 }
 
 /// Goes through the circles once: the string over those kept is taut before the next is looked at, which may let go
@@ -95,11 +86,12 @@ void TautString::drop_loose_circles() {
 /// The vertex that a straight piece cuts deepest becomes a circle of its own; one of each piece.
 bool TautString::take_up_cut_vertices() {
   std::vector<Circle> all;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  for (std::size_t i = 0; i < tangents_.size(); ++i) {
     if (const std::optional<Circle> cut = deepest_cut(i)) all.push_back(*cut);
     if (i == circles_.size()) break;
     const std::optional<Circle> cut = cut_by_arc(i);
-    const Vec2 on{std::cos(angles_[i]), std::sin(angles_[i])};  // of two vertices in a lump, the first along the way
+    const double angle = tangents_[i].angle;
+    const Vec2 on{std::cos(angle), std::sin(angle)};  // of two vertices in a lump, the first along the way
     const bool before = cut && dot(cut->centre - circles_[i].centre, on) < 0.0;
     if (before) all.push_back(*cut);
     all.push_back(circles_[i]);
@@ -116,7 +108,7 @@ std::optional<Circle> TautString::cut_by_arc(std::size_t i) const {
   const Circle& circle = circles_[i];
   const double slack = 0.5 * (radius_ - plan_.radius());
   constexpr double kLump = 1e-3;  // of the radius; more is a corner of its own to the search
-  const double turn = wrapped(angles_[i + 1] - angles_[i]);
+  const double turn = wrapped(tangents_[i + 1].angle - tangents_[i].angle);
   const auto is_neighbour = [&](int v) {
     return v == circle.vertex || (i > 0 && circles_[i - 1].vertex == v) ||
            (i + 1 < circles_.size() && circles_[i + 1].vertex == v);
@@ -129,16 +121,16 @@ std::optional<Circle> TautString::cut_by_arc(std::size_t i) const {
     if (!(depth > deepest) || depth > kLump * radius_ || is_neighbour(v)) return;
     // The route's direction where it passes the point of the arc that is farthest out towards the vertex.
     const double direction = std::atan2(circle.sense * out.x, -circle.sense * out.y);
-    const double after = wrapped(direction - angles_[i]) * circle.sense;
+    const double after = wrapped(direction - tangents_[i].angle) * circle.sense;
     if (!(after > 0.0 && after < std::fabs(turn))) return;
     deepest = depth;
     found = Circle{plan_.map().vertex(v).rounded(), circle.sense, v};
   };
   if (!(turn * circle.sense > 0.0)) return found;
   plan_.grid().for_each_near(circle.centre, circle.centre, kLump * radius_, [&](int k) {
-    const auto [a, b] = plan_.ends_of(k);
+    const auto [a, b] = plan_.map().ends_of(k);
     consider(a);
-    if (b != a) consider(b);
+    consider(b);
     return true;
   });
   return found;
@@ -146,7 +138,7 @@ std::optional<Circle> TautString::cut_by_arc(std::size_t i) const {
 
 std::optional<Circle> TautString::deepest_cut(std::size_t i) const {
   const CellMap& map = plan_.map();
-  const Segment piece = pieces_[i];
+  const Segment piece = tangents_[i].piece;
   const Vec2 d = piece.b - piece.a;
   const double length = norm(d);
   double deepest = 0.5 * (radius_ - plan_.radius());
@@ -161,9 +153,9 @@ std::optional<Circle> TautString::deepest_cut(std::size_t i) const {
     found = Circle{map.vertex(v).rounded(), left > 0.0 ? 1 : -1, v};
   };
   plan_.grid().for_each_near(piece.a, piece.b, radius_, [&](int k) {
-    const auto [a, b] = plan_.ends_of(k);
+    const auto [a, b] = plan_.map().ends_of(k);
     consider(a);
-    if (b != a) consider(b);
+    consider(b);
     return true;
   });
   return found;

@@ -39,7 +39,6 @@ class TautString {
     Segment piece;
   };
   Tangent tangent(const Circle* from, const Circle* to) const;
-  void find_tangents();
   void drop_loose_circles();
   bool take_up_cut_vertices();
   std::optional<Circle> cut_by_arc(std::size_t i) const;
@@ -49,8 +48,7 @@ class TautString {
   Vec2 from_, to_;
   std::vector<Circle> circles_;
   double radius_;
-  std::vector<double> angles_;  ///< rad, of the straight pieces
-  std::vector<Segment> pieces_;
+  std::vector<Tangent> tangents_;
 };
 
 }  // namespace exactvo::geometry::routing
