@@ -8,6 +8,9 @@
 
 #include <cmath>
 
+#include "exact/exact_vector.h"
+#include "exact/stages.h"
+
 namespace exactvo::geometry::detail {
 
 struct RunningError {
@@ -51,6 +54,19 @@ inline RunningError operator*(RunningError a, RunningError b) {
 inline bool decided(RunningError a) {
   constexpr double kSlack = 1.0 + 0x1p-40;
   return std::isfinite(a.value) && std::fabs(a.value) > a.error * kSlack;
+}
+
+/// Evaluates `formula(number<T>)` in tracked doubles and, where the sign stays in doubt, exactly. `formula` is generic
+/// and uses + - * only. Counts which stage answered.
+template <typename Formula>
+Sign filtered_sign(const Formula& formula) {
+  const RunningError approx = formula(RunningError{});
+  if (decided(approx)) {
+    count_filter();
+    return sign_of_double(approx.value);
+  }
+  count_exact();
+  return sign_of(formula(Exact{}));
 }
 
 }  // namespace exactvo::geometry::detail

@@ -4,9 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "exact/exact_number.h"
 #include "exact/running_error.h"
-#include "exact/stages.h"
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
@@ -118,13 +116,8 @@ void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out) {
 
 bool trap_free_for_every_goal(const Ellipse& ellipse) {
   EXACTVO_REQUIRE(is_valid(ConvexShape{ellipse}), to_string(ConvexShape{ellipse}));
-  const detail::RunningError approx = detail::excess_of_slenderness<detail::RunningError>(ellipse);
-  if (detail::decided(approx)) {
-    detail::count_filter();
-    return approx.value < 0.0;
-  }
-  detail::count_exact();
-  return detail::sign_of(detail::excess_of_slenderness<detail::Exact>(ellipse)) != Sign::positive;
+  return detail::filtered_sign([&](auto number) { return detail::excess_of_slenderness<decltype(number)>(ellipse); }) !=
+         Sign::positive;
 }
 
 }  // namespace exactvo::geometry

@@ -39,13 +39,12 @@ namespace {
 
 using detail::count_exact;
 using detail::count_filter;
-using detail::decided;
 using detail::difference;
 using detail::Exact;
 using detail::FilterAnswer;
+using detail::filtered_sign;
 using detail::GrownPolygon;
 using detail::make;
-using detail::RunningError;
 using detail::segment_disc_filter;
 using detail::sign_of;
 using detail::sign_of_double;
@@ -66,19 +65,6 @@ void require_segment(const GrownShape& s, Vec2 direction, double t_max) {
 }
 void require_valid(const Ellipse& e) {
   EXACTVO_REQUIRE(is_valid(ConvexShape{e}), to_string(ConvexShape{e}));
-}
-
-/// Evaluates `formula(number<T>)` in tracked doubles and, where the sign stays in doubt, exactly. `formula` is generic
-/// and uses + - * only.
-template <typename Formula>
-Sign filtered_sign(const Formula& formula) {
-  const RunningError approx = formula(RunningError{});
-  if (decided(approx)) {
-    count_filter();
-    return sign_of_double(approx.value);
-  }
-  count_exact();
-  return sign_of(formula(Exact{}));
 }
 
 /// h_S(n) - tau c = k + sqrt(b) + sqrt(d).
