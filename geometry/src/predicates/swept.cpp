@@ -108,7 +108,7 @@ bool apart(const Flat& a, const Sweep& b) {
   return false;
 }
 
-/// Seen from the robot the disc moves, the other way.
+/// Seen from the robot, the disc moves the other way.
 bool meets(const Disc& d, Sweep seen) {
   for (Point& p : seen.start) p = p - make<Exact>(d.center);
   return detail::hull_meets(seen.start, Exact(d.radius), {-seen.step.x, -seen.step.y});
