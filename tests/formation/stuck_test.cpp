@@ -111,7 +111,11 @@ Recording unchanged(const std::vector<End>& ends) {
     step.position = end.position;
     step.velocity = step.chosen = end.velocity;
     step.preferred = end.preferred;
-    step.constraints = end.constraints;
+    for (RecordedConstraint c : end.constraints) {
+      c.body = r.bodies.size();
+      r.bodies.push_back({c.source, c.shape, {}, {c.index}});
+      step.constraints.push_back(c);
+    }
     step.mode = end.mode;
     step.status = end.status;
     step.violation = end.violation;

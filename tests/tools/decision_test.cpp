@@ -29,8 +29,10 @@ Decision with_two_walls() {
   d.method = "method orca";
   d.step.preferred = {2.0, 1.0};
   d.step.chosen = {0.5, 0.5};
-  const auto wall = [](geometry::Segment s, std::size_t index, geometry::HalfPlane h, double multiplier) {
+  const auto wall = [&](geometry::Segment s, std::size_t index, geometry::HalfPlane h, double multiplier) {
+    d.bodies.push_back({ConstraintSource::obstacle_edge, s, {}, {index}});
     RecordedConstraint c;
+    c.body = index;
     c.multiplier = multiplier;
     c.shape = s;
     c.index = index;
@@ -101,14 +103,15 @@ TEST(Decision, DistanceAndTimeToContact) {
 
 TEST(Decision, NamesWhatAConstraintStandsFor) {
   const Decision d = with_two_walls();
-  EXPECT_EQ(formation::name_of(d.step.constraints[0], d.scenario), "the edge (1.5, -2)-(1.5, 2) of obstacle east");
+  EXPECT_EQ(formation::name_of(d.step.constraints[0], d.scenario, d.bodies),
+            "the edge (1.5, -2)-(1.5, 2) of obstacle east");
   RecordedConstraint enclosure = d.step.constraints[0];
   enclosure.source = ConstraintSource::enclosure;
-  enclosure.shape = geometry::ellipse_from_axes({0.0, 1.5}, {2.5, 0.2, 0.0});
-  EXPECT_EQ(formation::name_of(enclosure, d.scenario), "enclosure 0 of obstacle north");
+  enclosure.body = 1;
+  EXPECT_EQ(formation::name_of(enclosure, d.scenario, d.bodies), "enclosure 0 of obstacle north");
   RecordedConstraint robot = d.step.constraints[0];
   robot.source = ConstraintSource::robot;
-  EXPECT_EQ(formation::name_of(robot, d.scenario), "robot R1");
+  EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "robot R1");
 }
 
 TEST(Explanation, NamesBindingConstraintsAndTheirPush) {
@@ -180,10 +183,10 @@ TEST(Decision, NamesAtMostThreeObstacles) {
     d.scenario.obstacles.push_back({id, geometry::Polyline{{{0.0, 1.5}, {0.0, 1.6}}}});
   RecordedConstraint all = d.step.constraints[0];
   all.source = ConstraintSource::enclosure;
-  all.shape = geometry::ellipse_from_axes({0.0, 0.0}, {9.0, 9.0, 0.0});
-  EXPECT_EQ(formation::name_of(all, d.scenario), "enclosure 0 of obstacles east, north, a and 2 more");
-  all.shape = geometry::ConvexPolygon{{{1.0, -3.0}, {2.0, -3.0}, {2.0, 3.0}, {1.0, 3.0}}};
-  EXPECT_EQ(formation::name_of(all, d.scenario), "enclosure 0 of obstacles east and north");
+  d.bodies[0].owners = {0, 1, 2, 3, 4};
+  EXPECT_EQ(formation::name_of(all, d.scenario, d.bodies), "enclosure 0 of obstacles east, north, a and 2 more");
+  d.bodies[0].owners = {0, 1};
+  EXPECT_EQ(formation::name_of(all, d.scenario, d.bodies), "enclosure 0 of obstacles east and north");
 }
 
 TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {

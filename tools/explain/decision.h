@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
@@ -25,6 +26,7 @@ struct Decision {
   std::size_t robot = 0;  ///< index
   double time = 0.0;      ///< s, when the decision was taken
   formation::RobotStep step;
+  std::vector<vo::Body> bodies;  ///< of the run
 
   const formation::Robot& who() const { return scenario.robots[robot]; }
 };

@@ -76,7 +76,7 @@ std::string violated_words(const Decision& d) {
   std::vector<RecordedConstraint> violated;
   for (const RecordedConstraint& c : d.step.constraints)
     if (effect_of(d, c) == Effect::violated) violated.push_back(c);
-  return violated.empty() ? "" : ": " + formation::name_of(violated, d.scenario);
+  return violated.empty() ? "" : ": " + formation::name_of(violated, d.scenario, d.bodies);
 }
 
 std::string status_words(const Decision& d) {
@@ -162,7 +162,7 @@ std::string effect_words(const Decision& d, const RecordedConstraint& c) {
 
 std::string constraint_words(const Decision& d, std::size_t i) {
   const RecordedConstraint& c = d.step.constraints[i];
-  return fmt::format("  [{}] {}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario), effect_words(d, c),
+  return fmt::format("  [{}] {}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies), effect_words(d, c),
                      contact_words(d, c), line_words(c));
 }
 
@@ -206,7 +206,7 @@ std::string held_words(const Decision& d, const Balance& b) {
     if (force.constraint && force.factor >= kNotSeen) by.push_back(d.step.constraints[*force.constraint]);
   if (by.empty()) return "";
   return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n",
-                     formation::name_of(by, d.scenario));
+                     formation::name_of(by, d.scenario, d.bodies));
 }
 
 /// How the preferred velocity came about, where it is not simply straight for the goal.

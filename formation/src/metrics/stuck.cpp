@@ -155,7 +155,8 @@ std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const s
 std::string blocked_words(const RunEnd& end, const StuckReport& r) {
   const std::vector<RecordedConstraint> by = pressing_of(r);
   const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
-  return (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario) + beyond_what_presses(end, r, by);
+  return (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario, end.run.bodies) +
+         beyond_what_presses(end, r, by);
 }
 
 std::string moving_words(const RunEnd& end, const RobotStep& decision, const StuckReport& r) {
@@ -163,10 +164,11 @@ std::string moving_words(const RunEnd& end, const RobotStep& decision, const Stu
   if (decision.mode == Mode::following) {
     std::vector<RecordedConstraint> all;
     for (const BindingConstraint& b : r.binding) all.push_back(b.constraint);
-    return all.empty() ? "following a boundary" : "following the boundary of " + name_of(all, end.scenario);
+    return all.empty() ? "following a boundary"
+                       : "following the boundary of " + name_of(all, end.scenario, end.run.bodies);
   }
   if (by.empty()) return "no active constraint changes its velocity";
-  return "its velocity is limited by " + name_of(by, end.scenario) + beyond_what_presses(end, r, by);
+  return "its velocity is limited by " + name_of(by, end.scenario, end.run.bodies) + beyond_what_presses(end, r, by);
 }
 
 std::string cause_words(const RunEnd& end, const StuckReport& r) {

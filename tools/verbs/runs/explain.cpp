@@ -115,9 +115,9 @@ Explained decide(const ExplainFlags& flags, const Scenario& scenario) {
   check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
              flags.time);
   const formation::Step& step = last_decision(recording);
-  Explained explained{
-      {scenario, method_words(datasets::run_info(scenario, options, {})), robot, step.time, step.robots.at(robot)},
-      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
+  Explained explained{{scenario, method_words(datasets::run_info(scenario, options, {})), robot, step.time,
+                       step.robots.at(robot), recording.bodies},
+                      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, recording, options);
   return explained;
 }
@@ -168,8 +168,9 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
   const std::size_t robot = find_robot(file.scenario, flags.robot);
   check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
   const formation::Step& step = until.decision();
-  Explained explained{{file.scenario, method_words(file.info), robot, step.time, step.robots.at(robot)},
-                      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
+  Explained explained{
+      {file.scenario, method_words(file.info), robot, step.time, step.robots.at(robot), file.recording.bodies},
+      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(

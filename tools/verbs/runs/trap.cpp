@@ -68,15 +68,9 @@ std::string ends_of(const geometry::Segment& s) {
   return fmt::format("({:.4g}, {:.4g})-({:.4g}, {:.4g})", s.a.x, s.a.y, s.b.x, s.b.y);
 }
 
-std::string owners_of(const formation::Scenario& scenario, const TrapPlace& place) {
-  std::vector<std::string> ids;
-  for (std::size_t k : place.enclosure.obstacles) ids.push_back(scenario.obstacles[k].id);
-  return (ids.size() > 1 ? "obstacles " : "obstacle ") + formation::abridged(ids);
-}
-
 /// Where the enclosure is, in the words in which a run's report names it.
 std::string place_words(const formation::Scenario& scenario, const TrapPlace& place, bool orca) {
-  const std::string of = " of " + owners_of(scenario, place);
+  const std::string of = " of " + names_of_obstacles(scenario, place.enclosure.obstacles);
   if (orca) return "edge " + ends_of(*place.facade) + of;
   const std::string number = fmt::format("enclosure {}", place.number);
   if (place.facade) return number + ", facade " + ends_of(*place.facade) + of;
@@ -85,7 +79,8 @@ std::string place_words(const formation::Scenario& scenario, const TrapPlace& pl
 
 std::string subject_words(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
   if (!f.overlapping) return place_words(scenario, f.place, orca);
-  const std::string first = owners_of(scenario, f.place), second = owners_of(scenario, *f.overlapping);
+  const std::string first = names_of_obstacles(scenario, f.place.enclosure.obstacles);
+  const std::string second = names_of_obstacles(scenario, f.overlapping->enclosure.obstacles);
   if (first == second)
     return fmt::format("between enclosures {} and {} of {}", f.place.number, f.overlapping->number, first);
   return fmt::format("between enclosure {} of {} and enclosure {} of {}", f.place.number, first, f.overlapping->number,

@@ -3,9 +3,6 @@
 
 /// \file
 /// What a recorded half-plane stands for, in words for people: "enclosure 4 of obstacle U", "robot R2".
-///
-/// A recording keeps the shape of a half-plane and not the obstacle it was built for, so the obstacle is found again
-/// from the shape. Heuristic where obstacles lie inside each other's enclosures.
 
 #include <string>
 #include <vector>
@@ -17,10 +14,16 @@ namespace exactvo::formation {
 
 /// "enclosure 1 of obstacle wall", "enclosure 1, piece 2, of obstacles wall and desk", "robot R2", "the edge
 /// (1, 2)-(3, 4) of obstacle wall", "moving obstacle cart"; of more than three obstacles "a, b, c and 2 more".
-std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario);
+/// `bodies`: those of the recording.
+std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario,
+                    const std::vector<vo::Body>& bodies);
 
 /// The same of several, those of one kind and obstacle together: "enclosures 4 and 5 of obstacle U and robot R2".
-std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario);
+std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario,
+                    const std::vector<vo::Body>& bodies);
+
+/// "obstacle wall", "obstacles wall and desk"; of no obstacle nothing.
+std::string names_of_obstacles(const Scenario& scenario, const std::vector<std::size_t>& which);
 
 /// "a", "a and b", "a, b and c".
 std::string enumerated(const std::vector<std::string>& words);
