@@ -5,14 +5,21 @@
 
 namespace exactvo::formation::detail {
 
-std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies) {
-  std::vector<Vec2> offsets = spec.offsets;
-  if (!spec.recentre || !remedies.recentred) return offsets;
+std::vector<Vec2> recentred(std::vector<Vec2> offsets) {
   Vec2 mean{};
   for (Vec2 d : offsets) mean += d;
   mean = mean / static_cast<double>(offsets.size());
   for (Vec2& d : offsets) d -= mean;
   return offsets;
+}
+
+std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies) {
+  return spec.recentre && remedies.recentred ? recentred(spec.offsets) : spec.offsets;
+}
+
+std::vector<Vec2> offsets_in_use(const Scenario& scenario, const SimulationOptions& options) {
+  if (!scenario.formation) return {};
+  return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
 }
 
 Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std::size_t i, double position_sign) {

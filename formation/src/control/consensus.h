@@ -22,8 +22,13 @@ struct RelativeState {
 /// The options of a run's controller: those that the run was given, else the controller's with the scenario's switches.
 Remedies remedies_in_use(const Scenario& scenario, const SimulationOptions& options);
 
+/// Less their mean.
+std::vector<Vec2> recentred(std::vector<Vec2> offsets);
+
 /// Delta_i as the controller uses them: recentred where the scenario and the remedies both say so.
 std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies);
+/// Those of a run; empty without a formation.
+std::vector<Vec2> offsets_in_use(const Scenario& scenario, const SimulationOptions& options);
 
 /// u_c of equation (14), m/s^2, with `position_sign` = -1, or +1 as (15) prints it.
 Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std::size_t robot, double position_sign);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "control/consensus.h"
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
@@ -59,23 +61,15 @@ std::vector<Vec2> pattern_offsets(Pattern pattern, std::size_t n, double spacing
   EXACTVO_REQUIRE(spacing > 0.0 && std::isfinite(spacing), std::to_string(spacing));
   const Vec2 forward = geometry::normalized(heading);
   std::vector<Vec2> offsets;
-  Vec2 mean{};
   for (std::size_t k = 0; k < n; ++k) {
     const Vec2 local = spacing * slot(pattern, k, n);
     offsets.push_back(local.x * forward + local.y * geometry::perp(forward));
-    mean += offsets.back();
   }
-  mean = mean / static_cast<double>(n);
-  for (Vec2& d : offsets) d -= mean;
-  return offsets;
+  return detail::recentred(std::move(offsets));
 }
 
 Topology complete_topology(std::size_t n) {
-  Topology t;
-  t.adjacency.assign(n, std::vector<double>(n, 1.0));
-  for (std::size_t i = 0; i < n; ++i) t.adjacency[i][i] = 0.0;
-  t.pinning.assign(n, 1.0);
-  return t;
+  return neighbour_topology(std::vector<Vec2>(n), 0.0);
 }
 
 Topology neighbour_topology(const std::vector<Vec2>& offsets, double reach, const std::vector<std::size_t>& pinned) {

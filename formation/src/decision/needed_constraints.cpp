@@ -2,7 +2,6 @@
 #include "decision/needed_constraints.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace exactvo::formation::detail {
 namespace {
@@ -40,7 +39,7 @@ bool NeededConstraints::need(const Need& need) {
   field_->add_needed(from_, have_, need, lines_);
   have_ = need;
   if (lines_.size() == before) return false;
-  sort_by_clearance(lines_);
+  std::sort(lines_.begin(), lines_.end(), comes_before);
   return true;
 }
 
@@ -83,10 +82,6 @@ namespace {
 
 /// m: bodies are gathered for places this far away too, so that a robot on its way gathers them now and then only.
 constexpr double kRoomToMove = 0.5;
-
-bool comes_before(const Constraint& a, const Constraint& b) {
-  return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
-}
 
 }  // namespace
 

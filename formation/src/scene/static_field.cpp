@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
@@ -39,12 +38,6 @@ bool is_beyond_reach(double clearance, const Viewpoint& from, double tau) {
 }
 
 }  // namespace
-
-void sort_by_clearance(std::vector<Constraint>& lines) {
-  std::sort(lines.begin(), lines.end(), [](const Constraint& a, const Constraint& b) {
-    return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
-  });
-}
 
 StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
                          Vec2 start, Vec2 goal, HorizonRule rule, SeenAs seen_as)
@@ -134,7 +127,7 @@ void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& ou
   const double within = distance_within(from, reach);
   if (method_ == Method::orca) return add_edges(from, within, out);
   for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
-  sort_by_clearance(out);
+  std::sort(out.begin(), out.end(), comes_before);
 }
 
 /// An enclosure that the robot is in gives way to what it encloses.

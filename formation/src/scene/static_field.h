@@ -6,6 +6,7 @@
 /// give. Shapes are bodies of one table, looked up by place; a step copies none.
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "exactvo/formation/recording.h"
@@ -23,8 +24,10 @@ struct Constraint : vo::Constraint {
   double speed = 0.0;      ///< m/s, at most, of what it keeps clear of
 };
 
-/// Nearest first; of shapes equally near, the order of their names.
-void sort_by_clearance(std::vector<Constraint>& lines);
+/// The nearest first; of shapes equally near, the order of their names.
+inline constexpr auto comes_before = [](const Constraint& a, const Constraint& b) {
+  return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
+};
 
 /// How a half-plane is asked for: the point it is built at and the velocity it is built round.
 struct Viewpoint {
