@@ -30,9 +30,13 @@ SimulationOptions everything_of(Method method) {
 }
 
 TEST(Notes, ARowKeepsBoth) {
-  EXPECT_EQ(detail::joined_notes("goal 1 passed", "stalled"), "goal 1 passed; stalled");
-  EXPECT_EQ(detail::joined_notes("", "stalled"), "stalled");
-  EXPECT_EQ(detail::joined_notes("goal 1 passed", ""), "goal 1 passed");
+  const auto both = [](std::string notes, const char* second) {
+    detail::add_note(notes, second);
+    return notes;
+  };
+  EXPECT_EQ(both("goal 1 passed", "stalled"), "goal 1 passed; stalled");
+  EXPECT_EQ(both("", "stalled"), "stalled");
+  EXPECT_EQ(both("goal 1 passed", ""), "goal 1 passed");
 }
 
 bool a_robot_binds(const RobotStep& step) {

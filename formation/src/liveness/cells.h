@@ -6,9 +6,11 @@
 /// apart they are.
 
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/box.h"
@@ -49,22 +51,11 @@ class Cells {
   /// As `for_each_in`, of cells about a place.
   template <class Visit>
   void for_each_about(geometry::Vec2 here, double reach, const Visit& visit) const {
-    const geometry::Vec2 corner{reach, reach};
-    for_each_in({here - corner, here + corner}, visit);
+    for_each_in(geometry::Box{here, here}.grown(reach), visit);
   }
 
  private:
-  struct Cell {
-    std::int64_t x, y;
-    bool operator==(const Cell& o) const { return x == o.x && y == o.y; }
-  };
-  struct Hash {
-    std::size_t operator()(const Cell& c) const {
-      std::uint64_t h = static_cast<std::uint64_t>(c.x) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(c.y);
-      h = (h ^ (h >> 32)) * 0xD6E8FEB86659FD93u;
-      return static_cast<std::size_t>(h ^ (h >> 32));
-    }
-  };
+  using Cell = std::pair<std::int64_t, std::int64_t>;
   /// What lies beyond the numbers of cells shares the outermost.
   std::int64_t number(double x) const {
     constexpr double kFarthest = 0x1p62;
@@ -73,13 +64,14 @@ class Cells {
   Cell cell_of(geometry::Vec2 p) const { return {number(p.x), number(p.y)}; }
   template <class Visit>
   void for_each_cell(const geometry::Box& box, const Visit& visit) const {
-    const Cell low = cell_of(box.low), high = cell_of(box.high);
-    for (std::int64_t y = low.y; y <= high.y; ++y)
-      for (std::int64_t x = low.x; x <= high.x; ++x) visit(Cell{x, y});
+    const auto [low_x, low_y] = cell_of(box.low);
+    const auto [high_x, high_y] = cell_of(box.high);
+    for (std::int64_t y = low_y; y <= high_y; ++y)
+      for (std::int64_t x = low_x; x <= high_x; ++x) visit(Cell{x, y});
   }
 
   double side_;
-  std::unordered_map<Cell, std::vector<Number>, Hash> lists_;
+  std::unordered_map<Cell, std::vector<Number>, boost::hash<Cell>> lists_;
 };
 
 }  // namespace exactvo::formation::detail

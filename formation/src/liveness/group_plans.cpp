@@ -48,18 +48,14 @@ geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& fr
     both.add(now_[i].goal);
   }
   both.add(here);
-  const auto grown = [](const geometry::Box& b, double by) {
-    return geometry::Box{b.low - Vec2{by, by}, b.high + Vec2{by, by}};
-  };
-  const geometry::Box all = grown(both, kOpenMargin * diameter);
+  const geometry::Box all = both.grown(kOpenMargin * diameter);
   const double places = Roadmap::lattice_places(all, 0.5 * diameter);
   if (places <= kMostPlaces && places * static_cast<double>(who.size()) <= kMostDistances) return all;
-  return grown(here, (4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * replans) * diameter);
+  return here.grown((4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * replans) * diameter);
 }
 
 geometry::Box Groups::whole_scene(double radius) const {
-  const Vec2 corner{2.0 * kSceneMargin * radius, 2.0 * kSceneMargin * radius};
-  return {scene_.low - corner, scene_.high + corner};
+  return scene_.grown(2.0 * kSceneMargin * radius);
 }
 
 bool Groups::uses_whole_map(const Members& who) const {
@@ -90,18 +86,18 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
     nearest_first.emplace_back(r.yields ? 2 : passes ? 0 : 1, norm(r.goal - from[who[k]]), k);
   }
   std::sort(nearest_first.begin(), nearest_first.end());
-  std::vector<std::pair<Vec2, double>> taken;  // with radii
+  std::vector<geometry::Disc> taken;
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      taken.emplace_back(now_[j].position, scenario_.robots[j].radius);
+      taken.push_back({now_[j].position, scenario_.robots[j].radius});
   std::vector<PlaceNumber> targets(who.size());
   for (const auto& [rank, from_goal, k] : nearest_first) {
     const std::size_t i = who[k];
     const double radius = scenario_.robots[i].radius;
     const auto is_free = [&](Vec2 place) {
-      return std::all_of(taken.begin(), taken.end(), [&](const auto& t) {
-        const double wanted = (1.0 + kPlannedGap) * (radius + t.second);
-        return squared_norm(place - t.first) >= wanted * wanted;
+      return std::all_of(taken.begin(), taken.end(), [&](const geometry::Disc& t) {
+        const double wanted = (1.0 + kPlannedGap) * (radius + t.radius);
+        return squared_norm(place - t.center) >= wanted * wanted;
       });
     };
     const Vec2 goal = now_[i].goal;
@@ -119,7 +115,7 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
       targets[k] = *target;
     else if (least == kInfinity)
       targets[k] = map.attach(from[i], radius);
-    taken.emplace_back(map.place(targets[k]), radius);
+    taken.push_back({map.place(targets[k]), radius});
   }
   return targets;
 }
@@ -182,7 +178,7 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   course_.largest = std::max(course_.largest, who.size());
   made_.push_back(recorded(g));
   forget_without_plan(who);
-  notes_[who.front()] = joined_notes(notes_[who.front()], plan_words(g));
+  add_note(notes_[who.front()], plan_words(g));
   return PlanEnd::planned;
 }
 

@@ -87,10 +87,7 @@ Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int
       tries_(scenario),
       search_(threads) {
   for (const SceneObstacle& o : scenario.obstacles)
-    for (const Segment& edge : geometry::edges_of(o.shape)) {
-      scene_.add(edge.a);
-      scene_.add(edge.b);
-    }
+    for (const Vec2 p : geometry::vertices_of(o.shape)) scene_.add(p);
   for (const Robot& r : scenario.robots) {
     scene_.add(r.position);
     for (const Vec2 goal : r.goals) scene_.add(goal);

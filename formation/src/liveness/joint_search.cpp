@@ -2,6 +2,7 @@
 #include "liveness/joint_search.h"
 
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <cmath>
 #include <deque>
 #include <mutex>
@@ -76,9 +77,7 @@ class RobotGrid {
 };
 
 /// A low-level node of LaCAM: who must go where, of the first robots in a node's order.
-struct Constraints {
-  std::vector<std::pair<std::size_t, PlaceNumber>> goes;
-};
+using Constraints = std::vector<std::pair<std::size_t, PlaceNumber>>;
 
 /// One joint step by PIBT.
 class Generator {
@@ -102,8 +101,8 @@ class Generator {
     before_.clear();
     after_.clear();
     for (std::size_t i = 0; i < n; ++i) before_.put(map_.place(at[i]), i);
-    for (const auto& [robot, place] : constraints.goes) must_go_to_[robot] = place;
-    for (const auto& entry : constraints.goes)
+    for (const auto& [robot, place] : constraints) must_go_to_[robot] = place;
+    for (const auto& entry : constraints)
       if (state_[entry.first] == State::open && !moves(entry.first, random, true)) return false;
     for (const std::size_t i : priority)
       if (state_[i] == State::open && !moves(i, random, true)) settle(i, at[i]);  // who stays is in nobody's way
@@ -243,12 +242,6 @@ bool is_stopped(const JointProblem& problem) {
   return problem.is_stopped && problem.is_stopped();
 }
 
-std::uint64_t digest_of(const Joint& at) {
-  std::uint64_t h = 1469598103934665603u;  // FNV-1a, word by word
-  for (const PlaceNumber p : at) h = (h ^ p) * 1099511628211u;
-  return h;
-}
-
 }  // namespace
 
 struct JointSearch::Data {
@@ -309,7 +302,7 @@ class Tree {
   std::size_t size() const { return nodes_.size(); }
 
   std::size_t find(const Joint& at) const {
-    const auto found = known_.find(digest_of(at));
+    const auto found = known_.find(boost::hash<Joint>()(at));
     if (found != known_.end())
       for (const std::size_t k : found->second)
         if (nodes_[k].at == at) return k;
@@ -337,7 +330,7 @@ class Tree {
     }
     std::stable_sort(node.priority.begin(), node.priority.end(),
                      [&](std::size_t a, std::size_t b) { return node.waited[a] > node.waited[b]; });
-    known_[digest_of(at)].push_back(number);
+    known_[boost::hash<Joint>()(at)].push_back(number);
     node.at = std::move(at);
     return number;
   }
@@ -359,13 +352,13 @@ class Tree {
   const JointProblem& problem_;
   const std::vector<std::vector<float>>& distances_;
   std::deque<Node> nodes_;  // references stay
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> known_;
+  std::unordered_map<std::size_t, std::vector<std::size_t>> known_;  // by their hash
 };
 
 /// What else can be constrained: every way of the next robot in order.
 void add_constraints(Node& node, const Constraints& so_far, const JointProblem& problem, SplitMix64& random) {
-  if (so_far.goes.size() == node.at.size()) return;
-  const std::size_t robot = node.priority[so_far.goes.size()];
+  if (so_far.size() == node.at.size()) return;
+  const std::size_t robot = node.priority[so_far.size()];
   std::vector<PlaceNumber> places;
   for (const PlaceNumber p : problem.map->ways(node.at[robot]))
     if (problem.map->room(p) >= problem.radii[robot]) places.push_back(p);
@@ -373,7 +366,7 @@ void add_constraints(Node& node, const Constraints& so_far, const JointProblem& 
   for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[random.below(k)]);
   for (const PlaceNumber place : places) {
     node.open.push_back(so_far);
-    node.open.back().goes.emplace_back(robot, place);
+    node.open.back().emplace_back(robot, place);
   }
 }
 

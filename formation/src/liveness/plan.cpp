@@ -52,29 +52,22 @@ bool drop_loops_once(const Roadmap& map, Moves& moves, const std::vector<double>
   return any;
 }
 
-geometry::Box box_of(const PlannedMove& m) {
-  geometry::Box box;
-  box.add(m.from);
-  box.add(m.to);
-  return box;
-}
-
 void order(std::vector<PlannedMove>& moves, const std::vector<double>& radii) {
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   const double largest = *std::max_element(radii.begin(), radii.end());
   const double farthest = 2.0 * (1.0 + kPlannedGap) * largest;
-  const Vec2 reach{farthest, farthest};
   Cells<std::size_t> earlier(3.0 * largest);
   std::vector<std::size_t> last(radii.size(), kNone);  // of each other robot
   for (std::size_t k = 0; k < moves.size(); ++k) {
     PlannedMove& m = moves[k];
-    const geometry::Box box = box_of(m);
+    const Segment way{m.from, m.to};
+    const geometry::Box box = geometry::box_of(way);
     // The newest first: where one of a robot's moves is near, its older ones need no distance.
-    earlier.for_each_in_latest_first({box.low - reach, box.high + reach}, [&](std::size_t j) {
+    earlier.for_each_in_latest_first(box.grown(farthest), [&](std::size_t j) {
       const PlannedMove& o = moves[j];
       if (o.robot == m.robot || (last[o.robot] != kNone && last[o.robot] >= j)) return;
       const double wanted = wanted_distance(radii, m.robot, o.robot);
-      if (squared_distance(Segment{m.from, m.to}, Segment{o.from, o.to}) < wanted * wanted) last[o.robot] = j;
+      if (squared_distance(way, Segment{o.from, o.to}) < wanted * wanted) last[o.robot] = j;
     });
     for (std::size_t& of_robot : last)
       if (of_robot != kNone) m.after.push_back(std::exchange(of_robot, kNone));

@@ -2,8 +2,8 @@
 #include "liveness/roadmap.h"
 
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "exactvo/geometry/pi.h"
 
@@ -20,21 +20,6 @@ constexpr double kDense = 0.5;        ///< the same of a dense map
 constexpr double kLatticeGap = 0.03;  ///< beside the radius
 constexpr double kGuardGap = 0.02;
 constexpr double kNarrow = 1.5;  ///< where clearance is more, the lattice is enough
-
-/// Which places are joined by ways.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0u); }
-  PlaceNumber of(PlaceNumber p) {
-    while (up_[p] != p) p = up_[p] = up_[up_[p]];
-    return p;
-  }
-  void join(PlaceNumber a, PlaceNumber b) { up_[of(a)] = of(b); }
-  void add() { up_.push_back(static_cast<PlaceNumber>(up_.size())); }
-
- private:
-  std::vector<PlaceNumber> up_;
-};
 
 }  // namespace
 
@@ -187,35 +172,35 @@ void Roadmap::add_ways() {
 }
 
 void Roadmap::add_connectors(const std::vector<FreePoint>& narrow) {
-  DisjointSets parts(places_.size());
-  for (PlaceNumber a = 0; a < places_.size(); ++a)
-    for (const PlaceNumber b : ways_[a]) parts.join(a, b);
   constexpr int kRounds = 2;  // what one connector joins another may join with more
+  boost::disjoint_sets_with_storage<> parts(places_.size() + kRounds * narrow.size());
+  for (PlaceNumber a = 0; a < places_.size(); ++a)
+    for (const PlaceNumber b : ways_[a]) parts.union_set(a, b);
   for (int round = 0; round < kRounds; ++round)
     for (const FreePoint& point : narrow) {
       std::vector<PlaceNumber> near, seen;
       for_each_near(point.place, longest_, [&](PlaceNumber p) { near.push_back(p); });
       const auto in_two_parts = [&](const std::vector<PlaceNumber>& some) {
-        return std::any_of(some.begin(), some.end(), [&](PlaceNumber p) { return parts.of(p) != parts.of(some[0]); });
+        return std::any_of(some.begin(), some.end(),
+                           [&](PlaceNumber p) { return parts.find_set(p) != parts.find_set(some[0]); });
       };
       if (!in_two_parts(near)) continue;
       for (const PlaceNumber p : near)
         if (space_->is_clear(point.place, places_[p], way_clearance_)) seen.push_back(p);
       if (!in_two_parts(seen)) continue;
       const PlaceNumber connector = add(point.place);
-      parts.add();
       for (const PlaceNumber p : seen) {
         link(connector, p);
-        parts.join(connector, p);
+        parts.union_set(connector, p);
       }
     }
 }
 
 /// Whether the straight way from a place keeps clear of what blocks, or comes no nearer than the place is.
 bool Roadmap::is_clear_of_blocked(Vec2 place, Vec2 to) const {
-  return std::all_of(blocking_.begin(), blocking_.end(), [&](const Blocked& b) {
-    const double keep2 = std::min(b.keep * b.keep, squared_norm(place - b.centre));
-    return squared_distance(b.centre, place, to) >= (1.0 - kSweepRounding) * keep2;
+  return std::all_of(blocking_.begin(), blocking_.end(), [&](const geometry::Disc& b) {
+    const double keep2 = std::min(b.radius * b.radius, squared_norm(place - b.center));
+    return squared_distance(b.center, place, to) >= (1.0 - kSweepRounding) * keep2;
   });
 }
 
@@ -225,9 +210,10 @@ Roadmap::Neighbours Roadmap::neighbours_of(Vec2 place) const {
   const double stands = space_->clearance(place, way_clearance_) - kSame * diameter_;
   const double least = std::min(way_clearance_, stands);
   Neighbours found;
-  found.is_tight = least < way_clearance_ || std::any_of(blocking_.begin(), blocking_.end(), [&](const Blocked& b) {
-                     return squared_norm(place - b.centre) < b.keep * b.keep;
-                   });
+  found.is_tight =
+      least < way_clearance_ || std::any_of(blocking_.begin(), blocking_.end(), [&](const geometry::Disc& b) {
+        return squared_norm(place - b.center) < b.radius * b.radius;
+      });
   for_each_near(place, longest_, [&](PlaceNumber p) {
     if (blocked_[p]) return;
     if (!found.same && squared_norm(places_[p] - place) <= kSame * kSame * diameter_ * diameter_) found.same = p;

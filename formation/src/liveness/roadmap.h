@@ -70,10 +70,6 @@ class Roadmap {
     double clearance;
     Vec2 place;
   };
-  struct Blocked {
-    Vec2 centre;
-    double keep;
-  };
   struct Neighbours {
     std::optional<PlaceNumber> same;  ///< already there
     std::vector<PlaceNumber> joined;  ///< those that a way leads to
@@ -97,7 +93,7 @@ class Roadmap {
   std::vector<std::vector<PlaceNumber>> ways_;
   std::vector<char> blocked_;
   std::vector<double> room_;
-  std::vector<Blocked> blocking_;
+  std::vector<geometry::Disc> blocking_;  ///< whose radius is what ways keep from the centre
   Cells<PlaceNumber> cells_;
 };
 

@@ -12,13 +12,6 @@ namespace {
 
 constexpr EdgeNumber kNotAsked = std::numeric_limits<EdgeNumber>::max();
 
-geometry::Box box_of(const Segment& s) {
-  geometry::Box box;
-  box.add(s.a);
-  box.add(s.b);
-  return box;
-}
-
 }  // namespace
 
 RoadmapEdges::RoadmapEdges(const Roadmap& map, double most_radii)
@@ -66,11 +59,10 @@ const std::vector<RoadmapEdges::NearEdge>& RoadmapEdges::near_edges(EdgeNumber w
 
 void RoadmapEdges::add_near_edges(EdgeNumber w) {
   has_near_edges_[w] = 1;
-  const geometry::Box box = box_of(edges_[w]);
+  const geometry::Box box = geometry::box_of(edges_[w]);
   cells_.add(box, w);
-  const Vec2 corner{reach_, reach_};
   std::vector<EdgeNumber> about;
-  cells_.for_each_in({box.low - corner, box.high + corner}, [&](EdgeNumber v) { about.push_back(v); });
+  cells_.for_each_in(box.grown(reach_), [&](EdgeNumber v) { about.push_back(v); });
   std::sort(about.begin(), about.end());
   about.erase(std::unique(about.begin(), about.end()), about.end());
   for (const EdgeNumber v : about) {

@@ -15,10 +15,6 @@ namespace {
 
 using geometry::Segment;
 
-geometry::Box grown(const geometry::Box& box, double by) {
-  return {box.low - Vec2{by, by}, box.high + Vec2{by, by}};
-}
-
 /// Where centres stand at an offset from an edge: on two pieces of lines and two circles.
 struct Outline {
   Segment left, right;
@@ -117,7 +113,7 @@ std::vector<NearestPlaces::Candidate> NearestPlaces::crossings(double offset, Ve
   edges_->grid().for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
     const Outline outline = outline_of((*edges_)[i], offset);
     points.clear();
-    edges_->grid().for_each_meeting(grown(edges_->grid().box(i), 2.0 * offset), [&](std::size_t k) {
+    edges_->grid().for_each_meeting(edges_->grid().box(i).grown(2.0 * offset), [&](std::size_t k) {
       if (k < i) cross_outlines(outline, outline_of((*edges_)[k], offset), offset, points);
     });
     for (const Vec2 p : points)

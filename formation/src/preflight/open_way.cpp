@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "exactvo/geometry/distance.h"
+#include "preflight/square_cover.h"
 
 namespace exactvo::formation::detail {
 
@@ -72,12 +73,9 @@ class OpenWay::Search {
  private:
   static constexpr double kDiagonal = 1.5;  // more than the root of 2
 
-  struct Cell {
-    std::int32_t x, y;
-  };
   struct Node {
     double to_go;  ///< m
-    Cell cell;
+    GridSquare cell;
     Vec2 place;
     double clearance;  ///< m
     bool operator<(const Node& other) const {
@@ -90,28 +88,25 @@ class OpenWay::Search {
     bool is_reached = false;
   };
 
-  static std::uint64_t key(Cell c) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c.x)) << 32 | static_cast<std::uint32_t>(c.y);
-  }
-  Vec2 place_of(Cell c) const { return from_ + step_ * Vec2{static_cast<double>(c.x), static_cast<double>(c.y)}; }
+  Vec2 place_of(GridSquare c) const { return from_ + step_ * Vec2{static_cast<double>(c.x), static_cast<double>(c.y)}; }
 
   bool covers(double clearance, double other, double length) const {
     return clearance + other >= 2.0 * radius_ + length + slack_;
   }
 
-  void visit(Cell cell) {
+  void visit(GridSquare cell) {
     const Vec2 place = place_of(cell);
     const double clearance = map_.clearance_below(place, enough_);
-    looked_at_.insert({key(cell), {clearance, true}});
+    looked_at_.insert({key_of(cell), {clearance, true}});
     push(cell, place, clearance);
   }
-  void push(Cell cell, Vec2 place, double clearance) {
+  void push(GridSquare cell, Vec2 place, double clearance) {
     if (clearance >= radius_ + slack_) open_.push({norm(place - to_), cell, place, clearance});
   }
 
   /// A cell that cannot be moved to from here may be from another side.
-  void move(const Node& node, Cell cell) {
-    const auto [found, is_new] = looked_at_.try_emplace(key(cell));
+  void move(const Node& node, GridSquare cell) {
+    const auto [found, is_new] = looked_at_.try_emplace(key_of(cell));
     Seen& seen = found->second;
     if (seen.is_reached) return;
     const Vec2 place = place_of(cell);

@@ -50,8 +50,8 @@ bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
 /// Those that block a target, ascending.
 std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, const Target& t) {
   std::vector<std::size_t> found;
-  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
-    if (!boxes.is_beyond(k, t.place, robot.radius) && is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
+  for (const std::size_t k : boxes.near(t.place, robot.radius))
+    if (is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
   return found;
 }
 

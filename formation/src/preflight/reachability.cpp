@@ -11,6 +11,7 @@
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -35,11 +36,8 @@ geometry::Box places_of(const Scenario& scenario) {
   if (!scenario.formation) return box;
   double offset = 0.0;
   for (const Vec2 o : scenario.formation->offsets) offset = std::max(offset, norm(o));
-  const Vec2 around{2.0 * offset, 2.0 * offset};  // twice: recentring moves them
-  for (const Vec2 p : scenario.formation->leader.path) {
-    box.add(p - around);
-    box.add(p + around);
-  }
+  for (const Vec2 p : scenario.formation->leader.path)
+    box.add(geometry::Box{p, p}.grown(2.0 * offset));  // twice: recentring moves them
   return box;
 }
 
@@ -70,16 +68,6 @@ double distance_to(const std::vector<Vec2>& chain, Vec2 place) {
   return least;
 }
 
-/// By the parity of the crossings with a ray; rounded.
-bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
-  bool inside = false;
-  for (std::size_t k = 0; k < chain.size(); ++k) {
-    const Vec2 a = chain[k] - place, b = chain[(k + 1) % chain.size()] - place;
-    if ((a.y > 0.0) != (b.y > 0.0) && (geometry::cross(a, b) > 0.0) == (b.y > a.y)) inside = !inside;
-  }
-  return inside;
-}
-
 }  // namespace
 
 std::string printed_place(Vec2 place) {
@@ -89,11 +77,10 @@ std::string printed_place(Vec2 place) {
 std::vector<Vec2> places_about(Vec2 place, double reach) {
   constexpr double kRings[] = {0.25, 0.5, 0.75, 0.99};  // of the reach; less than 1, for rounding
   constexpr int kDirections = 16;
-  constexpr double kTurn = 6.283185307179586;
   std::vector<Vec2> places;
   for (const double ring : kRings)
     for (int k = 0; k < kDirections; ++k)
-      places.push_back(place + ring * reach * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections));
+      places.push_back(place + ring * reach * geometry::rotated({1.0, 0.0}, k * (2.0 * geometry::kPi) / kDirections));
   return places;
 }
 
@@ -171,7 +158,7 @@ std::string Reachability::words_of(const Separated& answer, double radius, const
   for (const std::size_t o : obstacles) ids.push_back("'" + scenario_.obstacles[o].id + "'");
   const bool one = ids.size() == 1;
   std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
-                     (winds_round(corners, place) ? goal : "the start");
+                     (geometry::contains(geometry::Polygon{corners, {}}, place) ? goal : "the start");
   if (gaps == 0) return text;
   return text + (gaps == 1 ? ", with a gap of " : ", with " + std::to_string(gaps) + " gaps of at most ") +
          metres(widest) + " for a robot " + metres(2.0 * radius) + " wide";

@@ -45,9 +45,7 @@ bool CoverWalls::leave_open(GridSquare start, double side, double radius) const 
   if (edges_.largest_with({}) > kMost * side) return false;
   constexpr int kColumn = OpenWindow::kColumns / 2, kRow = OpenWindow::kRows / 2;
   OpenWindow window(start.x - kColumn, start.y - kRow, side);
-  const geometry::Box box = window.box();
-  const double margin = radius + 2.0 * side;
-  edges_.grid().for_each_meeting({box.low - Vec2{margin, margin}, box.high + Vec2{margin, margin}},
+  edges_.grid().for_each_meeting(window.box().grown(radius + 2.0 * side),
                                  [&](std::size_t k) { window.take_away(edges_[k], radius); });
   return window.has_more_than(kMostSquares + 1, kColumn, kRow);
 }

@@ -24,6 +24,11 @@ struct GridSquare {
   std::int32_t x, y;
 };
 
+/// The square as one number.
+inline std::uint64_t key_of(GridSquare q) {
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(q.x)) << 32 | static_cast<std::uint32_t>(q.y);
+}
+
 /// Whether the place has a square: its numbers are no larger than they can be.
 bool fits_grid(Vec2 p, double side);
 
@@ -50,14 +55,11 @@ class SquareNumbers {
   static constexpr std::size_t kSlots = 16384;
   static_assert(kSlots >= 2 * (kMostSquares + 2) && (kSlots & (kSlots - 1)) == 0, "a power of two, half of it empty");
 
-  static std::uint64_t key(GridSquare q) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(q.x)) << 32 | static_cast<std::uint32_t>(q.y);
-  }
   const Slot& slot(GridSquare q) const { return slots_[place(q)]; }
   /// Where the square stands, or would.
   std::size_t place(GridSquare q) const {
-    std::size_t at = static_cast<std::size_t>(key(q) * 0x9e3779b97f4a7c15u >> 50);
-    while (slots_[at].number != kUnknown && key(slots_[at].square) != key(q)) at = (at + 1) % kSlots;
+    std::size_t at = static_cast<std::size_t>(key_of(q) * 0x9e3779b97f4a7c15u >> 50);
+    while (slots_[at].number != kUnknown && key_of(slots_[at].square) != key_of(q)) at = (at + 1) % kSlots;
     return at;
   }
 

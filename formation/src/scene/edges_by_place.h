@@ -23,11 +23,8 @@ class EdgesByPlace {
     for (const SceneObstacle& o : obstacles) {
       for (const geometry::Segment& edge : geometry::edges_of(o.shape)) {
         edges_.push_back(edge);
-        geometry::Box& box = boxes.emplace_back();
-        for (const Vec2 p : {edge.a, edge.b}) {
-          box.add(p);
-          largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
-        }
+        boxes.push_back(geometry::box_of(edge));
+        for (const Vec2 p : {edge.a, edge.b}) largest_ = largest_with(p);
       }
     }
     grid_ = geometry::BoxGrid(std::move(boxes));

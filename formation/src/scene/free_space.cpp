@@ -30,13 +30,10 @@ double ObstacleSpace::clearance(Vec2 place, double enough) const {
 }
 
 bool ObstacleSpace::is_clear(Vec2 from, Vec2 to, double least) const {
-  const Vec2 reach{least, least};
-  geometry::Box box;
-  box.add(from);
-  box.add(to);
+  const Segment way{from, to};
   bool clear = true;
-  by_place_.for_each_meeting({box.low - reach, box.high + reach}, [&](std::size_t o) {
-    clear = clear && obstacles_[o].swept_distance(Segment{from, to}, least) >= least;
+  by_place_.for_each_meeting(geometry::box_of(way).grown(least), [&](std::size_t o) {
+    clear = clear && obstacles_[o].swept_distance(way, least) >= least;
   });
   return clear;
 }

@@ -18,47 +18,34 @@ namespace exactvo::formation::detail {
 class ObstacleBoxes {
  public:
   explicit ObstacleBoxes(const std::vector<SceneObstacle>& obstacles) {
-    boxes_.reserve(obstacles.size());
-    for (const SceneObstacle& o : obstacles) {
-      geometry::Box& box = boxes_.emplace_back();
-      for (const geometry::Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
-    }
-    std::vector<geometry::Box> placed;
-    for (std::size_t k = 0; k < boxes_.size(); ++k) {
-      if (boxes_[k].is_empty()) continue;
-      if (!geometry::is_finite(boxes_[k].low) || !geometry::is_finite(boxes_[k].high)) {
+    std::vector<geometry::Box> boxes;
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      geometry::Box box;
+      for (const geometry::Vec2 p : geometry::vertices_of(obstacles[k].shape)) box.add(p);
+      if (box.is_empty()) continue;
+      if (!geometry::is_finite(box.low) || !geometry::is_finite(box.high)) {
         anywhere_.push_back(k);
         continue;
       }
       obstacle_of_.push_back(k);
-      placed.push_back(boxes_[k]);
-      largest_ = std::max({largest_, std::fabs(boxes_[k].low.x), std::fabs(boxes_[k].low.y),
-                           std::fabs(boxes_[k].high.x), std::fabs(boxes_[k].high.y)});
+      boxes.push_back(box);
+      for (const geometry::Vec2 p : {box.low, box.high}) largest_ = largest_with(p);
     }
-    by_place_ = geometry::BoxGrid(std::move(placed));
+    by_place_ = geometry::BoxGrid(std::move(boxes));
   }
 
-  /// All that are not `is_beyond`, in order.
+  /// In order, all to which `signed_distance` from x may be less than that, rounding and all.
   std::vector<std::size_t> near(geometry::Vec2 x, double distance) const {
     std::vector<std::size_t> found = anywhere_;
-    const double largest = std::max({largest_, std::fabs(x.x), std::fabs(x.y)});
-    by_place_.for_each_within(x, distance + 2.0 * geometry::rounding_of_distance(largest), [&](std::size_t k) {
-      if (!is_beyond(obstacle_of_[k], x, distance)) found.push_back(obstacle_of_[k]);
-    });
+    const double rounding = 2.0 * geometry::rounding_of_distance(largest_with(x));
+    by_place_.for_each_within(x, distance + rounding, [&](std::size_t k) { found.push_back(obstacle_of_[k]); });
     std::sort(found.begin(), found.end());
     return found;
   }
 
-  /// Whether `signed_distance` from x to that obstacle is at least that, rounding and all.
-  bool is_beyond(std::size_t obstacle, geometry::Vec2 x, double distance) const {
-    const geometry::Box& b = boxes_[obstacle];
-    const double largest = std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y),
-                                     std::fabs(x.x), std::fabs(x.y)});
-    return geometry::distance_below(b, x) >= distance + 2.0 * geometry::rounding_of_distance(largest);
-  }
-
  private:
-  std::vector<geometry::Box> boxes_;
+  double largest_with(geometry::Vec2 x) const { return std::max({largest_, std::fabs(x.x), std::fabs(x.y)}); }
+
   std::vector<std::size_t> obstacle_of_, anywhere_;  ///< of the grid; whose box is not finite
   geometry::BoxGrid by_place_;
   double largest_ = 0.0;  ///< m, coordinate

@@ -20,11 +20,8 @@ using Problems = std::vector<ScenarioProblem>;
 
 std::string show(double x) {
   std::string text = std::to_string(x);
-  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
-    const bool point = text.back() == '.';
-    text.pop_back();
-    if (point) break;
-  }
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
   return text;
 }
 std::string show(Vec2 v) {

@@ -126,11 +126,6 @@ inline void add_note(std::string& notes, std::string_view note) {
   notes += note;
 }
 
-/// Both notes of a row, where it has two.
-inline std::string joined_notes(const std::string& first, const std::string& second) {
-  return first.empty() || second.empty() ? first + second : first + "; " + second;
-}
-
 /// Chooses a side when blocked and keeps it while blocked (formations).
 class SideCommitment {
  public:

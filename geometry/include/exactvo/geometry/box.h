@@ -27,6 +27,8 @@ struct Box {
     add(b.low);
     add(b.high);
   }
+  /// Larger by that on every side, m. Rounded.
+  Box grown(double by) const { return {low - Vec2{by, by}, high + Vec2{by, by}}; }
   /// Whether it holds no point.
   bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
