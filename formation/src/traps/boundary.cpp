@@ -20,10 +20,6 @@ std::vector<geometry::Segment> edges_round(const geometry::ConvexShape& shape) {
   return edges;
 }
 
-Vec2 outward(const geometry::Segment& edge) {
-  return -geometry::perp(geometry::normalized(edge.b - edge.a));
-}
-
 /// rho of an ellipse at the unit normal n: det(L)^2 / |L^T n|^3.
 double ellipse_curvature_radius(const geometry::Ellipse& e, Vec2 n) {
   const double det = e.l11 * e.l22;
@@ -61,9 +57,7 @@ double Boundary::lateral(double angle, Vec2 goal) const {
 std::vector<double> Boundary::flat_equilibria(Vec2 goal) const {
   std::vector<double> angles;
   for (const geometry::Segment& edge : edges_) {
-    const Vec2 along = edge.b - edge.a;
-    const double foot = dot(goal - edge.a, along);
-    if (cross(along, goal - edge.a) <= 0.0 || foot < 0.0 || foot > squared_norm(along)) continue;
+    if (!(cross(edge.b - edge.a, goal - edge.a) > 0.0) || !is_over(edge, goal)) continue;
     const Vec2 n = outward(edge);
     angles.push_back(std::atan2(n.y, n.x));
   }

@@ -6,13 +6,26 @@
 
 #include <vector>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/support.h"
 
 namespace exactvo::formation::detail {
 
 using geometry::Vec2;
 
-inline constexpr double kFullTurn = 6.28318530717958647692;
+inline constexpr double kFullTurn = 2.0 * geometry::kPi;
+
+/// Unit, to the right of the edge.
+inline Vec2 outward(const geometry::Segment& edge) {
+  return -geometry::perp(geometry::normalized(edge.b - edge.a));
+}
+
+/// Whether the point's foot lies on the edge, ends included.
+inline bool is_over(const geometry::Segment& edge, Vec2 point) {
+  const Vec2 along = edge.b - edge.a;
+  const double foot = dot(point - edge.a, along);
+  return foot >= 0.0 && foot <= squared_norm(along);
+}
 
 struct BoundaryPoint {
   Vec2 position;                   ///< m
@@ -36,11 +49,13 @@ class Boundary {
   /// rho at a normal; infinite exactly on a flat edge's normal.
   double radius_of_curvature(Vec2 normal) const;
 
+  /// The angles of the normals of flat edges strictly behind which the goal lies, with its foot on the edge.
+  std::vector<double> flat_equilibria(Vec2 goal) const;
+
   /// The angles, ascending, at which the goal lies straight behind the boundary: goal = position - D normal, D > 0.
   std::vector<double> facing_away(Vec2 goal) const;
 
  private:
-  std::vector<double> flat_equilibria(Vec2 goal) const;
   double lateral(double angle, Vec2 goal) const;
 
   geometry::GrownShape grown_;

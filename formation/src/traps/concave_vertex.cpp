@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "exactvo/geometry/box.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "steering/steering.h"
 #include "traps/boundary.h"
@@ -54,9 +54,7 @@ std::vector<Stretch> stretches_of(const Boundary& boundary, double radius) {
   const std::vector<geometry::Segment>& edges = boundary.flat_edges();
   if (edges.empty()) add_arc(0.0, kFullTurn, std::nullopt, out);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Vec2 normal = -geometry::perp(geometry::normalized(edges[i].b - edges[i].a));
-    const geometry::Segment& next = edges[(i + 1) % edges.size()];
-    const Vec2 turned = -geometry::perp(geometry::normalized(next.b - next.a));
+    const Vec2 normal = outward(edges[i]), turned = outward(edges[(i + 1) % edges.size()]);
     out.push_back({true, edges[i].a + radius * normal, edges[i].b + radius * normal, normal, 0.0, 0.0, {}});
     const double begin = std::atan2(normal.y, normal.x);
     double turn = std::atan2(turned.y, turned.x) - begin;
@@ -176,8 +174,7 @@ Vec2 preferred_at(const Crossing& c, Vec2 ahead) {
 
 geometry::Box box_of(const GrownShape& s) {
   const geometry::Box bare = geometry::box_of(s.shape);
-  const Vec2 grown{s.radius, s.radius};
-  return {bare.low - s.origin - grown, bare.high - s.origin + grown};
+  return geometry::Box{bare.low - s.origin, bare.high - s.origin}.grown(s.radius);
 }
 
 }  // namespace
@@ -200,8 +197,7 @@ std::optional<VertexRest> rest_at(const Crossing& c, Vec2 goal) {
   if (!holds_back(c, preferred_at(c, ahead))) return std::nullopt;
   const Vec2 out = geometry::normalized(c.normal_a + c.normal_b);
   const double depth = std::min(std::fabs(cross(ahead, c.normal_a)), std::fabs(cross(ahead, c.normal_b)));
-  const double infinite = std::numeric_limits<double>::infinity();
-  return VertexRest{{c.position, out, infinite, norm(way), true}, holds_back(c, ahead) ? depth : 0.0};
+  return VertexRest{{c.position, out, geometry::kInfinity, norm(way), true}, holds_back(c, ahead) ? depth : 0.0};
 }
 
 }  // namespace exactvo::formation::detail

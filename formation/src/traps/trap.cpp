@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/consensus.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/orca_obstacle.h"
@@ -16,21 +16,13 @@
 namespace exactvo::formation {
 namespace {
 
+using detail::is_over;
+using detail::outward;
 using geometry::ConvexShape;
 using geometry::Ellipse;
 
 bool clear_of(const ConvexShape& shape, double radius, Vec2 point) {
   return geometry::locate(geometry::GrownShape{shape, {}, radius}, point) == geometry::Place::outside;
-}
-
-/// Whether the goal lies strictly behind a flat edge with its foot within it.
-bool behind_a_flat_edge(const std::vector<Vec2>& vertices, Vec2 goal) {
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Vec2 a = vertices[i], along = vertices[(i + 1) % vertices.size()] - a;
-    const double foot = dot(goal - a, along);
-    if (cross(along, goal - a) > 0.0 && foot >= 0.0 && foot <= squared_norm(along)) return true;
-  }
-  return false;
 }
 
 Equilibrium equilibrium_at(const detail::Boundary& boundary, double turn, Vec2 goal) {
@@ -71,7 +63,7 @@ std::optional<double> first_hit(const detail::Boundary& boundary, Vec2 start, Ve
   constexpr int kSamples = 7200;
   const Vec2 way = goal - start;
   std::optional<double> hit;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = geometry::kInfinity;
   for (int i = 0; i < kSamples; ++i) {
     const double turn = detail::kFullTurn * i / kSamples, next = detail::kFullTurn * (i + 1) / kSamples;
     const Vec2 a = boundary.at(turn).position, b = boundary.at(next).position;
@@ -95,44 +87,32 @@ struct Facade {
   std::optional<Vec2> beyond;  ///< where the next edge ends, if it turns into the free space
 };
 
-std::vector<Facade> facades_of(const Scenario& scenario) {
+std::vector<Facade> facades_of(const detail::Scene& scene) {
   std::vector<Facade> facades;
-  for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
-    for (const vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[k].shape)) {
-      const std::size_t n = chain.vertices.size();
-      for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t end = (i + 1) % n;
-        facades.push_back({k, {chain.vertices[i], chain.vertices[end]}, {}});
-        if (!chain.convex[end]) facades.back().beyond = chain.vertices[(end + 1) % n];
-      }
+  for (std::size_t c = 0; c < scene.chains().size(); ++c) {
+    const vo::OrcaChain& chain = scene.chains()[c];
+    const std::size_t n = chain.vertices.size();
+    const std::size_t obstacle = scene.bodies()[scene.edge(scene.first_edge(c))].owners.front();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t end = (i + 1) % n;
+      facades.push_back({obstacle, {chain.vertices[i], chain.vertices[end]}, {}});
+      if (!chain.convex[end]) facades.back().beyond = chain.vertices[(end + 1) % n];
     }
   }
   return facades;
 }
 
-Vec2 free_side(Vec2 along) {
-  return -geometry::perp(geometry::normalized(along));
-}
-
 /// A robot rests over the goal's foot, also where the goal lies in front of the edge by less than the robot's radius.
 std::optional<Equilibrium> rest_on_edge(const Facade& f, double radius, Vec2 goal) {
-  const Vec2 along = f.edge.b - f.edge.a, out = free_side(along);
-  const double foot = dot(goal - f.edge.a, along), depth = -dot(goal - f.edge.a, out);
-  const double distance = depth + radius;
-  if (!(distance > 0.0) || foot < 0.0 || foot > squared_norm(along)) return std::nullopt;
-  return Equilibrium{goal + distance * out, out, std::numeric_limits<double>::infinity(), distance, true};
-}
-
-/// Whether the point's foot lies on the edge, ends included.
-bool is_over(const geometry::Segment& edge, Vec2 point) {
-  const Vec2 along = edge.b - edge.a;
-  const double foot = dot(point - edge.a, along);
-  return foot >= 0.0 && foot <= squared_norm(along);
+  const Vec2 out = outward(f.edge);
+  const double distance = -dot(goal - f.edge.a, out) + radius;
+  if (!(distance > 0.0) || !is_over(f.edge, goal)) return std::nullopt;
+  return Equilibrium{goal + distance * out, out, geometry::kInfinity, distance, true};
 }
 
 /// Where a robot touches an edge and the next one, and both with its rim. Nothing in a slit, nor past an edge's end.
 std::optional<Vec2> touching_both(const geometry::Segment& edge, const geometry::Segment& next, double radius) {
-  const Vec2 out = free_side(edge.b - edge.a), out_next = free_side(next.b - next.a);
+  const Vec2 out = outward(edge), out_next = outward(next);
   const Vec2 at = edge.b + (radius / (1.0 + dot(out, out_next))) * (out + out_next);
   if (!is_finite(at) || !is_over(edge, at) || !is_over(next, at)) return std::nullopt;
   return at;
@@ -151,14 +131,15 @@ bool is_clear_of_all(const std::vector<Facade>& facades, std::size_t obstacle, d
 /// -(s out + t out_next) with s, t >= 0, and not nothing.
 std::optional<Equilibrium> rest_in_corner(const Facade& f, double radius, Vec2 goal) {
   if (!f.beyond) return std::nullopt;
-  const Vec2 out = free_side(f.edge.b - f.edge.a), next = free_side(*f.beyond - f.edge.b);
+  const geometry::Segment next_edge{f.edge.b, *f.beyond};
+  const Vec2 out = outward(f.edge), next = outward(next_edge);
   const double turn = cross(out, next);  // < 0: the chain turns right
   if (!(turn < 0.0)) return std::nullopt;
-  const auto at = touching_both(f.edge, {f.edge.b, *f.beyond}, radius);
+  const auto at = touching_both(f.edge, next_edge, radius);
   if (!at) return std::nullopt;
   const Vec2 way = goal - *at;
   if (way == Vec2{} || cross(way, next) / turn > 0.0 || cross(out, way) / turn > 0.0) return std::nullopt;
-  return Equilibrium{*at, geometry::normalized(out + next), std::numeric_limits<double>::infinity(), norm(way), true};
+  return Equilibrium{*at, geometry::normalized(out + next), geometry::kInfinity, norm(way), true};
 }
 
 /// The rests on the edge and in the corner at its end.
@@ -284,8 +265,7 @@ class Examination {
 /// What the enclosures of a robot are fitted for at the start: its first goal, or its slot at the leader's end.
 Vec2 first_goal(const Scenario& scenario, const SimulationOptions& options, std::size_t robot) {
   if (!scenario.formation) return scenario.robots[robot].goals.front();
-  return scenario.formation->leader.path.back() +
-         detail::offsets_in_use(*scenario.formation, detail::remedies_in_use(scenario, options))[robot];
+  return scenario.formation->leader.path.back() + detail::offsets_in_use(scenario, options)[robot];
 }
 
 /// The enclosures of one robot with their numbers, and of the method ivo-edge the facades they stand on.
@@ -314,16 +294,14 @@ bool stall_possible(const ConvexShape& shape, Vec2 goal) {
   if (const Ellipse* e = std::get_if<Ellipse>(&shape)) return !geometry::goal_outside_evolute(*e, goal);
   // The evolute of a circle is its centre.
   if (const geometry::Disc* d = std::get_if<geometry::Disc>(&shape)) return goal == d->center;
-  if (const geometry::Segment* s = std::get_if<geometry::Segment>(&shape))
-    return behind_a_flat_edge({s->a, s->b}, goal);
-  return behind_a_flat_edge(std::get<geometry::ConvexPolygon>(shape).vertices, goal);
+  return !detail::Boundary(shape, 0.0).flat_equilibria(goal).empty();
 }
 
 double evolute_margin(const Ellipse& ellipse, Vec2 goal) {
   const geometry::EllipseAxes axes = geometry::axes_of(ellipse);
   const Vec2 g = geometry::rotated(goal - ellipse.center, -axes.angle);
   const double focal = (axes.a - axes.b) * (axes.a + axes.b);
-  if (!(focal > 0.0)) return std::numeric_limits<double>::infinity();
+  if (!(focal > 0.0)) return geometry::kInfinity;
   const auto power = [](double x) { return std::cbrt(x * x); };
   return (power(axes.a * g.x) + power(axes.b * g.y)) / power(focal) - 1.0;
 }
@@ -331,7 +309,7 @@ double evolute_margin(const Ellipse& ellipse, Vec2 goal) {
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options) {
   EXACTVO_REQUIRE(validate(scenario).empty(), validate(scenario).front().pointer);
   detail::Scene scene(scenario, options);
-  const std::vector<Facade> facades = options.method == Method::orca ? facades_of(scenario) : std::vector<Facade>{};
+  const std::vector<Facade> facades = facades_of(scene);
   std::vector<TrapFinding> findings;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
