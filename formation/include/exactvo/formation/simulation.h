@@ -14,6 +14,7 @@
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/remedies.h"
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/names.h"
 
 namespace exactvo::formation {
 
@@ -45,27 +46,69 @@ enum class Integrator {
 /// The remedies that a controller consists of.
 Remedies remedies_of(Controller controller);
 
-/// The words of the command line, such as "ivo-edge"; `parse` returns false for a word that is none and changes
-/// nothing.
-const char* name(Method m);
-const char* name(Controller c);               ///< "paper-literal", "paper-signs", "corrected", "default"
-const char* name(Integrator i);               ///< "exact", "euler", "rk4", "dopri5", "rosenbrock4"
-const char* name(Guidance g);                 ///< "none", "route"
-const char* name(Unreachable u);              ///< "stay", "nearest"
-const char* name(Liveness l);                 ///< "off", "bias", "plan"
-const char* name(Mode m);                     ///< "direct", "guided", "by-plan" and so on
-std::vector<std::string> method_names();      ///< in the order of Method
-std::vector<std::string> controller_names();  ///< in the order of Controller
-std::vector<std::string> integrator_names();  ///< in the order of Integrator
-std::vector<std::string> guidance_names();    ///< in the order of Guidance
-std::vector<std::string> liveness_names();    ///< in the order of Liveness
-/// False for an unknown name; `out` is then unchanged. So are the others.
-bool parse(const std::string& text, Method& out);
-bool parse(const std::string& text, Controller& out);   ///< false for an unknown name
-bool parse(const std::string& text, Integrator& out);   ///< false for an unknown name
-bool parse(const std::string& text, Guidance& out);     ///< false for an unknown name
-bool parse(const std::string& text, Unreachable& out);  ///< false for an unknown name
-bool parse(const std::string& text, Liveness& out);     ///< false for an unknown name
+///@{
+/// The words of the command line for the values of an enumeration, in their order.
+constexpr geometry::Names<Method, 4> word_table(Method) {
+  return {{{Method::orca, "orca"},
+           {Method::ivo_edge, "ivo-edge"},
+           {Method::ivo_cluster, "ivo-cluster"},
+           {Method::ivo, "ivo"}}};
+}
+constexpr geometry::Names<Controller, 4> word_table(Controller) {
+  return {{{Controller::paper_literal, "paper-literal"},
+           {Controller::paper_signs, "paper-signs"},
+           {Controller::corrected, "corrected"},
+           {Controller::standard, "default"}}};
+}
+constexpr geometry::Names<Integrator, 5> word_table(Integrator) {
+  return {{{Integrator::exact, "exact"},
+           {Integrator::euler, "euler"},
+           {Integrator::rk4, "rk4"},
+           {Integrator::dopri5, "dopri5"},
+           {Integrator::rosenbrock4, "rosenbrock4"}}};
+}
+constexpr geometry::Names<Guidance, 2> word_table(Guidance) {
+  return {{{Guidance::none, "none"}, {Guidance::route, "route"}}};
+}
+constexpr geometry::Names<Unreachable, 2> word_table(Unreachable) {
+  return {{{Unreachable::stay, "stay"}, {Unreachable::nearest, "nearest"}}};
+}
+constexpr geometry::Names<Liveness, 3> word_table(Liveness) {
+  return {{{Liveness::off, "off"}, {Liveness::bias, "bias"}, {Liveness::plan, "plan"}}};
+}
+constexpr geometry::Names<Mode, 9> word_table(Mode) {
+  return {{{Mode::direct, "direct"},
+           {Mode::guided, "guided"},
+           {Mode::by_plan, "by-plan"},
+           {Mode::going_back, "going-back"},
+           {Mode::staying, "staying"},
+           {Mode::boost, "boost"},
+           {Mode::following, "following"},
+           {Mode::pushing_out, "pushing-out"},
+           {Mode::arrived, "arrived"}}};
+}
+///@}
+
+/// The word of a value, such as "ivo-edge".
+template <class Enum, class = decltype(word_table(Enum{}))>
+const char* name(Enum value) {
+  return geometry::name_in(word_table(value), value);
+}
+/// Sets `out` to the value of a word. False for a word that is none; `out` is then unchanged.
+template <class Enum, class = decltype(word_table(Enum{}))>
+bool parse(const std::string& text, Enum& out) {
+  return geometry::parse_in(word_table(out), text, out);
+}
+/// All words of an enumeration.
+template <class Enum>
+std::vector<std::string> names_of() {
+  return geometry::words_in(word_table(Enum{}));
+}
+inline constexpr auto& method_names = names_of<Method>;          ///< in the order of Method
+inline constexpr auto& controller_names = names_of<Controller>;  ///< in the order of Controller
+inline constexpr auto& integrator_names = names_of<Integrator>;  ///< in the order of Integrator
+inline constexpr auto& guidance_names = names_of<Guidance>;      ///< in the order of Guidance
+inline constexpr auto& liveness_names = names_of<Liveness>;      ///< in the order of Liveness
 
 /// What a run depends on beside its scenario.
 struct SimulationOptions {
