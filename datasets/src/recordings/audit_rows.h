@@ -45,7 +45,7 @@ std::string obstruction_in(const formation::JointPlan& plan, std::size_t rows);
 /// Where robots were when outlooks and plans begin. Plans begin in rows that have passed: of these the last are known.
 class PlacesInRows {
  public:
-  /// 2^23 positions are 128 MiB: as many as a run has memory for (formation's history.h).
+  /// 2^23 positions are 128 MiB: as many as a run has memory for (formation's `History`).
   static constexpr std::size_t kMostPositions = std::size_t{1} << 23;
 
   /// `run` must outlive it, and grows while rows are taken.

@@ -175,13 +175,6 @@ bool is_of_robot(const Scene& scene, const Constraint& c) {
   return scene.bodies()[c.body].kind == vo::BodyKind::robot;
 }
 
-std::vector<std::size_t> robots_met_by(const Scene& scene, const std::vector<Constraint>& constraints) {
-  std::vector<std::size_t> all;
-  for (const Constraint& c : constraints)
-    if (is_of_robot(scene, c)) all.push_back(c.index);
-  return all;
-}
-
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
                std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap) {
   Constraint* mine = against(j, scene, constraints[i]);
@@ -276,15 +269,10 @@ DecisionConstraint Decider::named(const Kept& kept) const {
   return r;
 }
 
-RecordedConstraint Decider::recorded(const Kept& kept, const Viewpoint& from) const {
-  const vo::Body& body = (*bodies_)[kept.first->body];
-  RecordedConstraint r;
-  static_cast<DecisionConstraint&>(r) = named(kept);
-  r.shape = body.shape;
-  r.position = from.position;
-  r.radius = from.radius;
-  r.shape_velocity = body.velocity;
-  return r;
+RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies,
+                              const Viewpoint& from) {
+  const vo::Body& body = bodies[constraint.body];
+  return {constraint, body.shape, from.position, from.radius, body.velocity};
 }
 
 void Decider::reserve(std::size_t constraints) {
@@ -372,7 +360,7 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
   decide(in, static_cast<Decision&>(step));
   step.constraints.clear();
   step.constraints.reserve(kept_.size());
-  for (const Kept& one : kept_) step.constraints.push_back(recorded(one, in.from));
+  for (const Kept& one : kept_) step.constraints.push_back(with_shape(named(one), *bodies_, in.from));
 }
 
 }  // namespace exactvo::formation::detail

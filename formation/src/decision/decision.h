@@ -64,9 +64,6 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
 
 bool is_of_robot(const Scene& scene, const Constraint& c);
 
-/// Whom these half-planes keep clear of, among the robots.
-std::vector<std::size_t> robots_met_by(const Scene& scene, const std::vector<Constraint>& constraints);
-
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
 /// as `contact_time` and leaving `gap` (m) between their rims: v = 0 satisfies them as long as the robots do not
 /// overlap, and they are as certain (liveness, rule R0).
@@ -96,6 +93,9 @@ double reach_of_step(const Scenario& scenario, const Viewpoint& from);
 double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j);
 
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
+
+/// With what it takes to prove it again, as seen from there.
+RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies, const Viewpoint& from);
 
 struct DecisionInput {
   Vec2 preferred;  ///< m/s
@@ -140,7 +140,6 @@ class Decider {
   bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   DecisionConstraint named(const Kept& kept) const;
-  RecordedConstraint recorded(const Kept& kept, const Viewpoint& from) const;
 
   const Scenario* scenario_;
   const vo::BodyTable* bodies_;

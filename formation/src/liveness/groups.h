@@ -8,6 +8,7 @@
 /// Deterministic: budgets of searches are counted.
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -17,7 +18,6 @@
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/waiting.h"
-#include "liveness/history.h"
 #include "liveness/plan_search.h"
 #include "liveness/plan_tries.h"
 
@@ -30,6 +30,36 @@ inline bool contains(const std::vector<std::size_t>& sorted, std::size_t x) {
 
 /// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
 Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
+
+/// Where robots were, row by row, as far back as memory allows: they can go back as they came (liveness, rule R3).
+class History {
+ public:
+  /// `row`: m, of each robot.
+  void add(std::vector<Vec2> row) { rows_.push_back(std::move(row)); }
+
+  std::size_t first() const { return first_; }
+  /// REQUIRES: a row was added.
+  std::size_t last() const { return first_ + rows_.size() - 1; }
+  /// REQUIRES: first() <= row <= last().
+  const std::vector<Vec2>& operator[](std::size_t row) const { return rows_[row - first_]; }
+  const std::vector<Vec2>& back() const { return rows_.back(); }
+
+  /// Forgets the oldest rows that are too many, but none from `needed` on, nor the last.
+  void forget_before(std::size_t needed) {
+    while (rows_.size() > 1 && first_ < needed &&
+           rows_.size() * std::max<std::size_t>(1, rows_.back().size()) > kMostPositions) {
+      rows_.pop_front();
+      ++first_;
+    }
+  }
+
+ private:
+  /// 128 MiB: more than 40 s of 10,000 robots, and a day of three.
+  static constexpr std::size_t kMostPositions = std::size_t{1} << 23;
+
+  std::size_t first_ = 0;
+  std::deque<std::vector<Vec2>> rows_;
+};
 
 class Groups {
  public:

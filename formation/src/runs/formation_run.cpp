@@ -57,7 +57,9 @@ class FormationRun {
         schedule_(scenario_, options),
         decider_(scenario_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, remedies_)),
-        joint_(scenario_, options_, scene_, schedule_, decider_) {
+        joint_(
+            scenario_, options_, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
+            [this](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, step, fallen_back); }) {
     if (liveness_of(scenario, options) == Liveness::plan) {
       plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
@@ -82,8 +84,7 @@ class FormationRun {
     recording.remedies = remedies_;
     recording.offsets = offsets_;
     for (std::size_t i = 0; i < robots_.size(); ++i) outlooks_.push_back({0.0, i, 0, robots_[i].field.shapes()});
-    sink.begin(recording);
-    RowFeed rows(scene_.bodies(), outlooks_, plans_ ? &plans_->groups().plans() : nullptr, sink);
+    RowFeed rows(recording, scene_.bodies(), outlooks_, plans_ ? &plans_->groups().plans() : nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
     for (; !schedule_.ends_at(k) && !out_of_bounds(); ++k) {
@@ -93,12 +94,8 @@ class FormationRun {
     }
     const Step last = state_row(schedule_.time(k));
     rows.add(last);
-    recording.bodies = scene_.copied_bodies();
-    recording.outlooks = std::move(outlooks_);
-    if (plans_) {
-      recording.liveness = plans_->groups().course();
-      recording.plans = plans_->groups().plans();
-    }
+    rows.finish();
+    if (plans_) recording.liveness = plans_->groups().course();
     judge(first_error, last, recording);
   }
 
@@ -134,17 +131,13 @@ class FormationRun {
     now_ = time;
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
-    joint_.anchors.clear();
-    for (std::size_t i = 0; i < robots_.size(); ++i) joint_.anchors.push_back({anchor(i), anchor_velocity(i)});
+    joint_.begin_step();
     if (plans_) begin_plans(time, leader);
     take_relative_states(leader);
     joint_.look_at_robots(plans_ ? &plans_->groups() : nullptr);
     move_obstacles(scenario_, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
-    if (!plans_) return row;
-    joint_.settle(
-        plans_->groups(), row, [&](std::size_t i) { return viewpoint(i); },
-        [&](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, time, step, fallen_back); });
+    if (plans_) joint_.settle(plans_->groups(), row);
     return row;
   }
 
@@ -184,7 +177,7 @@ class FormationRun {
     step.note = std::exchange(robots_[i].note, {});
     if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
-    if (goes_by_plan(i)) return choose_by_plan(i, time, step, nullptr);
+    if (goes_by_plan(i)) return choose_by_plan(i, step, nullptr);
     robots_[i].field.constraints(here, statics_);
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
@@ -228,10 +221,8 @@ class FormationRun {
       outlooks_.push_back({time, i, 0, std::move(bodies)});
   }
 
-  void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    const Groups& groups = plans_->groups();
-    step.mode = groups.goes_back(i) ? Mode::going_back : Mode::by_plan;
-    joint_.choose_by_plan(i, groups.wanted(i), viewpoint(i), *robots_[i].pieces, time, step, fallen_back);
+  void choose_by_plan(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    joint_.choose_by_plan(i, plans_->groups(), *robots_[i].pieces, now_, step, fallen_back);
   }
 
   StaticField field_of_pieces(std::size_t i) {
@@ -241,12 +232,12 @@ class FormationRun {
     return field;
   }
 
-  void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
+  void choose_again(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    if (goes_by_plan(i)) return choose_by_plan(i, step, fallen_back);
     const Viewpoint here = viewpoint(i);
     robots_[i].field.constraints(here, statics_);
     decider_.decide(
-        {step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(time), nullptr, fallen_back}, step);
+        {step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(now_), nullptr, fallen_back}, step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -311,13 +302,7 @@ class FormationRun {
     row.leader_position = leader.position;
     row.leader_velocity = leader.velocity;
     row.robots.reserve(robots_.size());
-    for (const FormationRobot& r : robots_) {
-      RobotStep& step = row.robots.emplace_back();
-      step.position = r.body.position;
-      step.velocity = r.body.velocity;
-      step.anchor = step.position;
-      step.anchor_velocity = step.velocity;
-    }
+    for (const FormationRobot& r : robots_) row.robots.push_back(undecided(r.body.position, r.body.velocity));
     return row;
   }
 

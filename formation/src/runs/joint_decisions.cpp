@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "runs/joint_decisions.h"
 
+#include <algorithm>
 #include <optional>
+#include <set>
 
-#include "decision/repair.h"
 #include "scene/moving.h"
 
 namespace exactvo::formation::detail {
+
+void JointDecisions::begin_step() {
+  anchors.clear();
+  for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+    const Viewpoint here = viewpoint_(i);
+    anchors.push_back({here.position, here.velocity});
+  }
+}
 
 void JointDecisions::look_at_robots(const Groups* groups) {
   robot_constraints(scenario_, options_, anchors, scene_, others);
@@ -17,8 +26,11 @@ void JointDecisions::look_at_robots(const Groups* groups) {
   follow_plans(scenario_, anchors, scene_, planned, others, gap);
 }
 
-void JointDecisions::choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, const StaticField& field, double time,
+void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time,
                                     RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+  step.mode = groups.goes_back(i) ? Mode::going_back : Mode::by_plan;
+  const Vec2 wanted = groups.wanted(i);
+  Viewpoint here = viewpoint_(i);
   here.velocity = wanted;
   here.horizon = scenario_.time_step;
   field.constraints(here, statics_, reach_of_step(scenario_, here));
@@ -29,32 +41,56 @@ void JointDecisions::choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, 
       step);
 }
 
-void JointDecisions::settle(Groups& groups, Step& row, const std::function<Viewpoint(std::size_t)>& viewpoint,
-                            const ChooseAgain& choose_again) {
-  repair(groups, row, choose_again);
+void JointDecisions::settle(Groups& groups, Step& row) {
+  repair(groups, row);
   while (groups.any() && groups.halt_those_held_back(row)) {
     look_at_robots(&groups);
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
-      add_moving_constraints(scenario_, viewpoint(i), scene_, others[i]);
-      choose_again(i, row.robots[i], nullptr);
+      add_moving_constraints(scenario_, viewpoint_(i), scene_, others[i]);
+      choose_again_(i, row.robots[i], nullptr);
     }
-    repair(groups, row, choose_again);
+    repair(groups, row);
   }
   groups.end_step(row);
 }
 
-void JointDecisions::repair(const Groups& groups, Step& row, const ChooseAgain& choose_again) {
+/// Repair instead of relaxing (liveness, rule R0): as long as there are robots whose half-planes, as they decided last,
+/// contradict each other, all pairs of these fall back to those that they would have at rest, and decide again. In each
+/// round some pair does so for good, so that it ends. Half-planes of moving obstacles and of robots that do not yield
+/// may still be relaxed.
+void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
     return row.robots[i].status != lp::Status::optimal || (groups.is_member(i) && held_by_all_[i]);
   };
-  const auto fallen = detail::repair(
-      scenario_, anchors, scene_, others, is_contradicted,
-      [&](std::size_t i, const std::vector<std::size_t>& with) { choose_again(i, row.robots[i], &with); }, gap);
+  std::set<std::size_t> contradicted;
+  for (std::size_t i = 0; i < others.size(); ++i)
+    if (is_contradicted(i)) contradicted.insert(i);
+  std::vector<std::vector<std::size_t>> fallen(others.size());  // with whom each fell back
+  while (!contradicted.empty()) {
+    std::set<std::size_t> changed;
+    for (const std::size_t i : contradicted) {
+      for (const Constraint& c : others[i]) {
+        const std::size_t j = c.index;
+        const bool both_yield =
+            is_of_robot(scene_, c) && scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
+        if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
+        fall_back(scenario_, anchors, scene_, i, j, others, gap);
+        fallen[i].push_back(j);
+        fallen[j].push_back(i);
+        changed.insert({i, j});
+      }
+    }
+    contradicted.clear();
+    for (const std::size_t i : changed) {
+      choose_again_(i, row.robots[i], &fallen[i]);
+      if (is_contradicted(i)) contradicted.insert(i);
+    }
+  }
   // Held from all sides, with less room than there is between doubles: it stands still, which they all allow.
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     if (row.robots[i].status != lp::Status::no_interior || groups.is_member(i)) continue;
     row.robots[i].preferred = {};
-    choose_again(i, row.robots[i], &fallen[i]);
+    choose_again_(i, row.robots[i], &fallen[i]);
   }
 }
 

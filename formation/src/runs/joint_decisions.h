@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "decision/decision.h"
@@ -17,14 +18,21 @@ namespace exactvo::formation::detail {
 
 class JointDecisions {
  public:
+  /// Where robot i is, and how fast.
+  using ViewpointOf = std::function<Viewpoint(std::size_t i)>;
+  /// Robot i decides again with `others[i]` as they are now; `fallen_back`: as in DecisionInput.
+  using ChooseAgain = std::function<void(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back)>;
+
   /// All must outlive it.
   JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunSchedule& schedule,
-                 Decider& decider)
+                 Decider& decider, ViewpointOf viewpoint, ChooseAgain choose_again)
       : scenario_(scenario),
         options_(options),
         scene_(scene),
         schedule_(schedule),
         decider_(decider),
+        viewpoint_(std::move(viewpoint)),
+        choose_again_(std::move(choose_again)),
         held_by_all_(scenario.robots.size(), 0) {}
 
   // Of each robot, in their order.
@@ -33,30 +41,31 @@ class JointDecisions {
   std::vector<std::vector<Constraint>> others;  ///< its half-planes against robots and moving obstacles
   double gap = kContactSkin;                    ///< m, that pairs which fall back keep, as in `fall_back`
 
+  /// Takes the robots as they are.
+  void begin_step();
+
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
 
   /// Along the plan, as fast as all half-planes allow. Those of `field` have one time step as their horizon, so that
   /// they hold the planned velocity back no more than safety requires.
-  void choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, const StaticField& field, double time,
-                      RobotStep& step, const std::vector<std::size_t>* fallen_back);
-
-  /// Robot i decides again with `others[i]` as they are now; `fallen_back`: as in DecisionInput.
-  using ChooseAgain = std::function<void(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back)>;
+  void choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time, RobotStep& step,
+                      const std::vector<std::size_t>* fallen_back);
 
   /// Once all have decided: half-planes that contradict each other are repaired, groups that are held back are halted,
   /// whereupon all decide again, and the groups hear how the step ended.
-  void settle(Groups& groups, Step& row, const std::function<Viewpoint(std::size_t)>& viewpoint,
-              const ChooseAgain& choose_again);
+  void settle(Groups& groups, Step& row);
 
  private:
-  void repair(const Groups& groups, Step& row, const ChooseAgain& choose_again);
+  void repair(const Groups& groups, Step& row);
 
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Scene& scene_;
   const RunSchedule& schedule_;
   Decider& decider_;
+  ViewpointOf viewpoint_;
+  ChooseAgain choose_again_;
   std::vector<char> held_by_all_;    ///< of those who go by plan: no share of what they want is allowed
   std::vector<Constraint> statics_;  ///< of one who goes by plan; memory that is kept
 };

@@ -60,7 +60,9 @@ class KinematicRun {
         scene_(scenario, options),
         schedule_(scenario, options),
         own_(scenario, options, scene_.bodies()),
-        joint_(scenario, options, scene_, schedule_, own_.decider()) {
+        joint_(
+            scenario, options, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
+            [this](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, step, fallen_back); }) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
                       [this] { return schedule_.is_stopped(now_); });
@@ -72,7 +74,7 @@ class KinematicRun {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
       robot.velocity = scenario.robots[i].velocity;
-      look_at_goal(i, 0.0);
+      look_at_goal(i);
     }
     const bool may_end_elsewhere = guide && scenario.unreachable == Unreachable::nearest;
     const RoomAtEnds room = room_at_ends(scenario);
@@ -86,8 +88,7 @@ class KinematicRun {
   void run(Recording& recording, RunSink& sink) {
     recording.motion = MotionLaw::straight;
     recording.time_step = scenario_.time_step;
-    sink.begin(recording);
-    RowFeed rows(scene_.bodies(), outlooks_, groups_ ? &groups_->plans() : nullptr, sink);
+    RowFeed rows(recording, scene_.bodies(), outlooks_, groups_ ? &groups_->plans() : nullptr, sink);
     std::size_t k = 0;
     for (; !schedule_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
       Step row = decide_all(schedule_.time(k));
@@ -98,9 +99,7 @@ class KinematicRun {
     recording.outcome = outcome();
     if (guide_) recording.routes = routes_;
     if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
-    if (groups_) recording.plans = groups_->plans();
-    recording.outlooks = std::move(outlooks_);
-    recording.bodies = scene_.copied_bodies();
+    rows.finish();
   }
 
  private:
@@ -109,11 +108,11 @@ class KinematicRun {
   /// Within reach of its goal.
   Vec2 aim_of(std::size_t i) const { return has_last_goal(i) && !last_places_.empty() ? last_places_[i] : goal_of(i); }
 
-  void look_at_goal(std::size_t i, double time) {
+  void look_at_goal(std::size_t i) {
     const Robot& spec = scenario_.robots[i];
     robots_[i].head_for(aim_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
     if (guide_) plan_course(i);
-    outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
+    outlooks_.push_back({now_, i, robots_[i].goal, robots_[i].field->shapes()});
   }
 
   void plan_course(std::size_t i) {
@@ -176,45 +175,41 @@ class KinematicRun {
   bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
   bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
 
-  void pass_waypoint(std::size_t i, double time) {
+  void pass_waypoint(std::size_t i) {
     if (has_last_goal(i) || !is_within_reach(i)) return;
     ++robots_[i].goal;
     robots_[i].note = passed_goal_words(robots_[i].goal);
-    look_at_goal(i, time);  // which may note that the next one is out of reach
+    look_at_goal(i);  // which may note that the next one is out of reach
   }
 
   Step decide_all(double time) {
     now_ = time;
     if (claims_) look_at_claims();
-    if (groups_) look_at_groups(time);
-    joint_.anchors.clear();
-    for (const KinematicRobot& r : robots_) joint_.anchors.push_back({r.position, r.velocity});
+    if (groups_) look_at_groups();
+    joint_.begin_step();
     joint_.look_at_robots(groups_ ? &*groups_ : nullptr);
     Step row;
     row.time = time;
     move_obstacles(scenario_, time, scene_, row.moving);
-    if (standing_) look_at_what_stands(time, row.moving);
+    if (standing_) look_at_what_stands(row.moving);
     row.robots.reserve(robots_.size());
-    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
-    if (!groups_) return row;
-    joint_.settle(
-        *groups_, row, [&](std::size_t i) { return viewpoint(i); },
-        [&](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, time, step, fallen_back); });
+    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i));
+    if (groups_) joint_.settle(*groups_, row);
     return row;
   }
 
   // --- Moving obstacles that stand on routes ---
 
-  void look_at_what_stands(double time, const std::vector<MovedObstacle>& moving) {
+  void look_at_what_stands(const std::vector<MovedObstacle>& moving) {
     const std::size_t before = standing_->changes();
-    standing_->look(time, moving);
+    standing_->look(now_, moving);
     const bool changed = standing_->changes() != before;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       KinematicRobot& r = robots_[i];
       if (!r.course || r.nearest || at_goal(i)) continue;
       if (changed && r.detour) take_up_route(i);
-      const bool looks = changed || r.has_new_course || (r.cut_by && time >= r.looks_again);
-      if (looks && !goes_by_plan(i)) go_round(i, time);
+      const bool looks = changed || r.has_new_course || (r.cut_by && now_ >= r.looks_again);
+      if (looks && !goes_by_plan(i)) go_round(i);
     }
   }
 
@@ -235,7 +230,7 @@ class KinematicRun {
   }
 
   /// Where something that stands now cuts its route and there is a way round. Else it waits before it, and looks again.
-  void go_round(std::size_t i, double time) {
+  void go_round(std::size_t i) {
     constexpr double kLooksAgainAfter = 1.0;  // s
     KinematicRobot& r = robots_[i];
     const double radius = scenario_.robots[i].radius;
@@ -243,7 +238,7 @@ class KinematicRun {
     const bool is_known = by == r.cut_by;
     r.has_new_course = false;
     r.cut_by = by;
-    r.looks_again = time + kLooksAgainAfter;
+    r.looks_again = now_ + kLooksAgainAfter;
     if (!by) return;
     std::shared_ptr<Guide> detour = standing_->guide();
     CourseAnswer answer = detour->course(radius, r.position, destination(i));
@@ -258,16 +253,16 @@ class KinematicRun {
     ++routes_.cut;
   }
 
-  void look_whether_it_waits(std::size_t i, double time) {
+  void look_whether_it_waits(std::size_t i) {
     constexpr double kForGood = 2.0;  // s
     KinematicRobot& r = robots_[i];
-    if (!r.cut_by || time < moving_until_ || !is_at_rest(i) || goes_by_plan(i)) r.waits_since = time;
-    r.waits_for_good = time - r.waits_since >= kForGood;
+    if (!r.cut_by || now_ < moving_until_ || !is_at_rest(i) || goes_by_plan(i)) r.waits_since = now_;
+    r.waits_for_good = now_ - r.waits_since >= kForGood;
   }
 
   // --- Robots that go by plan ---
 
-  void look_at_groups(double time) {
+  void look_at_groups() {
     std::vector<RobotNow> now;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       const KinematicRobot& r = robots_[i];
@@ -278,7 +273,7 @@ class KinematicRun {
                      scenario_.robots[i].cooperates && !r.waits_for_room, r.goal,
                      has_no_way || r.nearest || is_taken(i)});
     }
-    groups_->begin_step(time, std::move(now), [&](std::size_t i) {
+    groups_->begin_step(now_, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
       return r.course ? guide_->way_left(*r.course, r.position) : norm(aim_of(i) - r.position);
     });
@@ -286,15 +281,15 @@ class KinematicRun {
 
   bool goes_by_plan(std::size_t i) const { return groups_ && groups_->is_member(i); }
 
-  void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
+  void choose_again(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    if (goes_by_plan(i)) return choose_by_plan(i, step, fallen_back);
     look(i);
-    choose(i, step.preferred, time, step, fallen_back);
+    choose(i, step.preferred, step, fallen_back);
   }
 
-  void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+  void choose_by_plan(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
     robots_[i].field->set_margin(0.0);
-    joint_.choose_by_plan(i, groups_->wanted(i), viewpoint(i), *robots_[i].field, time, step, fallen_back);
+    joint_.choose_by_plan(i, *groups_, *robots_[i].field, now_, step, fallen_back);
   }
 
   bool meets_robots(std::size_t i) const {
@@ -302,25 +297,22 @@ class KinematicRun {
                        [&](const Constraint& c) { return is_of_robot(scene_, c); });
   }
 
-  RobotStep decide_one(std::size_t i, double time) {
-    pass_waypoint(i, time);
-    look_whether_it_waits(i, time);
+  RobotStep decide_one(std::size_t i) {
+    pass_waypoint(i);
+    look_whether_it_waits(i);
     if (!goes_by_plan(i)) look(i);
     add_moving_constraints(scenario_, viewpoint(i), scene_, joint_.others[i]);
     KinematicRobot& r = robots_[i];
-    RobotStep step;
-    step.position = step.anchor = r.position;
-    step.velocity = step.anchor_velocity = r.velocity;
+    RobotStep step = undecided(r.position, r.velocity);
     step.note = std::exchange(r.note, {});
     if (groups_) add_note(step.note, groups_->note(i));
     if (goes_by_plan(i)) {
-      step.mode = groups_->goes_back(i) ? Mode::going_back : Mode::by_plan;
-      choose_by_plan(i, time, step, nullptr);
+      choose_by_plan(i, step, nullptr);
       return step;
     }
-    Vec2 preferred = steer(i, time, step);
+    Vec2 preferred = steer(i, step);
     if (is_taken(i) && !rests_beside(i) && !is_at_end(i)) preferred = claims_->beside_taken_place(i, preferred);
-    choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
+    choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), step);
     return step;
   }
 
@@ -332,9 +324,8 @@ class KinematicRun {
   void look(std::size_t i) { own_.look(*robots_[i].field, viewpoint(i)); }
 
   /// REQUIRES: it has looked, and nobody after it.
-  void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
-              const std::vector<std::size_t>* fallen_back = nullptr) {
-    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(time), fallen_back, step);
+  void choose(std::size_t i, Vec2 preferred, RobotStep& step, const std::vector<std::size_t>* fallen_back = nullptr) {
+    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), fallen_back, step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
@@ -397,12 +388,12 @@ class KinematicRun {
     return straight_for(i, to.place);
   }
 
-  Vec2 steer(std::size_t i, double time, RobotStep& step) {
+  Vec2 steer(std::size_t i, RobotStep& step) {
     if (rests_beside(i)) {
       step.mode = Mode::staying;
       return claims_->beside_taken_place(i, {});
     }
-    if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), aim_of(i), at_goal(i)}, step);
+    if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {now_, viewpoint(i), aim_of(i), at_goal(i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
   }
@@ -418,13 +409,8 @@ class KinematicRun {
     Step row;
     row.time = time;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      RobotStep step;
-      step.position = robots_[i].position;
-      step.velocity = robots_[i].velocity;
-      step.anchor = step.position;
-      step.anchor_velocity = step.velocity;
-      if (at_goal(i)) step.mode = Mode::arrived;
-      row.robots.push_back(step);
+      row.robots.push_back(undecided(robots_[i].position, robots_[i].velocity));
+      if (at_goal(i)) row.robots.back().mode = Mode::arrived;
     }
     return row;
   }

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/excerpt.h"
 #include "runs/own_decision.h"
+#include "runs/rows.h"
 #include "scene/field_problems.h"
+#include "scene/free_space.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "steering/goals.h"
@@ -67,10 +68,6 @@ void require_goals(const std::vector<Vec2>& goals) {
   for (std::size_t k = 0; k < goals.size(); ++k) require_vector(goals[k], "goal", k, "position");
 }
 
-bool is_method(Method m) {
-  return m == Method::orca || m == Method::ivo_edge || m == Method::ivo_cluster || m == Method::ivo;
-}
-
 /// Its robot stands anywhere: where it is comes with every decision.
 Scenario scenario_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
   Scenario s;
@@ -100,7 +97,7 @@ std::string field_at(const std::string& pointer) {
 
 Scenario checked(const NavigatorSetup& setup, std::vector<Vec2> goals) {
   require_goals(goals);
-  if (!is_method(setup.method)) refuse(Problem::out_of_range, "method", "no Method", "one");
+  if (!*name(setup.method)) refuse(Problem::out_of_range, "method", "no Method", "one");
   if (setup.neighbours > kMostNeighbours)
     refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
   for (std::size_t k = 0; k < setup.obstacles.size(); ++k)
@@ -120,45 +117,6 @@ SimulationOptions options_of(const NavigatorSetup& setup) {
   options.liveness = Liveness::off;
   return options;
 }
-
-/// The polygons of a setup, asked whether a point is inside one.
-class Insides {
- public:
-  explicit Insides(const std::vector<SceneObstacle>& obstacles) {
-    std::vector<geometry::Box> boxes;
-    for (const SceneObstacle& o : obstacles) {
-      if (!has_interior(o.shape)) continue;
-      geometry::Box& box = boxes.emplace_back();
-      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
-      solid_.push_back(&o);
-    }
-    by_place_ = geometry::BoxGrid(std::move(boxes));
-  }
-
-  /// The obstacle that x is inside of, or null. Near to where nothing was, it looks no more.
-  const SceneObstacle* round(Vec2 x) {
-    if (norm(x - asked_) < clear_) return nullptr;
-    constexpr double kLooksRound = 2.0;  // m
-    double clear = kLooksRound;
-    const SceneObstacle* found = nullptr;
-    by_place_.for_each_within(x, kLooksRound, [&](std::size_t k) {
-      const double gap = geometry::signed_distance(solid_[k]->shape, x);
-      if (gap < 0.0 && !found) found = solid_[k];
-      clear = std::min(clear, gap);
-    });
-    if (found) return found;
-    constexpr double kRounding = 1e-6;  // of what distances are off by
-    asked_ = x;
-    clear_ = clear - kRounding;
-    return nullptr;
-  }
-
- private:
-  std::vector<const SceneObstacle*> solid_;
-  geometry::BoxGrid by_place_;
-  Vec2 asked_;
-  double clear_ = -1.0;  ///< m: so far round `asked_` no point is inside
-};
 
 }  // namespace
 
@@ -198,7 +156,7 @@ class Navigator::Core {
         scene_(scenario_, options_),
         own_(scenario_, options_, scene_.bodies()),
         rule_(pair_rule(scenario_, options_)),
-        insides_(scenario_.obstacles) {
+        space_(scenario_.obstacles) {
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
                                scene_.edges_by_place().size() + scenario_.obstacles.size();
     const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
@@ -248,18 +206,9 @@ class Navigator::Core {
   bool has_arrived() const { return has_decided_ && is_last_goal() && is_within_reach(); }
 
   RobotStep recorded() const {
-    RobotStep step;
+    RobotStep step = undecided(now_.position, now_.velocity);
     static_cast<Decision&>(step) = decision_;
-    step.position = step.anchor = now_.position;
-    step.velocity = step.anchor_velocity = now_.velocity;
-    for (const DecisionConstraint& c : kept_) {
-      RecordedConstraint& r = step.constraints.emplace_back();
-      static_cast<DecisionConstraint&>(r) = c;
-      r.shape = bodies()[c.body].shape;
-      r.position = now_.position;
-      r.radius = robot().radius;
-      r.shape_velocity = bodies()[c.body].velocity;
-    }
+    for (const DecisionConstraint& c : kept_) step.constraints.push_back(with_shape(c, bodies(), here()));
     return step;
   }
 
@@ -280,9 +229,21 @@ class Navigator::Core {
     require_vector(now.velocity, nullptr, 0, "velocity");
     if (has_decided_ && now.time < now_.time)
       refuse(Problem::time_backwards, "time", number(now.time), "no time before " + number(now_.time));
-    if (const SceneObstacle* o = insides_.round(now.position))
+    if (const SceneObstacle* o = obstacle_round(now.position))
       refuse(Problem::inside_obstacle, "position", number(now.position),
              "a place that is not inside obstacle '" + o->id + "'");
+  }
+
+  /// The obstacle that x is inside of, or null. Near to where nothing was, it looks no more.
+  const SceneObstacle* obstacle_round(Vec2 x) {
+    constexpr double kLooksRound = 2.0, kRounding = 1e-6;  // m; of what distances are off by
+    if (norm(x - clear_place_) < clear_) return nullptr;
+    const double clear = space_.clearance(x, kLooksRound);
+    const auto is_round = [&](const SceneObstacle& o) { return geometry::signed_distance(o.shape, x) < 0.0; };
+    if (clear < 0.0) return &*std::find_if(scenario_.obstacles.begin(), scenario_.obstacles.end(), is_round);
+    clear_place_ = x;
+    clear_ = clear - kRounding;
+    return nullptr;
   }
 
   static void require_neighbours(const NavigatorState& now, const std::vector<Neighbour>& neighbours) {
@@ -353,7 +314,9 @@ class Navigator::Core {
   Scene scene_;
   OwnDecision own_;
   vo::ReciprocalOptions rule_;
-  Insides insides_;
+  ObstacleSpace space_;
+  Vec2 clear_place_;
+  double clear_ = -1.0;  ///< m: so far round `clear_place_` no point is inside an obstacle
   OwnWay way_;
   NavigatorState now_;
   bool has_decided_ = false;

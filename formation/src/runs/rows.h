@@ -4,6 +4,7 @@
 /// \file
 /// Passes rows from the simulation to a RunSink.
 
+#include <chrono>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,28 +19,57 @@ inline std::shared_ptr<const Step> borrowed(const Step& row) {
   return {std::shared_ptr<void>(), &row};
 }
 
+/// The row of a robot that has not decided yet.
+inline RobotStep undecided(Vec2 position, Vec2 velocity) {
+  RobotStep step;
+  step.position = step.anchor = position;
+  step.velocity = step.anchor_velocity = velocity;
+  return step;
+}
+
 /// Hands rows to a sink, before each what is new among the bodies and outlooks that it may name, and the plans made in
 /// it.
 class RowFeed {
  public:
-  /// All must outlive the feed. `plans`: null where there are none.
-  RowFeed(const vo::BodyTable& bodies, const std::vector<Outlook>& outlooks, const std::vector<JointPlan>* plans,
-          RunSink& sink)
-      : bodies_(bodies), outlooks_(outlooks), plans_(plans), sink_(sink) {}
+  /// All must outlive the feed. `run` has what is known before the first row; `plans`: null where there are none.
+  RowFeed(Recording& run, const vo::BodyTable& bodies, std::vector<Outlook>& outlooks,
+          const std::vector<JointPlan>* plans, RunSink& sink)
+      : run_(run), bodies_(bodies), outlooks_(outlooks), plans_(plans), sink_(sink) {
+    timed([&] { sink_.begin(run); });
+  }
 
   void add(Step row) {
-    for (; told_bodies_ < bodies_.size(); ++told_bodies_) sink_.add_body(bodies_[told_bodies_]);
-    for (; told_outlooks_ < outlooks_.size(); ++told_outlooks_) sink_.add_outlook(outlooks_[told_outlooks_]);
-    for (; plans_ && told_plans_ < plans_->size(); ++told_plans_) sink_.add_plan((*plans_)[told_plans_]);
-    sink_.add_row(std::move(row));
+    timed([&] {
+      for (; told_bodies_ < bodies_.size(); ++told_bodies_) sink_.add_body(bodies_[told_bodies_]);
+      for (; told_outlooks_ < outlooks_.size(); ++told_outlooks_) sink_.add_outlook(outlooks_[told_outlooks_]);
+      for (; plans_ && told_plans_ < plans_->size(); ++told_plans_) sink_.add_plan((*plans_)[told_plans_]);
+      sink_.add_row(std::move(row));
+    });
+  }
+
+  /// After the last row: what it has handed over, for the recording. The time that the sink took is not the run's.
+  void finish() {
+    for (vo::BodyTable::Number k = 0; k < bodies_.size(); ++k) run_.bodies.push_back(bodies_[k]);
+    run_.outlooks = std::move(outlooks_);
+    if (plans_) run_.plans = *plans_;
+    run_.wall_time -= seconds_;
   }
 
  private:
+  template <class Work>
+  void timed(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  Recording& run_;
   const vo::BodyTable& bodies_;
-  const std::vector<Outlook>& outlooks_;
+  std::vector<Outlook>& outlooks_;
   const std::vector<JointPlan>* plans_;
   RunSink& sink_;
   std::size_t told_bodies_ = 0, told_outlooks_ = 0, told_plans_ = 0;
+  double seconds_ = 0.0;
 };
 
 }  // namespace exactvo::formation::detail

@@ -21,20 +21,11 @@ using namespace detail;
 using geometry::norm;
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& options) {
-  if (!scenario.formation) return {};
-  return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
-}
-
 std::vector<std::string> warnings_with(const Scenario& scenario, const SimulationOptions& options,
                                        Reachability& reach) {
   std::vector<std::string> warnings;
   if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
-  for (std::string& warning : preflight_warnings(scenario, offsets_of(scenario, options), reach))
+  for (std::string& warning : preflight_warnings(scenario, offsets_in_use(scenario, options), reach))
     warnings.push_back(std::move(warning));
   return warnings;
 }
@@ -46,48 +37,6 @@ struct RowsKept : RunSink {
   std::vector<Step> rows;
 };
 
-/// Measures the time spent in the sink, to subtract it from `wall_time`.
-class TimedSink : public RunSink {
- public:
-  explicit TimedSink(RunSink& sink) : sink_(sink) {}
-  void begin(const Recording& run) override {
-    timed([&] { sink_.begin(run); });
-  }
-  void add_body(const vo::Body& body) override {
-    timed([&] { sink_.add_body(body); });
-  }
-  void add_outlook(const Outlook& outlook) override {
-    timed([&] { sink_.add_outlook(outlook); });
-  }
-  void add_plan(const JointPlan& plan) override {
-    timed([&] { sink_.add_plan(plan); });
-  }
-  void add_row(Step row) override {
-    timed([&] { sink_.add_row(std::move(row)); });
-  }
-  double seconds() const { return seconds_; }
-
- private:
-  template <class Work>
-  void timed(const Work& work) {
-    const Clock::time_point start = Clock::now();
-    work();
-    seconds_ += seconds_since(start);
-  }
-
-  RunSink& sink_;
-  double seconds_ = 0.0;
-};
-
-}  // namespace
-
-Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options) {
-  if (scenario.formation || options.method == Method::ivo_edge) return Guidance::none;
-  return options.guidance.value_or(scenario.guidance);
-}
-
-namespace {
-
 /// Whether the brake points of a formation move at exactly what the filter chooses, as plans need it.
 bool follows_choices(const Remedies& remedies) {
   return remedies.brake_point && remedies.absolute_frame && remedies.filter_last && remedies.tau_clamp &&
@@ -95,6 +44,11 @@ bool follows_choices(const Remedies& remedies) {
 }
 
 }  // namespace
+
+Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (scenario.formation || options.method == Method::ivo_edge) return Guidance::none;
+  return options.guidance.value_or(scenario.guidance);
+}
 
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
   const Liveness wanted = options.liveness.value_or(scenario.liveness);
@@ -131,10 +85,9 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
   recording.warnings =
       guide ? warnings_with(scenario, options, guide->reachability()) : warnings_before(scenario, options);
   recording.all_half_planes = options.record_all;
-  TimedSink timed(sink);
-  scenario.formation ? run_formation(scenario, options, recording, timed)
-                     : run_kinematic(scenario, options, guide ? &*guide : nullptr, recording, timed);
-  recording.wall_time = seconds_since(start) - timed.seconds();
+  scenario.formation ? run_formation(scenario, options, recording, sink)
+                     : run_kinematic(scenario, options, guide ? &*guide : nullptr, recording, sink);
+  recording.wall_time += std::chrono::duration<double>(Clock::now() - start).count();
   return recording;
 }
 

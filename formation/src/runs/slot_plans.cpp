@@ -107,14 +107,15 @@ void SlotPlans::shift_off_the_wall(std::size_t i) {
 }
 
 /// Straight away from what is too near, else on rings about the slot; where there is none, the robot stays where it is.
-Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<Disc>& taken,
+Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<geometry::Disc>& taken,
                                 Reachability& reach) const {
   constexpr double kFinest = 0.25, kBeyond = 16.0;  // of the radius: between rings, and beyond where it is
   constexpr double kMostRings = 128.0;
   const double radius = scenario_.robots[robot].radius, room = room_of(robot);
   const auto is_free = [&](Vec2 place) {
-    return space_.clearance(place, room) >= room && std::all_of(taken.begin(), taken.end(), [&](const Disc& t) {
-             return norm(place - t.centre) >= (1.0 + kPlannedGap) * (radius + t.radius) + scenario_.margins.robot;
+    return space_.clearance(place, room) >= room &&
+           std::all_of(taken.begin(), taken.end(), [&](const geometry::Disc& t) {
+             return norm(place - t.center) >= (1.0 + kPlannedGap) * (radius + t.radius) + scenario_.margins.robot;
            });
   };
   const auto is_good = [&](Vec2 place) {
@@ -144,7 +145,7 @@ void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
     nearest_first.emplace_back(norm(slot - anchors[i].position), i);
   }
   std::sort(nearest_first.begin(), nearest_first.end());
-  std::vector<Disc> taken;
+  std::vector<geometry::Disc> taken;
   for (const auto& [distance, i] : nearest_first) {
     Place& mine = places_[i];
     const double radius = scenario_.robots[i].radius;

@@ -52,17 +52,13 @@ class SlotPlans {
   const Groups& groups() const { return groups_; }
 
  private:
-  struct Disc {
-    Vec2 centre;
-    double radius;
-  };
   void choose_places(const std::vector<Anchor>& anchors, Vec2 leader);
   /// m: a little more than the clearance that half-planes let it keep.
   double room_of(std::size_t robot) const;
   std::string why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const;
   Vec2 off_the_wall(std::size_t robot, Vec2 slot) const;
   void shift_off_the_wall(std::size_t i);
-  Vec2 free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<Disc>& taken,
+  Vec2 free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const std::vector<geometry::Disc>& taken,
                        Reachability& reach) const;
 
   const Scenario& scenario_;

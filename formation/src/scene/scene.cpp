@@ -28,13 +28,6 @@ Scene::Scene(const Scenario& scenario, const SimulationOptions& options) {
   }
 }
 
-std::vector<vo::Body> Scene::copied_bodies() const {
-  std::vector<vo::Body> all;
-  all.reserve(bodies_.size());
-  for (BodyTable::Number k = 0; k < bodies_.size(); ++k) all.push_back(bodies_[k]);
-  return all;
-}
-
 geometry::BoxGrid Scene::by_place(const std::vector<BodyTable::Number>& some) const {
   std::vector<geometry::Box> boxes;
   boxes.reserve(some.size());

@@ -23,8 +23,6 @@ class Scene {
 
   const vo::BodyTable& bodies() const { return bodies_; }
   vo::BodyTable& bodies() { return bodies_; }
-  /// All bodies, for a recording.
-  std::vector<vo::Body> copied_bodies() const;
 
   /// The obstacles' facades and pieces; none for Method::orca, which needs neither.
   const std::vector<geometry::ObstacleParts>& parts() const { return parts_; }
