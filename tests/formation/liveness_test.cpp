@@ -66,19 +66,25 @@ TEST(Liveness, ALoneRobotGoesStraight) {
   for (const Step& row : simulate(s).steps) EXPECT_EQ(row.robots[0].position.y, 0.0);
 }
 
-/// Rule R0: in a crowd too dense for its half-planes nothing is relaxed and nobody overlaps.
+/// A crowd too dense for its half-planes. Goals may overlap, so that there is no plan to look for.
+Scenario full_box(test::SeededRandom& random) {
+  Scenario s;
+  s.liveness = Liveness::bias;
+  s.name = "box";
+  s.time_limit = 20.0;
+  s.obstacles = {{"box", geometry::Polyline{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}, {-5, -5}}}}};
+  for (int i = 0; i < 36; ++i) {  // 28 % of the box
+    const Vec2 place{-3.75 + 1.5 * (i % 6), -3.75 + 1.5 * (i / 6)};
+    s.robots.push_back(robot("R" + std::to_string(i + 1), place + random.in_box(0.2), random.in_box(4.0)));
+  }
+  return s;
+}
+
+/// Rule R0: nothing is relaxed and nobody overlaps.
 TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
   test::SeededRandom random(test::seed_of_run(17));
   for (int k = 0; k < 3; ++k) {
-    Scenario s;
-    s.liveness = Liveness::bias;  // goals may overlap: there is no plan to look for
-    s.name = "box";
-    s.time_limit = 20.0;
-    s.obstacles = {{"box", geometry::Polyline{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}, {-5, -5}}}}};
-    for (int i = 0; i < 36; ++i) {  // 28 % of the box
-      const Vec2 place{-3.75 + 1.5 * (i % 6), -3.75 + 1.5 * (i / 6)};
-      s.robots.push_back(robot("R" + std::to_string(i + 1), place + random.in_box(0.2), random.in_box(4.0)));
-    }
+    const Scenario s = full_box(random);
     const Recording run = simulate(s);
     const Metrics m = measure(s, run);
     EXPECT_EQ(relaxed(run), 0u) << k;
@@ -87,6 +93,40 @@ TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
     SimulationOptions off;
     off.liveness = Liveness::off;
     EXPECT_GT(relaxed(simulate(s, off)), 0u) << "the crowd is no test";
+  }
+}
+
+std::size_t half_planes_of_robots(const Recording& run) {
+  std::size_t count = 0;
+  for (const Step& row : run.steps)
+    for (const RobotStep& r : row.robots)
+      count += static_cast<std::size_t>(std::count_if(r.constraints.begin(), r.constraints.end(), [](const auto& c) {
+        return c.source == ConstraintSource::robot;
+      }));
+  return count;
+}
+
+/// Nearly all pairs of the box fall back, and a row has those that matter.
+TEST(Liveness, RowsOfACrowdHaveOnlyThePairsThatMatter) {
+  test::SeededRandom random(test::seed_of_run(18));
+  Scenario s = full_box(random);
+  s.time_limit = 3.0;
+  SimulationOptions all;
+  all.record_all = true;
+  const Recording run = simulate(s), whole = simulate(s, all);
+  EXPECT_LT(4 * half_planes_of_robots(run), half_planes_of_robots(whole));
+  for (std::size_t k = 0; k < run.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      EXPECT_EQ(run.steps[k].robots[i].chosen, whole.steps[k].robots[i].chosen) << k << " " << i;
+}
+
+/// A half that fell back may prove nothing without the other: one in some 20,000 here.
+TEST(Liveness, RowsHaveBothHalvesOfPairsThatFellBack) {
+  test::SeededRandom random(test::seed_of_run(19));
+  for (int k = 0; k < 4; ++k) {
+    Scenario s = full_box(random);
+    s.time_limit = 12.0;
+    EXPECT_TRUE(audits_clean(s, simulate(s))) << k;
   }
 }
 

@@ -309,11 +309,6 @@ lp::Proven Decider::proven_solution(const DecisionInput& in) {
   return lp::solve_certified(problem_);
 }
 
-bool Decider::has_fallen_back(const Constraint& c, const DecisionInput& in) const {
-  return in.fallen_back && (*bodies_)[c.body].kind == vo::BodyKind::robot &&
-         std::find(in.fallen_back->begin(), in.fallen_back->end(), c.index) != in.fallen_back->end();
-}
-
 Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
   if (!proven.exact_stage) return Proof::multipliers;
   if (proven.solution.status == lp::Status::no_interior) return Proof::whole_problem;
@@ -345,8 +340,7 @@ void Decider::decide(const DecisionInput& in, Decision& decision) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution_, number++);
       if (c.proof == vo::Proof::none) ++decision.uncertified;
-      if (keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
-        kept_.emplace_back(&c, active);
+      if (keep_all || active || c.clearance <= reach_of(c, in.from)) kept_.emplace_back(&c, active);
     }
   }
 }

@@ -104,7 +104,6 @@ struct DecisionInput {
   const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
   NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
-  const std::vector<std::size_t>* fallen_back = nullptr;  ///< robots whose constraints are kept in any case
 };
 
 /// Makes decisions one after the other in memory of its own.
@@ -125,6 +124,11 @@ class Decider {
   /// Both, with the shapes.
   void decide(const DecisionInput& in, RobotStep& step);
 
+  /// A half-plane that does not bind, as `decide` would keep it.
+  RecordedConstraint idle(const Constraint& c, const Viewpoint& from) const {
+    return with_shape(named({&c, nullptr}), *bodies_, from);
+  }
+
  private:
   using Kept = std::pair<const Constraint*, const lp::ActiveConstraint*>;
   /// What shows that a choice is the best.
@@ -137,7 +141,6 @@ class Decider {
   void state_problem(const DecisionInput& in);
   lp::Solution rounded_solution(const DecisionInput& in);
   lp::Proven proven_solution(const DecisionInput& in);
-  bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   DecisionConstraint named(const Kept& kept) const;
 

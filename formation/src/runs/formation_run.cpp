@@ -59,7 +59,7 @@ class FormationRun {
         offsets_(offsets_in_use(spec_, remedies_)),
         joint_(
             scenario_, options_, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
-            [this](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, step, fallen_back); }) {
+            [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
     if (liveness_of(scenario, options) == Liveness::plan) {
       plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
@@ -177,7 +177,7 @@ class FormationRun {
     step.note = std::exchange(robots_[i].note, {});
     if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
-    if (goes_by_plan(i)) return choose_by_plan(i, step, nullptr);
+    if (goes_by_plan(i)) return choose_by_plan(i, step);
     robots_[i].field.constraints(here, statics_);
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
@@ -221,8 +221,8 @@ class FormationRun {
       outlooks_.push_back({time, i, 0, std::move(bodies)});
   }
 
-  void choose_by_plan(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    joint_.choose_by_plan(i, plans_->groups(), *robots_[i].pieces, now_, step, fallen_back);
+  void choose_by_plan(std::size_t i, RobotStep& step) {
+    joint_.choose_by_plan(i, plans_->groups(), *robots_[i].pieces, now_, step);
   }
 
   StaticField field_of_pieces(std::size_t i) {
@@ -232,12 +232,11 @@ class FormationRun {
     return field;
   }
 
-  void choose_again(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    if (goes_by_plan(i)) return choose_by_plan(i, step, fallen_back);
+  void choose_again(std::size_t i, RobotStep& step) {
+    if (goes_by_plan(i)) return choose_by_plan(i, step);
     const Viewpoint here = viewpoint(i);
     robots_[i].field.constraints(here, statics_);
-    decider_.decide(
-        {step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(now_), nullptr, fallen_back}, step);
+    decider_.decide({step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(now_)}, step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.

@@ -27,7 +27,7 @@ void JointDecisions::look_at_robots(const Groups* groups) {
 }
 
 void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time,
-                                    RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+                                    RobotStep& step) {
   step.mode = groups.goes_back(i) ? Mode::going_back : Mode::by_plan;
   const Vec2 wanted = groups.wanted(i);
   Viewpoint here = viewpoint_(i);
@@ -36,9 +36,7 @@ void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const S
   field.constraints(here, statics_, reach_of_step(scenario_, here));
   const std::optional<double> share = allowed_share(wanted, statics_, others[i]);
   held_by_all_[i] = !share;
-  decider_.decide(
-      {share.value_or(0.0) * wanted, here, &statics_, &others[i], schedule_.keeps_all(time), nullptr, fallen_back},
-      step);
+  decider_.decide({share.value_or(0.0) * wanted, here, &statics_, &others[i], schedule_.keeps_all(time)}, step);
 }
 
 void JointDecisions::settle(Groups& groups, Step& row) {
@@ -47,7 +45,7 @@ void JointDecisions::settle(Groups& groups, Step& row) {
     look_at_robots(&groups);
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
       add_moving_constraints(scenario_, viewpoint_(i), scene_, others[i]);
-      choose_again_(i, row.robots[i], nullptr);
+      choose_again_(i, row.robots[i]);
     }
     repair(groups, row);
   }
@@ -82,7 +80,7 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
     }
     contradicted.clear();
     for (const std::size_t i : changed) {
-      choose_again_(i, row.robots[i], &fallen[i]);
+      choose_again_(i, row.robots[i]);
       if (is_contradicted(i)) contradicted.insert(i);
     }
   }
@@ -90,7 +88,26 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     if (row.robots[i].status != lp::Status::no_interior || groups.is_member(i)) continue;
     row.robots[i].preferred = {};
-    choose_again_(i, row.robots[i], &fallen[i]);
+    choose_again_(i, row.robots[i]);
+  }
+  record_both_halves(fallen, row);
+}
+
+/// The halves of a pair that fell back are not equal shares: neither proves anything without the other. Where one of
+/// the two has its half on the record, the other gets its own, which did not bind.
+void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const {
+  const auto is_against = [&](std::size_t robot) {
+    return [robot](const RecordedConstraint& c) { return c.source == ConstraintSource::robot && c.index == robot; };
+  };
+  for (std::size_t i = 0; i < row.robots.size(); ++i) {
+    for (const RecordedConstraint& c : row.robots[i].constraints) {
+      const std::size_t j = c.index;
+      if (!is_against(j)(c) || std::find(fallen[i].begin(), fallen[i].end(), j) == fallen[i].end()) continue;
+      std::vector<RecordedConstraint>& theirs = row.robots[j].constraints;
+      if (std::any_of(theirs.begin(), theirs.end(), is_against(i))) continue;
+      for (const Constraint& half : others[j])
+        if (is_of_robot(scene_, half) && half.index == i) theirs.push_back(decider_.idle(half, viewpoint_(j)));
+    }
   }
 }
 

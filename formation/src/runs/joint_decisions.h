@@ -20,8 +20,8 @@ class JointDecisions {
  public:
   /// Where robot i is, and how fast.
   using ViewpointOf = std::function<Viewpoint(std::size_t i)>;
-  /// Robot i decides again with `others[i]` as they are now; `fallen_back`: as in DecisionInput.
-  using ChooseAgain = std::function<void(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back)>;
+  /// Robot i decides again with `others[i]` as they are now.
+  using ChooseAgain = std::function<void(std::size_t i, RobotStep& step)>;
 
   /// All must outlive it.
   JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunSchedule& schedule,
@@ -49,8 +49,7 @@ class JointDecisions {
 
   /// Along the plan, as fast as all half-planes allow. Those of `field` have one time step as their horizon, so that
   /// they hold the planned velocity back no more than safety requires.
-  void choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time, RobotStep& step,
-                      const std::vector<std::size_t>* fallen_back);
+  void choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time, RobotStep& step);
 
   /// Once all have decided: half-planes that contradict each other are repaired, groups that are held back are halted,
   /// whereupon all decide again, and the groups hear how the step ended.
@@ -58,6 +57,7 @@ class JointDecisions {
 
  private:
   void repair(const Groups& groups, Step& row);
+  void record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const;
 
   const Scenario& scenario_;
   const SimulationOptions& options_;

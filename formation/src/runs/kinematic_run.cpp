@@ -62,7 +62,7 @@ class KinematicRun {
         own_(scenario, options, scene_.bodies()),
         joint_(
             scenario, options, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
-            [this](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, step, fallen_back); }) {
+            [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
                       [this] { return schedule_.is_stopped(now_); });
@@ -281,15 +281,15 @@ class KinematicRun {
 
   bool goes_by_plan(std::size_t i) const { return groups_ && groups_->is_member(i); }
 
-  void choose_again(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    if (goes_by_plan(i)) return choose_by_plan(i, step, fallen_back);
+  void choose_again(std::size_t i, RobotStep& step) {
+    if (goes_by_plan(i)) return choose_by_plan(i, step);
     look(i);
-    choose(i, step.preferred, step, fallen_back);
+    choose(i, step.preferred, step);
   }
 
-  void choose_by_plan(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+  void choose_by_plan(std::size_t i, RobotStep& step) {
     robots_[i].field->set_margin(0.0);
-    joint_.choose_by_plan(i, *groups_, *robots_[i].field, now_, step, fallen_back);
+    joint_.choose_by_plan(i, *groups_, *robots_[i].field, now_, step);
   }
 
   bool meets_robots(std::size_t i) const {
@@ -307,7 +307,7 @@ class KinematicRun {
     step.note = std::exchange(r.note, {});
     if (groups_) add_note(step.note, groups_->note(i));
     if (goes_by_plan(i)) {
-      choose_by_plan(i, step, nullptr);
+      choose_by_plan(i, step);
       return step;
     }
     Vec2 preferred = steer(i, step);
@@ -324,8 +324,8 @@ class KinematicRun {
   void look(std::size_t i) { own_.look(*robots_[i].field, viewpoint(i)); }
 
   /// REQUIRES: it has looked, and nobody after it.
-  void choose(std::size_t i, Vec2 preferred, RobotStep& step, const std::vector<std::size_t>* fallen_back = nullptr) {
-    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), fallen_back, step);
+  void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
+    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).

@@ -26,8 +26,8 @@ void OwnDecision::look(const StaticField& field, const Viewpoint& here) {
 }
 
 DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others,
-                                 bool keep_all, const std::vector<std::size_t>* fallen_back) {
-  return {preferred, here, &statics(), &others, keep_all, is_orca() ? nullptr : &needed_, fallen_back};
+                                 bool keep_all) {
+  return {preferred, here, &statics(), &others, keep_all, is_orca() ? nullptr : &needed_};
 }
 
 Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {

@@ -64,15 +64,15 @@ class OwnDecision {
   /// The preferred velocity, by the run's method; sets `mode` and `side` and adds to `note`.
   Vec2 steer(OwnWay& way, const Errand& errand, Decision& decision);
 
-  /// What it chooses goes on the record. `others`: robots and moving obstacles; `fallen_back`: see DecisionInput.
+  /// What it chooses goes on the record. `others`: robots and moving obstacles.
   void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all,
-              const std::vector<std::size_t>* fallen_back, RobotStep& step) {
-    decider_.decide(input(preferred, here, others, keep_all, fallen_back), step);
+              RobotStep& step) {
+    decider_.decide(input(preferred, here, others, keep_all), step);
   }
   /// The same without the shapes.
   void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, Decision& decision,
               std::vector<DecisionConstraint>& kept) {
-    decider_.decide(input(preferred, here, others, false, nullptr), decision);
+    decider_.decide(input(preferred, here, others, false), decision);
     decider_.kept(kept);
   }
 
@@ -80,8 +80,7 @@ class OwnDecision {
 
  private:
   bool is_orca() const { return options_.method == Method::orca; }
-  DecisionInput input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all,
-                      const std::vector<std::size_t>* fallen_back);
+  DecisionInput input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all);
   Vec2 ties_broken(OwnWay& way, Vec2 preferred, Decision& decision);
 
   const Scenario& scenario_;
