@@ -216,6 +216,13 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
+void refuse_entities(std::string_view xml, const std::string& file) {
+  const std::size_t at = xml.find("<!ENTITY");
+  if (at == std::string_view::npos) return;
+  throw DataError(DataCode::format_syntax, file, line_and_column(xml, at), excerpt(xml, at),
+                  "XML without entities of its own: they are not expanded");
+}
+
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length) {
   if (text.empty()) return "nothing";
   if (byte >= text.size()) return "the end of the file";

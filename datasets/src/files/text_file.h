@@ -22,6 +22,10 @@ std::string read_beginning(const std::filesystem::path& path, std::size_t count)
 /// "line 3, column 7", both from 1; columns count bytes.
 std::string line_and_column(std::string_view text, std::size_t byte);
 
+/// Throws DataError where a text of XML has entities of its own: what they stand for may be endless, or somebody's
+/// files.
+void refuse_entities(std::string_view xml, const std::string& file);
+
 /// At most `length` printable characters from `byte` on, in quotes, for messages; in words if there are none.
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length = 20);
 

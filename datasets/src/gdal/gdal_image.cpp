@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/data_error.h"
 #include "gdal/gdal_session.h"
-#include "readers/grey_image.h"
 #include "readers/grid.h"
+#include "readers/readers.h"
 
 namespace exactvo::datasets {
 namespace {

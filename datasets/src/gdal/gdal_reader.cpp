@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <ogrsf_frmts.h>
 
-#include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -35,8 +33,7 @@ constexpr std::size_t kShownText = 40;
 /// What GDAL does not know may still be GeoJSON, or should be: its drivers look at the beginning alone.
 bool is_json_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  const char* const known[] = {".json", ".geojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
-  return std::find(std::begin(known), std::end(known), extension) != std::end(known);
+  return extension == ".json" || extension == ".geojson" || is_sequence_name(path);
 }
 
 class VectorReader {
@@ -287,15 +284,12 @@ class VectorReader {
   std::string reason_;                ///< why the layer's units are what they are
 };
 
-/// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is
-/// left to expat, which bounds what entities grow to.
-void refuse_entities(const std::filesystem::path& path) {
+/// Entities are declared before the first element; what is hidden behind a longer comment is left to expat, which
+/// bounds what entities grow to.
+void refuse_early_entities(const std::filesystem::path& path) {
   constexpr std::size_t kDeclarations = 1 << 16;
   const std::string beginning = read_beginning(path, kDeclarations);
-  const std::size_t at = beginning.find("<!ENTITY");
-  if (beginning.empty() || beginning[0] != '<' || at == std::string::npos) return;
-  throw DataError(DataCode::format_syntax, path.string(), line_and_column(beginning, at), excerpt(beginning, at),
-                  "XML without entities of its own: they are not expanded");
+  if (!beginning.empty() && beginning[0] == '<') refuse_entities(beginning, path.string());
 }
 
 /// GDAL opens them beside the file, and would wait for a pipe for ever.
@@ -317,7 +311,7 @@ void refuse_irregular_companions(const std::filesystem::path& path) {
 
 void read_vector_file(const std::filesystem::path& path, Collector& out) {
   refuse_irregular_companions(path);
-  refuse_entities(path);
+  refuse_early_entities(path);
   VectorReader(path, out).read();
 }
 

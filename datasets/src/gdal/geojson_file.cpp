@@ -114,13 +114,6 @@ DataError error_of(const GeoJsonFault& fault, const std::string& file, const std
   return {DataCode::format_syntax, file, record + comma + fault.pointer, fault.found, fault.expected};
 }
 
-/// A sequence whose first line is malformed is one by its name alone.
-bool is_sequence_name(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
-  return std::find(std::begin(known), std::end(known), extension) != std::end(known);
-}
-
 /// What is wrong with a whole file, in the words of the strict parser, which says where.
 [[noreturn]] void refuse_whole(const std::filesystem::path& path, JsonEnd end) {
   if (end == JsonEnd::too_large) throw too_large(path.string(), "");
@@ -132,26 +125,6 @@ bool is_sequence_name(const std::filesystem::path& path) {
 }
 
 // --- Sequences ---
-
-/// How deep in objects and strings the next byte of a text of JSON stands.
-class JsonNesting {
- public:
-  void take(char c) {
-    if (in_string_) {
-      if (c == '"' && !is_escaped_) in_string_ = false;
-      is_escaped_ = c == '\\' && !is_escaped_;
-      return;
-    }
-    in_string_ = c == '"';
-    objects_ += c == '{' ? 1 : c == '}' ? -1 : 0;
-  }
-  long objects() const { return objects_; }
-  bool in_string() const { return in_string_; }
-
- private:
-  long objects_ = 0;
-  bool in_string_ = false, is_escaped_ = false;
-};
 
 class Sequence {
  public:
@@ -272,6 +245,12 @@ class Sequence {
 };
 
 }  // namespace
+
+bool is_sequence_name(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
+  return std::find(std::begin(known), std::end(known), extension) != std::end(known);
+}
 
 GeoJsonFile::GeoJsonFile(const std::filesystem::path& path) : path_(path) {
   LenientJson bytes(path);

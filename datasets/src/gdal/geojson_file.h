@@ -27,6 +27,9 @@ struct GeoJsonRecord {
   std::optional<DataError> fault{};  ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX, E_SIZE, ...
 };
 
+/// A sequence whose first line is malformed is one by its name alone.
+bool is_sequence_name(const std::filesystem::path& path);
+
 using TakeRecord = std::function<void(const GeoJsonRecord&)>;
 
 class GeoJsonFile {

@@ -27,6 +27,13 @@ double rounded_degrees(double degrees, double decimals) {
 /// Characters of a text that is no reference system.
 constexpr std::size_t kShownText = 40;
 
+[[noreturn]] void refuse_nowhere(geometry::Vec2 p, const LocalPlane& plane, const std::string& file) {
+  throw DataError(
+      DataCode::projection, file, "",
+      number_text(p.x) + ", " + number_text(p.y) + " m, which has no longitude and latitude",
+      plane.is_placed() ? "a place on earth" : "coordinates within 1000 km of their middle, or GeoJSON in metres");
+}
+
 }  // namespace
 
 void LayerPlane::reset() {
@@ -142,59 +149,34 @@ std::string wkt_of(const OGRSpatialReference& system) {
   return wkt;
 }
 
-namespace {
-
-class ToDegrees {
- public:
-  ToDegrees(LocalPlane given, std::string named) : plane_(std::move(given)), file_(std::move(named)) {
-    GdalComplaints complaints;
-    OGRSpatialReference degrees = *OGRSpatialReference::GetWGS84SRS();
-    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    OGRSpatialReference metres;
-    if (plane_.reference_system.empty()) {
-      metres = plane_round(degrees, plane_.origin.value_or(ProjectionOrigin{}));
-    } else {
-      metres.importFromWkt(plane_.reference_system.c_str());
-    }
-    metres.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    transform_.reset(OGRCreateCoordinateTransformation(&metres, &degrees));
-    const std::string words = complaints.take_failure();
-    if (transform_ == nullptr)
-      throw DataError(DataCode::projection, file_, "", words.empty() ? "a plane without a way to degrees" : words,
-                      "a reference system that PROJ knows");
+PlaneTransform make_plane_transform(LocalPlane plane, std::string file) {
+  OGRSpatialReference degrees = *OGRSpatialReference::GetWGS84SRS();
+  degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  GdalComplaints complaints;
+  OGRSpatialReference metres;
+  if (plane.reference_system.empty()) {
+    metres = plane_round(degrees, plane.origin.value_or(ProjectionOrigin{}));
+  } else {
+    metres.importFromWkt(plane.reference_system.c_str());
   }
-
-  std::vector<geometry::Vec2> operator()(std::vector<geometry::Vec2> points) const {
+  metres.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::shared_ptr<OGRCoordinateTransformation> transform(OGRCreateCoordinateTransformation(&metres, &degrees));
+  const std::string words = complaints.take_failure();
+  if (transform == nullptr)
+    throw DataError(DataCode::projection, file, "", words.empty() ? "a plane without a way to degrees" : words,
+                    "a reference system that PROJ knows");
+  return [plane = std::move(plane), file = std::move(file), transform](std::vector<geometry::Vec2> points) {
     const GdalComplaints unheard;  // a point without a place is refused in words of our own
     for (geometry::Vec2& p : points) {
       const geometry::Vec2 given = p;
-      p = p - plane_.offset;
-      const bool is_far = !plane_.is_placed() && std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestUnplaced;
-      const bool worked = !is_far && transform_->Transform(1, &p.x, &p.y) != FALSE;
-      if (!worked || !geometry::is_finite(p)) refuse(given);
+      p = p - plane.offset;
+      const bool is_far = !plane.is_placed() && std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestUnplaced;
+      const bool worked = !is_far && transform->Transform(1, &p.x, &p.y) != FALSE;
+      if (!worked || !geometry::is_finite(p)) refuse_nowhere(given, plane, file);
       p = {rounded_degrees(p.x, kWrittenDecimals) + 0.0, rounded_degrees(p.y, kWrittenDecimals) + 0.0};  // no -0
     }
     return points;
-  }
-
- private:
-  [[noreturn]] void refuse(geometry::Vec2 p) const {
-    throw DataError(
-        DataCode::projection, file_, "",
-        number_text(p.x) + ", " + number_text(p.y) + " m, which has no longitude and latitude",
-        plane_.is_placed() ? "a place on earth" : "coordinates within 1000 km of their middle, or GeoJSON in metres");
-  }
-
-  LocalPlane plane_;
-  std::string file_;
-  std::unique_ptr<OGRCoordinateTransformation> transform_;
-};
-
-}  // namespace
-
-PlaneTransform make_plane_transform(LocalPlane plane, std::string file) {
-  const auto transform = std::make_shared<const ToDegrees>(std::move(plane), std::move(file));
-  return [transform](std::vector<geometry::Vec2> points) { return (*transform)(std::move(points)); };
+  };
 }
 
 }  // namespace exactvo::datasets

@@ -25,21 +25,11 @@ std::vector<geometry::Ring> rings_of(const OGRPolygon& polygon) {
   return rings;
 }
 
-void append_number(JsonWriter& json, int number) {
-  json.value(number);
-}
-void append_number(JsonWriter& json, double number) {
-  json.value(number);
-}
-void append_number(JsonWriter& json, GIntBig number) {
-  json.raw(std::to_string(number));
-}
-
 void append_value(JsonWriter& json, const OGRFeature& feature, int field) {
   int count = 0;
   const auto list = [&](const auto* numbers) {
     json.begin_array();
-    for (int k = 0; k < count; ++k) append_number(json, numbers[k]);
+    for (int k = 0; k < count; ++k) json.value(numbers[k]);
     json.end_array();
   };
   const OGRFieldDefn& definition = *feature.GetFieldDefnRef(field);
@@ -56,9 +46,11 @@ void append_value(JsonWriter& json, const OGRFeature& feature, int field) {
       }
       break;
     case OFTInteger64:
-      return append_number(json, feature.GetFieldAsInteger64(field));
+      json.value(feature.GetFieldAsInteger64(field));
+      break;
     case OFTReal:
-      return append_number(json, feature.GetFieldAsDouble(field));
+      json.value(feature.GetFieldAsDouble(field));
+      break;
     case OFTIntegerList:
       return list(feature.GetFieldAsIntegerList(field, &count));
     case OFTInteger64List:

@@ -13,7 +13,6 @@
 #include "batch/formats/geopackage.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/local_plane.h"
-#include "readers/grey_image.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
 

@@ -13,6 +13,7 @@
 #include <streambuf>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
@@ -64,6 +65,26 @@ std::string described(const Json& value);
 /// `key` as a JSON pointer's token: ~ and / escaped (RFC 6901).
 std::string pointer_token(std::string_view key);
 
+/// How deep in objects and strings the next byte of a text of JSON stands.
+class JsonNesting {
+ public:
+  void take(char c) {
+    if (in_string_) {
+      if (c == '"' && !is_escaped_) in_string_ = false;
+      is_escaped_ = c == '\\' && !is_escaped_;
+      return;
+    }
+    in_string_ = c == '"';
+    objects_ += c == '{' ? 1 : c == '}' ? -1 : 0;
+  }
+  long objects() const { return objects_; }
+  bool in_string() const { return in_string_; }
+
+ private:
+  long objects_ = 0;
+  bool in_string_ = false, is_escaped_ = false;
+};
+
 /// Appends JSON to a string.
 class JsonWriter {
  public:
@@ -85,8 +106,10 @@ class JsonWriter {
   /// Non-finite numbers become the strings "nan", "inf" and "-inf".
   JsonWriter& value(double number);
   JsonWriter& value(bool truth);
-  JsonWriter& value(std::uint64_t number);
-  JsonWriter& value(int number);
+  template <class Integer, std::enable_if_t<std::is_integral_v<Integer>, int> = 0>
+  JsonWriter& value(Integer number) {
+    return raw(std::to_string(number));
+  }
   JsonWriter& value(std::string_view text);
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(geometry::Vec2 point);  ///< [x, y]

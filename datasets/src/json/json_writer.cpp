@@ -12,13 +12,6 @@
 namespace exactvo::datasets {
 namespace {
 
-template <class T>
-void append_chars(std::string& text, T number) {
-  char digits[40];
-  const std::to_chars_result result = std::to_chars(digits, digits + sizeof digits, number);
-  text.append(digits, result.ptr);
-}
-
 const char* word_for_non_finite(double number) {
   if (std::isnan(number)) return "nan";
   return number > 0.0 ? "inf" : "-inf";
@@ -157,18 +150,6 @@ JsonWriter& JsonWriter::value(double number) {
 
 JsonWriter& JsonWriter::value(bool truth) {
   return raw(truth ? "true" : "false");
-}
-
-JsonWriter& JsonWriter::value(std::uint64_t number) {
-  separate();
-  append_chars(text_, number);
-  return *this;
-}
-
-JsonWriter& JsonWriter::value(int number) {
-  separate();
-  append_chars(text_, number);
-  return *this;
 }
 
 JsonWriter& JsonWriter::value(std::string_view text) {

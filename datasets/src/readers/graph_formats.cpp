@@ -155,45 +155,40 @@ PlaneGraph read_graph(const XmlFile& xml, const pugi::xml_node& element, const s
 // --- Counted lists ---
 
 /// Lines that hold something, so many fields each.
-class CountedLines {
+class CountedLines : public LineReader {
  public:
-  CountedLines(std::string_view text, const std::string& file) : lines_(text, file) {}
+  using LineReader::LineReader;
 
-  bool next() {
-    while (lines_.next()) {
-      words_ = words_of(lines_.line());
-      if (!words_.empty()) return true;
-    }
-    return false;
-  }
   void need(const std::string& what) {
-    if (!next()) lines_.refuse(DataCode::format_syntax, "the end of the file", what);
+    if (!next_filled()) refuse(DataCode::format_syntax, "the end of the file", what);
   }
-  std::size_t fields() const { return words_.size(); }
   geometry::Vec2 point() {
     need("a point, x y");
-    if (words_.size() < 2) lines_.refuse(DataCode::wrong_count, excerpt(lines_.line(), 0), "a point, x y");
-    return {lines_.to_number(words_[0]), lines_.to_number(words_[1])};
+    const std::vector<std::string_view> words = words_of(line());
+    if (words.size() < 2) refuse(DataCode::wrong_count, excerpt(line(), 0), "a point, x y");
+    return {to_number(words[0]), to_number(words[1])};
   }
   /// A number of things that follow, a line each of two characters at least: no more than the file has room for.
   std::size_t count(std::size_t field) const {
-    const std::int64_t n = field < words_.size() ? lines_.to_integer(words_[field]) : -1;
-    if (n < 0) lines_.refuse(DataCode::format_syntax, excerpt(lines_.line(), 0), "a count");
-    if (static_cast<std::uint64_t>(n) > lines_.left() / 2 + 1)
-      lines_.refuse(DataCode::size, std::to_string(n) + " lines", "no more than the file holds");
+    const std::int64_t n = whole(field);
+    if (n < 0) refuse(DataCode::format_syntax, excerpt(line(), 0), "a count");
+    if (static_cast<std::uint64_t>(n) > left() / 2 + 1)
+      refuse(DataCode::size, std::to_string(n) + " lines", "no more than the file holds");
     return static_cast<std::size_t>(n);
   }
   std::size_t index(std::size_t field, std::size_t below) const {
-    const std::int64_t n = field < words_.size() ? lines_.to_integer(words_[field]) : -1;
+    const std::int64_t n = whole(field);
     if (n < 0 || static_cast<std::uint64_t>(n) >= below)
-      lines_.refuse(DataCode::out_of_range, excerpt(lines_.line(), 0), "indices of points, from 0 on");
+      refuse(DataCode::out_of_range, excerpt(line(), 0), "indices of points, from 0 on");
     return static_cast<std::size_t>(n);
   }
-  std::string place() const { return lines_.place(); }
 
  private:
-  LineReader lines_;
-  std::vector<std::string_view> words_;
+  /// Below 0 where the line has no such field.
+  std::int64_t whole(std::size_t field) const {
+    const std::vector<std::string_view> words = words_of(line());
+    return field < words.size() ? to_integer(words[field]) : -1;
+  }
 };
 
 bool is_count(std::string_view word) {
@@ -201,13 +196,13 @@ bool is_count(std::string_view word) {
 }
 
 /// The fields of the first two lines that hold something.
-std::vector<std::vector<std::string_view>> first_lines(const FormatProbe& probe) {
-  std::vector<std::vector<std::string_view>> lines;
+std::vector<std::vector<std::string>> first_lines(const FormatProbe& probe) {
+  std::vector<std::vector<std::string>> lines;
   const std::string name;
   LineReader reader(probe.beginning, name);
-  while (lines.size() < 2 && reader.next()) {
-    std::vector<std::string_view> words = words_of(reader.line());
-    if (!words.empty()) lines.push_back(std::move(words));
+  while (lines.size() < 2 && reader.next_filled()) {
+    const std::vector<std::string_view> words = words_of(reader.line());
+    lines.emplace_back(words.begin(), words.end());
   }
   return lines;
 }
@@ -227,10 +222,9 @@ bool looks_like_counted_rings(const FormatProbe& probe) {
 
 /// Rings, each its count and its points; the first is outside.
 void read_counted_rings(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  CountedLines lines(text, out.file());
+  CountedLines lines(read_text_file(path), out.file());
   RawGeometry raw{RawKind::polygon, "0", "polygon", {}};
-  while (lines.next()) {
+  while (lines.next_filled()) {
     geometry::Ring& ring = raw.rings.emplace_back();
     for (std::size_t n = lines.count(0); n > 0; --n) ring.push_back(lines.point());
   }
@@ -247,8 +241,7 @@ bool looks_like_pslg(const FormatProbe& probe) {
 
 /// "points edges", the points, the edges as pairs of indices. What is inside is not said: walls.
 void read_pslg(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  CountedLines lines(text, out.file());
+  CountedLines lines(read_text_file(path), out.file());
   lines.need("the numbers of points and edges");
   const std::size_t points = lines.count(0);
   const std::size_t edges = lines.count(1);

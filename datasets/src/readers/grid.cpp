@@ -28,16 +28,9 @@ Direction turned_right(Direction d) {
 }
 
 Lattice step(Lattice p, Direction d) {
-  switch (d) {
-    case kEast:
-      return {p.x + 1, p.y};
-    case kNorth:
-      return {p.x, p.y + 1};
-    case kWest:
-      return {p.x - 1, p.y};
-    default:
-      return {p.x, p.y - 1};
-  }
+  constexpr std::uint32_t kMinusOne = ~std::uint32_t{0};
+  constexpr std::uint32_t kX[] = {1, 0, kMinusOne, 0}, kY[] = {0, 1, 0, kMinusOne};
+  return {p.x + kX[d], p.y + kY[d]};
 }
 
 using Corners = std::vector<Lattice>;
@@ -102,6 +95,10 @@ Corners without_straight_corners(const Corners& ring) {
   return kept;
 }
 
+std::size_t count_occupied(const Grid& grid) {
+  return grid.occupied.size() - static_cast<std::size_t>(std::count(grid.occupied.begin(), grid.occupied.end(), 0));
+}
+
 /// What has been seen of a cell.
 enum Seen : std::uint8_t { kInComponent = 1, kBottomWalked = 2, kTopWalked = 4 };
 
@@ -109,8 +106,7 @@ enum Seen : std::uint8_t { kInComponent = 1, kBottomWalked = 2, kTopWalked = 4 }
 class Tracer {
  public:
   explicit Tracer(const Grid& grid) : grid_(grid), seen_(grid.occupied.size(), 0) {
-    cells_.reserve(static_cast<std::size_t>(
-        std::count_if(grid.occupied.begin(), grid.occupied.end(), [](std::uint8_t cell) { return cell != 0; })));
+    cells_.reserve(count_occupied(grid));
   }
 
   struct Component {
@@ -260,9 +256,7 @@ void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out) 
     for (const Corners& ring : component.rings) raw.rings.push_back(placed(ring, placement));
     out.add(raw);
   });
-  std::size_t occupied = 0;
-  for (const std::uint8_t cell : grid.occupied) occupied += cell != 0 ? 1 : 0;
-  out.set_coverage({grid.width * grid.height, occupied, placement.resolution * placement.resolution});
+  out.set_coverage({grid.width * grid.height, count_occupied(grid), placement.resolution * placement.resolution});
 }
 
 }  // namespace exactvo::datasets

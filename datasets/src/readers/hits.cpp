@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
@@ -24,7 +25,7 @@ constexpr double kScanCell = 0.05;
 /// Beyond this a lattice coordinate is no exact double any more.
 constexpr double kFarthestCell = 0x1p52;
 
-/// The cell [k c, (k + 1) c] that holds x, its ends rounded as `lattice_point` rounds them.
+/// The cell [k c, (k + 1) c] that holds x, its ends rounded as `lattice_point` rounds them. Never falls as x grows.
 std::int64_t cell_of(double x, double cell) {
   auto k = static_cast<std::int64_t>(std::floor(x / cell));
   while (cell * static_cast<double>(k) > x) --k;
@@ -32,30 +33,17 @@ std::int64_t cell_of(double x, double cell) {
   return k;
 }
 
-struct Span {
-  std::int64_t low = 0;
-  std::int64_t high = 0;
-  std::size_t size() const { return static_cast<std::size_t>(high - low + 1); }
-};
-
-template <class Coordinate>
-Span span_of(const std::vector<geometry::Vec2>& hits, double cell, Coordinate coordinate) {
-  Span span{cell_of(coordinate(hits.front()), cell), 0};
-  span.high = span.low;
-  for (const geometry::Vec2 hit : hits) {
-    const std::int64_t k = cell_of(coordinate(hit), cell);
-    span = {std::min(span.low, k), std::max(span.high, k)};
-  }
-  return span;
-}
-
-void refuse_far_hits(const std::vector<geometry::Vec2>& hits, double cell, const Collector& out) {
+/// Of hits whose cells have exact coordinates; the others are refused.
+geometry::Box box_of_hits(const std::vector<geometry::Vec2>& hits, double cell, const Collector& out) {
+  geometry::Box box;
   for (const geometry::Vec2 hit : hits) {
     EXACTVO_REQUIRE(geometry::is_finite(hit), "a hit that is not finite");
-    if (std::max(std::abs(hit.x), std::abs(hit.y)) / cell < kFarthestCell) continue;
-    throw DataError(DataCode::size, out.file(), "", "a hit beyond 2^52 cells",
-                    "hits nearer to the origin, or larger cells");
+    if (std::max(std::abs(hit.x), std::abs(hit.y)) / cell >= kFarthestCell)
+      throw DataError(DataCode::size, out.file(), "", "a hit beyond 2^52 cells",
+                      "hits nearer to the origin, or larger cells");
+    box.add(hit);
   }
+  return box;
 }
 
 /// A range that means "nothing seen": 0 or less, NaN, or what lasers report beyond their reach (50, 81.83, 81.91 m and
@@ -80,22 +68,20 @@ geometry::Vec2 hit_at(const Pose& laser, double bearing, double range) {
 void add_hits(const std::vector<geometry::Vec2>& hits, Collector& out) {
   if (hits.empty()) return out.note("", "no hit, no obstacle");
   const double cell = out.options().cell_size > 0.0 ? out.options().cell_size : kScanCell;
-  refuse_far_hits(hits, cell, out);
-  const Span columns = span_of(hits, cell, [](geometry::Vec2 p) { return p.x; });
-  const Span rows = span_of(hits, cell, [](geometry::Vec2 p) { return p.y; });
-  if (columns.size() > kMostCells || rows.size() > kMostCells / columns.size()) {
+  const geometry::Box box = box_of_hits(hits, cell, out);
+  const std::int64_t first_column = cell_of(box.low.x, cell), first_row = cell_of(box.low.y, cell);
+  const auto column = [&](double x) { return static_cast<std::size_t>(cell_of(x, cell) - first_column); };
+  const auto row = [&](double y) { return static_cast<std::size_t>(cell_of(y, cell) - first_row); };
+  const std::size_t columns = column(box.high.x) + 1, rows = row(box.high.y) + 1;
+  if (columns > kMostCells || rows > kMostCells / columns) {
     throw DataError(DataCode::size, out.file(), "",
-                    "hits over " + std::to_string(columns.size()) + " by " + std::to_string(rows.size()) + " cells",
+                    "hits over " + std::to_string(columns) + " by " + std::to_string(rows) + " cells",
                     "at most " + std::to_string(kMostCells) + " cells: larger ones");
   }
-  Grid grid{columns.size(), rows.size(), std::vector<std::uint8_t>(columns.size() * rows.size(), 0)};
-  for (const geometry::Vec2 hit : hits) {
-    const auto x = static_cast<std::size_t>(cell_of(hit.x, cell) - columns.low);
-    const auto y = static_cast<std::size_t>(cell_of(hit.y, cell) - rows.low);
-    grid.occupied[y * grid.width + x] = 1;
-  }
+  Grid grid{columns, rows, std::vector<std::uint8_t>(columns * rows, 0)};
+  for (const geometry::Vec2 hit : hits) grid.occupied[row(hit.y) * columns + column(hit.x)] = 1;
   out.note("", geometry::counted(hits.size(), "hit"));
-  add_grid(grid, {{0.0, 0.0}, cell, 0.0, columns.low, rows.low}, out);
+  add_grid(grid, {{0.0, 0.0}, cell, 0.0, first_column, first_row}, out);
 }
 
 // --- CARMEN logs: "FLASER n r1 .. rn x y theta odom_x odom_y odom_theta ..." among lines of other kinds ---
@@ -137,22 +123,11 @@ std::string_view next_object(std::string_view text, std::size_t& at, const std::
   at = text.find_first_not_of(" \t\r\n,", at);
   if (at == std::string_view::npos) return {};
   const std::size_t begin = at;
-  int depth = 0;
-  bool in_string = false;
-  for (; at < text.size(); ++at) {
-    const char c = text[at];
-    if (in_string && c == '\\') {
-      ++at;
-    } else if (c == '"') {
-      in_string = !in_string;
-    } else if (!in_string && c == '{') {
-      ++depth;
-    } else if (!in_string && c == '}' && --depth == 0) {
-      return text.substr(begin, ++at - begin);
-    } else if (depth == 0) {
-      break;
-    }
-  }
+  JsonNesting nesting;
+  do {
+    nesting.take(text[at++]);
+  } while (nesting.objects() > 0 && at < text.size());
+  if (text[begin] == '{' && nesting.objects() == 0) return text.substr(begin, at - begin);
   throw DataError(DataCode::json_syntax, file, line_and_column(text, begin), excerpt(text, begin),
                   "a whole JSON object");
 }
@@ -231,8 +206,7 @@ bool looks_like_carmen_log(const FormatProbe& probe) {
 }
 
 void read_carmen_log(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  LineReader lines(text, out.file());
+  LineReader lines(read_text_file(path), out.file());
   std::vector<geometry::Vec2> hits;
   std::size_t scans = 0;
   while (lines.next()) {
@@ -279,8 +253,7 @@ bool looks_like_points_csv(const FormatProbe& probe) {
 }
 
 void read_points_csv(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  LineReader lines(text, out.file());
+  LineReader lines(read_text_file(path), out.file());
   std::vector<geometry::Vec2> points;
   for (bool may_be_header = true; lines.next();) {
     const std::string_view line = trimmed(lines.line());

@@ -29,6 +29,12 @@ bool LineReader::next() {
   return true;
 }
 
+bool LineReader::next_filled() {
+  while (next())
+    if (!trimmed(line_).empty()) return true;
+  return false;
+}
+
 double LineReader::to_number(std::string_view field) const {
   double value = 0.0;
   if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");

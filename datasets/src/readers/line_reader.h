@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
@@ -16,13 +17,17 @@ namespace exactvo::datasets {
 class LineReader {
  public:
   /// A byte order mark before the text, as spreadsheets write it, is left out.
-  LineReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {
+  LineReader(std::string text, const std::string& file) : text_(std::move(text)), rest_(text_), file_(file) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     if (rest_.substr(0, kMark.size()) == kMark) rest_.remove_prefix(kMark.size());
   }
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
 
   /// Moves to the next line, its end (\n or \r\n) taken off; false at the end.
   bool next();
+  /// To the next one that holds more than blanks.
+  bool next_filled();
   std::string_view line() const { return line_; }
   std::size_t number() const { return number_; }  ///< from 1
   std::string place() const { return "line " + std::to_string(number_); }
@@ -34,6 +39,7 @@ class LineReader {
   [[noreturn]] void refuse(DataCode code, const std::string& found, const std::string& expected) const;
 
  private:
+  std::string text_;
   std::string_view rest_;
   const std::string& file_;
   std::string_view line_;

@@ -15,11 +15,6 @@ namespace {
 
 // --- Maps: "type octile", "height H", "width W", "map", then H rows of W symbols, the top one first ---
 
-struct Header {
-  std::size_t height = 0;
-  std::size_t width = 0;
-};
-
 /// Out of bounds, trees, water.
 constexpr std::string_view kBlocked = "@OTW";
 /// Ground and swamp.
@@ -39,12 +34,11 @@ std::size_t to_size(const LineReader& lines, std::string_view field) {
   return static_cast<std::size_t>(value);
 }
 
-/// The type line may be missing, and the others may come in any order.
-Header read_header(LineReader& lines) {
-  Header header;
-  while (lines.next()) {
+/// A grid without its cells. The type line may be missing, and the others may come in any order.
+Grid read_header(LineReader& lines) {
+  Grid header;
+  while (lines.next_filled()) {
     const std::vector<std::string_view> words = words_of(lines.line());
-    if (words.empty()) continue;
     if (words[0] == "map" && words.size() == 1) break;
     if (words.size() != 2)
       lines.refuse(DataCode::format_syntax, excerpt(lines.line(), 0), "type, height, width or map");
@@ -77,14 +71,14 @@ void read_row(const LineReader& lines, std::size_t y, Grid& grid, std::map<char,
 }
 
 Grid read_grid(LineReader& lines, Collector& out) {
-  const Header header = read_header(lines);
-  Grid grid{header.width, header.height, std::vector<std::uint8_t>(header.width * header.height, 0)};
+  Grid grid = read_header(lines);
+  grid.occupied.assign(grid.width * grid.height, 0);
   std::map<char, std::size_t> odd;
-  for (std::size_t row = 0; row < header.height; ++row) {
+  for (std::size_t row = 0; row < grid.height; ++row) {
     if (!lines.next()) {
-      lines.refuse(DataCode::wrong_count, geometry::counted(row, "row"), geometry::counted(header.height, "row"));
+      lines.refuse(DataCode::wrong_count, geometry::counted(row, "row"), geometry::counted(grid.height, "row"));
     }
-    read_row(lines, header.height - 1 - row, grid, odd);
+    read_row(lines, grid.height - 1 - row, grid, odd);
   }
   for (const auto& [symbol, count] : odd) {
     out.note("", geometry::counted(count, "cell") + " of the unusual symbol " + symbol + " taken as free");
@@ -126,10 +120,9 @@ bool is_version_line(std::string_view line) {
 }  // namespace
 
 MapSize read_map_size(const std::filesystem::path& map) {
-  const std::string text = read_text_file(map);
   const std::string name = map.string();
-  LineReader lines(text, name);
-  const Header header = read_header(lines);
+  LineReader lines(read_text_file(map), name);
+  const Grid header = read_header(lines);
   return {static_cast<std::int64_t>(header.width), static_cast<std::int64_t>(header.height)};
 }
 
@@ -140,24 +133,20 @@ bool looks_like_moving_ai_map(const FormatProbe& probe) {
 }
 
 void read_moving_ai_map(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  LineReader lines(text, out.file());
+  LineReader lines(read_text_file(path), out.file());
   const Grid grid = read_grid(lines, out);
   const double cell = out.options().cell_size > 0.0 ? out.options().cell_size : 1.0;
   add_grid(grid, {{0.0, 0.0}, cell, 0.0, 0, 0}, out);
 }
 
 std::vector<PathTask> read_tasks(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path);
   const std::string name = path.string();
-  LineReader lines(text, name);
+  LineReader lines(read_text_file(path), name);
   if (!lines.next() || !is_version_line(lines.line())) {
     lines.refuse(DataCode::format_syntax, excerpt(lines.line(), 0), "\"version 1\"");
   }
   std::vector<PathTask> tasks;
-  while (lines.next()) {
-    if (!trimmed(lines.line()).empty()) tasks.push_back(to_task(lines));
-  }
+  while (lines.next_filled()) tasks.push_back(to_task(lines));
   return tasks;
 }
 
@@ -166,11 +155,6 @@ bool is_inside_its_map(const PathTask& task) {
     return c.column >= 0 && c.row >= 0 && c.column < task.width && c.row < task.height;
   };
   return inside(task.start) && inside(task.goal);
-}
-
-geometry::Vec2 middle_of(GridCell cell, std::int64_t height, double cell_size) {
-  return {(static_cast<double>(cell.column) + 0.5) * cell_size,
-          (static_cast<double>(height - 1 - cell.row) + 0.5) * cell_size};
 }
 
 bool looks_like_moving_ai_scen(const FormatProbe& probe) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/join.hpp>
 #include <cerrno>
 #include <cstdlib>
 #include <new>
@@ -30,10 +31,6 @@ void read_with_gdal(const std::filesystem::path& path, Collector& out) {
   vector_library().read_vector_file(path, out);
 }
 
-FormatProbe probe_of(const std::filesystem::path& path) {
-  return {path, lower_extension(path), read_beginning(path, kProbeLength)};
-}
-
 /// XML, by its first element, and where that is not enough what stands near it.
 auto xml_of(const char* element, const char* besides = "") {
   return [=](const FormatProbe& probe) {
@@ -42,9 +39,7 @@ auto xml_of(const char* element, const char* besides = "") {
 }
 
 std::string all_names() {
-  std::string names;
-  for (const Reader& reader : readers()) names += (names.empty() ? "" : ", ") + std::string(reader.name);
-  return names;
+  return boost::join(readable_formats(), ", ");
 }
 
 const Reader& reader_named(const std::string& name, const std::filesystem::path& path) {
@@ -62,7 +57,7 @@ std::string hint_for(const FormatProbe& probe) {
 }
 
 const Reader& reader_for(const std::filesystem::path& path) {
-  const FormatProbe probe = probe_of(path);
+  const FormatProbe probe{path, lower_extension(path), read_beginning(path, kProbeLength)};
   for (const Reader& reader : readers()) {
     if (reader.matches && reader.matches(probe)) return reader;
   }

@@ -17,10 +17,6 @@ constexpr int kCorners = 16;
 /// The corners' radius is rounded up by this part, far more than the few roundings of each corner (1e-15 or so).
 constexpr double kOutward = 1e-12;
 
-bool is_blank(std::string_view line) {
-  return trimmed(line).empty();
-}
-
 bool begins_with(std::string_view line, std::string_view beginning) {
   return line.substr(0, beginning.size()) == beginning;
 }
@@ -42,8 +38,7 @@ std::uint8_t cell(const LineReader& lines, std::string_view word) {
 /// Rows as they stand in the file, all of one width.
 std::vector<std::vector<std::uint8_t>> read_rows(LineReader& lines) {
   std::vector<std::vector<std::uint8_t>> rows;
-  while (lines.next()) {
-    if (is_blank(lines.line())) continue;
+  while (lines.next_filled()) {
     std::vector<std::uint8_t>& row = rows.emplace_back();
     for (const std::string_view word : words_of(lines.line())) row.push_back(cell(lines, word));
     if (row.size() != rows.front().size())
@@ -71,11 +66,9 @@ bool looks_like_ompl_circles(const FormatProbe& probe) {
 
 /// "units: meter", a line of names, then "number x y r".
 void read_ompl_circles(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  LineReader lines(text, out.file());
+  LineReader lines(read_text_file(path), out.file());
   for (int header = 0; header < 2; ++header) lines.next();
-  while (lines.next()) {
-    if (is_blank(lines.line())) continue;
+  while (lines.next_filled()) {
     const std::vector<std::string_view> words = words_of(lines.line());
     if (words.size() != 4) lines.refuse(DataCode::wrong_count, excerpt(lines.line(), 0), "number x y r");
     const double radius = lines.to_number(words[3]);
@@ -91,8 +84,7 @@ bool looks_like_ompl_grid(const FormatProbe& probe) {
 }
 
 void read_ompl_grid(const std::filesystem::path& path, Collector& out) {
-  const std::string text = read_text_file(path);
-  LineReader lines(text, out.file());
+  LineReader lines(read_text_file(path), out.file());
   find_environment(lines);
   const std::vector<std::vector<std::uint8_t>> rows = read_rows(lines);
   if (rows.empty() || rows.front().empty()) lines.refuse(DataCode::format_syntax, "no cells", "the rows of the grid");

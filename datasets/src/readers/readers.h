@@ -101,6 +101,17 @@ void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
+/// Pictures of maps as brightness. PGM is read in ros_map.cpp; PNG, BMP and JPEG by GDAL.
+struct GreyImage {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::vector<float> brightness;     ///< 0 to 255, the mean of the colour channels, top row first
+  std::vector<bool> is_transparent;  ///< empty where the picture has no alpha channel
+};
+/// gdal_image.cpp, or gdal_absent.cpp; called through vector_library.h. Throws DataError: E_IMAGE, or E_SIZE for more
+/// pixels than kMostCells.
+GreyImage read_gdal_image(const std::filesystem::path& path);
+
 // obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL, called through vector_library.h
 bool looks_like_vector_file(const FormatProbe& probe);
 void read_vector_file(const std::filesystem::path& path, Collector& out);

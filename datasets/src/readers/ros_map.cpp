@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/endian/conversion.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 #include "gdal/vector_library.h"
-#include "readers/grey_image.h"
 #include "readers/grid.h"
 #include "readers/readers.h"
 
@@ -83,43 +82,63 @@ bool is_pgm(const std::string& bytes) {
 }
 
 // ISO/IEC 15948, 5.2 and 5.3: a signature, then chunks of length, type, data and checksum.
-constexpr char kPngSignature[] = "\x89PNG\r\n\x1a\n";
-constexpr std::uintmax_t kPngSignatureSize = sizeof(kPngSignature) - 1;
-constexpr std::uintmax_t kPngHeaderSize = 8;
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::uintmax_t kChecksumSize = 4;
-
-using PngHeader = std::array<char, kPngHeaderSize>;
-
-std::uintmax_t claimed_by(const PngHeader& header) {
-  std::uintmax_t length = 0;
-  for (std::size_t i = 0; i < 4; ++i) length = length << 8U | static_cast<unsigned char>(header[i]);
-  return length;
-}
-
-bool is_png(std::istream& in) {
-  PngHeader signature{};
-  return in.read(signature.data(), signature.size()) &&
-         std::memcmp(signature.data(), kPngSignature, kPngSignatureSize) == 0;
-}
 
 /// Refuses a PNG file one of whose chunks claims more bytes than the file has left (DataCode::size): decoders make room
 /// for what is claimed before they read it. What is no PNG, or is cut between chunks, is left to the decoder.
 void require_whole_png_chunks(const std::filesystem::path& path) {
   const std::uintmax_t size = std::filesystem::file_size(path);
   std::ifstream in(path, std::ios::binary);
-  if (!is_png(in)) return;
-  std::uintmax_t at = kPngSignatureSize;
-  for (PngHeader header{}; in.read(header.data(), header.size());) {
-    const std::uintmax_t left = size - at - kPngHeaderSize;
-    const std::uintmax_t claimed = claimed_by(header) + kChecksumSize;
+  std::array<char, 8> head{};  // the signature is as long as the length and type of a chunk
+  if (!in.read(head.data(), head.size()) || std::string_view(head.data(), head.size()) != kPngSignature) return;
+  std::uintmax_t at = head.size();
+  while (in.read(head.data(), head.size())) {
+    const std::uintmax_t left = size - at - head.size();
+    const std::uintmax_t claimed =
+        boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(head.data())) + kChecksumSize;
     if (claimed > left) {
       throw DataError(DataCode::size, path.string(), "byte " + std::to_string(at),
                       "a chunk of " + std::to_string(claimed) + " bytes",
                       "at most the " + std::to_string(left) + " left");
     }
-    at += kPngHeaderSize + claimed;
+    at += head.size() + claimed;
     in.seekg(static_cast<std::streamoff>(at));
   }
+}
+
+GreyImage read_pgm(const std::string& bytes, const std::string& file) {
+  PgmScanner scan(bytes, file);
+  const bool plain = bytes[1] == '2';
+  GreyImage image;
+  image.width = scan.number("width");
+  image.height = scan.number("height");
+  const std::size_t brightest = scan.number("greatest value");
+  if (brightest < 1 || brightest > 65535) scan.refuse(DataCode::image, std::to_string(brightest), "1 to 65535");
+  scan.skip(1);
+  const bool wide = !plain && brightest > 255;
+  if (!fits(image, scan.left(), wide ? 2 : 1)) {
+    scan.refuse(DataCode::size, std::to_string(image.width) + " by " + std::to_string(image.height) + " pixels",
+                "as many as the file holds, at most " + std::to_string(kMostCells));
+  }
+  image.brightness.resize(image.width * image.height);
+  for (float& pixel : image.brightness) {
+    const std::size_t value = plain ? scan.number("pixel") : scan.raw(wide);
+    pixel = static_cast<float>(255.0 * static_cast<double>(value) / static_cast<double>(brightest));
+  }
+  return image;
+}
+
+/// Throws DataError: E_IMAGE, or E_SIZE for more pixels than kMostCells or than the file holds.
+GreyImage read_image(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw DataError(DataCode::image, path.string(), "", "no such picture", "the picture that the map names");
+  }
+  if (!is_pgm(read_beginning(path, 3))) {
+    require_whole_png_chunks(path);
+    return vector_library().read_gdal_image(path);
+  }
+  return read_pgm(read_text_file(path), path.string());
 }
 
 enum class MapMode { trinary, scale, raw };
@@ -289,39 +308,6 @@ Grid to_grid(const GreyImage& image, const MapFacts& map, Collector& out) {
 }
 
 }  // namespace
-
-GreyImage read_pgm(const std::string& bytes, const std::string& file) {
-  PgmScanner scan(bytes, file);
-  const bool plain = bytes[1] == '2';
-  GreyImage image;
-  image.width = scan.number("width");
-  image.height = scan.number("height");
-  const std::size_t brightest = scan.number("greatest value");
-  if (brightest < 1 || brightest > 65535) scan.refuse(DataCode::image, std::to_string(brightest), "1 to 65535");
-  scan.skip(1);
-  const bool wide = !plain && brightest > 255;
-  if (!fits(image, scan.left(), wide ? 2 : 1)) {
-    scan.refuse(DataCode::size, std::to_string(image.width) + " by " + std::to_string(image.height) + " pixels",
-                "as many as the file holds, at most " + std::to_string(kMostCells));
-  }
-  image.brightness.resize(image.width * image.height);
-  for (float& pixel : image.brightness) {
-    const std::size_t value = plain ? scan.number("pixel") : scan.raw(wide);
-    pixel = static_cast<float>(255.0 * static_cast<double>(value) / static_cast<double>(brightest));
-  }
-  return image;
-}
-
-GreyImage read_image(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw DataError(DataCode::image, path.string(), "", "no such picture", "the picture that the map names");
-  }
-  if (!is_pgm(read_beginning(path, 3))) {
-    require_whole_png_chunks(path);
-    return vector_library().read_gdal_image(path);
-  }
-  return read_pgm(read_text_file(path), path.string());
-}
 
 bool looks_like_ros_map(const FormatProbe& probe) {
   return (probe.extension == ".yaml" || probe.extension == ".yml") &&

@@ -2,7 +2,10 @@
 // Well-known binary in hexadecimal digits, as databases and test suites print it: both byte orders, Z and M by either
 // convention (ISO's thousands, PostGIS's flags), SRID.
 #include <algorithm>
-#include <cstring>
+#include <boost/algorithm/hex.hpp>
+#include <boost/endian/conversion.hpp>
+#include <cctype>
+#include <iterator>
 #include <utility>
 
 #include "readers/line_reader.h"
@@ -11,23 +14,12 @@
 namespace exactvo::datasets {
 namespace {
 
-int digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-/// Pairs of digits; a byte that lacks its half is dropped, and missed by the reader.
+/// Pairs of digits; a byte that lacks its half is dropped, and missed by the reader. REQUIRES: digits and white space.
 std::string bytes_of(std::string_view text) {
-  std::string bytes;
-  int high = -1;
-  for (const char c : text) {
-    const int d = digit(c);
-    if (d < 0) continue;
-    if (high >= 0) bytes += static_cast<char>(high * 16 + d);
-    high = high >= 0 ? -1 : d;
-  }
+  std::string digits, bytes;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(digits), [](unsigned char c) { return std::isxdigit(c); });
+  digits.resize(digits.size() / 2 * 2);
+  boost::algorithm::unhex(digits, std::back_inserter(bytes));
   return bytes;
 }
 
@@ -107,24 +99,15 @@ class WkbReader {
     return n;
   }
 
-  std::uint32_t integer() {
-    std::uint32_t value = 0;
-    const std::string_view four = take(4);
-    for (std::size_t k = 0; k < 4; ++k) value |= static_cast<std::uint32_t>(in_order(four, k)) << (8 * k);
-    return value;
-  }
+  std::uint32_t integer() { return in_order<std::uint32_t>(); }
+  double number() { return in_order<double>(); }
 
-  double number() {
-    std::uint64_t bits = 0;
-    const std::string_view eight = take(8);
-    for (std::size_t k = 0; k < 8; ++k) bits |= static_cast<std::uint64_t>(in_order(eight, k)) << (8 * k);
-    double value = 0.0;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-  }
-
-  unsigned char in_order(std::string_view bytes, std::size_t k) const {
-    return static_cast<unsigned char>(bytes[little_endian_ ? k : bytes.size() - 1 - k]);
+  template <class T>
+  T in_order() {
+    using boost::endian::order;
+    const auto* bytes = reinterpret_cast<const unsigned char*>(take(sizeof(T)).data());
+    return little_endian_ ? boost::endian::endian_load<T, sizeof(T), order::little>(bytes)
+                          : boost::endian::endian_load<T, sizeof(T), order::big>(bytes);
   }
 
   std::string_view take(std::size_t n) {

@@ -30,7 +30,6 @@ class XmlFile {
   void add(RawKind kind, std::size_t number, const pugi::xml_node& node, geometry::Ring points, Collector& out) const;
 
  private:
-  void refuse_entities() const;
   void refuse_zero_bytes() const;
   void index_lines() const;
 

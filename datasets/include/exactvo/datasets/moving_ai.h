@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
-#include "exactvo/geometry/vec2.h"
 
 namespace exactvo::datasets {
 
@@ -46,8 +45,5 @@ std::vector<PathTask> read_tasks(const std::filesystem::path& path);
 
 /// Whether start and goal lie inside the size that the task itself states.
 bool is_inside_its_map(const PathTask& task);
-
-/// The middle of a cell in metres, as `read_obstacles` lays a map of `height` rows out: row 0 on top, y upward.
-geometry::Vec2 middle_of(GridCell cell, std::int64_t height, double cell_size = 1.0);
 
 }  // namespace exactvo::datasets
