@@ -17,19 +17,20 @@ void add_points(OGRSimpleCurve& curve, const std::vector<geometry::Vec2>& points
   for (std::size_t i = 0; i < points.size(); ++i) curve.setPoint(static_cast<int>(i), points[i].x, points[i].y);
 }
 
-OGRGeometryUniquePtr ogr_of(const geometry::Obstacle& shape) {
-  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) {
+std::unique_ptr<OGRGeometry> ogr_of(const geometry::Obstacle& shape) {
+  const std::vector<geometry::Ring> courses = courses_of(shape);
+  if (!geometry::has_interior(shape)) {
     auto curve = std::make_unique<OGRLineString>();
-    add_points(*curve, line->points);
-    return OGRGeometryUniquePtr(curve.release());
+    add_points(*curve, courses.front());
+    return curve;
   }
   auto polygon = std::make_unique<OGRPolygon>();
-  for (const geometry::Ring& points : closed_rings_of(std::get<geometry::Polygon>(shape))) {
+  for (const geometry::Ring& points : courses) {
     OGRLinearRing ring;
     add_points(ring, points);
     polygon->addRing(&ring);
   }
-  return OGRGeometryUniquePtr(polygon.release());
+  return polygon;
 }
 
 class LayerWriter {

@@ -8,6 +8,7 @@
 #include "exactvo/geometry/even_odd.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/too_many_contacts.h"
+#include "writers/writers.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -35,29 +36,20 @@ std::size_t count_vertices(const Ring& ring) {
   return ring.size() - (is_closed ? 1 : 0);
 }
 
-RepairFacts facts_of(const std::vector<Ring>& rings) {
-  RepairFacts facts;
-  facts.polygons = 1;
-  facts.rings = rings.size();
+/// All but `area`.
+void add_polygon(const std::vector<Ring>& rings, RepairFacts& facts) {
+  ++facts.polygons;
+  facts.rings += rings.size();
   for (std::size_t k = 0; k < rings.size(); ++k) {
     facts.vertices += count_vertices(rings[k]);
     (k == 0 ? facts.outer_area : facts.hole_area) += ring_area(rings[k]);
   }
-  facts.area = facts.outer_area - facts.hole_area;
-  return facts;
 }
 
 RepairFacts facts_of(const std::vector<Polygon>& polygons) {
   RepairFacts facts;
   for (const Polygon& polygon : polygons) {
-    ++facts.polygons;
-    facts.rings += 1 + polygon.holes.size();
-    facts.vertices += polygon.outer.size();
-    facts.outer_area += ring_area(polygon.outer);
-    for (const Ring& hole : polygon.holes) {
-      facts.vertices += hole.size();
-      facts.hole_area += ring_area(hole);
-    }
+    add_polygon(courses_of(polygon), facts);
     facts.area += area(polygon);
   }
   return facts;
@@ -117,11 +109,7 @@ DataCode reason_for(EvenOddStatus status) {
 }
 
 bool is_valid(const Polygon& polygon) {
-  std::vector<Ring> rings{polygon.outer};
-  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-  const auto is_harmless = [](const RingProblem& p) { return p.code == RingProblemCode::unclosed; };
-  const NormalizedPolygon normal = geometry::normalize(rings);
-  return std::all_of(normal.problems.begin(), normal.problems.end(), is_harmless);
+  return geometry::normalize(courses_of(polygon)).problems.empty();
 }
 
 void recombine(const std::vector<Ring>& rings, Repair& repair) {
@@ -165,7 +153,8 @@ double area(const Polygon& polygon) {
 Repair repair(const std::vector<Ring>& rings) {
   EXACTVO_REQUIRE(!rings.empty(), std::string("no ring"));
   Repair result;
-  result.before = facts_of(rings);
+  add_polygon(rings, result.before);
+  result.before.area = result.before.outer_area - result.before.hole_area;
   try {
     repair_rings(rings, result);
   } catch (const geometry::TooManyContacts&) {

@@ -26,10 +26,8 @@ geometry::Ring to_ring(const JsonCursor& at) {
 // --- The obstacles of a scenario (scenario_file.h), those of the files that it names included ---
 
 RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
-  const std::string place = "obstacle " + obstacle.id;
-  if (const auto* line = std::get_if<geometry::Polyline>(&obstacle.shape))
-    return {RawKind::polyline, obstacle.id, place, {line->points}};
-  return {RawKind::polygon, obstacle.id, place, closed_rings_of(std::get<geometry::Polygon>(obstacle.shape))};
+  const RawKind kind = geometry::has_interior(obstacle.shape) ? RawKind::polygon : RawKind::polyline;
+  return {kind, obstacle.id, "obstacle " + obstacle.id, courses_of(obstacle.shape)};
 }
 
 /// A scenario may name another as an obstacle file; one that names itself, or one that names it, has no end.

@@ -2,6 +2,9 @@
 #include "exactvo/datasets/obstacle_write.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -30,33 +33,11 @@ std::string wkt_points(const std::vector<geometry::Vec2>& points) {
   return text + ")";
 }
 
-std::string wkt_text(const geometry::Polyline& line) {
-  return "LINESTRING " + wkt_points(line.points);
-}
-
-std::string wkt_text(const geometry::Polygon& polygon) {
-  std::string text = "POLYGON (";
-  const std::vector<geometry::Ring> rings = closed_rings_of(polygon);
-  for (std::size_t k = 0; k < rings.size(); ++k) text += (k > 0 ? ", " : "") + wkt_points(rings[k]);
-  return text + ")";
-}
-
 // --- GeoJSON ---
 
 using Points = std::vector<geometry::Vec2>;
 /// What is written of points: the same, or degrees.
 using Placement = std::function<Points(Points)>;
-
-void append_geometry(JsonWriter& json, const geometry::Polyline& line, const Placement& place) {
-  json.member("type", "LineString").key("coordinates");
-  append_points(json, place(line.points));
-}
-
-void append_geometry(JsonWriter& json, const geometry::Polygon& polygon, const Placement& place) {
-  json.member("type", "Polygon").key("coordinates").begin_array();
-  for (const geometry::Ring& ring : closed_rings_of(polygon)) append_points(json, place(ring));
-  json.end_array();
-}
 
 /// Longitudes and latitudes are rounded, and neighbours may become one: a point twice running is left out, unless too
 /// few would stay for a line or a ring.
@@ -81,8 +62,10 @@ void append_feature(JsonWriter& json, const formation::SceneObstacle& obstacle, 
   json.begin_inline_object().member("type", "Feature");
   if (!properties.id.empty()) json.key("id").raw(properties.id);
   json.key("properties").raw(members_of(obstacle, properties));
+  std::vector<geometry::Ring> courses = courses_of(obstacle.shape);
+  for (geometry::Ring& course : courses) course = place(std::move(course));
   json.key("geometry").begin_object();
-  std::visit([&](const auto& shape) { append_geometry(json, shape, place); }, obstacle.shape);
+  append_geojson(json, geometry::has_interior(obstacle.shape), courses);
   json.end_object().end_object();
 }
 
@@ -124,19 +107,36 @@ const FeatureProperties& properties_of(const WriteOptions& options, std::size_t 
 
 /// RFC 4180: quoted, quotes doubled.
 std::string csv_field(const std::string& text) {
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return field + "\"";
+  return "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
 
 Written wkt(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
-  Written written{to_wkt(obstacles), losses_beside_shapes(options, "WKT")};
+  Written written{to_wkt(obstacles), {}};
+  add_losses(options, "WKT", written.losses);
   written.losses.emplace_back("ids: WKT has no place for them");
   return written;
 }
 
+/// In longitude and latitude, or in metres; ids become the property `id` where no property is called so.
 Written geojson(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
-  return {to_geojson(obstacles, options, file), {}};
+  const LocalPlane plane = plane_for(obstacles, options.plane);
+  std::optional<MetresToDegrees> to_degrees;
+  if (!options.metres) to_degrees.emplace(plane, file);
+  const Placement place = [&](Points points) {
+    return to_degrees ? without_repeats((*to_degrees)(std::move(points))) : points;
+  };
+  JsonWriter json(JsonWriter::Layout::indented);
+  json.begin_object().member("type", "FeatureCollection");
+  if (options.metres) {
+    json.member("units", "m");
+  } else {
+    json.key("local_metres").raw(local_metres_member(plane, decimals_of(obstacles)));
+  }
+  json.key("features").begin_array();
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    append_feature(json, obstacles[k], properties_of(options, k), place);
+  json.end_array();
+  return {json.end_object().take() + "\n", {}};
 }
 
 Written csv(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
@@ -159,8 +159,7 @@ Written csv(const Obstacles& obstacles, const WriteOptions& options, const std::
     text += "\r\n";
   }
   Written written{text, table.renamed()};
-  const std::vector<std::string> of_plane = plane_losses(options, "CSV");
-  written.losses.insert(written.losses.end(), of_plane.begin(), of_plane.end());
+  add_plane_losses(options, "CSV", written.losses);
   return written;
 }
 
@@ -189,49 +188,23 @@ const std::vector<Writer>& writers() {
   return kWriters;
 }
 
-bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
-const Writer* writer_by_extension(const std::filesystem::path& path) {
+const Writer& writer_for(const std::filesystem::path& path, const std::string& format) {
+  const std::string names = boost::join(writable_formats(), ", ");
+  if (!format.empty()) {
+    for (const Writer& writer : writers())
+      if (format == writer.name) return writer;
+    throw DataError(DataCode::not_an_option, path.string(), "format", "\"" + format + "\"", "one of " + names);
+  }
   const std::string name = lower_case(path.filename().string());
+  std::vector<std::string> endings;
   for (const Writer& writer : writers()) {
     for (const char* ending : writer.endings) {
-      if (ends_with(name, ending)) return &writer;
+      if (boost::ends_with(name, ending)) return writer;
+      endings.emplace_back(ending);
     }
   }
-  return nullptr;
-}
-
-const Writer* writer_by_name(const std::string& name) {
-  for (const Writer& writer : writers()) {
-    if (name == writer.name) return &writer;
-  }
-  return nullptr;
-}
-
-std::string names() {
-  std::string text;
-  for (const std::string& name : writable_formats()) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-std::string endings() {
-  std::string text;
-  for (const Writer& writer : writers()) {
-    for (const char* ending : writer.endings) text += (text.empty() ? "" : ", ") + std::string(ending);
-  }
-  return text;
-}
-
-const Writer& writer_for(const std::filesystem::path& path, const std::string& format) {
-  if (!format.empty()) {
-    if (const Writer* writer = writer_by_name(format)) return *writer;
-    throw DataError(DataCode::not_an_option, path.string(), "format", "\"" + format + "\"", "one of " + names());
-  }
-  if (const Writer* writer = writer_by_extension(path)) return *writer;
   throw DataError(DataCode::format_unknown, path.string(), "", "the extension \"" + path.extension().string() + "\"",
-                  endings() + "; or a format by name: " + names());
+                  boost::join(endings, ", ") + "; or a format by name: " + names);
 }
 
 }  // namespace
@@ -241,14 +214,26 @@ geometry::Ring closed(geometry::Ring ring) {
   return ring;
 }
 
-std::vector<geometry::Ring> closed_rings_of(const geometry::Polygon& polygon) {
+std::vector<geometry::Ring> courses_of(const geometry::Obstacle& shape) {
+  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) return {line->points};
+  const auto& polygon = std::get<geometry::Polygon>(shape);
   std::vector<geometry::Ring> rings{closed(polygon.outer)};
   for (const geometry::Ring& hole : polygon.holes) rings.push_back(closed(hole));
   return rings;
 }
 
+void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses) {
+  json.member("type", is_polygon ? "Polygon" : "LineString").key("coordinates");
+  if (!is_polygon) return append_points(json, courses.front());
+  json.begin_array();
+  for (const geometry::Ring& ring : courses) append_points(json, ring);
+  json.end_array();
+}
+
 std::string wkt_of(const geometry::Obstacle& shape) {
-  return std::visit([](const auto& s) { return wkt_text(s); }, shape);
+  std::string text;
+  for (const geometry::Ring& course : courses_of(shape)) text += (text.empty() ? "" : ", ") + wkt_points(course);
+  return geometry::has_interior(shape) ? "POLYGON (" + text + ")" : "LINESTRING " + text;
 }
 
 std::string to_wkt(const Obstacles& obstacles) {
@@ -270,27 +255,6 @@ std::string local_metres_member(const LocalPlane& plane, int decimals) {
   if (decimals >= 0) json.member("decimals", decimals);
   json.member("is_placed", plane.is_placed());
   return json.end_object().take();
-}
-
-std::string to_geojson(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
-  const LocalPlane plane = plane_for(obstacles, options.plane);
-  std::optional<MetresToDegrees> to_degrees;
-  if (!options.metres) to_degrees.emplace(plane, file);
-  const Placement place = [&](Points points) {
-    return to_degrees ? without_repeats((*to_degrees)(std::move(points))) : points;
-  };
-  JsonWriter json(JsonWriter::Layout::indented);
-  json.begin_object().member("type", "FeatureCollection");
-  if (options.metres) {
-    json.member("units", "m");
-  } else {
-    json.key("local_metres").raw(local_metres_member(plane, decimals_of(obstacles)));
-  }
-  json.key("features").begin_array();
-  for (std::size_t k = 0; k < obstacles.size(); ++k)
-    append_feature(json, obstacles[k], properties_of(options, k), place);
-  json.end_array();
-  return json.end_object().take() + "\n";
 }
 
 std::vector<std::string> writable_formats() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "writers/property_table.h"
 
-#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <map>
 #include <set>
 #include <utility>
@@ -99,7 +99,7 @@ std::vector<std::string> PropertyTable::renamed() const {
   return lines;
 }
 
-std::vector<std::string> property_losses(const WriteOptions& options, const char* format) {
+void add_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses) {
   constexpr std::size_t kMostNamed = 8;
   std::set<std::string> known;
   std::vector<std::string> names;
@@ -113,33 +113,27 @@ std::vector<std::string> property_losses(const WriteOptions& options, const char
       if (known.insert(key).second) names.push_back(key);
     }
   }
-  std::vector<std::string> losses;
   const std::string reason = std::string(": ") + format + " has no place for them";
   if (!names.empty()) {
-    std::string listed;
-    for (std::size_t k = 0; k < std::min(names.size(), kMostNamed); ++k) listed += (k > 0 ? ", " : "") + names[k];
-    if (names.size() > kMostNamed) listed += ", and " + std::to_string(names.size() - kMostNamed) + " more";
-    losses.push_back(geometry::counted(names.size(), "property", "properties") + " (" + listed + ") of " +
+    const std::size_t count = names.size();
+    if (count > kMostNamed) {
+      names.resize(kMostNamed);
+      names.push_back("and " + std::to_string(count - kMostNamed) + " more");
+    }
+    losses.push_back(geometry::counted(count, "property", "properties") + " (" + boost::join(names, ", ") + ") of " +
                      geometry::counted(features, "obstacle") + reason);
   }
   if (ids > 0) losses.push_back(geometry::counted(ids, "feature id") + reason);
-  return losses;
+  add_plane_losses(options, format, losses);
 }
 
-std::vector<std::string> plane_losses(const WriteOptions& options, const char* format) {
+void add_plane_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses) {
   const LocalPlane& plane = options.plane;
-  if (!plane.is_placed()) return {};
+  if (!plane.is_placed()) return;
   std::string where = "a reference system";
   if (plane.origin)
     where = "longitude " + number_text(plane.origin->longitude) + ", latitude " + number_text(plane.origin->latitude);
-  return {"where (0, 0) lies on earth (" + where + "): " + format + " has no place for it"};
-}
-
-std::vector<std::string> losses_beside_shapes(const WriteOptions& options, const char* format) {
-  std::vector<std::string> losses = property_losses(options, format);
-  const std::vector<std::string> of_plane = plane_losses(options, format);
-  losses.insert(losses.end(), of_plane.begin(), of_plane.end());
-  return losses;
+  losses.push_back("where (0, 0) lies on earth (" + where + "): " + format + " has no place for it");
 }
 
 }  // namespace exactvo::datasets

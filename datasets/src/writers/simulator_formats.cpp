@@ -10,29 +10,22 @@
 namespace exactvo::datasets {
 namespace {
 
-std::size_t count_holes(const Obstacles& obstacles) {
+/// What becomes of outlines alone. Where holes are lost, what was free in them counts as solid.
+Written outlines(std::string bytes, const Obstacles& obstacles, const WriteOptions& options, const char* format) {
+  Written written{std::move(bytes), {}};
   std::size_t holes = 0;
-  for (const formation::SceneObstacle& obstacle : obstacles) {
+  for (const formation::SceneObstacle& obstacle : obstacles)
     if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape)) holes += polygon->holes.size();
-  }
-  return holes;
-}
-
-/// Where holes are lost, what was free in them counts as solid.
-std::vector<std::string> hole_losses(const Obstacles& obstacles, const char* format) {
-  const std::size_t holes = count_holes(obstacles);
-  if (holes == 0) return {};
-  return {std::to_string(holes) + (holes == 1 ? " hole" : " holes") + " filled: " + format +
-          " has outlines only; nothing that was solid is lost"};
+  if (holes > 0)
+    written.losses.push_back(geometry::counted(holes, "hole") + " filled: " + format +
+                             " has outlines only; nothing that was solid is lost");
+  add_losses(options, format, written.losses);
+  return written;
 }
 
 const std::vector<geometry::Vec2>& outline_of(const geometry::Obstacle& shape) {
   if (const auto* polygon = std::get_if<geometry::Polygon>(&shape)) return polygon->outer;
   return std::get<geometry::Polyline>(shape).points;
-}
-
-void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
-  list.insert(list.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -47,7 +40,8 @@ Written to_rings_json(const Obstacles& obstacles, const WriteOptions& options, c
   json.begin_array();
   append_points(json, polygon->outer);
   for (const geometry::Ring& hole : polygon->holes) append_points(json, hole);
-  Written written{json.end_array().take() + "\n", losses_beside_shapes(options, "rings-json")};
+  Written written{json.end_array().take() + "\n", {}};
+  add_losses(options, "rings-json", written.losses);
   written.losses.emplace_back("the id: rings-json has no place for it");
   return written;
 }
@@ -62,8 +56,7 @@ Written to_menge_xml(const Obstacles& obstacles, const WriteOptions& options, co
       text += "      <Vertex p_x=\"" + number_text(p.x) + "\" p_y=\"" + number_text(p.y) + "\"/>\n";
     text += "    </Obstacle>\n";
   }
-  Written written{text + "  </ObstacleSet>\n</Experiment>\n", hole_losses(obstacles, "Menge")};
-  append(written.losses, losses_beside_shapes(options, "Menge"));
+  Written written = outlines(text + "  </ObstacleSet>\n</Experiment>\n", obstacles, options, "Menge");
   written.losses.emplace_back("ids: Menge has no place for them");
   return written;
 }
@@ -79,9 +72,7 @@ Written to_sumo_poly(const Obstacles& obstacles, const WriteOptions& options, co
       text += (text.back() == '"' ? "" : " ") + number_text(p.x) + "," + number_text(p.y);
     text += "\"/>\n";
   }
-  Written written{text + "</additional>\n", hole_losses(obstacles, "SUMO")};
-  append(written.losses, losses_beside_shapes(options, "SUMO"));
-  return written;
+  return outlines(text + "</additional>\n", obstacles, options, "SUMO");
 }
 
 }  // namespace exactvo::datasets

@@ -9,6 +9,7 @@
 
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/formation/scenario.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 
@@ -19,17 +20,18 @@ struct Written {
   std::vector<std::string> losses;
 };
 
-/// "3 properties (name, height, use) of 12 obstacles: WKT has no place for them", and the like of feature ids.
-std::vector<std::string> property_losses(const WriteOptions& options, const char* format);
-/// Where the plane lies, if that is known.
-std::vector<std::string> plane_losses(const WriteOptions& options, const char* format);
-/// All of these.
-std::vector<std::string> losses_beside_shapes(const WriteOptions& options, const char* format);
+/// Adds where the plane lies, if that is known.
+void add_plane_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses);
+/// The same, after "3 properties (name, height, use) of 12 obstacles: WKT has no place for them", and the like of
+/// feature ids.
+void add_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses);
 
 geometry::Ring closed(geometry::Ring ring);
 
-/// The outer ring, then the holes, each closed.
-std::vector<geometry::Ring> closed_rings_of(const geometry::Polygon& polygon);
+/// The outer ring, then the holes, each closed; of a polyline its points.
+std::vector<geometry::Ring> courses_of(const geometry::Obstacle& shape);
+/// The members "type" and "coordinates" of GeoJSON.
+void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses);
 std::string wkt_of(const geometry::Obstacle& shape);
 
 // simulator_formats.cpp

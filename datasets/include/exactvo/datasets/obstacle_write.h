@@ -53,11 +53,6 @@ struct WriteOptions {
   std::vector<FeatureProperties> properties{};  ///< none, or one an obstacle
 };
 
-/// A FeatureCollection in longitude and latitude, or in metres; ids become the property `id` where no property is
-/// called so. Throws DataError as MetresToDegrees (local_plane.h) does, with `file`.
-std::string to_geojson(const std::vector<formation::SceneObstacle>& obstacles, const WriteOptions& options,
-                       const std::string& file);
-
 /// The member "local_metres" of a collection whose metres have so many decimals; below 0 they have more.
 std::string local_metres_member(const LocalPlane& plane, int decimals);
 

@@ -2,11 +2,11 @@
 #include "batch/formats/features.h"
 
 #include <cmath>
-#include <optional>
 
 #include "batch/formats/bytes.h"
 #include "exactvo/geometry/pi.h"
 #include "json/json_text.h"
+#include "writers/writers.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -156,61 +156,21 @@ void give_ellipses(const FeatureHead& head, const ObstacleShapes& shapes, const 
 
 // --- GeoJSON ---
 
-void append_coordinates(JsonWriter& json, const Ring& ring, bool closed) {
-  json.begin_inline_array();
-  for (const Vec2 p : ring) json.value(p);
-  if (closed) json.value(ring.front());
-  json.end_array();
-}
-
-using Place = std::function<Ring(Ring)>;
-
-std::optional<std::vector<Ring>> placed(const std::vector<Ring>& rings, const Place& place) {
-  std::vector<Ring> result;
-  try {
-    for (const Ring& ring : rings) result.push_back(place(ring));
-  } catch (const DataError&) {
-    return std::nullopt;
-  }
-  return result;
-}
-
 void append_geometry(JsonWriter& json, const Feature& feature, const Place& place) {
   json.key("geometry");
-  const std::optional<std::vector<Ring>> rings = placed(feature.rings, place);
-  if (!rings) {
+  std::vector<Ring> rings;
+  try {
+    for (const Ring& ring : feature.rings) rings.push_back(feature.is_polygon ? closed(place(ring)) : place(ring));
+  } catch (const DataError&) {
     json.null();
     return;
   }
   json.begin_object();
-  json.member("type", feature.is_polygon ? "Polygon" : "LineString").key("coordinates");
-  if (!feature.is_polygon) {
-    append_coordinates(json, rings->front(), false);
-  } else {
-    json.begin_array();
-    for (const Ring& ring : *rings) append_coordinates(json, ring, true);
-    json.end_array();
-  }
+  append_geojson(json, feature.is_polygon, rings);
   json.end_object();
 }
 
-void append_value(JsonWriter& json, const std::string& text) {
-  json.value(text);
-}
-void append_value(JsonWriter& json, double number) {
-  json.value(number);
-}
-void append_value(JsonWriter& json, std::int64_t number) {
-  json.value(static_cast<std::uint64_t>(number));
-}
-
 // --- Rows ---
-
-void append_points(std::string& bytes, const Ring& ring, bool closed) {
-  append_raw(bytes, static_cast<std::uint32_t>(ring.size() + (closed ? 1 : 0)));
-  for (const Vec2 p : ring) append_raw(bytes, p);
-  if (closed) append_raw(bytes, ring.front());
-}
 
 void append(std::string& bytes, const std::string& text) {
   append_text<Length>(bytes, text);
@@ -239,7 +199,11 @@ std::string geometry_of(const Feature& feature) {
   bytes += kLittleEndian;
   append_raw(bytes, feature.is_polygon ? kPolygon : kLineString);
   if (feature.is_polygon) append_raw(bytes, static_cast<std::uint32_t>(feature.rings.size()));
-  for (const Ring& ring : feature.rings) append_points(bytes, ring, feature.is_polygon);
+  for (const Ring& given : feature.rings) {
+    const Ring ring = feature.is_polygon ? closed(given) : given;
+    append_raw(bytes, static_cast<std::uint32_t>(ring.size()));
+    for (const Vec2 p : ring) append_raw(bytes, p);
+  }
   return bytes;
 }
 
@@ -266,10 +230,8 @@ std::string to_geojson(const Feature& feature, const Place& place) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("type", "Feature");
   json.key("properties").begin_object();
-  for (const Field& field : feature.fields) {
-    json.key(field.name);
-    std::visit([&](const auto& value) { append_value(json, value); }, field.value);
-  }
+  for (const Field& field : feature.fields)
+    std::visit([&](const auto& value) { json.member(field.name, value); }, field.value);
   json.end_object();
   append_geometry(json, feature, place);
   return json.end_object().take();

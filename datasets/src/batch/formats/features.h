@@ -54,9 +54,10 @@ using TakeFeature = std::function<void(const Feature& feature)>;
 /// fields.
 void features_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes, const TakeFeature& take);
 
-/// A line of GeoJSON, without comma or newline. `place` says what is written of a ring's or a line's points; where it
-/// throws DataError they have no place on earth, and the geometry is null.
-std::string to_geojson(const Feature& feature, const std::function<geometry::Ring(geometry::Ring)>& place);
+/// What is written of the points of a ring or a line. Throws DataError where they have no place on earth.
+using Place = std::function<geometry::Ring(geometry::Ring)>;
+/// A line of GeoJSON, without comma or newline. The geometry is null where `place` throws.
+std::string to_geojson(const Feature& feature, const Place& place);
 
 /// As the machines are that this runs on: in well-known binary, and in the flags below.
 inline constexpr char kLittleEndian = 1;

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <memory>
-#include <utility>
 
 #include "batch/formats/bytes.h"
 #include "batch/formats/picture.h"
@@ -20,9 +17,6 @@ namespace {
 
 using geometry::ConvexShape;
 using geometry::Vec2;
-
-/// A feature as a line of GeoJSON.
-using ToGeoJson = std::function<std::string(const Feature& feature)>;
 
 // --- Half-planes of the batch's robot ---
 
@@ -99,25 +93,21 @@ std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& s
 }
 
 void append_features(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
-                     const BatchConfiguration& configuration, const ToGeoJson& to_geojson, Part& part) {
+                     const BatchConfiguration& configuration, const Place& place, Part& part) {
   if (!configuration.geojson && !configuration.geopackage) return;
   features_of(head, shapes, [&](const Feature& feature) {
     if (configuration.geopackage) append_row(part.rows, feature);
     if (!configuration.geojson) return;
     std::string& text = part.features[feature.layer];
     if (!text.empty()) text += ",\n";
-    text += to_geojson(feature);
+    text += to_geojson(feature, place);
   });
 }
 
 /// In metres, or in degrees on the chunk's plane.
-ToGeoJson geojson_writer(const Chunk& chunk, const BatchConfiguration& configuration) {
-  if (!configuration.geojson || configuration.geojson_in_metres)
-    return [](const Feature& feature) { return to_geojson(feature, [](geometry::Ring ring) { return ring; }); };
-  const auto to_degrees = std::make_shared<const MetresToDegrees>(chunk.plane, chunk.file);
-  return [to_degrees](const Feature& feature) {
-    return to_geojson(feature, [&](geometry::Ring ring) { return (*to_degrees)(std::move(ring)); });
-  };
+Place place_for(const Chunk& chunk, const BatchConfiguration& configuration) {
+  if (!configuration.geojson || configuration.geojson_in_metres) return [](geometry::Ring ring) { return ring; };
+  return MetresToDegrees(chunk.plane, chunk.file);
 }
 
 geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
@@ -183,7 +173,7 @@ Counts& Counts::operator+=(const Counts& more) {
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
   Part part;
   part.features.resize(layers().size());
-  const ToGeoJson to_geojson = geojson_writer(chunk, configuration);
+  const Place place = place_for(chunk, configuration);
   const geometry::ShapeOptions options = options_for(configuration);
   std::size_t pictures = chunk.number == 0 && configuration.pictures ? kPicturesOfInput : 0;
   for (std::size_t k = 0; k < chunk.items.size(); ++k) {
@@ -199,7 +189,7 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
     part.counts.certified += shapes.certified() ? 1 : 0;
     part.counts.vertices += shapes.figures.vertices;
     part.figures += record_of(head, shapes, configuration, part.counts) + "\n";
-    append_features(head, shapes, configuration, to_geojson, part);
+    append_features(head, shapes, configuration, place, part);
     if (pictures > 0) {
       part.pictures += picture_of(head.id, shapes);
       --pictures;
