@@ -69,7 +69,7 @@ std::uint64_t BatchTally::rejected_in_all() const {
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
   require_sensible(configuration, run);
   batch::Inputs inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
-  Session session(configuration, run, batch::identity_of(configuration, std::move(inputs.files)), watch);
+  Session session(configuration, run, std::move(inputs.files), watch);
   BatchResult result = run_alone(session, run);
   result.earlier = std::move(inputs.earlier);
   return result;

@@ -247,8 +247,7 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
   const bool opened = all_manage(world, [&] {
     refuse_shards(run, world.size);
     inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
-    session.emplace(configuration, run, batch::identity_of(configuration, std::move(inputs.files)),
-                    world.rank == 0 ? watch : BatchWatch{});
+    session.emplace(configuration, run, std::move(inputs.files), world.rank == 0 ? watch : BatchWatch{});
   });
   if (!opened || !all_manage(world, [&] {
         if (world.rank == 0) verdict = open_output(*session, run.resume);

@@ -37,6 +37,24 @@ void append_robot(JsonWriter& json, const BatchRobot& robot) {
   json.member("velocity", robot.velocity).list("positions", robot.positions).member("goal", robot.goal).end_object();
 }
 
+/// Canonical: what changes the results and nothing else.
+std::string to_json(const BatchConfiguration& c) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object().member("format", c.reading.format).member("units", name(c.reading.units));
+  json.member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
+  json.member("memory_limit", c.memory_limit);
+  append_shape_options(json, c.shapes);
+  if (c.robot) append_robot(json, *c.robot);
+  json.member("geopackage", c.geopackage).member("geojson", c.geojson);
+  json.member("geojson_in_metres", c.geojson_in_metres).member("pictures", c.pictures);
+  return json.end_object().take();
+}
+
+Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs) {
+  const Provenance program = make_provenance({}, 0);
+  return {program.version, program.commit, to_json(configuration), std::move(inputs)};
+}
+
 /// Said before the work, not after.
 void refuse_the_unavailable(const BatchConfiguration& configuration, const BatchRun& run) {
   const bool in_degrees = configuration.geojson && !configuration.geojson_in_metres;
@@ -111,27 +129,11 @@ void write_pages(const Journal& journal, const Identity& identity, const std::ve
 
 }  // namespace
 
-std::string to_json(const BatchConfiguration& c) {
-  JsonWriter json(JsonWriter::Layout::compact);
-  json.begin_object().member("format", c.reading.format).member("units", name(c.reading.units));
-  json.member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
-  json.member("memory_limit", c.memory_limit);
-  append_shape_options(json, c.shapes);
-  if (c.robot) append_robot(json, *c.robot);
-  json.member("geopackage", c.geopackage).member("geojson", c.geojson);
-  json.member("geojson_in_metres", c.geojson_in_metres).member("pictures", c.pictures);
-  return json.end_object().take();
-}
-
-Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs) {
-  const Provenance program = make_provenance({}, 0);
-  return {program.version, program.commit, to_json(configuration), std::move(inputs)};
-}
-
-Session::Session(const BatchConfiguration& configuration, const BatchRun& run, Identity identity, BatchWatch watch)
+Session::Session(const BatchConfiguration& configuration, const BatchRun& run, std::vector<Input> inputs,
+                 BatchWatch watch)
     : configuration_(configuration),
       run_(run),
-      identity_(std::move(identity)),
+      identity_(identity_of(configuration, std::move(inputs))),
       provenance_(provenance_of(identity_, run)),
       watch_(std::move(watch)),
       journal_(run.out),

@@ -30,15 +30,10 @@
 
 namespace exactvo::datasets::batch {
 
-/// Canonical: what changes the results and nothing else.
-std::string to_json(const BatchConfiguration& configuration);
-
-Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs);
-
 class Session {
  public:
   /// `run` and `configuration` must outlive it.
-  Session(const BatchConfiguration& configuration, const BatchRun& run, Identity identity, BatchWatch watch);
+  Session(const BatchConfiguration& configuration, const BatchRun& run, std::vector<Input> inputs, BatchWatch watch);
 
   const Journal& journal() const { return journal_; }
   const Identity& identity() const { return identity_; }

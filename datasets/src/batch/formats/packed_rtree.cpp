@@ -2,8 +2,8 @@
 #include "batch/formats/packed_rtree.h"
 
 #include <algorithm>
+#include <boost/endian/conversion.hpp>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -22,17 +22,9 @@ constexpr std::int64_t kRoot = 1;
 constexpr std::size_t kGathered = std::size_t{1} << 17;
 
 template <class T>
-char* put_big_endian(char* at, T value) {
-  for (std::size_t k = 0; k < sizeof value; ++k) {
-    at[k] = static_cast<char>(static_cast<unsigned char>(value >> (8 * (sizeof value - 1 - k))));
-  }
-  return at + sizeof value;
-}
-
-char* put_float(char* at, float value) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return put_big_endian(at, bits);
+unsigned char* put_big_endian(unsigned char* at, T value) {
+  boost::endian::endian_store<T, sizeof(T), boost::endian::order::big>(at, value);
+  return at + sizeof(T);
 }
 
 Box join(const Box& a, const Box& b) {
@@ -139,16 +131,15 @@ void PackedRtree::write_root(const Entries& entries, int depth, bool is_leaf) {
 
 /// The root alone says how deep the tree is.
 void PackedRtree::write_node(std::int64_t number, const Entry* first, const Entry* last, int depth) {
-  char bytes[kBytesOfNode] = {};
-  char* at = put_big_endian(bytes, static_cast<std::uint16_t>(depth));
+  unsigned char bytes[kBytesOfNode] = {};
+  unsigned char* at = put_big_endian(bytes, static_cast<std::uint16_t>(depth));
   at = put_big_endian(at, static_cast<std::uint16_t>(last - first));
   for (const Entry* entry = first; entry != last; ++entry) {
     at = put_big_endian(at, static_cast<std::uint64_t>(entry->id));
-    for (const float side : {entry->box.min_x, entry->box.max_x, entry->box.min_y, entry->box.max_y}) {
-      at = put_float(at, side);
-    }
+    for (const float side : {entry->box.min_x, entry->box.max_x, entry->box.min_y, entry->box.max_y})
+      at = put_big_endian(at, side);
   }
-  insert_node_.bind(0, number).bind_bytes(1, {bytes, sizeof bytes}).run();
+  insert_node_.bind(0, number).bind_bytes(1, {reinterpret_cast<const char*>(bytes), sizeof bytes}).run();
 }
 
 /// In order of the keys: a B-tree grows quickest at its end.

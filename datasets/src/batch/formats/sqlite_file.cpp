@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <system_error>
 #include <utility>
 
@@ -97,12 +98,7 @@ std::string SqliteStatement::text(int column) const {
 }
 
 std::string sql_name(std::string_view name) {
-  std::string text = "\"";
-  for (const char c : name) {
-    if (c == '"') text += '"';
-    text += c;
-  }
-  return text + "\"";
+  return "\"" + boost::replace_all_copy(std::string(name), "\"", "\"\"") + "\"";
 }
 
 }  // namespace exactvo::datasets::batch

@@ -9,7 +9,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "batch/formats/geopackage.h"
 #include "batch/plan/journal.h"
 #include "batch/work/part.h"
 #include "exactvo/datasets/atomic_file.h"
@@ -20,11 +23,8 @@ namespace exactvo::datasets::batch {
 class Outputs {
  public:
   /// Starts them in `journal.final_folder()`. Throws DataError (E_FILE_UNWRITABLE), as the others do.
+  /// They go with the object, unless they were published.
   Outputs(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance);
-  /// Takes the folder away, unless it was published.
-  ~Outputs();
-  Outputs(const Outputs&) = delete;
-  Outputs& operator=(const Outputs&) = delete;
 
   /// From one thread at a time.
   void add(const PartView& part);
@@ -32,11 +32,16 @@ class Outputs {
   void finish();
 
   /// Of the parts added.
-  const Counts& counts() const;
+  const Counts& counts() const { return counts_; }
 
  private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  void start_geojson(bool in_metres, const std::string& provenance);
+
+  Counts counts_;
+  std::shared_ptr<const std::filesystem::path> folder_;  ///< before the files, which are closed first
+  std::unique_ptr<AtomicFile> figures_;
+  std::vector<std::pair<std::unique_ptr<AtomicFile>, bool>> geojson_;  ///< with whether nothing was added yet
+  std::unique_ptr<GeoPackage> geopackage_;
 };
 
 /// On a file system without locks another process may be through first and take the folder away. Made anew it would

@@ -127,8 +127,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 bool is_of_a_batch(const fs::path& file) {
   // What stands before this member is counts, a code and two numbers each.
   constexpr std::size_t kBeginning = std::size_t{1} << 16;
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return false;
+  if (!is_regular(file)) return false;
   try {
     return read_beginning(file, kBeginning).find("\n  \"configuration_sha256\": \"") != std::string::npos;
   } catch (const DataError&) {
@@ -158,7 +157,7 @@ Journal::State Journal::look(const Identity& identity, bool resume) const {
     throw DataError(DataCode::file_unwritable, out_.string(), "", "a file of that name", "a folder to write to");
   }
   fs::remove_all(stale_parts(), error);
-  if (fs::is_regular_file(run_file(), error)) {
+  if (is_open()) {
     if (!resume) {
       throw other_run(
           out_, "an unfinished batch",
