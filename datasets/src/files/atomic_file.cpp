@@ -176,14 +176,11 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 }
 
 void PartFolder::create() const {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw cannot_write(folder_, error.value());
+  make_directories(folder_);
 }
 
 bool PartFolder::has(const std::filesystem::path& file) const {
-  std::error_code error;
-  return std::filesystem::is_regular_file(file, error);
+  return is_regular(file);
 }
 
 void PartFolder::write(const std::filesystem::path& file, std::string_view bytes) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/data_error.h"
 
+#include <string_view>
 #include <utility>
 
 namespace exactvo::datasets {
@@ -42,16 +43,6 @@ constexpr std::pair<DataCode, const char*> kCodeNames[] = {{DataCode::file_missi
                                                            {DataCode::hole_outside, "E_HOLE_OUTSIDE"},
                                                            {DataCode::rounding, "E_ROUNDING"}};
 
-constexpr std::pair<geometry::RingProblemCode, DataCode> kOfRings[] = {
-    {geometry::RingProblemCode::not_finite, DataCode::not_finite},
-    {geometry::RingProblemCode::too_few_points, DataCode::too_few_points},
-    {geometry::RingProblemCode::unclosed, DataCode::unclosed},
-    {geometry::RingProblemCode::repeated_vertex, DataCode::repeated_vertex},
-    {geometry::RingProblemCode::clockwise, DataCode::clockwise},
-    {geometry::RingProblemCode::zero_area, DataCode::zero_area},
-    {geometry::RingProblemCode::self_intersection, DataCode::self_intersection},
-    {geometry::RingProblemCode::hole_outside, DataCode::hole_outside}};
-
 std::string one_line(const std::string& file, const std::string& place, const std::string& found,
                      const std::string& expected, DataCode code) {
   std::string text = file;
@@ -72,8 +63,8 @@ const char* code_name(DataCode code) {
 }
 
 DataCode data_code(geometry::RingProblemCode code) {
-  for (const auto& [of_ring, of_data] : kOfRings)
-    if (of_ring == code) return of_data;
+  for (const auto& [known, name] : kCodeNames)
+    if (std::string_view(name) == geometry::code_name(code)) return known;
   return DataCode::self_intersection;
 }
 

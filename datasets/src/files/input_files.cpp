@@ -2,7 +2,7 @@
 #include "exactvo/datasets/input_files.h"
 
 #include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <set>
 
 #include "exactvo/datasets/obstacle_file.h"
@@ -15,11 +15,6 @@ namespace exactvo::datasets {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// What `action` lists; nothing if the file cannot be understood.
 template <class Action>
@@ -63,7 +58,8 @@ std::vector<fs::path> sidecar_files(const fs::path& path, const std::string& for
   if (extension == ".yaml" || extension == ".yml" || format == "ros-map")
     found = listed([&] { return std::vector<fs::path>{picture_of_ros_map(path)}; });
   for (const std::string& table : extensions_of_tables(extension))
-    for (const std::string& spelled : {table, upper(table)}) found.push_back(fs::path(path).replace_extension(spelled));
+    for (const std::string& spelled : {table, boost::to_upper_copy(table)})
+      found.push_back(fs::path(path).replace_extension(spelled));
   found.erase(std::remove_if(found.begin(), found.end(), [](const fs::path& p) { return !is_regular(p); }),
               found.end());
   return found;

@@ -62,42 +62,26 @@ void open_between(Plan& plan, Cell a, Cell b) {
 }
 
 /// Depth first, backtracking: every cell is reached, by one way.
-class Digger {
- public:
-  Digger(Plan& plan, CounterRandom& random)
-      : plan_(plan), random_(random), seen_(static_cast<std::size_t>(kMazeCells * kMazeCells), false) {}
-
-  void dig() {
-    std::vector<Cell> way{{0, 0}};
-    see(way.back());
-    while (!way.empty()) {
-      const std::vector<Cell> open = unseen_neighbours(way.back());
-      if (open.empty()) {
-        way.pop_back();
-        continue;
-      }
-      const Cell next = open[static_cast<std::size_t>(random_.integer(0, static_cast<int>(open.size()) - 1))];
-      open_between(plan_, way.back(), next);
-      see(next);
-      way.push_back(next);
-    }
-  }
-
- private:
-  void see(Cell c) { seen_[static_cast<std::size_t>(c.y * kMazeCells + c.x)] = true; }
-  std::vector<Cell> unseen_neighbours(Cell c) const {
+void dig(Plan& plan, CounterRandom& random) {
+  const auto number = [](Cell c) { return static_cast<std::size_t>(c.y * kMazeCells + c.x); };
+  std::vector<bool> seen(static_cast<std::size_t>(kMazeCells * kMazeCells), false);
+  std::vector<Cell> way{{0, 0}};
+  while (!way.empty()) {
+    const Cell c = way.back();
+    seen[number(c)] = true;
     std::vector<Cell> open;
     for (const Cell n : {Cell{c.x + 1, c.y}, Cell{c.x, c.y + 1}, Cell{c.x - 1, c.y}, Cell{c.x, c.y - 1}}) {
       const bool is_inside = n.x >= 0 && n.y >= 0 && n.x < kMazeCells && n.y < kMazeCells;
-      if (is_inside && !seen_[static_cast<std::size_t>(n.y * kMazeCells + n.x)]) open.push_back(n);
+      if (is_inside && !seen[number(n)]) open.push_back(n);
     }
-    return open;
+    if (open.empty()) {
+      way.pop_back();
+      continue;
+    }
+    way.push_back(open[static_cast<std::size_t>(random.integer(0, static_cast<int>(open.size()) - 1))]);
+    open_between(plan, c, way.back());
   }
-
-  Plan& plan_;
-  CounterRandom& random_;
-  std::vector<bool> seen_;
-};
+}
 
 // --- City blocks ---
 
@@ -216,7 +200,7 @@ GeneratedShapes random_maze(CounterRandom& random) {
     plan.fill(wall_of(k), 0, wall_of(k), kSide - 1);
     plan.fill(0, wall_of(k), kSide - 1, wall_of(k));
   }
-  Digger(plan, random).dig();
+  dig(plan, random);
   plan.fill(1, 0, kPassage - 1, 0, false);                              // in, lower left
   plan.fill(kSide - kPassage, kSide - 1, kSide - 2, kSide - 1, false);  // out, upper right
   return plan.polygons({8.0, 8.0}, 0.25);

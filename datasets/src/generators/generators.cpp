@@ -120,11 +120,7 @@ void shift(Obstacle& obstacle, Vec2 by) {
 
 using formation::Scenario;
 using geometry::Disc;
-using geometry::Vec2;
-
 using geometry::kPi;
-
-using Draws = CounterRandom;
 
 /// How circumcircles lie: drawn until `most` are placed or the tries are used up.
 struct Layout {
@@ -144,7 +140,7 @@ bool fits(const Disc& c, const std::vector<Disc>& placed, const Layout& layout) 
 }
 
 template <typename DrawCentre>
-std::vector<Disc> placed_circles(Draws& draws, const Layout& layout, const DrawCentre& draw_centre) {
+std::vector<Disc> placed_circles(CounterRandom& draws, const Layout& layout, const DrawCentre& draw_centre) {
   constexpr int kTries = 200;
   std::vector<Disc> placed;
   for (int attempt = 0; attempt < kTries && placed.size() < layout.most; ++attempt) {
@@ -165,7 +161,7 @@ Vec2 on_circle(const Disc& c, double turn) {
   return on_grid(c.center + c.radius * Vec2{std::cos(angle), std::sin(angle)});
 }
 
-geometry::Obstacle regular_polygon(Draws& draws, const Disc& c) {
+geometry::Obstacle regular_polygon(CounterRandom& draws, const Disc& c) {
   const int corners = draws.integer(3, 6);
   const double first = draws.uniform(0.0, 1.0);
   geometry::Polygon polygon;
@@ -174,7 +170,7 @@ geometry::Obstacle regular_polygon(Draws& draws, const Disc& c) {
 }
 
 /// A diameter, an L of two sides or a U of three sides of the inscribed square.
-geometry::Obstacle open_wall(Draws& draws, const Disc& c) {
+geometry::Obstacle open_wall(CounterRandom& draws, const Disc& c) {
   const int sides = draws.integer(1, 3);
   const double first = draws.uniform(0.0, 1.0);
   if (sides == 1) return geometry::Polyline{{on_circle(c, first), on_circle(c, first + 0.5)}};
@@ -183,14 +179,14 @@ geometry::Obstacle open_wall(Draws& draws, const Disc& c) {
   return wall;
 }
 
-using MakeObstacle = geometry::Obstacle (*)(Draws&, const Disc&);
+using MakeObstacle = geometry::Obstacle (*)(CounterRandom&, const Disc&);
 
-void add_obstacles(Draws& draws, const std::vector<Disc>& circles, MakeObstacle make, Scenario& scenario) {
+void add_obstacles(CounterRandom& draws, const std::vector<Disc>& circles, MakeObstacle make, Scenario& scenario) {
   for (const Disc& c : circles)
     scenario.obstacles.push_back({"O" + std::to_string(scenario.obstacles.size() + 1), make(draws, c)});
 }
 
-Scenario single_robot_field(Draws& draws, MakeObstacle make) {
+Scenario single_robot_field(CounterRandom& draws, MakeObstacle make) {
   Scenario s;
   s.guidance = formation::Guidance::none;  // as in Section V.A
   s.liveness = formation::Liveness::off;
@@ -217,7 +213,7 @@ formation::FormationSpec table_two() {
   return f;
 }
 
-Scenario formation_field(Draws& draws) {
+Scenario formation_field(CounterRandom& draws) {
   Scenario s;
   const Vec2 starts[] = {{3, 0}, {0, 3}, {-3, 0}};
   s.formation = table_two();
@@ -360,7 +356,7 @@ bool parse(const std::string& text, FieldKind& out) {
 }
 
 Scenario random_field(FieldKind kind, std::uint64_t k, std::uint64_t seed) {
-  Draws draws(random_key(static_cast<std::uint64_t>(kind), k, seed));
+  CounterRandom draws(random_key(static_cast<std::uint64_t>(kind), k, seed));
   Scenario s = kind == FieldKind::formation
                    ? formation_field(draws)
                    : single_robot_field(draws, kind == FieldKind::convex ? regular_polygon : open_wall);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/obstacle_record.h"
 
+#include <optional>
+
 #include "json/json_text.h"
 #include "obstacles/obstacle_record_json.h"
 
@@ -43,6 +45,19 @@ void append_problems(JsonWriter& json, const ObstacleShapes& shapes) {
   json.end_array();
 }
 
+void append_piece(JsonWriter& json, const geometry::ConvexShape& piece) {
+  if (const auto* segment = std::get_if<geometry::Segment>(&piece))
+    return append_points(json, {segment->a, segment->b});
+  append_points(json, std::get<geometry::ConvexPolygon>(piece).vertices);
+}
+
+void append_ellipse(JsonWriter& json, const geometry::Ellipse& e, std::optional<double> clearance = {}) {
+  json.begin_inline_object().member("center", e.center);
+  json.member("l11", e.l11).member("l21", e.l21).member("l22", e.l22);
+  if (clearance) json.member("clearance", *clearance);
+  json.end_object();
+}
+
 void append_shapes(JsonWriter& json, const ObstacleShapes& shapes) {
   json.list("facades", shapes.facades.facades, [&](const geometry::Segment& s) { append_points(json, {s.a, s.b}); });
   json.list("pieces", shapes.pieces, [&](const geometry::ConvexShape& piece) { append_piece(json, piece); });
@@ -56,19 +71,6 @@ void append_shapes(JsonWriter& json, const ObstacleShapes& shapes) {
 }
 
 }  // namespace
-
-void append_piece(JsonWriter& json, const geometry::ConvexShape& piece) {
-  if (const auto* segment = std::get_if<geometry::Segment>(&piece))
-    return append_points(json, {segment->a, segment->b});
-  append_points(json, std::get<geometry::ConvexPolygon>(piece).vertices);
-}
-
-void append_ellipse(JsonWriter& json, const geometry::Ellipse& e, std::optional<double> clearance) {
-  json.begin_inline_object().member("center", e.center);
-  json.member("l11", e.l11).member("l21", e.l21).member("l22", e.l22);
-  if (clearance) json.member("clearance", *clearance);
-  json.end_object();
-}
 
 void append_figures(JsonWriter& json, const ObstacleShapes& shapes) {
   const geometry::ShapeFigures& f = shapes.figures;

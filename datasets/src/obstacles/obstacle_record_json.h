@@ -4,16 +4,12 @@
 /// \file
 /// Pieces of an obstacle's record (obstacle_record.h) for whatever writes one.
 
-#include <optional>
-
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "json/json_text.h"
 #include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 
-void append_piece(JsonWriter& json, const geometry::ConvexShape& piece);
-void append_ellipse(JsonWriter& json, const geometry::Ellipse& e, std::optional<double> clearance = {});
 void append_figures(JsonWriter& json, const geometry::ObstacleShapes& shapes);
 void append_verdicts(JsonWriter& json, const geometry::ObstacleShapes& shapes);
 
