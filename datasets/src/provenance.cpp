@@ -90,7 +90,7 @@ std::string to_json(const Provenance& provenance) {
   json.member("compiler", provenance.compiler).member("build_type", provenance.build_type);
   json.member("cgal", provenance.cgal).member("gmp", provenance.gmp).member("gdal", provenance.gdal);
   json.member("seed", provenance.seed);
-  json.list("command_line", provenance.command_line);
+  json.member("command_line", provenance.command_line);
   json.key("inputs").begin_array();
   for (const InputFile& input : provenance.inputs) {
     json.begin_object().member("path", input.path).member("sha256", input.sha256).end_object();

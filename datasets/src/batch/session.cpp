@@ -34,7 +34,7 @@ void append_shape_options(JsonWriter& json, const geometry::ShapeOptions& o) {
 
 void append_robot(JsonWriter& json, const BatchRobot& robot) {
   json.key("robot").begin_object().member("radius", robot.radius).member("time_horizon", robot.time_horizon);
-  json.member("velocity", robot.velocity).list("positions", robot.positions).member("goal", robot.goal).end_object();
+  json.member("velocity", robot.velocity).member("positions", robot.positions).member("goal", robot.goal).end_object();
 }
 
 /// Canonical: what changes the results and nothing else.

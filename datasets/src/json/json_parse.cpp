@@ -312,13 +312,27 @@ bool parse_into(Events& events, std::string_view text, std::size_t& position) {
                          CountingIterator(begin + text.size(), begin, &position), &events);
 }
 
-/// The pointer of a value that stands somewhere in `all`, searched by its address: only messages need it.
-std::optional<std::string> pointer_to(const Json* value, const Json& all) {
-  if (value == &all) return "";
+/// `key` as a JSON pointer's token: ~ and / escaped (RFC 6901).
+std::string pointer_token(std::string_view key) {
+  std::string token;
+  for (const char c : key) {
+    if (c == '~') {
+      token += "~0";
+    } else if (c == '/') {
+      token += "~1";
+    } else {
+      token += c;
+    }
+  }
+  return token;
+}
+
+std::optional<std::string> pointer_within(const Json& value, const Json& all) {
+  if (&value == &all) return "";
   if (!all.is_structured()) return std::nullopt;
   std::size_t number = 0;
   for (auto entry = all.begin(); entry != all.end(); ++entry, ++number)
-    if (const auto rest = pointer_to(value, *entry))
+    if (const auto rest = pointer_within(value, *entry))
       return "/" + (all.is_object() ? pointer_token(entry.key()) : std::to_string(number)) + *rest;
   return std::nullopt;
 }
@@ -365,18 +379,8 @@ std::string described(const Json& value) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-std::string pointer_token(std::string_view key) {
-  std::string token;
-  for (const char c : key) {
-    if (c == '~') {
-      token += "~0";
-    } else if (c == '/') {
-      token += "~1";
-    } else {
-      token += c;
-    }
-  }
-  return token;
+std::string pointer_to(const Json& value, const Json& all) {
+  return pointer_within(value, all).value_or("");
 }
 
 JsonCursor JsonCursor::child(const Json& value) const {
@@ -416,12 +420,6 @@ geometry::Vec2 JsonCursor::point() const {
   return {at(std::size_t{0}).number(), at(std::size_t{1}).number()};
 }
 
-std::vector<geometry::Vec2> JsonCursor::points() const {
-  std::vector<geometry::Vec2> list;
-  for (std::size_t i = 0; i < size(); ++i) list.push_back(at(i).point());
-  return list;
-}
-
 const std::string& JsonCursor::text() const {
   if (!value_->is_string()) refuse("text in quotes");
   return value_->get_ref<const std::string&>();
@@ -443,7 +441,7 @@ int JsonCursor::integer() const {
 }
 
 void JsonCursor::refuse(const std::string& expected, DataCode code) const {
-  const std::string pointer = pointer_to(value_, *root_).value_or("");
+  const std::string pointer = pointer_to(*value_, *root_);
   const std::string place = place_.empty() || pointer.empty() ? place_ + pointer : place_ + ", " + pointer;
   throw DataError(code, *file_, place, described(*value_), expected);
 }

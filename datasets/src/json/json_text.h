@@ -5,6 +5,11 @@
 /// JSON in and out, for this room. Out: a writer that needs no tree and prints the shortest digits that read back to
 /// the same double. In: nlohmann's parser, with line and column for what is wrong, duplicate keys refused, depth
 /// bounded.
+///
+/// What goes both ways has its members listed once, in the order of the text, for a JsonWriter and a JsonCursor alike:
+///
+///     template <class Way>
+///     void members(Way& json, For<Way, PlanMove>& move) { json.member("robot", move.robot).member("to", move.to); }
 
 #include <cstdint>
 #include <functional>
@@ -18,6 +23,15 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/vec2.h"
+
+namespace exactvo::geometry {
+
+/// [x, y], for nlohmann's `get` and `value`.
+inline void from_json(const nlohmann::ordered_json& pair, Vec2& v) {
+  v = {pair.at(0).get<double>(), pair.at(1).get<double>()};
+}
+
+}  // namespace exactvo::geometry
 
 namespace exactvo::datasets {
 
@@ -62,8 +76,20 @@ Json parse_json_line(std::string_view line, const std::string& file_name, std::s
 /// "a number", "text", ... with the value where it is short: what messages say was found.
 std::string described(const Json& value);
 
-/// `key` as a JSON pointer's token: ~ and / escaped (RFC 6901).
-std::string pointer_token(std::string_view key);
+/// The JSON pointer of a value that stands in `all`, searched by its address: only messages need it.
+std::string pointer_to(const Json& value, const Json& all);
+
+/// As `members` takes what it lists: constant where it is written.
+template <class Way, class T>
+using For = std::conditional_t<Way::kReads, T, const T>;
+
+/// Of lists and of what has `members`: written on one line, even in an indented text.
+template <class T>
+inline constexpr bool kOnOneLine = false;
+template <>
+inline constexpr bool kOnOneLine<std::vector<double>> = true;
+template <>
+inline constexpr bool kOnOneLine<std::vector<geometry::Vec2>> = true;
 
 /// How deep in objects and strings the next byte of a text of JSON stands.
 class JsonNesting {
@@ -88,6 +114,7 @@ class JsonNesting {
 /// Appends JSON to a string.
 class JsonWriter {
  public:
+  static constexpr bool kReads = false;
   enum class Layout {
     compact,  ///< everything on one line
     indented  ///< two spaces a level
@@ -117,14 +144,34 @@ class JsonWriter {
   /// Text that already is JSON.
   JsonWriter& raw(std::string_view json);
 
+  /// Whatever `append_value` appends: what `value` takes, optional values (null where there is none), lists, and what
+  /// has `members`.
   template <class T>
   JsonWriter& member(std::string_view name, const T& v) {
-    return key(name).value(v);
+    key(name);
+    append_value(*this, v);
+    return *this;
+  }
+  /// Of what readers do not need.
+  template <class T>
+  JsonWriter& optional(std::string_view name, const T& v) {
+    return member(name, v);
+  }
+  /// Left out where there is none.
+  template <class T>
+  JsonWriter& optional(std::string_view name, const std::optional<T>& v) {
+    return v ? member(name, *v) : *this;
   }
   template <class T>
-  JsonWriter& member(std::string_view name, const std::optional<T>& v) {
-    key(name);
-    return v ? value(*v) : null();
+  JsonWriter& member_if(bool is_told, std::string_view name, const T& v) {
+    return is_told ? member(name, v) : *this;
+  }
+  /// An object whose members `append` appends to this.
+  template <class Append>
+  JsonWriter& object(std::string_view name, const Append& append) {
+    key(name).begin_object();
+    append(*this);
+    return end_object();
   }
   /// What `append` appends of it, or null.
   template <class T, class Append>
@@ -140,10 +187,6 @@ class JsonWriter {
     key(name).begin_array();
     for (const auto& entry : entries) append(entry);
     return end_array();
-  }
-  template <class List>
-  JsonWriter& list(std::string_view name, const List& entries) {
-    return list(name, entries, [this](const auto& entry) { value(entry); });
   }
 
   const std::string& text() const { return text_; }
@@ -174,6 +217,8 @@ std::string number_text(double number);
 /// pointer.
 class JsonCursor {
  public:
+  static constexpr bool kReads = true;
+
   /// `line` is put before the pointer in messages: "line 3" in JSON Lines, "" elsewhere.
   JsonCursor(const Json& value, const std::string& file, std::string line)
       : root_(&value), value_(&value), file_(&file), place_(std::move(line)) {}
@@ -186,12 +231,44 @@ class JsonCursor {
 
   double number() const;  ///< also "nan", "inf", "-inf"
   geometry::Vec2 point() const;
-  std::vector<geometry::Vec2> points() const;
   const std::string& text() const;
   bool truth() const;
   std::uint64_t count() const;
   int integer() const;
   const Json& json() const { return *value_; }
+
+  void get(double& v) const { v = number(); }
+  void get(geometry::Vec2& v) const { v = point(); }
+  void get(std::string& v) const { v = text(); }
+  void get(bool& v) const { v = truth(); }
+  void get(std::uint64_t& v) const { v = count(); }
+  void get(int& v) const { v = integer(); }
+
+  // What JsonWriter writes under the same names.
+  template <class T>
+  const JsonCursor& member(const char* key, T& v) const {
+    read_value(at(key), v);
+    return *this;
+  }
+  template <class T>
+  const JsonCursor& optional(const char* key, T& v) const {
+    return has(key) ? member(key, v) : *this;
+  }
+  /// Null is no value here.
+  template <class T>
+  const JsonCursor& optional(const char* key, std::optional<T>& v) const {
+    return has(key) ? member(key, v.emplace()) : *this;
+  }
+  template <class T>
+  const JsonCursor& member_if(bool /*is_told*/, const char* key, T& v) const {
+    return optional(key, v);
+  }
+  template <class Read>
+  const JsonCursor& object(const char* key, const Read& read) const {
+    const JsonCursor there = at(key);
+    read(there);
+    return *this;
+  }
 
   [[noreturn]] void refuse(const std::string& expected, DataCode code = DataCode::wrong_type) const;
 
@@ -203,5 +280,46 @@ class JsonCursor {
   const std::string* file_;
   std::string place_;
 };
+
+// What members can be. Other files have more: shapes, words of enumerations.
+
+template <class T>
+auto append_value(JsonWriter& json, const T& v) -> decltype(json.value(v), void()) {
+  json.value(v);
+}
+template <class T>
+auto append_value(JsonWriter& json, const T& v) -> decltype(members(json, v)) {
+  kOnOneLine<T> ? json.begin_inline_object() : json.begin_object();
+  members(json, v);
+  json.end_object();
+}
+template <class T>
+void append_value(JsonWriter& json, const std::optional<T>& v) {
+  v ? append_value(json, *v) : void(json.null());
+}
+template <class T>
+void append_value(JsonWriter& json, const std::vector<T>& entries) {
+  kOnOneLine<std::vector<T>> ? json.begin_inline_array() : json.begin_array();
+  for (const T& entry : entries) append_value(json, entry);
+  json.end_array();
+}
+
+template <class T>
+auto read_value(const JsonCursor& at, T& v) -> decltype(at.get(v)) {
+  at.get(v);
+}
+template <class T>
+auto read_value(const JsonCursor& at, T& v) -> decltype(members(at, v)) {
+  members(at, v);
+}
+template <class T>
+void read_value(const JsonCursor& at, std::optional<T>& v) {
+  at.is_null() ? v.reset() : read_value(at, v.emplace());
+}
+template <class T>
+void read_value(const JsonCursor& at, std::vector<T>& entries) {
+  entries.resize(at.size());
+  for (std::size_t k = 0; k < entries.size(); ++k) read_value(at.at(k), entries[k]);
+}
 
 }  // namespace exactvo::datasets

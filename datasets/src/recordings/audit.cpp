@@ -412,7 +412,7 @@ std::string to_json(const AuditReport& report) {
   json.member("against_moving_obstacles", report.moving_questions);
   json.member("against_robots", report.robot_questions);
   json.member("largest_bulge", report.largest_bulge).end_object();
-  json.list("not_audited", not_audited(report)).list("findings", report.findings);
+  json.member("not_audited", not_audited(report)).member("findings", report.findings);
   return json.end_object().take();
 }
 

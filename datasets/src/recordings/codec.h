@@ -5,34 +5,187 @@
 /// As JSON, both ways: shapes, bodies, half-planes and decisions, which lines of recordings are made of; and what a
 /// recording says beside its rows: the Lyapunov functions term by term, who collided, and why robots stopped.
 
+#include <cmath>
+
 #include "exactvo/datasets/recording_file.h"
 #include "json/json_text.h"
+#include "recordings/recording_names.h"
 
 namespace exactvo::datasets {
 
+// --- Bodies ---
+
+template <class Way>
+void members(Way& json, For<Way, geometry::Disc>& disc) {
+  json.member("center", disc.center).member("radius", disc.radius);
+}
+
+template <class Way>
+void members(Way& json, For<Way, geometry::Ellipse>& e) {
+  json.member("center", e.center).member("l11", e.l11).member("l21", e.l21).member("l22", e.l22);
+}
+
 /// {"disc": ...}, {"segment": ...}, {"polygon": ...} or {"ellipse": ...}.
-void append_convex(JsonWriter& json, const geometry::ConvexShape& shape);
-geometry::ConvexShape to_convex(const JsonCursor& at);
+void append_value(JsonWriter& json, const geometry::ConvexShape& shape);
+void read_value(const JsonCursor& at, geometry::ConvexShape& shape);
 
 /// Of a robot or moving obstacle the shape is left out: its place changes, and rows have it.
-void append_body(JsonWriter& json, std::size_t number, const vo::Body& body);
-vo::Body to_body(const JsonCursor& at);
+template <class Way>
+void members(Way& json, For<Way, vo::Body>& body) {
+  json.member("kind", body.kind);
+  if (body.kind != vo::BodyKind::robot && body.kind != vo::BodyKind::moving_obstacle) json.member("shape", body.shape);
+  json.member("owners", body.owners);
+}
+
+// --- Rows ---
+
+template <class Way>
+void members(Way& json, For<Way, formation::MovedObstacle>& moved) {
+  json.member("displacement", moved.displacement).member("velocity", moved.velocity);
+}
+
+template <class Way>
+void members(Way& json, For<Way, lp::ActiveConstraint>& part) {
+  json.member("part", part.binding.kind).member("multiplier", part.multiplier);
+}
+
+/// What is not its own comes from elsewhere: source, shape, position, radius and velocity.
+template <class Way>
+void members(Way& json, For<Way, formation::RecordedConstraint>& c) {
+  json.member("body", c.body).member("index", c.index).member_if(c.piece != 0, "piece", c.piece);
+  json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
+  json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
+  json.member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
+  json.member("clearance", c.clearance).member("tau", c.tau);
+}
+
+/// The same double, -0 and 0 told apart.
+inline bool is_same(geometry::Vec2 a, geometry::Vec2 b) {
+  return a == b && std::signbit(a.x) == std::signbit(b.x) && std::signbit(a.y) == std::signbit(b.y);
+}
+
+/// Multipliers that are no doubles and follow from the half-planes: instead of them stands a word.
+inline void exact_multipliers(JsonWriter& json, bool are_exact) {
+  json.member_if(are_exact, "multipliers", "exact");
+}
+inline void exact_multipliers(const JsonCursor& json, bool& are_exact) {
+  are_exact = json.has("multipliers");
+  if (are_exact && json.at("multipliers").text() != "exact") json.at("multipliers").refuse("\"exact\"");
+}
 
 /// One robot's part of a row. What is empty or as usual is left out.
-void append_robot(JsonWriter& json, const formation::RobotStep& robot);
-/// Half-planes come back without what is not theirs alone: source, shape, position, radius and velocity.
-formation::RobotStep to_robot(const JsonCursor& at);
+template <class Way>
+void members(Way& json, For<Way, formation::RobotStep>& robot) {
+  json.member("position", robot.position).member("velocity", robot.velocity);
+  if constexpr (Way::kReads) robot.anchor = robot.position, robot.anchor_velocity = robot.velocity;
+  json.member_if(!is_same(robot.anchor, robot.position), "anchor", robot.anchor);
+  json.member_if(!is_same(robot.anchor_velocity, robot.velocity), "anchor_velocity", robot.anchor_velocity);
+  json.member("preferred", robot.preferred).member("chosen", robot.chosen).member("status", robot.status);
+  json.member_if(!robot.bound.empty(), "bound", robot.bound);
+  json.member_if(robot.violation != 0.0, "violation", robot.violation);
+  exact_multipliers(json, robot.exact_multipliers);
+  json.member("mode", robot.mode).member_if(robot.side != 0, "side", robot.side);
+  json.member_if(!robot.note.empty(), "note", robot.note);
+  json.member_if(robot.uncertified != 0, "uncertified", robot.uncertified);
+  json.member_if(!robot.constraints.empty(), "constraints", robot.constraints);
+}
 
-/// The member `lyapunov` of a row; `time` is the row's.
-void append_lyapunov(JsonWriter& json, const formation::LyapunovRow& row);
-formation::LyapunovRow to_lyapunov(const JsonCursor& at, double time);
+template <class Way>
+void members(Way& json, For<Way, formation::PlanMove>& move) {
+  json.member("robot", move.robot).member("to", move.to);
+}
 
-/// The member `collisions` of metrics and of a recording's header.
-void append_collisions(JsonWriter& json, const std::vector<formation::Collision>& all);
-std::vector<formation::Collision> to_collisions(const JsonCursor& at);
+// --- Lyapunov functions ---
 
-/// The member `stuck` of the header.
-void append_stuck(JsonWriter& json, const RecordingFile& file);
-void read_stuck(const JsonCursor& at, RecordingFile& file);
+template <class Way>
+void members(Way& json, For<Way, formation::PaperTerms>& terms) {
+  json.member("kinetic", terms.kinetic).member("consensus", terms.consensus);
+  json.member("pinning", terms.pinning).member("integral", terms.integral);
+}
+
+/// The last row of a run has no decision, so no derivatives.
+template <class Way>
+void members(Way& json, For<Way, formation::LyapunovRow>& row) {
+  if constexpr (Way::kReads) row.has_rates = json.has("paper_rates");
+  json.member("paper", row.paper);
+  if (row.has_rates)
+    json.object("paper_rates", [&](auto& rates) {
+      members(rates, row.paper_rates);
+      rates.member("claimed", row.paper_rate);
+    });
+  json.object("sound", [&](auto& terms) {
+    terms.member("kinetic", row.sound.kinetic).member("consensus", row.sound.consensus);
+    terms.member("slots", row.sound.slots);
+  });
+  if (!row.has_rates) return;
+  json.object("sound_rates", [&](auto& rates) {
+    rates.member("consensus", row.sound_rates.consensus).member("tracking", row.sound_rates.tracking);
+    rates.member("intervention", row.sound_rates.intervention).member("bound", row.rate_bound);
+  });
+}
+
+// --- The header and the end ---
+
+/// What was run.
+template <class Way>
+void members(Way& json, For<Way, RunInfo>& info) {
+  json.member("method", info.method).member("controller", info.controller).member("integrator", info.integrator);
+  json.optional("guidance", info.guidance).optional("liveness", info.liveness);
+}
+
+template <class Way>
+void members(Way& json, For<Way, formation::Remedies>& remedies) {
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.member(s.name, remedies.*s.on);
+  json.member("acceleration_bound", remedies.acceleration_bound);
+}
+
+/// What is known before a run. Of remedies whether there are any.
+template <class Way>
+void members(Way& json, For<Way, formation::Recording>& run) {
+  json.member("time_step", run.time_step).member("motion", run.motion);
+  json.member("tracking_gain", run.tracking_gain).member("relative_frame", run.relative_frame);
+  if (run.remedies) json.member("remedies", *run.remedies);
+  json.member("offsets", run.offsets).member("all_half_planes", run.all_half_planes);
+}
+
+template <>
+inline constexpr bool kOnOneLine<formation::Collision> = true;
+template <class Way>
+void members(Way& json, For<Way, formation::Collision>& c) {
+  json.member("robot", c.robot).member("kind", c.kind).member("with", c.with);
+  json.member("from", c.from).member("until", c.until).member("deepest_at", c.deepest_at).member("depth", c.depth);
+  json.member("place", c.place).member("relaxed", c.relaxed);
+}
+
+template <class Way>
+void members(Way& json, For<Way, formation::BindingConstraint>& b) {
+  json.member("source", b.constraint.source).member("index", b.constraint.index).member("piece", b.constraint.piece);
+  json.member("normal", b.normal).member("clearance", b.clearance);
+  json.member("radius_of_curvature", b.radius_of_curvature).optional("pressing", b.pressing);
+}
+
+template <class Way>
+void members(Way& json, For<Way, formation::Equilibrium>& e) {
+  json.member("position", e.position).member("normal", e.normal).member("radius_of_curvature", e.radius_of_curvature);
+  json.member("distance", e.distance).member("stable", e.stable);
+}
+
+template <class Way>
+void members(Way& json, For<Way, formation::StuckReport>& r) {
+  json.member("robot", r.robot).member("position", r.position).member("goal_distance", r.goal_distance);
+  json.member("speed", r.speed).member("binding", r.binding).member("equilibrium", r.equilibrium);
+  json.member("text", r.text).optional("rest_time", r.rest_time);
+}
+
+/// How the run went.
+template <class Way>
+void members(Way& json, For<Way, RecordingFile>& file) {
+  auto& run = file.recording;
+  json.member("diverged", run.diverged);
+  json.member("outcome", Way::kReads || !file.outcome.empty() ? file.outcome : run.outcome);
+  json.member("ended", run.outcome).member("warnings", run.warnings).member("stuck", file.stuck);
+  json.optional("collisions", file.collisions).member("wall_time", run.wall_time);
+  json.member("written_at", file.info.provenance.written_at);
+}
 
 }  // namespace exactvo::datasets

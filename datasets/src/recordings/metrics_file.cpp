@@ -78,11 +78,10 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   const auto appended = [&json](const auto& part) { append(json, part); };
   json.begin_object();
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
-  if (info.guidance) json.member("guidance", *info.guidance);
-  if (info.liveness) json.member("liveness", *info.liveness);
+  json.optional("guidance", info.guidance).optional("liveness", info.liveness);
   json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
-  append_collisions(json, m.collisions);
+  json.member("collisions", m.collisions);
   json.member("formation_position_error", m.formation_position_error);
   json.member("formation_velocity_error", m.formation_velocity_error);
   json.member("leader_arrival_time", m.leader_arrival_time);
@@ -93,12 +92,12 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);
   json.member("steps", m.steps).member("wall_time", m.wall_time);
   json.member("outcome", m.outcome);
-  json.list("warnings", m.warnings).member("plans", m.plans, appended).member("routes", m.routes, appended);
+  json.member("warnings", m.warnings).member("plans", m.plans, appended).member("routes", m.routes, appended);
   if (m.deadlock.empty())
     json.key("deadlock").null();
   else
-    json.list("deadlock", m.deadlock);
-  json.list("stuck", m.stuck).member("lyapunov", m.lyapunov, appended);
+    json.member("deadlock", m.deadlock);
+  json.member("stuck", m.stuck).member("lyapunov", m.lyapunov, appended);
   json.list("robots", m.robots, [&](const formation::RobotMetrics& robot) { append_robot(json, robot); });
   json.key("provenance").raw(to_json(info.provenance));
   return json.end_object().take() + "\n";

@@ -75,14 +75,18 @@ const char* word_for(E value) {
   return geometry::name_in(words(value), value);
 }
 
-/// The enumerator that the text at hand stands for; refuses other words.
+/// Refuses words that stand for no enumerator.
 template <class E>
-E enumerator(const JsonCursor& at) {
-  E value{};
-  if (geometry::parse_in(words(value), at.text(), value)) return value;
+auto read_value(const JsonCursor& at, E& value) -> decltype(words(value), void()) {
+  if (geometry::parse_in(words(value), at.text(), value)) return;
   std::string options;
   for (const std::string& word : geometry::words_in(words(value))) options += (options.empty() ? "" : ", ") + word;
   at.refuse("one of " + options, DataCode::not_an_option);
+}
+
+template <class E>
+auto append_value(JsonWriter& json, const E& value) -> decltype(words(value), void()) {
+  json.value(word_for(value));
 }
 
 }  // namespace exactvo::datasets

@@ -11,7 +11,6 @@
 #include "json/json_text.h"
 #include "recordings/codec.h"
 #include "recordings/recording_lines.h"
-#include "recordings/recording_names.h"
 
 namespace exactvo::datasets {
 
@@ -23,62 +22,27 @@ using formation::Step;
 
 constexpr std::string_view kKind = "exactvo-recording";
 
-std::vector<std::string> to_texts(const JsonCursor& at) {
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < at.size(); ++i) texts.push_back(at.at(i).text());
-  return texts;
-}
-
-std::optional<std::string> optional_text(const JsonCursor& at) {
-  if (at.is_null()) return std::nullopt;
-  return at.text();
-}
-
-formation::Remedies to_remedies(const JsonCursor& at) {
-  formation::Remedies remedies;
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) remedies.*s.on = at.at(s.name).truth();
-  remedies.acceleration_bound = at.at("acceleration_bound").number();
-  return remedies;
-}
-
 void read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
   if (at.at("kind").text() != kKind) at.at("kind").refuse("\"exactvo-recording\"", DataCode::not_an_option);
   if (at.at("format_version").integer() != kRecordingFormat)
     at.at("format_version").refuse(std::to_string(kRecordingFormat), DataCode::out_of_range);
   file.scenario = parse_scenario(at.at("scenario").json().dump(), name, {});
   file.info.scenario = file.scenario.name;
-  file.info.method = at.at("method").text();
-  file.info.controller = optional_text(at.at("controller"));
-  file.info.integrator = optional_text(at.at("integrator"));
-  if (at.has("guidance")) file.info.guidance = at.at("guidance").text();
-  if (at.has("liveness")) file.info.liveness = at.at("liveness").text();
+  members(at, file.info);
   file.info.provenance = parse_provenance(at.at("provenance").json().dump(), name);
   formation::Recording& recording = file.recording;
-  recording.time_step = at.at("time_step").number();
-  recording.motion = enumerator<formation::MotionLaw>(at.at("motion"));
-  recording.tracking_gain = at.at("tracking_gain").number();
-  recording.relative_frame = at.at("relative_frame").truth();
-  if (file.scenario.formation) recording.remedies = to_remedies(at.at("remedies"));
-  recording.offsets = at.at("offsets").points();
+  if (file.scenario.formation) recording.remedies.emplace();
+  members(at, recording);
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)
     at.at("offsets").refuse(geometry::counted(slots, "offset") + ", one for each robot of a formation",
                             DataCode::wrong_count);
-  recording.all_half_planes = at.at("all_half_planes").truth();
 }
 
 void read_end(const JsonCursor& at, std::size_t rows, RecordingFile& file) {
-  formation::Recording& recording = file.recording;
   if (at.at("rows").count() != rows)
     at.at("rows").refuse(std::to_string(rows) + ", the rows above", DataCode::wrong_count);
-  recording.diverged = at.at("diverged").truth();
-  file.outcome = at.at("outcome").text();
-  recording.outcome = at.at("ended").text();
-  recording.warnings = to_texts(at.at("warnings"));
-  read_stuck(at.at("stuck"), file);
-  recording.wall_time = at.at("wall_time").number();
-  file.info.provenance.written_at = at.at("written_at").text();
-  if (at.has("collisions")) file.collisions = to_collisions(at.at("collisions"));
+  members(at, file);
   at.at("sha256").text();
 }
 
@@ -114,7 +78,7 @@ class RecordReader {
       known_.resize(number + 1);
     }
     if (known_[number]) at.at("number").refuse("a number of no body above", DataCode::out_of_range);
-    bodies_[number] = to_body(at);
+    members(at, bodies_[number]);
     require_owners(at.at("owners"), bodies_[number]);
     if (bodies_[number].kind == vo::BodyKind::robot) {
       const formation::Robot& robot = file_.scenario.robots[bodies_[number].owners.front()];
@@ -128,6 +92,8 @@ class RecordReader {
     const std::size_t all = body.kind == vo::BodyKind::robot             ? s.robots.size()
                             : body.kind == vo::BodyKind::moving_obstacle ? s.moving_obstacles.size()
                                                                          : s.obstacles.size();
+    const bool is_one = body.kind == vo::BodyKind::robot || body.kind == vo::BodyKind::moving_obstacle;
+    if (is_one && body.owners.size() != 1) at.refuse("one owner", DataCode::wrong_count);
     for (std::size_t k = 0; k < body.owners.size(); ++k)
       if (body.owners[k] >= all) at.at(k).refuse("a number below " + std::to_string(all), DataCode::out_of_range);
   }
@@ -167,10 +133,10 @@ class RecordReader {
       plan.starts.push_back(robots.at(k).at("start").point());
     }
     for (std::size_t k = 0; k < moves.size(); ++k) {
+      read_value(moves.at(k), plan.moves.emplace_back());
       const std::size_t robot = robot_of_scenario(moves.at(k).at("robot"));
       if (!std::binary_search(plan.robots.begin(), plan.robots.end(), robot))
         moves.at(k).at("robot").refuse("a robot of the plan", DataCode::out_of_range);
-      plan.moves.push_back({robot, moves.at(k).at("to").point()});
     }
     file_.recording.plans.push_back(std::move(plan));
   }
@@ -182,27 +148,23 @@ class RecordReader {
       step.leader_position = at.at("leader").at("position").point();
       step.leader_velocity = at.at("leader").at("velocity").point();
     }
-    if (at.has("moving")) read_moving(at.at("moving"), step);
+    if (at.has("moving") && at.at("moving").size() != file_.scenario.moving_obstacles.size())
+      at.at("moving").refuse("a place for every moving obstacle", DataCode::wrong_count);
+    at.optional("moving", step.moving);
     const JsonCursor robots = at.at("robots");
     if (robots.size() != file_.scenario.robots.size())
       robots.refuse(geometry::counted(file_.scenario.robots.size(), "robot") + ", as the scenario has",
                     DataCode::wrong_count);
-    for (std::size_t i = 0; i < robots.size(); ++i) step.robots.push_back(to_robot(robots.at(i)));
+    read_value(robots, step.robots);
     for (std::size_t i = 0; i < robots.size(); ++i)
       for (std::size_t k = 0; k < step.robots[i].constraints.size(); ++k)
         place(robots.at(i).at("constraints").at(k), i, step, step.robots[i].constraints[k]);
     std::optional<formation::LyapunovRow> lyapunov;
-    if (at.has("lyapunov")) lyapunov = to_lyapunov(at.at("lyapunov"), step.time);
+    at.optional("lyapunov", lyapunov);
+    if (lyapunov) lyapunov->time = step.time;
     ++rows_;
     last_time_ = step.time;
     take_(file_, std::move(step), lyapunov ? &*lyapunov : nullptr);
-  }
-
-  void read_moving(const JsonCursor& at, Step& step) const {
-    if (at.size() != file_.scenario.moving_obstacles.size())
-      at.refuse("a place for every moving obstacle", DataCode::wrong_count);
-    for (std::size_t k = 0; k < at.size(); ++k)
-      step.moving.push_back({at.at(k).at("displacement").point(), at.at(k).at("velocity").point()});
   }
 
   /// What a half-plane shares with others: its body's shape, and who was where in this row.

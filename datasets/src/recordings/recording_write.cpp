@@ -8,7 +8,6 @@
 #include "exactvo/geometry/require.h"
 #include "files/sha256.h"
 #include "recordings/codec.h"
-#include "recordings/recording_names.h"
 #include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
@@ -20,25 +19,10 @@ using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 
-void append_remedies(JsonWriter& json, const formation::Remedies& remedies) {
-  json.key("remedies").begin_object();
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.member(s.name, remedies.*s.on);
-  json.member("acceleration_bound", remedies.acceleration_bound).end_object();
-}
-
 void append_header(JsonWriter& json, const RecordingFile& file) {
-  const formation::Recording& recording = file.recording;
   json.begin_object().member("kind", "exactvo-recording").member("format_version", kRecordingFormat);
-  json.member("method", file.info.method).member("controller", file.info.controller);
-  json.member("integrator", file.info.integrator);
-  if (file.info.guidance) json.member("guidance", *file.info.guidance);
-  if (file.info.liveness) json.member("liveness", *file.info.liveness);
-  json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
-  json.member("tracking_gain", recording.tracking_gain).member("relative_frame", recording.relative_frame);
-  if (recording.remedies) append_remedies(json, *recording.remedies);
-  json.key("offsets");
-  append_points(json, recording.offsets);
-  json.member("all_half_planes", recording.all_half_planes);
+  members(json, file.info);
+  members(json, file.recording);
   Provenance timeless = file.info.provenance;
   timeless.written_at.clear();  // in the last line, which the digest leaves out: equal runs have equal digests
   json.key("provenance").raw(to_json(timeless));
@@ -49,7 +33,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
 
 void append_outlook(JsonWriter& json, const Outlook& outlook) {
   json.begin_object().member("time", outlook.time).member("robot", outlook.robot).member("goal", outlook.goal);
-  json.list("bodies", outlook.bodies).end_object();
+  json.member("bodies", outlook.bodies).end_object();
 }
 
 void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
@@ -57,10 +41,7 @@ void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
   json.key("robots").begin_array();
   for (std::size_t k = 0; k < plan.robots.size(); ++k)
     json.begin_object().member("robot", plan.robots[k]).member("start", plan.starts[k]).end_object();
-  json.end_array().key("moves").begin_array();
-  for (const formation::PlanMove& move : plan.moves)
-    json.begin_object().member("robot", move.robot).member("to", move.to).end_object();
-  json.end_array().end_object();
+  json.end_array().member("moves", plan.moves).end_object();
 }
 
 void append_row(JsonWriter& json, const Step& step, bool has_leader, const formation::LyapunovRow* lyapunov) {
@@ -69,26 +50,14 @@ void append_row(JsonWriter& json, const Step& step, bool has_leader, const forma
     json.key("leader").begin_object();
     json.member("position", step.leader_position).member("velocity", step.leader_velocity).end_object();
   }
-  if (!step.moving.empty()) {
-    json.key("moving").begin_array();
-    for (const formation::MovedObstacle& o : step.moving)
-      json.begin_object().member("displacement", o.displacement).member("velocity", o.velocity).end_object();
-    json.end_array();
-  }
-  json.list("robots", step.robots, [&](const RobotStep& robot) { append_robot(json, robot); });
-  if (lyapunov) append_lyapunov(json, *lyapunov);
+  json.member_if(!step.moving.empty(), "moving", step.moving).member("robots", step.robots);
+  if (lyapunov) json.member("lyapunov", *lyapunov);
   json.end_object();
 }
 
 void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, const std::string& digest) {
-  const formation::Recording& recording = file.recording;
-  json.begin_object().member("rows", rows).member("diverged", recording.diverged);
-  json.member("outcome", file.outcome.empty() ? recording.outcome : file.outcome);
-  json.member("ended", recording.outcome);
-  json.list("warnings", recording.warnings);
-  append_stuck(json, file);
-  append_collisions(json, file.collisions);
-  json.member("wall_time", recording.wall_time).member("written_at", file.info.provenance.written_at);
+  json.begin_object().member("rows", rows);
+  members(json, file);
   json.member("sha256", digest);
   json.end_object();
 }
@@ -155,7 +124,11 @@ struct RecordingWriter::State {
     if (number >= named.size()) named.resize(bodies.size());
     if (named[number]) return;
     named[number] = true;
-    line("body", [&] { append_body(json, number, bodies[number]); });
+    line("body", [&] {
+      json.begin_object().member("number", number);
+      members(json, bodies[number]);
+      json.end_object();
+    });
   }
 
   std::shared_ptr<AtomicFile> out;

@@ -31,7 +31,7 @@ class Line {
 
   lp::Problem problem() const {
     lp::Problem problem;
-    problem.preferred = to_vector(tree_.at("preferred"));
+    tree_.at("preferred").get_to(problem.preferred);
     if (tree_.contains("bound")) problem.bound = to_bound(tree_.at("bound"));
     if (tree_.value("objective", "nearest") == "farthest") problem.objective = lp::Objective::farthest;
     const Json& constraints = tree_.at("constraints");
@@ -42,8 +42,6 @@ class Line {
   }
 
  private:
-  static Vec2 to_vector(const Json& list) { return {list[0].get<double>(), list[1].get<double>()}; }
-
   static lp::SpeedBound to_bound(const Json& object) {
     lp::SpeedBound bound;
     if (object.contains("disc")) bound.disc = object.at("disc").get<double>();
@@ -56,7 +54,7 @@ class Line {
 
   lp::Constraint to_constraint(const Json& object, const std::string& at) const {
     lp::Constraint c;
-    c.half_plane = {to_vector(object.at("normal")), object.at("offset").get<double>()};
+    c.half_plane = {object.at("normal").get<Vec2>(), object.at("offset").get<double>()};
     if (c.half_plane.normal == Vec2{})
       refuse(DataCode::out_of_range, at + "/normal", "[0, 0]", "a normal that is not 0");
     if (object.value("priority", "hard") == "soft") c.priority = lp::Priority::soft;

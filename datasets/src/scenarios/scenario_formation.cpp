@@ -20,17 +20,12 @@ class FormationReader {
 
   FormationSpec read(const Json& object) const {
     FormationSpec spec;
-    spec.offsets = object.contains("offsets") ? to_points(object.at("offsets")) : of_pattern(object.at("pattern"));
+    spec.offsets =
+        object.contains("offsets") ? object.at("offsets").get<std::vector<Vec2>>() : of_pattern(object.at("pattern"));
     spec.topology = to_topology(object.at("topology"), spec.offsets);
     spec.recentre = object.value("recentre", spec.recentre);
     spec.leader = to_leader(object.at("leader"));
-    const Json gains = object.value("gains", Json::object());
-    take(gains, "k1", spec.gains.k1);
-    take(gains, "k2", spec.gains.k2);
-    take(gains, "k3", spec.gains.k3);
-    take(gains, "kappa", spec.gains.kappa);
-    take(object, "catch_up_speed", spec.catch_up_speed);
-    spec.remedies = to_switches(object.value("remedies", Json::object()));
+    read_value(JsonCursor(object, file_, ""), spec);
     return spec;
   }
 
@@ -42,7 +37,7 @@ class FormationReader {
   std::vector<Vec2> of_pattern(const Json& object) const {
     formation::Pattern pattern{};
     parse(object.at("name").get<std::string>(), pattern);  // the schema knows the names
-    const Vec2 heading = object.contains("heading") ? to_point(object.at("heading")) : Vec2{1.0, 0.0};
+    const Vec2 heading = object.value("heading", Vec2{1.0, 0.0});
     if (heading == Vec2{}) refuse("/pattern/heading", "[0, 0]", "a direction");
     return pattern_offsets(pattern, robots_.size(), object.at("spacing").get<double>(), heading);
   }
@@ -72,20 +67,12 @@ class FormationReader {
 
   formation::Leader to_leader(const Json& object) const {
     formation::Leader leader;
-    take(object, "speed", leader.speed);
+    leader.speed = object.value("speed", leader.speed);
     if (object.contains("to")) return leader;  // plan_leader_of
-    leader.path = to_points(object.at("path"));
+    object.at("path").get_to(leader.path);
     if (object.contains("profile"))
       leader.profile = to_profile(object.at("profile"), leader.path, file_, "/formation/leader/profile");
     return leader;
-  }
-
-  static formation::RemedySwitches to_switches(const Json& object) {
-    formation::RemedySwitches asked;
-    for (const formation::RemedySwitch& s : formation::remedy_switches())
-      if (object.contains(s.name)) asked.*s.asked = object.at(s.name).get<bool>();
-    if (object.contains("acceleration_bound")) asked.acceleration_bound = object.at("acceleration_bound").get<double>();
-    return asked;
   }
 
   const std::vector<Robot>& robots_;
@@ -118,8 +105,8 @@ void plan_leader_of(const Json& object, formation::Scenario& scenario, const std
   if (profile.contains("legs"))
     throw DataError(DataCode::scenario, file, pointer + "/legs", "speeds of legs, for a path that is planned",
                     "a trapezoid or knots");
-  formation::LeaderGoal goal{to_point(object.at("to")), std::nullopt};
-  if (object.contains("from")) goal.from = to_point(object.at("from"));
+  formation::LeaderGoal goal{object.at("to").get<Vec2>(), std::nullopt};
+  if (object.contains("from")) goal.from = object.at("from").get<Vec2>();
   formation::Leader& leader = scenario.formation->leader;
   leader.path = {goal.to};
   if (scenario.formation->offsets.size() != scenario.robots.size()) return;  // refused, as no formation could run

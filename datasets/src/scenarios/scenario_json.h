@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+/// \file
+/// What stands in scenarios under the same keys as in memory.
+
 #include "exactvo/formation/scenario.h"
 #include "json/json_text.h"
 
@@ -9,6 +12,63 @@ namespace exactvo::datasets {
 /// The scenario as one JSON value, where a writer stands: recordings carry it in their header.
 void append_scenario(JsonWriter& json, const formation::Scenario& scenario);
 
-void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& points);
+/// In braces, too.
+inline void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& points) {
+  append_value(json, points);
+}
+
+template <class Way>
+void members(Way& json, For<Way, formation::Robot>& robot) {
+  json.member("id", robot.id).member("position", robot.position).optional("velocity", robot.velocity);
+  json.optional("radius", robot.radius).optional("max_speed", robot.max_speed).optional("goals", robot.goals);
+  json.optional("cooperates", robot.cooperates);
+}
+
+template <>
+inline constexpr bool kOnOneLine<formation::Gains> = true;
+template <class Way>
+void members(Way& json, For<Way, formation::Gains>& gains) {
+  json.optional("k1", gains.k1).optional("k2", gains.k2).optional("k3", gains.k3).optional("kappa", gains.kappa);
+}
+
+template <>
+inline constexpr bool kOnOneLine<formation::RemedySwitches> = true;
+template <class Way>
+void members(Way& json, For<Way, formation::RemedySwitches>& asked) {
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.optional(s.name, asked.*s.asked);
+  json.optional("acceleration_bound", asked.acceleration_bound);
+}
+
+/// But who hears whom, the offsets, and where the leader goes.
+template <class Way>
+void members(Way& json, For<Way, formation::FormationSpec>& spec) {
+  json.optional("gains", spec.gains).optional("catch_up_speed", spec.catch_up_speed);
+  json.optional("remedies", spec.remedies);
+}
+
+template <>
+inline constexpr bool kOnOneLine<formation::Horizons> = true;
+template <class Way>
+void members(Way& json, For<Way, formation::Horizons>& horizons) {
+  json.optional("least", horizons.least).optional("most", horizons.most);
+  json.optional("speed_floor", horizons.speed_floor).optional("orca", horizons.orca);
+  json.optional("robots", horizons.robots);
+}
+
+template <>
+inline constexpr bool kOnOneLine<formation::Margins> = true;
+template <class Way>
+void members(Way& json, For<Way, formation::Margins>& margins) {
+  json.optional("obstacle", margins.obstacle).optional("robot", margins.robot);
+}
+
+/// Its figures.
+template <class Way>
+void members(Way& json, For<Way, formation::Scenario>& scenario) {
+  json.optional("horizons", scenario.horizons).optional("margins", scenario.margins);
+  json.optional("time_step", scenario.time_step).optional("time_limit", scenario.time_limit);
+  json.optional("arrival_tolerance", scenario.arrival_tolerance);
+  json.optional("neighbour_distance", scenario.neighbour_distance);
+}
 
 }  // namespace exactvo::datasets

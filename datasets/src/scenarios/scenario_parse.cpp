@@ -41,11 +41,11 @@ const Json& list_in(const Json& object, const char* key) {
 RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
   const bool is_line = object.contains("polyline");
   const char* key = is_line ? "polyline" : "polygon";
-  RawGeometry raw{is_line ? RawKind::polyline : RawKind::polygon, id, pointer, {to_points(object.at(key))}};
+  RawGeometry raw{is_line ? RawKind::polyline : RawKind::polygon, id, pointer, {object.at(key).get<geometry::Ring>()}};
   raw.ring_pointers.push_back(pointer + "/" + key);
   const Json& holes = list_in(object, "holes");
   for (std::size_t h = 0; h < holes.size(); ++h) {
-    raw.rings.push_back(to_points(holes[h]));
+    raw.rings.push_back(holes[h].get<geometry::Ring>());
     raw.ring_pointers.push_back(pointer + "/holes/" + std::to_string(h));
   }
   return raw;
@@ -114,7 +114,7 @@ class ScenarioReader {
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
-    read_figures(tree, scenario);
+    read_value(JsonCursor(tree, file_, ""), scenario);
     refuse_repeated_ids(scenario);
     if (scenario.formation && tree.at("formation").at("leader").contains("to"))
       plan_leader_of(tree.at("formation").at("leader"), scenario, file_);
@@ -175,7 +175,7 @@ class ScenarioReader {
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       ValidationResult checked = validate(to_raw(list[k], id, pointer));
       refuse_unrepaired(checked, file_);
-      formation::Leader motion{to_points(list[k].at("path"))};
+      formation::Leader motion{list[k].at("path").get<std::vector<Vec2>>()};
       motion.speed = list[k].value("speed", 0.0);
       if (list[k].contains("profile"))
         motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");
@@ -243,22 +243,6 @@ class ScenarioReader {
     count(file.counts.passed_over, " skipped (points, empty geometries)");
   }
 
-  static void read_figures(const Json& tree, Scenario& scenario) {
-    const Json horizons = tree.value("horizons", Json::object());
-    take(horizons, "least", scenario.horizons.least);
-    take(horizons, "most", scenario.horizons.most);
-    take(horizons, "speed_floor", scenario.horizons.speed_floor);
-    take(horizons, "orca", scenario.horizons.orca);
-    take(horizons, "robots", scenario.horizons.robots);
-    const Json margins = tree.value("margins", Json::object());
-    take(margins, "obstacle", scenario.margins.obstacle);
-    take(margins, "robot", scenario.margins.robot);
-    take(tree, "time_step", scenario.time_step);
-    take(tree, "time_limit", scenario.time_limit);
-    take(tree, "arrival_tolerance", scenario.arrival_tolerance);
-    take(tree, "neighbour_distance", scenario.neighbour_distance);
-  }
-
   void refuse_repeated_ids(const Scenario& scenario) const {
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
@@ -322,7 +306,7 @@ class ScenarioReader {
       return origin.is_one_of_many ? entry : entry + pointer.substr(pointer.find('/', kRobots.size()));
     }
     const std::string prefix = "/obstacles/";
-    if (pointer.compare(0, prefix.size(), prefix) != 0) return pointer;
+    if (!starts_with(pointer, prefix)) return pointer;
     const std::size_t end = pointer.find('/', prefix.size());
     const std::size_t k = std::stoul(pointer.substr(prefix.size(), end - prefix.size()));
     return origin_of_.at(k).pointer + (end == std::string::npos ? "" : pointer.substr(end));
@@ -330,7 +314,7 @@ class ScenarioReader {
 
   /// The robot that "/robots/17/position" names.
   static std::optional<std::size_t> robot_in(const std::string& pointer) {
-    if (pointer.compare(0, kRobots.size(), kRobots) != 0) return std::nullopt;
+    if (!starts_with(pointer, kRobots)) return std::nullopt;
     return std::stoul(pointer.substr(kRobots.size()));
   }
 

@@ -37,23 +37,6 @@ constexpr std::uint64_t kStream = 0x726f626f7473;  // "robots"
 /// m and m/s; the schema's bound of radii and speeds.
 constexpr double kLargest = 1e6;
 
-Robot to_robot(const Json& object) {
-  Robot robot;
-  robot.id = object.at("id").get<std::string>();
-  robot.position = to_point(object.at("position"));
-  if (object.contains("velocity")) robot.velocity = to_point(object.at("velocity"));
-  take(object, "radius", robot.radius);
-  take(object, "max_speed", robot.max_speed);
-  if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
-  if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
-  robot.cooperates = object.value("cooperates", robot.cooperates);
-  return robot;
-}
-
-Vec2 point_or(const Json& object, const char* key, Vec2 otherwise) {
-  return object.contains(key) ? to_point(object.at(key)) : otherwise;
-}
-
 /// Where robots stand: at the start, or at their last goals.
 Vec2 start_of(const Robot& robot) {
   return robot.position;
@@ -164,16 +147,18 @@ class RobotsReader {
   void read_entry(const Json& entry, std::size_t k) {
     entry_ = k;
     pointer_ = "/robots/" + std::to_string(k);
+    const JsonCursor at(entry, file_, "");
     if (entry.contains("position")) {
-      out_.robots.push_back(to_robot(entry));
+      Robot& robot = out_.robots.emplace_back();
+      members(at, robot);
+      if (entry.contains("goal")) robot.goals = {entry.at("goal").get<Vec2>()};
       out_.origins.push_back({k, false});
       return;
     }
     prefix_ = entry.value("prefix", "G" + std::to_string(k + 1)) + "/";
     pattern_ = Robot{};
-    take(entry, "radius", pattern_.radius);
-    take(entry, "max_speed", pattern_.max_speed);
-    pattern_.cooperates = entry.value("cooperates", pattern_.cooperates);
+    at.optional("radius", pattern_.radius).optional("max_speed", pattern_.max_speed);
+    at.optional("cooperates", pattern_.cooperates);
     made_ = 0;
     if (entry.contains("circle")) make_circle(entry.at("circle"));
     if (entry.contains("grid")) make_grid(entry.at("grid"));
@@ -204,7 +189,7 @@ class RobotsReader {
     const auto count = rule.at("count").get<std::size_t>();
     require_room_for(count, "circle");
     const double radius = rule.at("radius").get<double>();
-    const Vec2 centre = point_or(rule, "centre", {});
+    const Vec2 centre = rule.value("centre", Vec2{});
     for (std::size_t i = 0; i < count; ++i) {
       const double angle = 2.0 * geometry::kPi * static_cast<double>(i) / static_cast<double>(count);
       const Vec2 out = radius * Vec2{std::cos(angle), std::sin(angle)};
@@ -216,7 +201,7 @@ class RobotsReader {
     const auto columns = rule.at("columns").get<std::uint64_t>(), rows = rule.at("rows").get<std::uint64_t>();
     require_room_for(columns * rows, "grid");
     const double spacing = rule.at("spacing").get<double>();
-    const Vec2 corner = point_or(rule, "corner", {}), way = to_point(rule.at("goal"));
+    const Vec2 corner = rule.value("corner", Vec2{}), way = rule.at("goal").get<Vec2>();
     for (std::uint64_t row = 0; row < rows; ++row)
       for (std::uint64_t column = 0; column < columns; ++column) {
         const Vec2 at = corner + spacing * Vec2{static_cast<double>(column), static_cast<double>(row)};
@@ -229,8 +214,8 @@ class RobotsReader {
     require_room_for(count, "random");
     const auto seed = rule.value("seed", std::uint64_t{0});
     const double apart = rule.value("apart", 0.0);
-    const Vec2 low = to_point(rule.at("low")), high = to_point(rule.at("high"));
-    const Vec2 goal_low = point_or(rule, "goal_low", low), goal_high = point_or(rule, "goal_high", high);
+    const Vec2 low = rule.at("low").get<Vec2>(), high = rule.at("high").get<Vec2>();
+    const Vec2 goal_low = rule.value("goal_low", low), goal_high = rule.value("goal_high", high);
     FreeRoom starts(obstacles_, out_.robots, start_of, pattern_.radius, apart);
     FreeRoom ends(obstacles_, out_.robots, end_of, pattern_.radius, apart);
     for (std::size_t i = 0; i < count; ++i) {

@@ -10,27 +10,12 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "json/json_text.h"
+#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 
 /// m; the schema's bound of coordinates.
 inline constexpr double kFarthest = 1e9;
-
-inline void take(const Json& object, const char* key, double& field) {
-  if (object.contains(key)) field = object.at(key).get<double>();
-}
-
-inline geometry::Vec2 to_point(const Json& pair) {
-  return {pair[0].get<double>(), pair[1].get<double>()};
-}
-
-inline std::vector<geometry::Vec2> to_points(const Json& list) {
-  std::vector<geometry::Vec2> points;
-  points.reserve(list.size());
-  for (const Json& pair : list) points.push_back(to_point(pair));
-  return points;
-}
 
 /// The member `formation`, of these robots. Throws DataError for what the schema cannot say: an unknown robot's id, a
 /// speed profile of the wrong length. `file` is used in messages.

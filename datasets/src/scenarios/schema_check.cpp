@@ -39,43 +39,25 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest;
 }
 
-/// A JSON pointer in the making: of millions of values only those that are refused need it as text.
-class Place {
- public:
-  Place() = default;
-  Place(const Place& parent, const std::string& key) : parent_(&parent), key_(&key) {}
-  Place(const Place& parent, std::size_t index) : parent_(&parent), index_(index) {}
-
-  std::string pointer() const {
-    if (parent_ == nullptr) return "";
-    return parent_->pointer() + "/" + (key_ != nullptr ? pointer_token(*key_) : std::to_string(index_));
-  }
-
- private:
-  const Place* parent_ = nullptr;
-  const std::string* key_ = nullptr;
-  std::size_t index_ = 0;
-};
-
 class Checker {
  public:
-  Checker(const Json& root, const std::string& file) : root_(root), file_(file) {}
+  /// Of `all`, whose parts are checked.
+  Checker(const Json& schema, const Json& all, const std::string& file) : root_(schema), all_(all), file_(file) {}
 
-  void check(const Json& value, const Json& schema, const Place& place) const {
+  void check(const Json& value, const Json& schema) const {
     const Json& rules = resolved(schema);
-    for (const auto& [keyword, rule] : rules.items()) apply(keyword, rule, value, rules, place);
+    for (const auto& [keyword, rule] : rules.items()) apply(keyword, rule, value, rules);
   }
 
  private:
-  using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules, const Place& at) const;
+  using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules) const;
   using Keyword = std::pair<const char*, Rule>;
   static const std::vector<Keyword>& keywords();
 
-  void apply(const std::string& keyword, const Json& rule, const Json& value, const Json& rules,
-             const Place& at) const {
+  void apply(const std::string& keyword, const Json& rule, const Json& value, const Json& rules) const {
     for (const auto& [known, check] : keywords()) {
       if (keyword != known) continue;
-      if (check != nullptr) (this->*check)(rule, value, rules, at);
+      if (check != nullptr) (this->*check)(rule, value, rules);
       return;
     }
     throw std::logic_error("schema keyword not supported: " + keyword);
@@ -89,9 +71,9 @@ class Checker {
     return *known;
   }
 
-  [[noreturn]] void refuse(DataCode code, const Place& at, const std::string& found,
+  [[noreturn]] void refuse(DataCode code, const Json& value, const std::string& found,
                            const std::string& expected) const {
-    throw DataError(code, file_, at.pointer(), found, expected);
+    throw DataError(code, file_, pointer_to(value, all_), found, expected);
   }
 
   /// The unit or the shape that a description begins or ends with: "m" of "m; robots farther apart ignore each other.",
@@ -130,7 +112,7 @@ class Checker {
     throw std::logic_error("schema type not supported: " + name);
   }
 
-  void type(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+  void type(const Json& rule, const Json& value, const Json& rules) const {
     const Json alternatives = rule.is_array() ? rule : Json::array({rule});
     std::string expected;
     for (const Json& alternative : alternatives) {
@@ -139,7 +121,7 @@ class Checker {
       expected += std::string(expected.empty() ? "" : " or ") + wanted.words;
     }
     if (value.is_object() && rules.contains("items")) expected += of_entries(rules.at("items"));
-    refuse(DataCode::wrong_type, at, described(value), with_unit(expected, rules));
+    refuse(DataCode::wrong_type, value, described(value), with_unit(expected, rules));
   }
 
   /// Of a list of objects: what each has. An entry alone is often written in the place of the list.
@@ -155,60 +137,59 @@ class Checker {
     return keys.empty() ? "" : " [{...}] of objects with " + keys;
   }
 
-  void one_of_words(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void one_of_words(const Json& rule, const Json& value, const Json&) const {
     if (std::find(rule.begin(), rule.end(), value) != rule.end()) return;
     std::string options;
     for (const Json& option : rule) options += (options.empty() ? "" : ", ") + option.dump();
-    refuse(DataCode::not_an_option, at, described(value), "one of " + options);
+    refuse(DataCode::not_an_option, value, described(value), "one of " + options);
   }
 
-  void required(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+  void required(const Json& rule, const Json& value, const Json& rules) const {
     if (!value.is_object()) return;
     for (const Json& key : rule) {
       const std::string name = key.get<std::string>();
-      if (!value.contains(name)) refuse_missing(name, value, rules, at);
+      if (!value.contains(name)) refuse_missing(name, value, rules);
     }
   }
 
   /// A mistyped key leaves one key missing and one unknown; the unknown one tells the writer more.
-  [[noreturn]] void refuse_missing(const std::string& name, const Json& value, const Json& rules,
-                                   const Place& at) const {
+  [[noreturn]] void refuse_missing(const std::string& name, const Json& value, const Json& rules) const {
     if (rules.contains("properties") && rules.contains("additionalProperties")) {
-      only_known_keys(rules.at("additionalProperties"), value, rules, at);
+      only_known_keys(rules.at("additionalProperties"), value, rules);
     }
-    refuse(DataCode::key_missing, at, "no key \"" + name + "\"", "the key \"" + name + "\"");
+    refuse(DataCode::key_missing, value, "no key \"" + name + "\"", "the key \"" + name + "\"");
   }
 
-  void properties(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void properties(const Json& rule, const Json& value, const Json&) const {
     if (!value.is_object()) return;
     for (const auto& [key, member] : value.items()) {
       const auto known = rule.find(key);
-      if (known != rule.end()) check(member, *known, Place(at, key));
+      if (known != rule.end()) check(member, *known);
     }
   }
 
-  void only_known_keys(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+  void only_known_keys(const Json& rule, const Json& value, const Json& rules) const {
     if (rule != false) throw std::logic_error("schema: additionalProperties other than false is not supported");
     if (!value.is_object()) return;
     std::vector<std::string> known;
     for (const auto& [key, member] : rules.at("properties").items()) known.push_back(key);
     for (const auto& [key, member] : value.items()) {
-      if (std::find(known.begin(), known.end(), key) == known.end()) refuse_unknown(key, known, at);
+      if (std::find(known.begin(), known.end(), key) == known.end()) refuse_unknown(value, key, known);
     }
   }
 
-  [[noreturn]] void refuse_unknown(const std::string& key, const std::vector<std::string>& known,
-                                   const Place& at) const {
+  [[noreturn]] void refuse_unknown(const Json& value, const std::string& key,
+                                   const std::vector<std::string>& known) const {
     const std::string nearest = nearest_word(key, known);
     std::string all;
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
-    refuse(DataCode::key_unknown, Place(at, key), "an unknown key \"" + key + "\"",
+    refuse(DataCode::key_unknown, value.at(key), "an unknown key \"" + key + "\"",
            nearest.empty() ? "one of " + all : "a known key; did you mean \"" + nearest + "\"?");
   }
 
-  void items(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void items(const Json& rule, const Json& value, const Json&) const {
     if (!value.is_array()) return;
-    for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule, Place(at, i));
+    for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule);
   }
 
   /// "at least 1 entry", "at most 3 entries"
@@ -216,25 +197,26 @@ class Checker {
     return limit + " " + count.dump() + " " + (count == 1 ? one : many);
   }
 
-  void min_items(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+  void min_items(const Json& rule, const Json& value, const Json& rules) const {
     if (!value.is_array() || value.size() >= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value),
+    refuse(DataCode::wrong_count, value, described(value),
            with_unit(counted("at least", rule, "entry", "entries"), rules));
   }
 
-  void max_items(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+  void max_items(const Json& rule, const Json& value, const Json& rules) const {
     if (!value.is_array() || value.size() <= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), with_unit(counted("at most", rule, "entry", "entries"), rules));
+    refuse(DataCode::wrong_count, value, described(value),
+           with_unit(counted("at most", rule, "entry", "entries"), rules));
   }
 
-  void min_length(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void min_length(const Json& rule, const Json& value, const Json&) const {
     if (!value.is_string() || characters(value) >= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), counted("at least", rule, "character", "characters"));
+    refuse(DataCode::wrong_count, value, described(value), counted("at least", rule, "character", "characters"));
   }
 
-  void max_length(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void max_length(const Json& rule, const Json& value, const Json&) const {
     if (!value.is_string() || characters(value) <= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), counted("at most", rule, "character", "characters"));
+    refuse(DataCode::wrong_count, value, described(value), counted("at most", rule, "character", "characters"));
   }
 
   /// Code points, as JSON Schema counts: every byte of UTF-8 but the continuing ones.
@@ -243,28 +225,27 @@ class Checker {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
   }
 
-  void bound(bool holds, const char* relation, const Json& rule, const Json& value, const Json& rules,
-             const Place& at) const {
-    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_unit(relation + rule.dump(), rules));
+  void bound(bool holds, const char* relation, const Json& rule, const Json& value, const Json& rules) const {
+    if (!holds) refuse(DataCode::out_of_range, value, described(value), with_unit(relation + rule.dump(), rules));
   }
-  void minimum(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
-    if (value.is_number()) bound(value >= rule, "a number >= ", rule, value, rules, at);
+  void minimum(const Json& rule, const Json& value, const Json& rules) const {
+    if (value.is_number()) bound(value >= rule, "a number >= ", rule, value, rules);
   }
-  void maximum(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
-    if (value.is_number()) bound(value <= rule, "a number <= ", rule, value, rules, at);
+  void maximum(const Json& rule, const Json& value, const Json& rules) const {
+    if (value.is_number()) bound(value <= rule, "a number <= ", rule, value, rules);
   }
-  void above(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
-    if (value.is_number()) bound(value > rule, "a number > ", rule, value, rules, at);
+  void above(const Json& rule, const Json& value, const Json& rules) const {
+    if (value.is_number()) bound(value > rule, "a number > ", rule, value, rules);
   }
 
-  void none_of(const Json& rule, const Json& value, const Json&, const Place& at) const {
+  void none_of(const Json& rule, const Json& value, const Json&) const {
     if (value.is_object() && !has_required_keys(value, rule)) return;
     try {
-      check(value, rule, at);
+      check(value, rule);
     } catch (const DataError&) {
       return;
     }
-    refuse(DataCode::no_alternative, at, all_of_keys(rule), rule.at("description").get<std::string>());
+    refuse(DataCode::no_alternative, value, all_of_keys(rule), rule.at("description").get<std::string>());
   }
 
   /// "both "goal" and "goals"": what a forbidden combination consists of.
@@ -276,8 +257,8 @@ class Checker {
   }
 
   /// The alternatives are told apart by their required keys; the one that is meant gives its own words.
-  void one_of(const Json& rule, const Json& value, const Json&, const Place& at) const {
-    if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
+  void one_of(const Json& rule, const Json& value, const Json&) const {
+    if (!value.is_object()) refuse(DataCode::wrong_type, value, described(value), "an object");
     std::vector<const Json*> meant;
     std::string keys;
     for (const Json& reference : rule) {
@@ -287,9 +268,9 @@ class Checker {
     }
     if (meant.empty())
       if (const Json* likely = likeliest(rule, value)) meant.push_back(likely);
-    if (meant.empty()) refuse_mistyped(rule, value, at);
-    if (meant.size() == 1) return check(value, *meant.front(), at);
-    refuse(DataCode::no_alternative, at,
+    if (meant.empty()) refuse_mistyped(rule, value);
+    if (meant.size() == 1) return check(value, *meant.front());
+    refuse(DataCode::no_alternative, value,
            meant.empty() ? keys_of(value) : "keys of several kinds: " + telling_keys(meant), keys);
   }
 
@@ -313,7 +294,7 @@ class Checker {
   }
 
   /// Where no key tells what is meant: one that is nearly a key that would have told.
-  void refuse_mistyped(const Json& rule, const Json& value, const Place& at) const {
+  void refuse_mistyped(const Json& rule, const Json& value) const {
     std::vector<std::string> telling;
     std::set<std::string> known;
     for (const Json& reference : rule) {
@@ -323,7 +304,7 @@ class Checker {
       for (const auto& [key, member] : alternative.at("properties").items()) known.insert(key);
     }
     for (const auto& [key, member] : value.items())
-      if (known.count(key) == 0 && !nearest_word(key, telling).empty()) refuse_unknown(key, telling, at);
+      if (known.count(key) == 0 && !nearest_word(key, telling).empty()) refuse_unknown(value, key, telling);
   }
 
   /// Where no alternative has its required keys: the one that knows most of the value's, if there is one.
@@ -357,7 +338,7 @@ class Checker {
                        [&](const Json& key) { return value.contains(key.get<std::string>()); });
   }
 
-  const Json& root_;
+  const Json &root_, &all_;
   const std::string& file_;
   mutable std::map<const Json*, const Json*> resolved_;  ///< by the reference
 };
@@ -392,7 +373,7 @@ const std::vector<Checker::Keyword>& Checker::keywords() {
 }  // namespace
 
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name) {
-  Checker(schema, file_name).check(value, schema, {});
+  Checker(schema, value, file_name).check(value, schema);
 }
 
 }  // namespace exactvo::datasets

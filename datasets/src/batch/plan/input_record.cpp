@@ -27,16 +27,12 @@ void append_optional_facts(JsonWriter& json, const InputFacts& facts) {
   }
 }
 
-geometry::Vec2 point_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>()};
-}
-
 void parse_optional_facts(const Json& json, InputFacts& facts) {
   if (const auto at = json.find("origin"); at != json.end()) {
     facts.origin = ProjectionOrigin{at->at("longitude").get<double>(), at->at("latitude").get<double>()};
   }
   if (const auto at = json.find("extent"); at != json.end()) {
-    facts.extent = Extent{point_of(at->at("low")), point_of(at->at("high"))};
+    facts.extent = Extent{at->at("low").get<geometry::Vec2>(), at->at("high").get<geometry::Vec2>()};
   }
   if (const auto at = json.find("coverage"); at != json.end()) {
     facts.coverage = Coverage{at->at("cells").get<std::size_t>(), at->at("occupied").get<std::size_t>(),
