@@ -8,19 +8,14 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
+#include "files/sha256.h"
 #include "json/json_text.h"
-#include "recordings/audit_bodies.h"
-#include "recordings/audit_decisions.h"
-#include "recordings/audit_motions.h"
-#include "recordings/audit_plans.h"
-#include "recordings/audit_rows.h"
-#include "recordings/audit_sequence.h"
+#include "recordings/audit_points.h"
 #include "recordings/recording_lines.h"
 
 namespace exactvo::datasets {
 namespace {
 
-using exact::ExactWay;
 using exact::Rational;
 using formation::MotionLaw;
 using formation::RobotStep;
@@ -52,41 +47,33 @@ bool has_its_offsets(const RecordingFile& file) {
 
 /// Point (1), and where the run begins: the header against its own scenario and against the one that was meant.
 void check_header(const RecordingFile& file, const Step& first, const formation::Scenario* meant, AuditTally& tally) {
-  const auto require = [&](AuditPoint point, bool ok, const char* what) {
-    ok ? tally.proven(point) : tally.refuted(point, what);
-  };
   const formation::Recording& recording = file.recording;
   const std::optional<formation::FormationSpec>& formation = file.scenario.formation;
   const AuditPoint scenario = AuditPoint::scenario;
-  require(scenario, recording.time_step == file.scenario.time_step, "the header's time step is not the scenario's");
-  require(scenario, recording.motion == law_of(file), "the header's motion is not that of its scenario and integrator");
-  require(scenario, recording.tracking_gain == (formation ? formation->gains.k3 : 0.0),
-          "the header's tracking gain is not the scenario's k3");
+  tally.ask(scenario, recording.time_step == file.scenario.time_step, "the header's time step is not the scenario's");
+  tally.ask(scenario, recording.motion == law_of(file),
+            "the header's motion is not that of its scenario and integrator");
+  tally.ask(scenario, recording.tracking_gain == (formation ? formation->gains.k3 : 0.0),
+            "the header's tracking gain is not the scenario's k3");
   if (formation && recording.remedies) {
-    require(scenario, has_its_offsets(file), "the header's offsets are not the scenario's");
-    require(scenario, recording.relative_frame == !recording.remedies->absolute_frame,
-            "the header's frame is not that of its controller");
+    tally.ask(scenario, has_its_offsets(file), "the header's offsets are not the scenario's");
+    tally.ask(scenario, recording.relative_frame == !recording.remedies->absolute_frame,
+              "the header's frame is not that of its controller");
   }
   if (!formation)
-    require(scenario, !recording.relative_frame && recording.offsets.empty(), "the header is that of a formation");
+    tally.ask(scenario, !recording.relative_frame && recording.offsets.empty(), "the header is that of a formation");
   if (meant) {
     tally.report.scenario_was_given = true;
-    require(scenario, write_scenario(*meant) == write_scenario(file.scenario),
-            "the scenario of the recording is not the one given");
+    tally.ask(scenario, write_scenario(*meant) == write_scenario(file.scenario),
+              "the scenario of the recording is not the one given");
   }
   const std::vector<formation::Robot>& robots = file.scenario.robots;
   const bool starts = std::equal(robots.begin(), robots.end(), first.robots.begin(), first.robots.end(),
                                  [](const formation::Robot& robot, const RobotStep& seen) {
                                    return robot.position == seen.position && robot.velocity == seen.velocity;
                                  });
-  require(AuditPoint::sequence, first.time == 0.0, "the first row is not at t = 0");
-  require(AuditPoint::sequence, starts, "the first row is not the scenario's start");
-}
-
-bool has_arrived(const formation::Robot& robot, Vec2 position, double tolerance) {
-  const exact::Point d = exact::exactly(position) - exact::exactly(robot.goals.back());
-  const Rational reach(tolerance);
-  return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));  // distances in a run are rounded
+  tally.ask(AuditPoint::sequence, first.time == 0.0, "the first row is not at t = 0");
+  tally.ask(AuditPoint::sequence, starts, "the first row is not the scenario's start");
 }
 
 /// The end of a run. Its last row has no decisions, so that modes stand in the one before.
@@ -102,7 +89,7 @@ struct End {
 /// them, stay because their goals are out of reach or taken.
 bool has_ended(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    if (has_arrived(s.robots[i], end.last.robots[i].position, s.arrival_tolerance)) continue;
+    if (has_reached(s.robots[i].goals.back(), end.last.robots[i].position, s.arrival_tolerance)) continue;
     if (!end.stayed(i)) return false;
     somebody_stays = true;
   }
@@ -134,7 +121,7 @@ class RunAudit {
   void take(SharedRow row) {
     if (rows_ == 0) begin(*row);
     if (why_.empty()) why_ = obstruction_in(*row);
-    if (judges_ && row_) judge(row.get());
+    if (run_ && row_) judge(row.get());
     if (row_) {
       before_.emplace();
       for (const RobotStep& robot : row_->robots) before_->push_back({robot.chosen, robot.mode});
@@ -152,9 +139,8 @@ class RunAudit {
     judge(nullptr);
     judge_whole();
     const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before()}, tally_.report.has_staying);
-    is_whole_run ? tally_.proven(AuditPoint::sequence)
-                 : tally_.refuted(AuditPoint::sequence,
-                                  "the last row is before the time limit, and not every robot has arrived");
+    tally_.ask(AuditPoint::sequence, is_whole_run,
+               "the last row is before the time limit, and not every robot has arrived");
     return std::move(tally_);
   }
 
@@ -164,8 +150,8 @@ class RunAudit {
     tally_.report.rows = rows_;
     look_at_plans();
     if (!why_.empty()) return unauditable();
-    if (!judges_) return std::move(tally_);
-    judges_->places.take(*row_);
+    if (!run_) return std::move(tally_);
+    run_->places.take(*row_);
     judge_whole();
     return std::move(tally_);
   }
@@ -187,43 +173,15 @@ class RunAudit {
     return std::move(tally_);
   }
 
-  /// Made once the header is known. They refer to each other.
-  struct Judges {
-    Judges(const RecordingFile& file, AuditTally& tally)
-        : obstacles(rational_obstacles(file.scenario)),
-          ways(ways_of(file.scenario)),
-          law(law_in(file.recording)),
-          places(file),
-          decisions(file, obstacles, tally),
-          sequence(file, ways, law ? &*law : nullptr, tally),
-          motions(file, obstacles, ways, law ? &*law : nullptr, tally) {}
-
-    static std::vector<ExactWay> ways_of(const formation::Scenario& scenario) {
-      std::vector<ExactWay> ways;
-      for (const formation::MovingObstacle& o : scenario.moving_obstacles) ways.emplace_back(o.motion);
-      return ways;
-    }
-    static std::optional<exact::ExponentialLaw> law_in(const formation::Recording& recording) {
-      if (recording.motion != MotionLaw::exponential) return std::nullopt;
-      return exact::ExponentialLaw(Rational(recording.tracking_gain), Rational(recording.time_step));
-    }
-
-    std::vector<RationalObstacle> obstacles;
-    std::vector<ExactWay> ways;
-    std::optional<exact::ExponentialLaw> law;
-    PlacesInRows places;
-    DecisionAudit decisions;
-    SequenceAudit sequence;
-    MotionAudit motions;
-  };
-
   void begin(const Step& first) {
     why_ = obstruction_in(file_);
     if (why_.empty()) why_ = obstruction_in(first);
     if (!why_.empty()) return;
     check_header(file_, first, meant_, tally_);
     of_header_ = tally_.report.findings.size();
-    judges_.emplace(file_, tally_);
+    run_.emplace(file_, tally_);
+    for (const auto& audit_point : {audit_decisions, audit_sequence, audit_motions})
+      points_.push_back(audit_point(*run_));
   }
 
   /// The row that was taken last. `next`: null after the last.
@@ -231,20 +189,18 @@ class RunAudit {
     if (!why_.empty()) return;
     call_wait_hook();  // a long audit ends where its caller wants to
     const RowInRun at{rows_ - 1, *row_, before(), next};
-    judges_->places.take(at.row);
-    judges_->sequence.check_row(at);
+    run_->places.take(at.row);
+    for (const auto& point : points_) point->check_row(at);
     if (!next) return;
-    judges_->decisions.check(at);
-    judges_->sequence.check_step(at);
-    if (at.row.time >= 0.0 && at.row.time < next->time) judges_->motions.check(at);
+    for (const auto& point : points_) point->check_step(at);
   }
 
   /// Points (2) and (8), whose findings come before those of rows.
   void judge_whole() {
     std::vector<std::string>& findings = tally_.report.findings;
     const auto of_rows = static_cast<std::ptrdiff_t>(findings.size());
-    BodyAudit(file_, judges_->obstacles, judges_->places, tally_).check();
-    audit_plans(file_, judges_->obstacles, judges_->places, tally_);
+    audit_bodies(*run_);
+    audit_plans(*run_);
     std::rotate(findings.begin() + static_cast<std::ptrdiff_t>(of_header_), findings.begin() + of_rows, findings.end());
   }
 
@@ -253,12 +209,37 @@ class RunAudit {
   const RecordingFile& file_;
   const formation::Scenario* meant_;
   AuditTally tally_;
-  std::optional<Judges> judges_;  ///< nothing before the first row, and where there is a `why_`
-  std::string why_;               ///< why the run can't be audited; else empty
+  std::optional<AuditedRun> run_;  ///< nothing before the first row, and where there is a `why_`
+  std::vector<std::unique_ptr<RowAudit>> points_;
+  std::string why_;  ///< why the run can't be audited; else empty
   std::optional<RowBefore> before_;
   SharedRow row_;
   std::size_t rows_ = 0;
   std::size_t of_header_ = 0;  ///< findings
+};
+
+/// Lines of a file or a pipe with their digest, which is made while they are read; "-" is standard input.
+class SealedLines {
+ public:
+  explicit SealedLines(const std::filesystem::path& path) : lines_(path.string(), kLargestWholeFile) {}
+
+  bool next(std::string_view& line) {
+    if (!lines_.next(line)) return false;
+    if (lines_.number() > 1) hash_.add(last_ += '\n');
+    last_ = line;
+    return true;
+  }
+  const std::string& file() const { return lines_.file(); }
+  /// Whether the last line has the digest of all lines above it. REQUIRES: a recording was read to its end.
+  bool are_sealed() {
+    const Json last = Json::parse(last_);
+    return last.contains("end") && last["end"].value("sha256", "") == hash_.digest();
+  }
+
+ private:
+  TextLines lines_;
+  Sha256 hash_;
+  std::string last_;  ///< not in the hash yet
 };
 
 /// The counts that are sums of others.
@@ -270,6 +251,13 @@ AuditReport finished(AuditTally tally) {
   r.unproven = r[AuditPoint::motions].open;
   r.inconsistencies = r[AuditPoint::scenario].refuted + r[AuditPoint::sequence].refuted;
   return std::move(r);
+}
+
+void add(PointCount& sum, const PointCount& other) {
+  sum.proven += other.proven;
+  sum.refuted += other.refuted;
+  sum.open += other.open;
+  sum.unlisted += other.unlisted;
 }
 
 /// What is said of rows that did not come goes.
@@ -284,11 +272,7 @@ AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError&
   drop_what_follows(audit.rows(), audit.last_row(), run.recording);
   AuditReport report = finished(audit.finish_early());
   PointCount all;
-  for (const PointCount& point : report.points) {
-    all.proven += point.proven;
-    all.refuted += point.refuted;
-    all.open += point.open;
-  }
+  for (const PointCount& point : report.points) add(all, point);
   const std::string found = "; audited so far: " + geometry::counted(report.rows, "row") + ", " +
                             geometry::counted(all.asked(), "question") + ", " + std::to_string(all.refuted) +
                             " refuted, " + std::to_string(all.open) + " left open";
@@ -298,6 +282,13 @@ AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError&
 }
 
 }  // namespace
+
+AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
+    : file(recorded), scenario(file.scenario), duration(file.recording.time_step), places(file), tally(counts) {
+  for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.emplace_back(o.shape);
+  for (const formation::MovingObstacle& o : scenario.moving_obstacles) ways.emplace_back(o.motion);
+  if (file.recording.motion == MotionLaw::exponential) law.emplace(Rational(file.recording.tracking_gain), duration);
+}
 
 const char* name(AuditPoint point) {
   constexpr const char* kNames[] = {"scenario", "bodies",   "completeness", "half_planes",
@@ -331,19 +322,13 @@ AuditReport audit_recording(const std::filesystem::path& path, const formation::
     return audited_so_far(audit, run, error);
   }
   AuditTally tally = audit.finish();
-  const AuditPoint point = AuditPoint::scenario;
-  lines.are_sealed() ? tally.proven(point)
-                     : tally.refuted(point, "the lines are not those that the sha256 of the last one was made of");
+  tally.ask(AuditPoint::scenario, lines.are_sealed(),
+            "the lines are not those that the sha256 of the last one was made of");
   return finished(std::move(tally));
 }
 
 void add(AuditReport& sum, const AuditReport& other) {
-  for (std::size_t p = 0; p < kAuditPoints; ++p) {
-    sum.points[p].proven += other.points[p].proven;
-    sum.points[p].refuted += other.points[p].refuted;
-    sum.points[p].open += other.points[p].open;
-    sum.points[p].unlisted += other.points[p].unlisted;
-  }
+  for (std::size_t p = 0; p < kAuditPoints; ++p) add(sum.points[p], other.points[p]);
   for (std::size_t AuditReport::*count :
        {&AuditReport::rows, &AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps,
         &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,

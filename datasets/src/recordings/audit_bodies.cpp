@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recordings/audit_bodies.h"
+#include "recordings/audit_points.h"
 
 #include <algorithm>
 #include <string>
@@ -10,9 +10,6 @@
 namespace exactvo::datasets {
 namespace {
 
-using exact::exactly;
-using exact::Point;
-using exact::Rational;
 using formation::Outlook;
 using geometry::Vec2;
 using vo::Body;
@@ -25,113 +22,124 @@ bool is_edge_of(const geometry::ConvexShape& shape, const RationalObstacle& obst
          });
 }
 
+class BodyAudit {
+ public:
+  explicit BodyAudit(const AuditedRun& run) : run_(run), covered_(run.file.recording.bodies.size()) {}
+
+  void check() {
+    for (std::size_t number = 0; number < run_.file.recording.bodies.size(); ++number) check_body(number);
+    check_outlooks();
+  }
+
+ private:
+  void check_body(std::size_t number) {
+    const Body& body = run_.file.recording.bodies[number];
+    const bool stands_still = body.kind == BodyKind::enclosure || body.kind == BodyKind::obstacle_edge;
+    if (!stands_still || body.owners.empty()) return;  // what has no owner may not be named (audit_decisions.cpp)
+    const std::string name = "body " + std::to_string(number);
+    const std::size_t most = *std::max_element(body.owners.begin(), body.owners.end());
+    if (most >= run_.obstacles.size())
+      return run_.tally.refuted(AuditPoint::bodies, name + " stands for an obstacle that the scenario does not have");
+    if (!geometry::is_valid(body.shape)) return run_.tally.refuted(AuditPoint::bodies, name + " is no valid shape");
+    if (body.kind == BodyKind::obstacle_edge) {
+      const bool is_edge = body.owners.size() == 1 && is_edge_of(body.shape, run_.obstacles[body.owners.front()]);
+      return run_.tally.ask(AuditPoint::bodies, is_edge, name + " is no edge of its obstacle");
+    }
+    bool stands_for_all = true;
+    for (const std::size_t owner : body.owners) {
+      Covered& covered = covered_[number].emplace_back(Covered{owner, {}});
+      for (const exact::Straight& edge : run_.obstacles[owner].edges) {
+        covered.edges.push_back(exact::contains(body.shape, edge.from) && exact::contains(body.shape, edge.to));
+        covered.any = covered.any || covered.edges.back();
+      }
+      stands_for_all = stands_for_all && covered.any;
+    }
+    run_.tally.ask(AuditPoint::bodies, stands_for_all || is_made_of_its_owner(body),
+                   name + " does not contain an edge of every obstacle that it stands for");
+  }
+
+  /// A convex piece from the middle of a polygon contains none of its edges.
+  bool is_made_of_its_owner(const Body& body) const {
+    const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
+    if (!polygon || body.owners.size() != 1) return false;
+    const std::vector<Vec2> all = geometry::vertices_of(*run_.obstacles[body.owners.front()].obstacle);
+    return std::all_of(polygon->vertices.begin(), polygon->vertices.end(),
+                       [&](Vec2 v) { return std::find(all.begin(), all.end(), v) != all.end(); });
+  }
+
+  void check_outlooks() {
+    const std::vector<Outlook>& outlooks = run_.file.recording.outlooks;
+    std::vector<const Outlook*> last(run_.scenario.robots.size(), nullptr);
+    const bool has_enclosures =
+        std::any_of(run_.file.recording.bodies.begin(), run_.file.recording.bodies.end(),
+                    [](const Body& body) { return body.kind == BodyKind::enclosure && !body.owners.empty(); });
+    const bool has_edges = std::any_of(run_.file.recording.bodies.begin(), run_.file.recording.bodies.end(),
+                                       [](const Body& body) { return body.kind == BodyKind::obstacle_edge; });
+    // A run among edges names only those that it met, if any: completeness is asked of its rows.
+    const bool names_none = !has_enclosures && std::all_of(outlooks.begin(), outlooks.end(),
+                                                           [](const Outlook& o) { return o.bodies.empty(); });
+    if (has_enclosures && has_edges)
+      run_.tally.refuted(AuditPoint::bodies, "the bodies are enclosures and edges: no method has both");
+    for (const Outlook& outlook : outlooks) {
+      const std::string name =
+          "the enclosures of " + run_.scenario.robots[outlook.robot].id + " for goal " + std::to_string(outlook.goal);
+      if (!is_in_order(outlook, last[outlook.robot]))
+        run_.tally.refuted(AuditPoint::bodies, name + " come out of turn");
+      last[outlook.robot] = &outlook;
+      if (has_edges || names_none) continue;
+      const std::vector<bool> covered = covered_by(outlook);
+      for (std::size_t k = 0; k < run_.obstacles.size(); ++k)
+        run_.tally.ask(AuditPoint::bodies, covered[k],
+                       name + " leave out a part of obstacle '" + run_.scenario.obstacles[k].id + "'");
+    }
+    for (std::size_t i = 0; i < last.size() && has_enclosures; ++i)
+      if (!last[i]) run_.tally.refuted(AuditPoint::bodies, run_.scenario.robots[i].id + " has no enclosures");
+  }
+
+  /// The first at t = 0 for the first goal, then goal after goal, each from a row at which the last goal was reached.
+  /// Robots of a formation have no goals and see otherwise when they begin and end to go by a plan.
+  bool is_in_order(const Outlook& outlook, const Outlook* before) const {
+    if (!before) return outlook.time == 0.0 && outlook.goal == 0;
+    if (run_.scenario.formation) {
+      return outlook.goal == 0 && outlook.time > before->time && run_.places.at_begin(outlook);
+    }
+    const formation::Robot& robot = run_.scenario.robots[outlook.robot];
+    if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
+      return false;
+    const Vec2* place = run_.places.at_begin(outlook);
+    return place &&
+           has_reached(robot.goals[before->goal], *place, std::max(robot.radius, run_.scenario.arrival_tolerance));
+  }
+
+  /// Of each obstacle, whether each of its edges lies in a body of the outlook that stands for it.
+  std::vector<bool> covered_by(const Outlook& outlook) const {
+    std::vector<std::vector<bool>> edges;
+    for (const RationalObstacle& o : run_.obstacles) edges.emplace_back(o.edges.size(), false);
+    for (const std::size_t body : outlook.bodies)
+      for (const Covered& covered : covered_[body])
+        for (std::size_t e = 0; e < covered.edges.size(); ++e)
+          if (covered.edges[e]) edges[covered.owner][e] = true;
+    std::vector<bool> all;
+    for (const std::vector<bool>& of_obstacle : edges)
+      all.push_back(std::all_of(of_obstacle.begin(), of_obstacle.end(), [](bool b) { return b; }));
+    return all;
+  }
+
+  /// Edges of one owner that lie in the body.
+  struct Covered {
+    std::size_t owner;
+    std::vector<bool> edges;
+    bool any = false;
+  };
+
+  const AuditedRun& run_;
+  std::vector<std::vector<Covered>> covered_;  ///< of each body; of enclosures only
+};
+
 }  // namespace
 
-BodyAudit::BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
-                     const PlacesInRows& places, AuditTally& tally)
-    : file_(file), obstacles_(obstacles), places_(places), covered_(file.recording.bodies.size()), tally_(tally) {}
-
-void BodyAudit::check() {
-  for (std::size_t number = 0; number < file_.recording.bodies.size(); ++number) check_body(number);
-  check_outlooks();
-}
-
-void BodyAudit::check_body(std::size_t number) {
-  const Body& body = file_.recording.bodies[number];
-  const bool stands_still = body.kind == BodyKind::enclosure || body.kind == BodyKind::obstacle_edge;
-  if (!stands_still || body.owners.empty()) return;  // what has no owner may not be named (audit_decisions.h)
-  const std::string name = "body " + std::to_string(number);
-  const std::size_t most = *std::max_element(body.owners.begin(), body.owners.end());
-  if (most >= obstacles_.size())
-    return tally_.refuted(AuditPoint::bodies, name + " stands for an obstacle that the scenario does not have");
-  if (!geometry::is_valid(body.shape)) return tally_.refuted(AuditPoint::bodies, name + " is no valid shape");
-  if (body.kind == BodyKind::obstacle_edge) {
-    const bool is_edge = body.owners.size() == 1 && is_edge_of(body.shape, obstacles_[body.owners.front()]);
-    return is_edge ? tally_.proven(AuditPoint::bodies)
-                   : tally_.refuted(AuditPoint::bodies, name + " is no edge of its obstacle");
-  }
-  bool stands_for_all = true;
-  for (const std::size_t owner : body.owners) {
-    Covered& covered = covered_[number].emplace_back(Covered{owner, {}});
-    for (const exact::Straight& edge : obstacles_[owner].edges) {
-      covered.edges.push_back(exact::contains(body.shape, edge.from) && exact::contains(body.shape, edge.to));
-      covered.any = covered.any || covered.edges.back();
-    }
-    stands_for_all = stands_for_all && covered.any;
-  }
-  stands_for_all || is_made_of_its_owner(body)
-      ? tally_.proven(AuditPoint::bodies)
-      : tally_.refuted(AuditPoint::bodies, name + " does not contain an edge of every obstacle that it stands for");
-}
-
-/// A convex piece from the middle of a polygon contains none of its edges.
-bool BodyAudit::is_made_of_its_owner(const Body& body) const {
-  const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
-  if (!polygon || body.owners.size() != 1) return false;
-  const std::vector<Vec2> all = geometry::vertices_of(*obstacles_[body.owners.front()].obstacle);
-  return std::all_of(polygon->vertices.begin(), polygon->vertices.end(),
-                     [&](Vec2 v) { return std::find(all.begin(), all.end(), v) != all.end(); });
-}
-
-void BodyAudit::check_outlooks() {
-  const std::vector<Outlook>& outlooks = file_.recording.outlooks;
-  std::vector<const Outlook*> last(file_.scenario.robots.size(), nullptr);
-  const bool has_enclosures =
-      std::any_of(file_.recording.bodies.begin(), file_.recording.bodies.end(),
-                  [](const Body& body) { return body.kind == BodyKind::enclosure && !body.owners.empty(); });
-  const bool has_edges = std::any_of(file_.recording.bodies.begin(), file_.recording.bodies.end(),
-                                     [](const Body& body) { return body.kind == BodyKind::obstacle_edge; });
-  // A run among edges names only those that it met, if any: completeness is asked of its rows.
-  const bool names_none = !has_enclosures && std::all_of(outlooks.begin(), outlooks.end(),
-                                                         [](const Outlook& o) { return o.bodies.empty(); });
-  if (has_enclosures && has_edges)
-    tally_.refuted(AuditPoint::bodies, "the bodies are enclosures and edges: no method has both");
-  for (const Outlook& outlook : outlooks) {
-    const std::string name =
-        "the enclosures of " + file_.scenario.robots[outlook.robot].id + " for goal " + std::to_string(outlook.goal);
-    if (!is_in_order(outlook, last[outlook.robot])) tally_.refuted(AuditPoint::bodies, name + " come out of turn");
-    last[outlook.robot] = &outlook;
-    if (has_edges || names_none) continue;
-    const std::vector<bool> covered = covered_by(outlook);
-    for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      covered[k] ? tally_.proven(AuditPoint::bodies)
-                 : tally_.refuted(AuditPoint::bodies,
-                                  name + " leave out a part of obstacle '" + file_.scenario.obstacles[k].id + "'");
-  }
-  for (std::size_t i = 0; i < last.size() && has_enclosures; ++i)
-    if (!last[i]) tally_.refuted(AuditPoint::bodies, file_.scenario.robots[i].id + " has no enclosures");
-}
-
-/// The first at t = 0 for the first goal, then goal after goal, each from a row at which the last goal was reached.
-/// Robots of a formation have no goals and see otherwise when they begin and end to go by a plan.
-bool BodyAudit::is_in_order(const Outlook& outlook, const Outlook* before) const {
-  if (!before) return outlook.time == 0.0 && outlook.goal == 0;
-  if (file_.scenario.formation) {
-    return outlook.goal == 0 && outlook.time > before->time && places_.at_begin(outlook);
-  }
-  const formation::Robot& robot = file_.scenario.robots[outlook.robot];
-  if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
-    return false;
-  const Vec2* place = places_.at_begin(outlook);
-  if (!place) return false;
-  // Reached within the robot's radius; distances there are rounded.
-  const Point d = exactly(*place) - exactly(robot.goals[before->goal]);
-  const Rational reach(std::max(robot.radius, file_.scenario.arrival_tolerance));
-  return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));
-}
-
-/// Of each obstacle, whether each of its edges lies in a body of the outlook that stands for it.
-std::vector<bool> BodyAudit::covered_by(const Outlook& outlook) const {
-  std::vector<std::vector<bool>> edges;
-  for (const RationalObstacle& o : obstacles_) edges.emplace_back(o.edges.size(), false);
-  for (const std::size_t body : outlook.bodies)
-    for (const Covered& covered : covered_[body])
-      for (std::size_t e = 0; e < covered.edges.size(); ++e)
-        if (covered.edges[e]) edges[covered.owner][e] = true;
-  std::vector<bool> all;
-  for (const std::vector<bool>& of_obstacle : edges)
-    all.push_back(std::all_of(of_obstacle.begin(), of_obstacle.end(), [](bool b) { return b; }));
-  return all;
+void audit_bodies(const AuditedRun& run) {
+  BodyAudit(run).check();
 }
 
 }  // namespace exactvo::datasets

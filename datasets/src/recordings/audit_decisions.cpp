@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recordings/audit_decisions.h"
+//
+// That nothing is missing is asked of the scene itself, not of the bodies: for every edge of an obstacle that the
+// robot could reach within the step some hard half-plane of its row excludes the edge's velocity obstacle. Of a
+// polygon only the edges that face the robot are asked: a disc that goes straight from outside and meets the others
+// first does not exist. (At the first contact with a point inside such an edge the disc's centre is on the edge's
+// outer side, having come from the inner one; it was nearer to the edge's line just before, so it overlapped already.
+// At a vertex between two of them its way leads away from the vertex.)
+#include "recordings/audit_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +15,7 @@
 
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/lp/certificate.h"
 #include "recordings/exact_shapes.h"
 
 namespace exactvo::datasets {
@@ -89,364 +97,382 @@ bool is_beyond_proof(const lp::Problem& problem, const lp::Solution& chosen) {
 
 constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
 
-}  // namespace
+class DecisionAudit : public RowAudit {
+ public:
+  explicit DecisionAudit(const AuditedRun& run)
+      : run_(run), literal_horizons_(run.file.recording.remedies && !run.file.recording.remedies->tau_clamp) {}
 
-DecisionAudit::DecisionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
-                             AuditTally& tally)
-    : file_(file),
-      obstacles_(obstacles),
-      duration_(file.recording.time_step),
-      literal_horizons_(file.recording.remedies && !file.recording.remedies->tau_clamp),
-      tally_(tally) {}
-
-/// m/s, no less than the length of any velocity within the bound.
-double DecisionAudit::fastest(std::size_t robot) const {
-  constexpr double kDiagonal = 1.4142135623731;  // above sqrt 2 by more than the product's rounding
-  const double speed = file_.scenario.robots[robot].max_speed;
-  return file_.scenario.speed_bound == formation::SpeedBoundKind::disc ? speed : kDiagonal * speed;
-}
-
-DecisionAudit::Seen DecisionAudit::seen(const RowInRun& at, std::size_t robot) const {
-  const RobotStep& state = at.row.robots[robot];
-  const Rational radius(file_.scenario.robots[robot].radius), reach = duration_ * Rational(fastest(robot));
-  return {at.number, robot, &at.row, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
-}
-
-void DecisionAudit::place_moving(const Step& step) {
-  moved_.clear();
-  for (std::size_t k = 0; k < file_.scenario.moving_obstacles.size() && k < step.moving.size(); ++k)
-    moved_.push_back(formation::hull_of(file_.scenario.moving_obstacles[k], step.moving[k].displacement));
-}
-
-void DecisionAudit::check(const RowInRun& at) {
-  place_moving(at.row);
-  std::vector<Seen> all;
-  for (std::size_t i = 0; i < at.row.robots.size(); ++i) all.push_back(seen(at, i));
-  for (const Seen& s : all) {
-    nothing_is_missing(s);
-    half_planes_hold(s);
-    choice_is_best(s);
-  }
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot '" + id(all[j]) + "'");
-}
-
-// --- (3) Nothing is missing ---
-
-void DecisionAudit::answer(Verdict verdict, const Seen& s, const std::string& whom) {
-  if (verdict == Verdict::clear) return tally_.proven(AuditPoint::completeness);
-  if (verdict == Verdict::unknown)
-    return tally_.open(AuditPoint::completeness, at_row(s.row, id(s) + " overlaps " + whom +
-                                                                   ", or decides for less than "
-                                                                   "a time step: no half-plane is promised"));
-  tally_.refuted(AuditPoint::completeness,
-                 at_row(s.row, "no half-plane keeps " + id(s) + " from " + whom + " for a time step"));
-}
-
-void DecisionAudit::nothing_is_missing(const Seen& s) {
-  const geometry::Box here = box_of(s.state->anchor);
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (are_apart(here, obstacles_[k].box, s.near)) continue;
-    bool in_reach = false;
-    const Verdict verdict = against_edges(s, obstacles_[k], in_reach);
-    if (in_reach) answer(verdict, s, "obstacle '" + file_.scenario.obstacles[k].id + "'");
-  }
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
-    bool in_reach = false;
-    const Verdict verdict = against_moving(s, k, in_reach);
-    if (in_reach) answer(verdict, s, "moving obstacle '" + file_.scenario.moving_obstacles[k].id + "'");
-  }
-}
-
-Verdict DecisionAudit::against_edges(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
-  const Rational within = (s.radius + s.reach) * (s.radius + s.reach), rim = s.radius * s.radius;
-  const bool is_solid = geometry::has_interior(*obstacle.obstacle);
-  if (is_solid && exact::is_inside(s.at, *obstacle.obstacle)) {
-    in_reach = true;
-    return Verdict::unknown;
-  }
-  bool overlaps = false, missing = false;
-  for (const std::size_t e : obstacle.near(box_of(s.state->anchor), s.near)) {
-    const exact::Straight& edge = obstacle.edges[e];
-    const Rational away = exact::squared_distance(s.at, edge);
-    if (away > within) continue;
-    in_reach = true;
-    overlaps = overlaps || away < rim;
-    const bool faces_away = is_solid && sgn(exact::cross(edge.to - edge.from, s.at - edge.from)) > 0;
-    missing = missing || (!faces_away && !is_excluded(s, obstacle.segments[e]));
-  }
-  if (overlaps || (missing && literal_horizons_)) return Verdict::unknown;
-  return missing ? Verdict::meets : Verdict::clear;
-}
-
-bool DecisionAudit::is_excluded(const Seen& s, const geometry::Segment& edge) const {
-  const double radius = file_.scenario.robots[s.robot].radius, step = file_.recording.time_step;
-  return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
-    return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});
-  });
-}
-
-/// At its present velocity.
-Verdict DecisionAudit::against_moving(const Seen& s, std::size_t k, bool& in_reach) const {
-  const formation::MovedObstacle& moved = s.step->moving[k];
-  const Point u = exactly(moved.velocity);
-  const Rational reach = s.reach + duration_ * exact::root(exact::dot(u, u)).high;
-  in_reach = exact::is_within(moved_[k], s.at, s.radius + reach);
-  if (!in_reach) return Verdict::clear;
-  if (!exact::is_clear(moved_[k], s.at, s.radius)) return Verdict::unknown;
-  const double radius = file_.scenario.robots[s.robot].radius, step = file_.recording.time_step;
-  const bool excluded =
-      std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
-        return c.source == BodyKind::moving_obstacle && c.index == k &&
-               vo::is_true({moved_[k], s.state->anchor, radius, step, moved.velocity, c.half_plane});
-      });
-  return excluded ? Verdict::clear : Verdict::meets;
-}
-
-/// Within the step, and one of them does something about it.
-bool DecisionAudit::can_meet(const Seen& a, const Seen& b) const {
-  constexpr double kRounding = 1.0 + 0x1p-50;
-  if (are_apart(box_of(a.state->anchor), box_of(b.state->anchor), kRounding * (a.near + b.near))) return false;
-  const std::vector<formation::Robot>& robots = file_.scenario.robots;
-  if (!robots[a.robot].cooperates && !robots[b.robot].cooperates) return false;
-  const Rational near = a.radius + b.radius + a.reach + b.reach;
-  const Point apart = b.at - a.at;
-  return exact::dot(apart, apart) <= near * near;
-}
-
-/// Two that cooperate: opposite normals, bit for bit, and the sum of the offsets for the relative velocity. One that
-/// does not keeps its present velocity.
-Verdict DecisionAudit::against_robot(const Seen& a, const Seen& b) const {
-  const Rational reach = a.radius + b.radius;
-  const Point apart = b.at - a.at;
-  if (exact::dot(apart, apart) < reach * reach) return Verdict::unknown;
-  const bool a_yields = file_.scenario.robots[a.robot].cooperates;
-  const bool b_yields = file_.scenario.robots[b.robot].cooperates;
-  const RecordedConstraint* of_a = a_yields ? half_against(*a.state, b.robot) : nullptr;
-  const RecordedConstraint* of_b = b_yields ? half_against(*b.state, a.robot) : nullptr;
-  if ((a_yields && !of_a) || (b_yields && !of_b)) return Verdict::meets;
-  if (of_a && of_b && of_a->half_plane.normal != -of_b->half_plane.normal) return Verdict::meets;
-  const Point n = of_a ? exactly(of_a->half_plane.normal) : exactly(-of_b->half_plane.normal);
-  const auto at_least = [](const RecordedConstraint* half, const Point& normal, const RobotStep& robot) {
-    return half ? Rational(half->half_plane.offset) : Rational(exact::dot(normal, exactly(robot.anchor_velocity)));
-  };
-  const Point m{Rational(-n.x), Rational(-n.y)};
-  const Rational offset = at_least(of_a, n, *a.state) + at_least(of_b, m, *b.state);
-  return exact::excludes_disc(apart, reach, n, offset, duration_) ? Verdict::clear : Verdict::meets;
-}
-
-// --- (4) Half-planes ---
-
-void DecisionAudit::half_planes_hold(const Seen& s) {
-  std::size_t uncertified = 0;
-  for (const RecordedConstraint& c : s.state->constraints) {
-    const std::string wrong = misnamed(s, c);
-    if (!wrong.empty()) {
-      tally_.refuted(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + wrong));
-      continue;
+  void check_step(const RowInRun& at) override {
+    place_moving(at.row);
+    std::vector<Seen> all;
+    for (std::size_t i = 0; i < at.row.robots.size(); ++i) all.push_back(seen(at, i));
+    for (const Seen& s : all) {
+      nothing_is_missing(s);
+      half_planes_hold(s);
+      choice_is_best(s);
     }
-    const bool is_true = holds(s, c);
-    if (!c.certified) ++uncertified;
-    tally_.report.half_planes += (c.certified || is_true) && c.source != BodyKind::robot;
-    if (is_true) {
-      tally_.proven(AuditPoint::half_planes);
-    } else if (c.certified || is_clear_of(s, c)) {
-      tally_.refuted(AuditPoint::half_planes,
-                     at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
-    } else {
-      tally_.open(AuditPoint::half_planes,
-                  at_row(s.row, "a half-plane of " + id(s) + " is not certified: it overlaps the body"));
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j)
+        if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot '" + id(all[j]) + "'");
+  }
+
+ private:
+  /// A robot of the row, and how far it can get within the step.
+  struct Seen {
+    std::size_t row, robot;
+    const Step* step;
+    const RobotStep* state;
+    Point at;
+    Rational radius, reach;
+    double near;  ///< no less than their sum
+  };
+
+  const std::string& id(const Seen& s) const { return run_.scenario.robots[s.robot].id; }
+
+  /// m/s, no less than the length of any velocity within the bound.
+  double fastest(std::size_t robot) const {
+    constexpr double kDiagonal = 1.4142135623731;  // above sqrt 2 by more than the product's rounding
+    const double speed = run_.scenario.robots[robot].max_speed;
+    return run_.scenario.speed_bound == formation::SpeedBoundKind::disc ? speed : kDiagonal * speed;
+  }
+
+  Seen seen(const RowInRun& at, std::size_t robot) const {
+    const RobotStep& state = at.row.robots[robot];
+    const Rational radius(run_.scenario.robots[robot].radius), reach = run_.duration * Rational(fastest(robot));
+    return {at.number, robot, &at.row, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
+  }
+
+  void place_moving(const Step& step) {
+    moved_.clear();
+    for (std::size_t k = 0; k < run_.scenario.moving_obstacles.size() && k < step.moving.size(); ++k)
+      moved_.push_back(formation::hull_of(run_.scenario.moving_obstacles[k], step.moving[k].displacement));
+  }
+
+  // --- (3) Nothing is missing ---
+
+  void answer(Verdict verdict, const Seen& s, const std::string& whom) {
+    if (verdict == Verdict::clear) return run_.tally.proven(AuditPoint::completeness);
+    if (verdict == Verdict::unknown)
+      return run_.tally.open(AuditPoint::completeness, at_row(s.row, id(s) + " overlaps " + whom +
+                                                                         ", or decides for less than "
+                                                                         "a time step: no half-plane is promised"));
+    run_.tally.refuted(AuditPoint::completeness,
+                       at_row(s.row, "no half-plane keeps " + id(s) + " from " + whom + " for a time step"));
+  }
+
+  void nothing_is_missing(const Seen& s) {
+    const geometry::Box here = box_of(s.state->anchor);
+    for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
+      if (are_apart(here, run_.obstacles[k].box, s.near)) continue;
+      bool in_reach = false;
+      const Verdict verdict = against_edges(s, run_.obstacles[k], in_reach);
+      if (in_reach) answer(verdict, s, "obstacle '" + run_.scenario.obstacles[k].id + "'");
+    }
+    for (std::size_t k = 0; k < moved_.size(); ++k) {
+      bool in_reach = false;
+      const Verdict verdict = against_moving(s, k, in_reach);
+      if (in_reach) answer(verdict, s, "moving obstacle '" + run_.scenario.moving_obstacles[k].id + "'");
     }
   }
-  const bool counts =
-      file_.recording.all_half_planes ? uncertified == s.state->uncertified : uncertified <= s.state->uncertified;
-  if (!counts)
-    tally_.refuted(AuditPoint::half_planes, at_row(s.row, "half-planes of " + id(s) +
-                                                              " that are not certified are not "
-                                                              "as many as it says"));
-}
 
-/// What is wrong with the names of a half-plane; empty where nothing is.
-std::string DecisionAudit::misnamed(const Seen& s, const RecordedConstraint& c) const {
-  const std::vector<vo::Body>& bodies = file_.recording.bodies;
-  if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
-    return " names no body that stands for something";
-  if (c.hard != is_static(c)) return " has the priority of another kind";
-  const vo::Body& body = bodies[c.body];
-  if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
-    if (c.piece != 0 || c.index != body.owners.front()) return " has another index than its body";
-    if (c.source == BodyKind::robot && c.index >= file_.scenario.robots.size()) return " is against no robot";
-    if (c.source == BodyKind::robot && (c.index == s.robot || !file_.scenario.robots[s.robot].cooperates))
-      return " is against itself, or of a robot that ignores others";
-    return c.source == BodyKind::moving_obstacle && c.index >= moved_.size() ? " is against what has no place" : "";
+  Verdict against_edges(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
+    const Rational within = (s.radius + s.reach) * (s.radius + s.reach), rim = s.radius * s.radius;
+    const bool is_solid = geometry::has_interior(*obstacle.obstacle);
+    if (is_solid && exact::is_inside(s.at, *obstacle.obstacle)) {
+      in_reach = true;
+      return Verdict::unknown;
+    }
+    bool overlaps = false, missing = false;
+    for (const std::size_t e : obstacle.near(box_of(s.state->anchor), s.near)) {
+      const exact::Straight& edge = obstacle.edges[e];
+      const Rational away = exact::squared_distance(s.at, edge);
+      if (away > within) continue;
+      in_reach = true;
+      overlaps = overlaps || away < rim;
+      const bool faces_away = is_solid && sgn(exact::cross(edge.to - edge.from, s.at - edge.from)) > 0;
+      missing = missing || (!faces_away && !is_excluded(s, obstacle.segments[e]));
+    }
+    if (overlaps || (missing && literal_horizons_)) return Verdict::unknown;
+    return missing ? Verdict::meets : Verdict::clear;
   }
-  if (!(c.tau >= file_.recording.time_step) && !literal_horizons_) return " looks less than a time step ahead";
-  if (c.source == BodyKind::obstacle_edge) return "";
-  const Outlook* outlook = nullptr;
-  for (const Outlook& o : file_.recording.outlooks)
-    if (o.robot == s.robot && o.time <= s.step->time) outlook = &o;
-  if (!outlook) return file_.recording.outlooks.empty() ? "" : " is none of its enclosures";
-  if (c.index >= outlook->bodies.size()) return " is none of its enclosures";
-  const std::size_t enclosure = outlook->bodies[c.index];
-  if (c.piece == 0) return enclosure == c.body ? "" : " is none of its enclosures";
-  const std::vector<std::size_t>& owners = bodies[enclosure].owners;
-  const bool is_piece = std::all_of(body.owners.begin(), body.owners.end(), [&](std::size_t owner) {
-    return std::find(owners.begin(), owners.end(), owner) != owners.end();
-  });
-  return is_piece ? "" : " is no piece of its enclosure";
-}
 
-/// By more than rounding: then a half-plane can be certified, and one that is said to be uncertified was forged.
-bool DecisionAudit::is_clear_of(const Seen& s, const RecordedConstraint& c) const {
-  constexpr double kRounding = 0x1p-40;  // of the coordinates
-  const Vec2 at = s.state->anchor;
-  double radius = file_.scenario.robots[s.robot].radius;
-  radius += kRounding * (std::fabs(at.x) + std::fabs(at.y) + radius);
-  const auto is_outside = [&](const geometry::ConvexShape& shape) {
-    return !geometry::is_valid(shape) || geometry::locate({shape, at, radius}, Vec2{}) == geometry::Place::outside;
+  bool is_excluded(const Seen& s, const geometry::Segment& edge) const {
+    const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
+    return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+      return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});
+    });
+  }
+
+  /// At its present velocity.
+  Verdict against_moving(const Seen& s, std::size_t k, bool& in_reach) const {
+    const formation::MovedObstacle& moved = s.step->moving[k];
+    const Point u = exactly(moved.velocity);
+    const Rational reach = s.reach + run_.duration * exact::root(exact::dot(u, u)).high;
+    in_reach = exact::is_within(moved_[k], s.at, s.radius + reach);
+    if (!in_reach) return Verdict::clear;
+    if (!exact::is_clear(moved_[k], s.at, s.radius)) return Verdict::unknown;
+    const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
+    const bool excluded =
+        std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+          return c.source == BodyKind::moving_obstacle && c.index == k &&
+                 vo::is_true({moved_[k], s.state->anchor, radius, step, moved.velocity, c.half_plane});
+        });
+    return excluded ? Verdict::clear : Verdict::meets;
+  }
+
+  /// Within the step, and one of them does something about it.
+  bool can_meet(const Seen& a, const Seen& b) const {
+    constexpr double kRounding = 1.0 + 0x1p-50;
+    if (are_apart(box_of(a.state->anchor), box_of(b.state->anchor), kRounding * (a.near + b.near))) return false;
+    const std::vector<formation::Robot>& robots = run_.scenario.robots;
+    if (!robots[a.robot].cooperates && !robots[b.robot].cooperates) return false;
+    const Rational near = a.radius + b.radius + a.reach + b.reach;
+    const Point apart = b.at - a.at;
+    return exact::dot(apart, apart) <= near * near;
+  }
+
+  /// Two that cooperate: opposite normals, bit for bit, and the sum of the offsets for the relative velocity. One that
+  /// does not keeps its present velocity.
+  Verdict against_robot(const Seen& a, const Seen& b) const {
+    const Rational reach = a.radius + b.radius;
+    const Point apart = b.at - a.at;
+    if (exact::dot(apart, apart) < reach * reach) return Verdict::unknown;
+    const bool a_yields = run_.scenario.robots[a.robot].cooperates;
+    const bool b_yields = run_.scenario.robots[b.robot].cooperates;
+    const RecordedConstraint* of_a = a_yields ? half_against(*a.state, b.robot) : nullptr;
+    const RecordedConstraint* of_b = b_yields ? half_against(*b.state, a.robot) : nullptr;
+    if ((a_yields && !of_a) || (b_yields && !of_b)) return Verdict::meets;
+    if (of_a && of_b && of_a->half_plane.normal != -of_b->half_plane.normal) return Verdict::meets;
+    const Point n = of_a ? exactly(of_a->half_plane.normal) : exactly(-of_b->half_plane.normal);
+    const auto at_least = [](const RecordedConstraint* half, const Point& normal, const RobotStep& robot) {
+      return half ? Rational(half->half_plane.offset) : Rational(exact::dot(normal, exactly(robot.anchor_velocity)));
+    };
+    const Point m{Rational(-n.x), Rational(-n.y)};
+    const Rational offset = at_least(of_a, n, *a.state) + at_least(of_b, m, *b.state);
+    return exact::excludes_disc(apart, reach, n, offset, run_.duration) ? Verdict::clear : Verdict::meets;
+  }
+
+  // --- (4) Half-planes ---
+
+  void half_planes_hold(const Seen& s) {
+    std::size_t uncertified = 0;
+    for (const RecordedConstraint& c : s.state->constraints) {
+      const std::string wrong = misnamed(s, c);
+      if (!wrong.empty()) {
+        run_.tally.refuted(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + wrong));
+        continue;
+      }
+      const bool is_true = holds(s, c);
+      if (!c.certified) ++uncertified;
+      run_.tally.report.half_planes += (c.certified || is_true) && c.source != BodyKind::robot;
+      if (is_true) {
+        run_.tally.proven(AuditPoint::half_planes);
+      } else if (c.certified || is_clear_of(s, c)) {
+        run_.tally.refuted(AuditPoint::half_planes,
+                           at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
+      } else {
+        run_.tally.open(AuditPoint::half_planes,
+                        at_row(s.row, "a half-plane of " + id(s) + " is not certified: it overlaps the body"));
+      }
+    }
+    const bool counts =
+        run_.file.recording.all_half_planes ? uncertified == s.state->uncertified : uncertified <= s.state->uncertified;
+    if (!counts)
+      run_.tally.refuted(AuditPoint::half_planes, at_row(s.row, "half-planes of " + id(s) +
+                                                                    " that are not certified are not "
+                                                                    "as many as it says"));
+  }
+
+  /// What is wrong with the names of a half-plane; empty where nothing is.
+  std::string misnamed(const Seen& s, const RecordedConstraint& c) const {
+    const std::vector<vo::Body>& bodies = run_.file.recording.bodies;
+    if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
+      return " names no body that stands for something";
+    if (c.hard != is_static(c)) return " has the priority of another kind";
+    const vo::Body& body = bodies[c.body];
+    if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
+      if (c.piece != 0 || c.index != body.owners.front()) return " has another index than its body";
+      if (c.source == BodyKind::robot && c.index >= run_.scenario.robots.size()) return " is against no robot";
+      if (c.source == BodyKind::robot && (c.index == s.robot || !run_.scenario.robots[s.robot].cooperates))
+        return " is against itself, or of a robot that ignores others";
+      return c.source == BodyKind::moving_obstacle && c.index >= moved_.size() ? " is against what has no place" : "";
+    }
+    if (!(c.tau >= run_.file.recording.time_step) && !literal_horizons_) return " looks less than a time step ahead";
+    if (c.source == BodyKind::obstacle_edge) return "";
+    const Outlook* outlook = nullptr;
+    for (const Outlook& o : run_.file.recording.outlooks)
+      if (o.robot == s.robot && o.time <= s.step->time) outlook = &o;
+    if (!outlook) return run_.file.recording.outlooks.empty() ? "" : " is none of its enclosures";
+    if (c.index >= outlook->bodies.size()) return " is none of its enclosures";
+    const std::size_t enclosure = outlook->bodies[c.index];
+    if (c.piece == 0) return enclosure == c.body ? "" : " is none of its enclosures";
+    const std::vector<std::size_t>& owners = bodies[enclosure].owners;
+    const bool is_piece = std::all_of(body.owners.begin(), body.owners.end(), [&](std::size_t owner) {
+      return std::find(owners.begin(), owners.end(), owner) != owners.end();
+    });
+    return is_piece ? "" : " is no piece of its enclosure";
+  }
+
+  /// By more than rounding: then a half-plane can be certified, and one that is said to be uncertified was forged.
+  bool is_clear_of(const Seen& s, const RecordedConstraint& c) const {
+    constexpr double kRounding = 0x1p-40;  // of the coordinates
+    const Vec2 at = s.state->anchor;
+    double radius = run_.scenario.robots[s.robot].radius;
+    radius += kRounding * (std::fabs(at.x) + std::fabs(at.y) + radius);
+    const auto is_outside = [&](const geometry::ConvexShape& shape) {
+      return !geometry::is_valid(shape) || geometry::locate({shape, at, radius}, Vec2{}) == geometry::Place::outside;
+    };
+    if (c.source == BodyKind::moving_obstacle) return is_outside(moved_[c.index]);
+    if (c.source != BodyKind::robot) return is_outside(run_.file.recording.bodies[c.body].shape);
+    return is_outside(geometry::Disc{s.step->robots[c.index].anchor, run_.scenario.robots[c.index].radius});
+  }
+
+  bool holds(const Seen& s, const RecordedConstraint& c) const {
+    const double radius = run_.scenario.robots[s.robot].radius;
+    const Vec2 at = s.state->anchor;
+    if (c.source == BodyKind::moving_obstacle)
+      return vo::is_true({moved_[c.index], at, radius, c.tau, s.step->moving[c.index].velocity, c.half_plane});
+    if (c.source != BodyKind::robot)
+      return vo::is_true({run_.file.recording.bodies[c.body].shape, at, radius, c.tau, {}, c.half_plane});
+    const formation::Robot& other = run_.scenario.robots[c.index];
+    const RobotStep& them = s.step->robots[c.index];
+    if (other.cooperates) return keeps_pair_apart(s, c);
+    const geometry::Disc disc{them.anchor, other.radius};
+    return vo::is_true({disc, at, radius, c.tau, them.anchor_velocity, c.half_plane});
+  }
+
+  /// Against a robot that cooperates. Either this half-plane takes half of what the pair's relative velocity must
+  /// change, which is 2 offset - n.(v_a + v_b): where both take as much, they do not collide within tau. Or it adds up
+  /// with the half-plane that the other robot has against this one, of the opposite normal: any two velocities that
+  /// keep both do not collide within tau. So do pairs that fell back (liveness).
+  bool keeps_pair_apart(const Seen& s, const RecordedConstraint& c) const {
+    if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
+    const RobotStep& them = s.step->robots[c.index];
+    const Point n = exactly(c.half_plane.normal), apart = exactly(them.anchor) - s.at;
+    const Rational offset(c.half_plane.offset), reach = s.radius + Rational(run_.scenario.robots[c.index].radius);
+    const auto excludes = [&](const Rational& relative) {
+      return exact::excludes_disc(apart, reach, n, relative, Rational(c.tau));
+    };
+    if (excludes(2 * offset - exact::dot(n, exactly(s.state->anchor_velocity) + exactly(them.anchor_velocity))))
+      return true;
+    return std::any_of(them.constraints.begin(), them.constraints.end(), [&](const RecordedConstraint& theirs) {
+      return theirs.source == BodyKind::robot && theirs.index == s.robot && has_numbers(theirs.half_plane) &&
+             theirs.half_plane.normal == -c.half_plane.normal && excludes(offset + Rational(theirs.half_plane.offset));
+    });
+  }
+
+  // --- (5) Choices ---
+
+  void choice_is_best(const Seen& s) {
+    const RobotStep& r = *s.state;
+    const auto answer = [&](const std::string& why, bool is_open) {
+      if (why.empty()) return run_.tally.proven(AuditPoint::choices);
+      const std::string text = at_row(s.row, "the choice of " + id(s) + why);
+      is_open ? run_.tally.open(AuditPoint::choices, text) : run_.tally.refuted(AuditPoint::choices, text);
+    };
+    if (!geometry::is_finite(r.preferred) || !geometry::is_finite(r.chosen) || !std::isfinite(r.violation) ||
+        !std::all_of(r.constraints.begin(), r.constraints.end(),
+                     [](const RecordedConstraint& c) { return has_numbers(c.half_plane); }))
+      return answer(" is without numbers", false);
+    const Violations most = violations(s);
+    run_.tally.report.largest_violation =
+        std::max(run_.tally.report.largest_violation, exact::at_least(most.forbidden));
+    lp::Problem problem;
+    lp::Solution solution;
+    std::string why = misstated(s, most);
+    if (why.empty()) why = stated(s, problem, solution);
+    if (!why.empty()) return answer(why, false);
+    if (r.status == lp::Status::no_interior) {
+      const Refuted no_room = without_room(problem, solution, fastest(s.robot));
+      return answer(no_room.why, no_room.is_open);
+    }
+    const std::optional<lp::Certificate> claim =
+        r.exact_multipliers ? exact_claim_of(problem, solution) : lp::claim_of(problem, solution);
+    const lp::CertificateError flaw = claim ? lp::check(problem, *claim) : lp::CertificateError::bound;
+    if (flaw == lp::CertificateError::none) return answer("", false);
+    if (flaw == lp::CertificateError::bound && is_beyond_proof(problem, solution))
+      return answer(" is that of the exact solution, which no doubles prove to be the best", true);
+    answer(flaw == lp::CertificateError::velocity ? " breaks a half-plane or the speed bound"
+                                                  : " is not proven the best by its multipliers",
+           false);
+  }
+
+  /// m/s
+  struct Violations {
+    Rational forbidden, given;
   };
-  if (c.source == BodyKind::moving_obstacle) return is_outside(moved_[c.index]);
-  if (c.source != BodyKind::robot) return is_outside(file_.recording.bodies[c.body].shape);
-  return is_outside(geometry::Disc{s.step->robots[c.index].anchor, file_.scenario.robots[c.index].radius});
-}
 
-bool DecisionAudit::holds(const Seen& s, const RecordedConstraint& c) const {
-  const double radius = file_.scenario.robots[s.robot].radius;
-  const Vec2 at = s.state->anchor;
-  if (c.source == BodyKind::moving_obstacle)
-    return vo::is_true({moved_[c.index], at, radius, c.tau, s.step->moving[c.index].velocity, c.half_plane});
-  if (c.source != BodyKind::robot)
-    return vo::is_true({file_.recording.bodies[c.body].shape, at, radius, c.tau, {}, c.half_plane});
-  const formation::Robot& other = file_.scenario.robots[c.index];
-  const RobotStep& them = s.step->robots[c.index];
-  if (other.cooperates) return takes_its_share(s, c) || adds_up(s, c);
-  const geometry::Disc disc{them.anchor, other.radius};
-  return vo::is_true({disc, at, radius, c.tau, them.anchor_velocity, c.half_plane});
-}
-
-/// Half of what the pair's relative velocity must change, which is 2 offset - n.(v_a + v_b): where both take as much,
-/// they do not collide within tau.
-bool DecisionAudit::takes_its_share(const Seen& s, const RecordedConstraint& c) const {
-  if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
-  const RobotStep& them = s.step->robots[c.index];
-  const Point n = exactly(c.half_plane.normal);
-  const Point both = exactly(s.state->anchor_velocity) + exactly(them.anchor_velocity);
-  const Rational offset = 2 * Rational(c.half_plane.offset) - exact::dot(n, both);
-  const Rational reach = s.radius + Rational(file_.scenario.robots[c.index].radius);
-  return exact::excludes_disc(exactly(them.anchor) - s.at, reach, n, offset, Rational(c.tau));
-}
-
-/// With the half-plane that the other robot has against this one, of the opposite normal: any two velocities that keep
-/// both do not collide within tau. So do pairs that fell back (liveness).
-bool DecisionAudit::adds_up(const Seen& s, const RecordedConstraint& c) const {
-  if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
-  const RobotStep& them = s.step->robots[c.index];
-  const Rational reach = s.radius + Rational(file_.scenario.robots[c.index].radius);
-  const Point n = exactly(c.half_plane.normal);
-  return std::any_of(them.constraints.begin(), them.constraints.end(), [&](const RecordedConstraint& theirs) {
-    if (theirs.source != BodyKind::robot || theirs.index != s.robot || !has_numbers(theirs.half_plane)) return false;
-    if (theirs.half_plane.normal != -c.half_plane.normal) return false;
-    const Rational offset = Rational(c.half_plane.offset) + Rational(theirs.half_plane.offset);
-    return exact::excludes_disc(exactly(them.anchor) - s.at, reach, n, offset, Rational(c.tau));
-  });
-}
-
-// --- (5) Choices ---
-
-void DecisionAudit::choice_is_best(const Seen& s) {
-  const RobotStep& r = *s.state;
-  const auto answer = [&](const std::string& why, bool is_open) {
-    if (why.empty()) return tally_.proven(AuditPoint::choices);
-    const std::string text = at_row(s.row, "the choice of " + id(s) + why);
-    is_open ? tally_.open(AuditPoint::choices, text) : tally_.refuted(AuditPoint::choices, text);
-  };
-  if (!geometry::is_finite(r.preferred) || !geometry::is_finite(r.chosen) || !std::isfinite(r.violation) ||
-      !std::all_of(r.constraints.begin(), r.constraints.end(),
-                   [](const RecordedConstraint& c) { return has_numbers(c.half_plane); }))
-    return answer(" is without numbers", false);
-  const Violations most = violations(s);
-  tally_.report.largest_violation = std::max(tally_.report.largest_violation, exact::at_least(most.forbidden));
-  lp::Problem problem;
-  lp::Solution solution;
-  std::string why = misstated(s, most);
-  if (why.empty()) why = stated(s, problem, solution);
-  if (!why.empty()) return answer(why, false);
-  if (r.status == lp::Status::no_interior) {
-    const Refuted no_room = without_room(problem, solution, fastest(s.robot));
-    return answer(no_room.why, no_room.is_open);
+  /// By how much the choice breaks what must hold, and what may give.
+  Violations violations(const Seen& s) const {
+    const RobotStep& r = *s.state;
+    const bool no_room = r.status == lp::Status::no_interior, infeasible = r.status == lp::Status::infeasible;
+    const Point chosen = exactly(r.chosen);
+    Violations most{Rational(0), Rational(0)};
+    for (const RecordedConstraint& c : r.constraints) {
+      const Rational violation = violation_at(c.half_plane, chosen);
+      const bool may_give = infeasible || (!c.hard && (no_room || r.status == lp::Status::relaxed));
+      if (!may_give) most.forbidden = std::max(most.forbidden, violation);
+      if (may_give && c.hard == infeasible) most.given = std::max(most.given, violation);
+    }
+    return most;
   }
-  const std::optional<lp::Certificate> claim =
-      r.exact_multipliers ? exact_claim_of(problem, solution) : lp::claim_of(problem, solution);
-  const lp::CertificateError flaw = claim ? lp::check(problem, *claim) : lp::CertificateError::bound;
-  if (flaw == lp::CertificateError::none) return answer("", false);
-  if (flaw == lp::CertificateError::bound && is_beyond_proof(problem, solution))
-    return answer(" is that of the exact solution, which no doubles prove to be the best", true);
-  answer(flaw == lp::CertificateError::velocity ? " breaks a half-plane or the speed bound"
-                                                : " is not proven the best by its multipliers",
-         false);
-}
 
-/// By how much the choice breaks what must hold, and what may give.
-DecisionAudit::Violations DecisionAudit::violations(const Seen& s) const {
-  const RobotStep& r = *s.state;
-  const bool no_room = r.status == lp::Status::no_interior, infeasible = r.status == lp::Status::infeasible;
-  const Point chosen = exactly(r.chosen);
-  Violations most{Rational(0), Rational(0)};
-  for (const RecordedConstraint& c : r.constraints) {
-    const Rational violation = violation_at(c.half_plane, chosen);
-    const bool may_give = infeasible || (!c.hard && (no_room || r.status == lp::Status::relaxed));
-    if (!may_give) most.forbidden = std::max(most.forbidden, violation);
-    if (may_give && c.hard == infeasible) most.given = std::max(most.given, violation);
-  }
-  return most;
-}
-
-/// What is wrong with what a row says of its choice beside the multipliers; empty where nothing is.
-std::string DecisionAudit::misstated(const Seen& s, const Violations& most) const {
-  const RobotStep& r = *s.state;
-  const Point chosen = exactly(r.chosen);
-  const Rational speed(fastest(s.robot)), near = Rational(kBindsWithin) * speed;
-  if (r.status == lp::Status::no_interior) {
-    if (most.forbidden > near || exact::dot(chosen, chosen) > (speed + near) * (speed + near))
-      return " breaks a half-plane or the speed bound";
+  /// What is wrong with what a row says of its choice beside the multipliers; empty where nothing is.
+  std::string misstated(const Seen& s, const Violations& most) const {
+    const RobotStep& r = *s.state;
+    const Point chosen = exactly(r.chosen);
+    const Rational speed(fastest(s.robot)), near = Rational(kBindsWithin) * speed;
+    if (r.status == lp::Status::no_interior) {
+      if (most.forbidden > near || exact::dot(chosen, chosen) > (speed + near) * (speed + near))
+        return " breaks a half-plane or the speed bound";
+      return "";
+    }
+    if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
+    for (const lp::ActiveConstraint& part : r.bound)
+      if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
+    for (const RecordedConstraint& c : r.constraints) {
+      if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
+      if (!c.active && c.multiplier != 0.0) return " has a multiplier for an inactive half-plane";
+      if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
+        return " lists a half-plane as active whose boundary it is not on";
+    }
     return "";
   }
-  if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
-  for (const lp::ActiveConstraint& part : r.bound)
-    if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
-  for (const RecordedConstraint& c : r.constraints) {
-    if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
-    if (!c.active && c.multiplier != 0.0) return " has a multiplier for an inactive half-plane";
-    if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
-      return " lists a half-plane as active whose boundary it is not on";
-  }
-  return "";
-}
 
-/// The decision as a problem of the recorded half-planes, and its answer. Says what is wrong with its terms.
-std::string DecisionAudit::stated(const Seen& s, lp::Problem& problem, lp::Solution& solution) const {
-  const RobotStep& r = *s.state;
-  const double speed = file_.scenario.robots[s.robot].max_speed;
-  if (file_.scenario.speed_bound == formation::SpeedBoundKind::disc)
-    problem.bound.disc = speed;
-  else
-    problem.bound.box_x = problem.bound.box_y = speed;
-  problem.preferred = r.preferred;
-  solution.velocity = r.chosen;
-  solution.status = r.status;
-  solution.violation = r.violation;
-  bool fits = true;
-  const auto take = [&](const lp::Binding& binding, double multiplier) {
-    fits = fits && solution.active_count < solution.active.size() && multiplier >= 0.0 && std::isfinite(multiplier);
-    if (fits) solution.active[solution.active_count++] = {binding, multiplier};
-  };
-  for (const RecordedConstraint& c : r.constraints) {
-    problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
-    if (c.active) take(lp::constraint_at(problem.constraints.size() - 1), c.multiplier);
+  /// The decision as a problem of the recorded half-planes, and its answer. Says what is wrong with its terms.
+  std::string stated(const Seen& s, lp::Problem& problem, lp::Solution& solution) const {
+    const RobotStep& r = *s.state;
+    const double speed = run_.scenario.robots[s.robot].max_speed;
+    if (run_.scenario.speed_bound == formation::SpeedBoundKind::disc)
+      problem.bound.disc = speed;
+    else
+      problem.bound.box_x = problem.bound.box_y = speed;
+    problem.preferred = r.preferred;
+    solution.velocity = r.chosen;
+    solution.status = r.status;
+    solution.violation = r.violation;
+    bool fits = true;
+    const auto take = [&](const lp::Binding& binding, double multiplier) {
+      fits = fits && solution.active_count < solution.active.size() && multiplier >= 0.0 && std::isfinite(multiplier);
+      if (fits) solution.active[solution.active_count++] = {binding, multiplier};
+    };
+    for (const RecordedConstraint& c : r.constraints) {
+      problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
+      if (c.active) take(lp::constraint_at(problem.constraints.size() - 1), c.multiplier);
+    }
+    for (const lp::ActiveConstraint& part : r.bound) take(part.binding, part.multiplier);
+    return fits ? "" : " has more multipliers, or others, than an optimum has";
   }
-  for (const lp::ActiveConstraint& part : r.bound) take(part.binding, part.multiplier);
-  return fits ? "" : " has more multipliers, or others, than an optimum has";
+
+  const AuditedRun& run_;
+  bool literal_horizons_;                     ///< the controller's horizons may be shorter than a step
+  std::vector<geometry::ConvexShape> moved_;  ///< moving obstacles in the present row
+};
+
+}  // namespace
+
+std::unique_ptr<RowAudit> audit_decisions(const AuditedRun& run) {
+  return std::make_unique<DecisionAudit>(run);
 }
 
 }  // namespace exactvo::datasets

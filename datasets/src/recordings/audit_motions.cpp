@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recordings/audit_motions.h"
+#include "recordings/audit_points.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -35,102 +35,127 @@ Verdict against_origin(const Chord& chord, const Rational& reach) {
   return squared >= possibly * possibly ? Verdict::clear : Verdict::unknown;
 }
 
-}  // namespace
-
-MotionAudit::MotionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
-                         const std::vector<ExactWay>& ways, const exact::ExponentialLaw* law, AuditTally& tally)
-    : file_(file), obstacles_(obstacles), ways_(ways), law_(law), duration_(file.recording.time_step), tally_(tally) {
-  for (const formation::MovingObstacle& o : file.scenario.moving_obstacles) moving_.emplace_back(o.shape);
-}
-
-void MotionAudit::Answer::take(Verdict verdict, const char* kind, const std::string& id) {
-  if (verdict == Verdict::clear) return;
-  std::string& where = verdict == Verdict::meets ? met : open;
-  if (where.empty()) where = std::string(kind) + " '" + id + "'";
-}
-
-void MotionAudit::check(const RowInRun& at) {
-  const formation::Step &from = at.row, &to = *at.next;
-  AuditReport& report = tally_.report;
-  std::vector<Driven> driven;
-  for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
-    const StepMotion motion(file_.recording.motion, law_, duration_, from.robots[i], to.robots[i]);
-    const Chord whole = motion.over(Rational(0), Rational(1));
-    report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
-    driven.push_back({motion, box_of(whole)});
+class MotionAudit : public RowAudit {
+ public:
+  explicit MotionAudit(const AuditedRun& run) : run_(run) {
+    for (const formation::MovingObstacle& o : run.scenario.moving_obstacles) moving_.emplace_back(o.shape);
   }
-  const Moved moved = displacements(from, to);
-  for (std::size_t i = 0; i < driven.size(); ++i) {
-    if (file_.recording.motion != MotionLaw::straight) ++report.curved_steps;
-    Answer answer;
-    meet_obstacles(driven[i], i, answer);
-    meet_moving(driven[i], i, moved, answer);
-    meet_robots(driven, i, answer);
-    const std::string& robot = file_.scenario.robots[i].id;
-    if (!answer.met.empty())
-      tally_.refuted(AuditPoint::motions, at_row(at.number, robot + " overlaps " + answer.met));
-    else if (!answer.open.empty())
-      tally_.open(AuditPoint::motions,
-                  at_row(at.number, robot + " comes too near to " + answer.open + " to be proven clear of it"));
-    else
-      tally_.proven(AuditPoint::motions);
-  }
-}
 
-MotionAudit::Moved MotionAudit::displacements(const formation::Step& from, const formation::Step& to) const {
-  const Rational start(from.time), end(to.time);
-  Moved moved{start, end - start, {}};
-  for (const ExactWay& way : ways_) moved.ways.push_back(way.over(start, end));
-  return moved;
-}
-
-void MotionAudit::meet_obstacles(const Driven& d, std::size_t i, Answer& answer) {
-  const double radius = file_.scenario.robots[i].radius;
-  const Rational r(radius);
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    ++tally_.report.obstacle_questions;
-    if (are_apart(d.box, obstacles_[k].box, radius)) continue;
-    const std::vector<std::size_t> edges = obstacles_[k].near(d.box, radius);
-    const auto over = [&](const Rational& s, const Rational& e) { return d.motion.over(s, e); };
-    const auto test = [&](const Chord& chord) { return against(chord, obstacles_[k], edges, r); };
-    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle", file_.scenario.obstacles[k].id);
-  }
-}
-
-/// Piece after piece of the obstacle's way, seen from the obstacle.
-void MotionAudit::meet_moving(const Driven& d, std::size_t i, const Moved& moved, Answer& answer) {
-  const double radius = file_.scenario.robots[i].radius;
-  const Rational r(radius);
-  const Rational &from = moved.start, &passed = moved.passed;
-  for (std::size_t k = 0; k < moving_.size(); ++k) {
-    ++tally_.report.moving_questions;
-    for (const ExactWay::TimedChord& piece : moved.ways[k]) {
-      const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
-      const geometry::Box seen = box_of(d.motion.over(start, end) - piece.chord);
-      if (are_apart(seen, moving_[k].box, radius)) continue;
-      const std::vector<std::size_t> edges = moving_[k].near(seen, radius);
-      const auto over = [&](const Rational& s, const Rational& e) {
-        return d.motion.over(s, e) - ways_[k].within(from + s * passed, from + e * passed);
-      };
-      const auto test = [&](const Chord& chord) { return against(chord, moving_[k], edges, r); };
-      answer.take(exact::decide(over, test, start, end), "moving obstacle", file_.scenario.moving_obstacles[k].id);
+  void check_step(const RowInRun& at) override {
+    const formation::Step &from = at.row, &to = *at.next;
+    if (!(from.time >= 0.0 && from.time < to.time)) return;
+    const exact::ExponentialLaw* law = run_.law ? &*run_.law : nullptr;
+    AuditReport& report = run_.tally.report;
+    std::vector<Driven> driven;
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
+      const StepMotion motion(run_.file.recording.motion, law, run_.duration, from.robots[i], to.robots[i]);
+      const Chord whole = motion.over(Rational(0), Rational(1));
+      report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
+      driven.push_back({motion, box_of(whole)});
+    }
+    const Moved moved = displacements(from, to);
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      if (run_.file.recording.motion != MotionLaw::straight) ++report.curved_steps;
+      Answer answer;
+      meet_obstacles(driven[i], i, answer);
+      meet_moving(driven[i], i, moved, answer);
+      meet_robots(driven, i, answer);
+      const std::string& robot = run_.scenario.robots[i].id;
+      if (!answer.met.empty())
+        run_.tally.refuted(AuditPoint::motions, at_row(at.number, robot + " overlaps " + answer.met));
+      else if (!answer.open.empty())
+        run_.tally.open(AuditPoint::motions,
+                        at_row(at.number, robot + " comes too near to " + answer.open + " to be proven clear of it"));
+      else
+        run_.tally.proven(AuditPoint::motions);
     }
   }
-}
 
-void MotionAudit::meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer) {
-  constexpr double kRounding = 1.0 + 0x1p-50;
-  for (std::size_t j = 0; j < driven.size(); ++j) {
-    if (j == i) continue;
-    ++tally_.report.robot_questions;
-    const double radius = file_.scenario.robots[i].radius, other = file_.scenario.robots[j].radius;
-    if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
-    const Rational reach = Rational(radius) + Rational(other);
-    const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
-    const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
-    const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };
-    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot", file_.scenario.robots[j].id);
+ private:
+  /// A row's time step as one robot drives it.
+  struct Driven {
+    StepMotion motion;
+    geometry::Box box;
+  };
+  /// Of one robot and step: whom it meets, and from whom it cannot be told apart; empty where there is nobody.
+  struct Answer {
+    std::string met, open;
+    void take(Verdict verdict, const char* kind, const std::string& id) {
+      if (verdict == Verdict::clear) return;
+      std::string& where = verdict == Verdict::meets ? met : open;
+      if (where.empty()) where = std::string(kind) + " '" + id + "'";
+    }
+  };
+  /// What moving obstacles do between two rows.
+  struct Moved {
+    Rational start, passed;  ///< s
+    std::vector<std::vector<ExactWay::TimedChord>> ways;
+  };
+
+  Moved displacements(const formation::Step& from, const formation::Step& to) const {
+    const Rational start(from.time), end(to.time);
+    Moved moved{start, end - start, {}};
+    for (const ExactWay& way : run_.ways) moved.ways.push_back(way.over(start, end));
+    return moved;
   }
+
+  void meet_obstacles(const Driven& d, std::size_t i, Answer& answer) {
+    const double radius = run_.scenario.robots[i].radius;
+    const Rational r(radius);
+    for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
+      ++run_.tally.report.obstacle_questions;
+      if (are_apart(d.box, run_.obstacles[k].box, radius)) continue;
+      const std::vector<std::size_t> edges = run_.obstacles[k].near(d.box, radius);
+      const auto over = [&](const Rational& s, const Rational& e) { return d.motion.over(s, e); };
+      const auto test = [&](const Chord& chord) { return against(chord, run_.obstacles[k], edges, r); };
+      answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle", run_.scenario.obstacles[k].id);
+    }
+  }
+
+  /// Piece after piece of the obstacle's way, seen from the obstacle.
+  void meet_moving(const Driven& d, std::size_t i, const Moved& moved, Answer& answer) {
+    const double radius = run_.scenario.robots[i].radius;
+    const Rational r(radius);
+    const Rational &from = moved.start, &passed = moved.passed;
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      ++run_.tally.report.moving_questions;
+      for (const ExactWay::TimedChord& piece : moved.ways[k]) {
+        const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
+        const geometry::Box seen = box_of(d.motion.over(start, end) - piece.chord);
+        if (are_apart(seen, moving_[k].box, radius)) continue;
+        const std::vector<std::size_t> edges = moving_[k].near(seen, radius);
+        const auto over = [&](const Rational& s, const Rational& e) {
+          return d.motion.over(s, e) - run_.ways[k].within(from + s * passed, from + e * passed);
+        };
+        const auto test = [&](const Chord& chord) { return against(chord, moving_[k], edges, r); };
+        answer.take(exact::decide(over, test, start, end), "moving obstacle", run_.scenario.moving_obstacles[k].id);
+      }
+    }
+  }
+
+  void meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer) {
+    constexpr double kRounding = 1.0 + 0x1p-50;
+    for (std::size_t j = 0; j < driven.size(); ++j) {
+      if (j == i) continue;
+      ++run_.tally.report.robot_questions;
+      const double radius = run_.scenario.robots[i].radius, other = run_.scenario.robots[j].radius;
+      if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
+      const Rational reach = Rational(radius) + Rational(other);
+      const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
+      const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
+      const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };
+      answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot", run_.scenario.robots[j].id);
+    }
+  }
+
+  const AuditedRun& run_;
+  std::vector<RationalObstacle> moving_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowAudit> audit_motions(const AuditedRun& run) {
+  return std::make_unique<MotionAudit>(run);
 }
 
 }  // namespace exactvo::datasets

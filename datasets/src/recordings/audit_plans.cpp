@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recordings/audit_plans.h"
+#include "recordings/audit_points.h"
 
 #include <algorithm>
 #include <string>
@@ -13,12 +13,14 @@ using exact::Straight;
 using exact::Verdict;
 using formation::JointPlan;
 
+/// A move may come nearer than radii allow by this share of them, since plans are rounded: squared distances are
+/// compared to within a share of 1e-9, and a place within 1e-9 diameters of a known one counts as that one.
+constexpr double kPlanRounding = 1e-8;
+
 /// A plan on its way: who stands where.
 class PlanAudit {
  public:
-  PlanAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
-            const JointPlan& plan, AuditTally& tally)
-      : file_(file), obstacles_(obstacles), places_(places), plan_(plan), tally_(tally), at_(plan.starts) {}
+  PlanAudit(const AuditedRun& run, const JointPlan& plan) : run_(run), plan_(plan), at_(plan.starts) {}
 
   void check() {
     for (std::size_t k = 0; k < plan_.robots.size(); ++k) begins(k);
@@ -26,19 +28,19 @@ class PlanAudit {
   }
 
  private:
-  const std::string& id(std::size_t robot) const { return file_.scenario.robots[robot].id; }
-  Rational radius(std::size_t robot) const { return Rational(file_.scenario.robots[robot].radius); }
+  const std::string& id(std::size_t robot) const { return run_.scenario.robots[robot].id; }
+  Rational radius(std::size_t robot) const { return Rational(run_.scenario.robots[robot].radius); }
 
   void begins(std::size_t k) {
     const std::size_t robot = plan_.robots[k];
-    const geometry::Vec2* place = places_.at_begin(plan_, robot);
+    const geometry::Vec2* place = run_.places.at_begin(plan_, robot);
     const std::string where = "where " + id(robot) + " was in row " + std::to_string(plan_.from_row);
     if (place && *place == plan_.starts[k])
-      tally_.proven(AuditPoint::plans);
-    else if (places_.is_forgotten(plan_, robot))
-      tally_.open(AuditPoint::plans, at_row(plan_.row, "the plan begins too long ago to know " + where));
+      run_.tally.proven(AuditPoint::plans);
+    else if (run_.places.is_forgotten(plan_, robot))
+      run_.tally.open(AuditPoint::plans, at_row(plan_.row, "the plan begins too long ago to know " + where));
     else
-      tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin " + where));
+      run_.tally.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin " + where));
   }
 
   void move(std::size_t m) {
@@ -51,11 +53,11 @@ class PlanAudit {
     at_[mover] = plan_.moves[m].to;
     const std::string what = "move " + std::to_string(m) + " of the plan takes " + id(robot) + " too near to ";
     if (!met.empty())
-      tally_.refuted(AuditPoint::plans, at_row(plan_.row, what + met));
+      run_.tally.refuted(AuditPoint::plans, at_row(plan_.row, what + met));
     else if (!open.empty())
-      tally_.open(AuditPoint::plans, at_row(plan_.row, what + open + ", where it is too near before"));
+      run_.tally.open(AuditPoint::plans, at_row(plan_.row, what + open + ", where it is too near before"));
     else
-      tally_.proven(AuditPoint::plans);
+      run_.tally.proven(AuditPoint::plans);
   }
 
   /// Who is too near at the beginning is left open: plans are made from where robots stand.
@@ -65,16 +67,16 @@ class PlanAudit {
     const geometry::Box swept = box_of(geometry::Segment{at_[mover], to});
     const Straight way{exact::exactly(at_[mover]), exact::exactly(to)};
     const Straight start{way.from, way.from};
-    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-      if (are_apart(swept, obstacles_[o].box, file_.scenario.robots[robot].radius)) continue;
-      bool meets = exact::is_inside(way.from, *obstacles_[o].obstacle), stood = meets;
-      for (const std::size_t edge : obstacles_[o].near(swept, file_.scenario.robots[robot].radius)) {
-        if (!exact::come_nearer_than(way, obstacles_[o].edges[edge], reach)) continue;
+    for (std::size_t o = 0; o < run_.obstacles.size(); ++o) {
+      if (are_apart(swept, run_.obstacles[o].box, run_.scenario.robots[robot].radius)) continue;
+      bool meets = exact::is_inside(way.from, *run_.obstacles[o].obstacle), stood = meets;
+      for (const std::size_t edge : run_.obstacles[o].near(swept, run_.scenario.robots[robot].radius)) {
+        if (!exact::come_nearer_than(way, run_.obstacles[o].edges[edge], reach)) continue;
         meets = true;
-        stood = stood || exact::come_nearer_than(start, obstacles_[o].edges[edge], reach);
+        stood = stood || exact::come_nearer_than(start, run_.obstacles[o].edges[edge], reach);
       }
       std::string& where = stood ? open : met;
-      if (meets && where.empty()) where = "obstacle '" + file_.scenario.obstacles[o].id + "'";
+      if (meets && where.empty()) where = "obstacle '" + run_.scenario.obstacles[o].id + "'";
     }
   }
 
@@ -91,19 +93,15 @@ class PlanAudit {
     }
   }
 
-  const RecordingFile& file_;
-  const std::vector<RationalObstacle>& obstacles_;
-  const PlacesInRows& places_;
+  const AuditedRun& run_;
   const JointPlan& plan_;
-  AuditTally& tally_;
   std::vector<geometry::Vec2> at_;  ///< m
 };
 
 }  // namespace
 
-void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
-                 AuditTally& tally) {
-  for (const JointPlan& plan : file.recording.plans) PlanAudit(file, obstacles, places, plan, tally).check();
+void audit_plans(const AuditedRun& run) {
+  for (const JointPlan& plan : run.file.recording.plans) PlanAudit(run, plan).check();
 }
 
 }  // namespace exactvo::datasets

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recordings/audit_sequence.h"
-
-#include <cmath>
+//
+// A robot's step is, whatever the integrator, x1 = x0 + T w + Q (v0 - w), v1 = w + P (v0 - w), w what it tracks:
+//     exact           P = e^-kT                                Q = (1 - P) / k
+//     explicit Euler  P = 1 - kT                               Q = T
+//     rk4             P = 1 - z + z^2/2 - z^3/6 + z^4/24       Q = T (1 - z/2 + z^2/6 - z^3/24), z = kT
+// (the adaptive ones solve the law to their tolerance, which is no proof). A kinematic robot goes x + T v, bit for bit.
+#include "recordings/audit_points.h"
 
 namespace exactvo::datasets {
 namespace {
 
 using exact::exactly;
+using exact::exactly_that;
 using exact::ExactWay;
 using exact::Interval;
 using exact::length_at_most;
@@ -47,149 +52,164 @@ Rational top_speed(const Leader& motion) {
   return speed;
 }
 
-Interval exactly_that(const Rational& x) {
-  return {x, x};
-}
-
 /// What holds a product of x, of any sign, with a number.
 Point scaled(const Interval& x, const Point& p) {
   return x.middle() * p;
 }
 
+class SequenceAudit : public RowAudit {
+ public:
+  explicit SequenceAudit(const AuditedRun& run) : run_(run) {
+    if (!run.scenario.formation) return;
+    leader_.emplace(run.scenario.formation->leader);
+    const std::string integrator = run.file.info.integrator.value_or("exact");
+    const Rational k(run.scenario.formation->gains.k3), z = k * run.duration;
+    if (run.law) {
+      law_ = Law{exactly_that(Rational(1)) - run.law->settled(), run.law->settled() / exactly_that(k), z};
+    } else if (integrator == "euler") {
+      law_ = Law{exactly_that(1 - z), exactly_that(run.duration), z};
+    } else if (integrator == "rk4") {
+      const Rational z2 = z * z, z3 = z2 * z;
+      law_ = Law{exactly_that(1 - z + z2 / 2 - z3 / 6 + z3 * z / 24),
+                 exactly_that(run.duration * (1 - z / 2 + z2 / 6 - z3 / 24)), z};
+    } else if (sgn(z) > 0) {
+      const Interval remains = exact::decay(z);
+      law_ = Law{remains, (exactly_that(Rational(1)) - remains) / exactly_that(k), z};
+      is_adaptive_ = true;
+      run.tally.report.has_integrated = true;
+    }
+    if (!tracks_its_choice()) run.tally.report.has_sums = true;
+  }
+
+  void check_row(const RowInRun& at) override {
+    const Step& step = at.row;
+    const std::size_t row = at.number;
+    ask(step.time == static_cast<double>(row) * run_.file.recording.time_step, row,
+        "its time is not its number of time steps");
+    if (leader_) {
+      const Leader& motion = run_.scenario.formation->leader;
+      const Vec2 start = motion.path.front();
+      ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
+          "the leader is not where its path has it");
+    }
+    if (at.next && step.moving.size() != run_.scenario.moving_obstacles.size())
+      run_.tally.refuted(AuditPoint::sequence, at_row(row, "it does not say where the moving obstacles are"));
+    for (std::size_t k = 0; k < step.moving.size(); ++k) {
+      const formation::MovingObstacle& o = run_.scenario.moving_obstacles[k];
+      ask(is_on_way(run_.ways[k], o.motion, step.time, step.moving[k].displacement, step.moving[k].velocity), row,
+          "moving obstacle '" + o.id + "' is not where its path has it");
+    }
+    for (std::size_t i = 0; i < step.robots.size(); ++i)
+      ask(has_its_anchor(at, i), row,
+          "half-planes of " + run_.scenario.robots[i].id + " are not built where its controller builds them");
+  }
+
+ private:
+  struct Law {
+    Interval remains;  ///< P
+    Interval reach;    ///< Q, s
+    Rational z;
+  };
+
+  void ask(bool holds, std::size_t row, const std::string& what) {
+    run_.tally.ask(AuditPoint::sequence, holds, at_row(row, what));
+  }
+
+  bool is_on_way(const ExactWay& way, const Leader& motion, double time, Vec2 displacement, Vec2 velocity) const {
+    if (!(time >= 0.0) || !geometry::is_finite(displacement) || !geometry::is_finite(velocity)) return false;
+    const Rational t(time), speed = top_speed(motion);
+    const exact::Chord at = way.within(t, t);
+    const Rational near = Rational(kShareOfWay) * (length_of(motion) + speed * t) + 2 * at.stray;
+    if (length_at_most(exactly(displacement) - at.way.from) > near) return false;
+    const std::vector<Point> all = way.velocities(t, Rational(kRestsEarlier));
+    return std::any_of(all.begin(), all.end(), [&](const Point& v) {
+      return length_at_most(exactly(velocity) - v) <= Rational(kShareOfSpeed) * (speed + length_at_most(v));
+    });
+  }
+
+  /// Kinematic robots and controllers without a brake point build half-planes at the robot. The brake point is
+  /// x + v / k3, round what was tracked before.
+  bool has_its_anchor(const RowInRun& at, std::size_t i) const {
+    const RobotStep& r = at.row.robots[i];
+    const std::optional<formation::Remedies>& remedies = run_.file.recording.remedies;
+    if (run_.scenario.formation && !remedies) return true;  // nothing is known of its controller
+    if (!at.next || !remedies || !remedies->brake_point)
+      return r.anchor == r.position && r.anchor_velocity == r.velocity;
+    if (r.anchor != r.position + r.velocity / run_.scenario.formation->gains.k3) return false;
+    if (!at.before) return r.anchor_velocity == r.velocity;
+    return !tracks_its_choice() || r.anchor_velocity == (*at.before)[i].chosen;
+  }
+
+  bool tracks_its_choice() const {
+    const std::optional<formation::Remedies>& remedies = run_.file.recording.remedies;
+    return remedies && remedies->filter_last && remedies->absolute_frame && !(remedies->acceleration_bound > 0.0);
+  }
+
+  void check_step(const RowInRun& at) override {
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
+      const bool holds = follows(at.row.robots[i], at.next->robots[i]);
+      const std::string& robot = run_.scenario.robots[i].id;
+      if (holds && law_ && is_adaptive_)
+        run_.tally.open(AuditPoint::sequence, at_row(at.number, robot + " was integrated with a tolerance"));
+      else
+        ask(holds, at.number, robot + " does not get to the next row by its law of motion");
+    }
+  }
+
+  bool follows(const RobotStep& from, const RobotStep& to) const {
+    if (!run_.scenario.formation) {
+      const Vec2 next = from.position + run_.file.recording.time_step * from.chosen;
+      return to.velocity == from.chosen && to.position == next;
+    }
+    if (!law_) return false;  // a gain of 0 or less
+    return tracks_its_choice() ? follows_tracking(from, to) : follows_something(from, to);
+  }
+
+  /// m: what a step's position may be off, of terms of this size; speeds in m/s are worth a step and what z makes of
+  /// it.
+  Rational rounding(const Rational& position, const Rational& speeds) const {
+    const Rational z = law_->z,
+                   growth = is_adaptive_ ? Rational(1) : Rational(1 + z + z * z + z * z * z + z * z * z * z);
+    const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : kSubnormal);
+    return Rational(is_adaptive_ ? kAdaptive : kRoundings) * (position + run_.duration * growth * speeds) +
+           run_.duration * at_rest;
+  }
+
+  bool follows_tracking(const RobotStep& from, const RobotStep& to) const {
+    if (!geometry::is_finite(from.chosen)) return false;
+    const Point w = exactly(from.chosen), gap = exactly(from.velocity) - w, x0 = exactly(from.position);
+    const Rational speeds = length_at_most(w) + length_at_most(exactly(from.velocity)) + length_at_most(gap);
+    const Rational near = rounding(length_at_most(x0), speeds);
+    const Point x = x0 + run_.duration * w + scaled(law_->reach, gap);
+    if (length_at_most(exactly(to.position) - x) > near + law_->reach.half_width() * length_at_most(gap)) return false;
+    const Point v = w + scaled(law_->remains, gap);
+    const Rational off = law_->remains.half_width() * length_at_most(gap);
+    return length_at_most(exactly(to.velocity) - v) <= rounding(Rational(0), speeds) / run_.duration + off;
+  }
+
+  /// With w eliminated: x1 - x0 = T v0 - (T - Q) / (1 - P) (v0 - v1).
+  bool follows_something(const RobotStep& from, const RobotStep& to) const {
+    const Interval settled = exactly_that(Rational(1)) - law_->remains;
+    if (sgn(settled.low) <= 0) return true;  // rk4 far beyond its limit: the rows do not say what was tracked
+    const Interval lag = (exactly_that(run_.duration) - law_->reach) / settled;
+    const Point v0 = exactly(from.velocity), change = v0 - exactly(to.velocity);
+    const Point x0 = exactly(from.position), x1 = exactly(to.position);
+    const Point left = x1 - x0 - run_.duration * v0 + scaled(lag, change);
+    const Rational speeds = length_at_most(v0) + length_at_most(change) / settled.low;
+    return length_at_most(left) <=
+           rounding(length_at_most(x0) + length_at_most(x1), 2 * speeds) + lag.half_width() * speeds;
+  }
+
+  const AuditedRun& run_;
+  std::optional<exact::ExactWay> leader_;
+  std::optional<Law> law_;  ///< of a formation
+  bool is_adaptive_ = false;
+};
+
 }  // namespace
 
-SequenceAudit::SequenceAudit(const RecordingFile& file, const std::vector<ExactWay>& ways,
-                             const exact::ExponentialLaw* law, AuditTally& tally)
-    : file_(file), ways_(ways), duration_(file.recording.time_step), tally_(tally) {
-  if (!file.scenario.formation) return;
-  leader_.emplace(file.scenario.formation->leader);
-  const std::string integrator = file.info.integrator.value_or("exact");
-  const Rational k(file.scenario.formation->gains.k3), z = k * duration_;
-  if (law) {
-    law_ = Law{exactly_that(Rational(1)) - law->settled(), law->settled() / exactly_that(k), z};
-  } else if (integrator == "euler") {
-    law_ = Law{exactly_that(1 - z), exactly_that(duration_), z};
-  } else if (integrator == "rk4") {
-    const Rational z2 = z * z, z3 = z2 * z;
-    law_ = Law{exactly_that(1 - z + z2 / 2 - z3 / 6 + z3 * z / 24),
-               exactly_that(duration_ * (1 - z / 2 + z2 / 6 - z3 / 24)), z};
-  } else if (sgn(z) > 0) {
-    const Interval remains = exact::decay(z);
-    law_ = Law{remains, (exactly_that(Rational(1)) - remains) / exactly_that(k), z};
-    is_adaptive_ = true;
-    tally.report.has_integrated = true;
-  }
-  if (!tracks_its_choice()) tally.report.has_sums = true;
-}
-
-void SequenceAudit::ask(bool holds, std::size_t row, const std::string& what) {
-  holds ? tally_.proven(AuditPoint::sequence) : tally_.refuted(AuditPoint::sequence, at_row(row, what));
-}
-
-void SequenceAudit::check_row(const RowInRun& at) {
-  const Step& step = at.row;
-  const std::size_t row = at.number;
-  ask(step.time == static_cast<double>(row) * file_.recording.time_step, row,
-      "its time is not its number of time steps");
-  if (leader_) {
-    const Leader& motion = file_.scenario.formation->leader;
-    const Vec2 start = motion.path.front();
-    ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
-        "the leader is not where its path has it");
-  }
-  if (at.next && step.moving.size() != file_.scenario.moving_obstacles.size())
-    tally_.refuted(AuditPoint::sequence, at_row(row, "it does not say where the moving obstacles are"));
-  for (std::size_t k = 0; k < step.moving.size(); ++k) {
-    const formation::MovingObstacle& o = file_.scenario.moving_obstacles[k];
-    ask(is_on_way(ways_[k], o.motion, step.time, step.moving[k].displacement, step.moving[k].velocity), row,
-        "moving obstacle '" + o.id + "' is not where its path has it");
-  }
-  for (std::size_t i = 0; i < step.robots.size(); ++i)
-    ask(has_its_anchor(at, i), row,
-        "half-planes of " + file_.scenario.robots[i].id + " are not built where its controller builds them");
-}
-
-bool SequenceAudit::is_on_way(const ExactWay& way, const Leader& motion, double time, Vec2 displacement,
-                              Vec2 velocity) const {
-  if (!(time >= 0.0) || !geometry::is_finite(displacement) || !geometry::is_finite(velocity)) return false;
-  const Rational t(time), speed = top_speed(motion);
-  const exact::Chord at = way.within(t, t);
-  const Rational near = Rational(kShareOfWay) * (length_of(motion) + speed * t) + 2 * at.stray;
-  if (length_at_most(exactly(displacement) - at.way.from) > near) return false;
-  const std::vector<Point> all = way.velocities(t, Rational(kRestsEarlier));
-  return std::any_of(all.begin(), all.end(), [&](const Point& v) {
-    return length_at_most(exactly(velocity) - v) <= Rational(kShareOfSpeed) * (speed + length_at_most(v));
-  });
-}
-
-/// Kinematic robots and controllers without a brake point build half-planes at the robot. The brake point is
-/// x + v / k3, round what was tracked before.
-bool SequenceAudit::has_its_anchor(const RowInRun& at, std::size_t i) const {
-  const RobotStep& r = at.row.robots[i];
-  const std::optional<formation::Remedies>& remedies = file_.recording.remedies;
-  if (file_.scenario.formation && !remedies) return true;  // nothing is known of its controller
-  if (!at.next || !remedies || !remedies->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
-  if (r.anchor != r.position + r.velocity / file_.scenario.formation->gains.k3) return false;
-  if (!at.before) return r.anchor_velocity == r.velocity;
-  return !tracks_its_choice() || r.anchor_velocity == (*at.before)[i].chosen;
-}
-
-bool SequenceAudit::tracks_its_choice() const {
-  const std::optional<formation::Remedies>& remedies = file_.recording.remedies;
-  return remedies && remedies->filter_last && remedies->absolute_frame && !(remedies->acceleration_bound > 0.0);
-}
-
-void SequenceAudit::check_step(const RowInRun& at) {
-  for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
-    const bool holds = follows(at.row.robots[i], at.next->robots[i]);
-    const std::string& robot = file_.scenario.robots[i].id;
-    if (holds && law_ && is_adaptive_)
-      tally_.open(AuditPoint::sequence, at_row(at.number, robot + " was integrated with a tolerance"));
-    else
-      ask(holds, at.number, robot + " does not get to the next row by its law of motion");
-  }
-}
-
-bool SequenceAudit::follows(const RobotStep& from, const RobotStep& to) const {
-  if (!file_.scenario.formation) {
-    const Vec2 next = from.position + file_.recording.time_step * from.chosen;
-    return to.velocity == from.chosen && to.position == next;
-  }
-  if (!law_) return false;  // a gain of 0 or less
-  return tracks_its_choice() ? follows_tracking(from, to) : follows_something(from, to);
-}
-
-/// m: what a step's position may be off, of terms of this size; speeds in m/s are worth a step and what z makes of it.
-Rational SequenceAudit::rounding(const Rational& position, const Rational& speeds) const {
-  const Rational z = law_->z, growth = is_adaptive_ ? Rational(1) : Rational(1 + z + z * z + z * z * z + z * z * z * z);
-  const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : kSubnormal);
-  return Rational(is_adaptive_ ? kAdaptive : kRoundings) * (position + duration_ * growth * speeds) +
-         duration_ * at_rest;
-}
-
-bool SequenceAudit::follows_tracking(const RobotStep& from, const RobotStep& to) const {
-  if (!geometry::is_finite(from.chosen)) return false;
-  const Point w = exactly(from.chosen), gap = exactly(from.velocity) - w, x0 = exactly(from.position);
-  const Rational speeds = length_at_most(w) + length_at_most(exactly(from.velocity)) + length_at_most(gap);
-  const Rational near = rounding(length_at_most(x0), speeds);
-  const Point x = x0 + duration_ * w + scaled(law_->reach, gap);
-  if (length_at_most(exactly(to.position) - x) > near + law_->reach.half_width() * length_at_most(gap)) return false;
-  const Point v = w + scaled(law_->remains, gap);
-  const Rational off = law_->remains.half_width() * length_at_most(gap);
-  return length_at_most(exactly(to.velocity) - v) <= rounding(Rational(0), speeds) / duration_ + off;
-}
-
-/// With w eliminated: x1 - x0 = T v0 - (T - Q) / (1 - P) (v0 - v1).
-bool SequenceAudit::follows_something(const RobotStep& from, const RobotStep& to) const {
-  const Interval settled = exactly_that(Rational(1)) - law_->remains;
-  if (sgn(settled.low) <= 0) return true;  // rk4 far beyond its limit: the rows do not say what was tracked
-  const Interval lag = (exactly_that(duration_) - law_->reach) / settled;
-  const Point v0 = exactly(from.velocity), change = v0 - exactly(to.velocity);
-  const Point x0 = exactly(from.position), x1 = exactly(to.position);
-  const Point left = x1 - x0 - duration_ * v0 + scaled(lag, change);
-  const Rational speeds = length_at_most(v0) + length_at_most(change) / settled.low;
-  return length_at_most(left) <=
-         rounding(length_at_most(x0) + length_at_most(x1), 2 * speeds) + lag.half_width() * speeds;
+std::unique_ptr<RowAudit> audit_sequence(const AuditedRun& run) {
+  return std::make_unique<SequenceAudit>(run);
 }
 
 }  // namespace exactvo::datasets

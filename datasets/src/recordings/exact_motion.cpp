@@ -14,11 +14,10 @@ Chord operator-(const Chord& a, const Chord& b) {
 // --- The exponential law ---
 
 ExponentialLaw::ExponentialLaw(const Rational& gain, const Rational& duration) : gain_(gain), duration_(duration) {
-  const Interval one{Rational(1), Rational(1)}, k{gain, gain}, t{duration, duration};
-  settled_ = one - decay(gain * duration);
+  settled_ = exactly_that(Rational(1)) - decay(gain * duration);
   // The decay is at most 2^-180 wide: below that nothing can be said, and nothing is.
   settled_.low = std::max(settled_.low, Rational(mpz_class(1), mpz_class(1) << 200));
-  lag_ = (t - settled_ / k) / settled_;
+  lag_ = (exactly_that(duration) - settled_ / exactly_that(gain)) / settled_;
 }
 
 const Interval& ExponentialLaw::decayed(const Rational& share) const {
@@ -28,12 +27,11 @@ const Interval& ExponentialLaw::decayed(const Rational& share) const {
 }
 
 const Interval& ExponentialLaw::bulge(const Rational& share) const {
-  const auto [found, is_new] = bulges_.try_emplace(share, Interval{Rational(0), Rational(0)});
+  const auto [found, is_new] = bulges_.try_emplace(share, exactly_that(Rational(0)));
   if (!is_new || share == 0 || share == 1) return found->second;
-  const Interval one{Rational(1), Rational(1)};
   const Interval straight{Rational(share * settled_.low), Rational(share * settled_.high)};
   const Interval scale{Rational(gain_ * settled_.low), Rational(gain_ * settled_.high)};
-  found->second = (one - decayed(share) - straight) / scale;
+  found->second = (exactly_that(Rational(1)) - decayed(share) - straight) / scale;
   return found->second;
 }
 
@@ -120,28 +118,21 @@ void ExactWay::read_profile(const formation::Leader& motion) {
   stretches_.push_back(now);
 }
 
-std::optional<Rational> ExactWay::time_before(const Rational& distance) const {
-  return time_at(distance, false);
-}
-std::optional<Rational> ExactWay::time_after(const Rational& distance) const {
-  return time_at(distance, true);
-}
-
-std::optional<Rational> ExactWay::time_at(const Rational& distance, bool after) const {
+std::optional<Interval> ExactWay::time_at(const Rational& distance) const {
   for (const Stretch& s : stretches_) {
-    if (s.covered >= distance) return s.start;
+    if (s.covered >= distance) return exactly_that(s.start);
     const bool reaches = s.end ? s.distance(*s.end) >= distance : sgn(s.speed) > 0;
     if (!reaches) continue;
-    if (sgn(s.rate) == 0) return Rational(s.start + (distance - s.covered) / s.speed);
+    if (sgn(s.rate) == 0) return exactly_that(Rational(s.start + (distance - s.covered) / s.speed));
     constexpr int kHalvings = 100;
-    Rational low = s.start, high = *s.end;
+    Interval time{s.start, *s.end};
     for (int k = 0; k < kHalvings; ++k) {
-      const Rational middle = (low + high) / 2;
+      const Rational middle = time.middle();
       const int side = cmp(s.distance(middle), distance);
-      if (side == 0) return middle;
-      (side < 0 ? low : high) = middle;
+      if (side == 0) return exactly_that(middle);
+      (side < 0 ? time.low : time.high) = middle;
     }
-    return after ? high : low;
+    return time;
   }
   return std::nullopt;
 }
@@ -159,7 +150,7 @@ void ExactWay::add_leg(const Piece& leg, const Rational& from, const std::option
 
 ExactWay::ExactWay(const formation::Leader& motion) {
   read_profile(motion);
-  const Interval none{Rational(0), Rational(0)}, one{Rational(1), Rational(1)};
+  const Interval none = exactly_that(Rational(0)), one = exactly_that(Rational(1));
   const Point start = exactly(motion.path.front());
   const auto standing = [&](const Point& vertex, const Rational& from, const std::optional<Rational>& to,
                             const Rational& stray) {
@@ -172,9 +163,9 @@ ExactWay::ExactWay(const formation::Leader& motion) {
     if (sgn(leg.x) == 0 && sgn(leg.y) == 0) continue;
     const Interval length = root(dot(leg, leg));
     const Interval reached = before + length;
-    const std::optional<Rational> arrives = time_before(reached.low), leaves = time_after(reached.high);
+    const std::optional<Interval> arrives = time_at(reached.low), leaves = time_at(reached.high);
     add_leg({from, {}, exactly(motion.path[i - 1]) - start, leg, length, before, stretches_.back(), Rational(0)}, from,
-            arrives);
+            arrives ? std::optional(arrives->low) : std::nullopt);
     if (!arrives) return;
     const Point corner = exactly(motion.path[i]) - start;
     const auto distance_at = [this](const Rational& time) {
@@ -184,14 +175,14 @@ ExactWay::ExactWay(const formation::Leader& motion) {
     };
     if (!leaves) {
       // It stops for good where it cannot be told from the corner.
-      standing(corner, std::max(from, *arrives), std::nullopt,
-               std::max(reached.high, stretches_.back().covered) - distance_at(*arrives));
+      standing(corner, std::max(from, arrives->low), std::nullopt,
+               std::max(reached.high, stretches_.back().covered) - distance_at(arrives->low));
       return;
     }
-    const Rational passes = std::max(from, *arrives);
-    if (passes < *leaves) {
-      standing(corner, passes, *leaves, distance_at(*leaves) - distance_at(*arrives));
-      from = *leaves;
+    const Rational passes = std::max(from, arrives->low);
+    if (passes < leaves->high) {
+      standing(corner, passes, leaves->high, distance_at(leaves->high) - distance_at(arrives->low));
+      from = leaves->high;
     } else {
       from = passes;
     }
@@ -217,7 +208,7 @@ Chord ExactWay::chord(const Piece& piece, const Rational& start, const Rational&
   if (sgn(piece.leg.x) == 0 && sgn(piece.leg.y) == 0) return {{piece.vertex, piece.vertex}, piece.stray};
   const auto share_of_leg = [&](const Rational& time) {
     const Rational distance = piece.stretch.distance(time);
-    return (Interval{distance, distance} - piece.before) / piece.length;
+    return (exactly_that(distance) - piece.before) / piece.length;
   };
   const Interval from = share_of_leg(start), to = share_of_leg(end);
   const Rational passed = end - start;

@@ -110,10 +110,8 @@ class ExactWay {
   };
 
   void read_profile(const formation::Leader& motion);
-  /// The last time at which no more than `distance` is known to be covered, and the first at which no less is.
-  std::optional<Rational> time_before(const Rational& distance) const;
-  std::optional<Rational> time_after(const Rational& distance) const;
-  std::optional<Rational> time_at(const Rational& distance, bool after) const;
+  /// From the last time at which no more than `distance` is known to be covered to the first at which no less is.
+  std::optional<Interval> time_at(const Rational& distance) const;
   void add_leg(const Piece& leg, const Rational& from, const std::optional<Rational>& to);
   Chord chord(const Piece& piece, const Rational& start, const Rational& end) const;
   std::size_t piece_at(const Rational& time) const;

@@ -58,6 +58,9 @@ struct Interval {
   Rational middle() const { return (low + high) / 2; }
   Rational half_width() const { return (high - low) / 2; }
 };
+inline Interval exactly_that(const Rational& x) {
+  return {x, x};
+}
 Interval operator+(const Interval& a, const Interval& b);
 Interval operator-(const Interval& a, const Interval& b);
 /// REQUIRES: b.low > 0.

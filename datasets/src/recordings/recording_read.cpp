@@ -281,6 +281,17 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
   throw DataError(DataCode::format_unknown, name, "", kind_of(beginning), recording);
 }
 
+/// Of a text that must outlive it.
+NextLine lines_of(std::string_view text) {
+  return [rest = text](std::string_view& line) mutable {
+    if (rest.empty()) return false;
+    const std::size_t end = rest.find('\n');
+    line = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    return true;
+  };
+}
+
 /// What `read` reads, with all rows that it gives its argument.
 template <class Read>
 RecordingFile with_all_rows(const Read& read) {
@@ -296,28 +307,6 @@ RecordingFile with_all_rows(const Read& read) {
 }
 
 }  // namespace
-
-NextLine lines_of(std::string_view text) {
-  return [rest = text](std::string_view& line) mutable {
-    if (rest.empty()) return false;
-    const std::size_t end = rest.find('\n');
-    line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    return true;
-  };
-}
-
-bool SealedLines::next(std::string_view& line) {
-  if (!lines_.next(line)) return false;
-  if (lines_.number() > 1) hash_.add(last_ += '\n');
-  last_ = line;
-  return true;
-}
-
-bool SealedLines::are_sealed() {
-  const Json last = Json::parse(last_);
-  return last.contains("end") && last["end"].value("sha256", "") == hash_.digest();
-}
 
 void read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take, RecordingFile& run) {
   std::string_view line;
