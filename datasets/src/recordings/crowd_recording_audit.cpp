@@ -41,9 +41,7 @@ class CrowdAuditor {
   CrowdAuditor(const CrowdRecordingHead& head, std::size_t one_of) : head_(head), one_of_(one_of) {
     std::vector<geometry::Box> boxes;
     for (const Segment& e : head.edges) {
-      boxes.emplace_back();
-      boxes.back().add(e.a);
-      boxes.back().add(e.b);
+      boxes.push_back(geometry::box_of(e));
     }
     edges_by_place_ = geometry::BoxGrid(std::move(boxes));
     for (const CrowdKindRecord& kind : head.kinds) {
@@ -124,9 +122,7 @@ class CrowdAuditor {
       if (is_within(body.shape, at, radius + rounding)) return judge_touching_body(i, k, at, motion, lengths);
       ++report.near_bodies;
       if (body.moves && !to_->kept[i]) return void(++report.bodies_open);
-      const bool met = steps_ == 1 ? segment_meets({body.shape, at, radius}, motion, 1.0)
-                                   : is_within(body.shape, at + motion, radius);
-      if (!met) return;
+      if (!meets(body.shape, at, motion, radius)) return;
       ++report.bodies_met;
       find(i, ": meets body " + std::to_string(k));
     });
@@ -155,6 +151,11 @@ class CrowdAuditor {
                                   : ": comes nearer to body " + std::to_string(k) + ", which it touched");
   }
 
+  /// On the way, of consecutive steps; else at the end of it.
+  bool meets(const geometry::ConvexShape& shape, Vec2 at, Vec2 motion, double radius) const {
+    return steps_ == 1 ? segment_meets({shape, at, radius}, motion, 1.0) : is_within(shape, at + motion, radius);
+  }
+
   /// In the interior. Exact.
   static bool is_within(const geometry::ConvexShape& shape, Vec2 at, double radius) {
     return geometry::locate(GrownShape{shape, at, radius}, Vec2{}) == geometry::Place::inside;
@@ -177,7 +178,7 @@ class CrowdAuditor {
       if (distance > reach + rounding) return;
       if (distance < radius + rounding) return judge_touching_edge(i, k, distance, lengths);
       ++report.near_edges;
-      if (!meets_edge(edge, at, motion, radius)) return;
+      if (!meets(edge, at, motion, radius)) return;
       ++report.edges_met;
       find(i, ": meets edge " + std::to_string(k));
     });
@@ -195,15 +196,9 @@ class CrowdAuditor {
     }
     ++report.touching_edges;
     const Vec2 at = place(*from_, i), motion = place(*to_, i) - at;
-    if (!meets_edge(head_.edges[k], at, motion, nearest)) return;
+    if (!meets(head_.edges[k], at, motion, nearest)) return;
     ++report.edges_neared;
     find(i, ": comes nearer to edge " + std::to_string(k) + ", which it touched");
-  }
-
-  /// On the way, of consecutive steps; else at the end of it.
-  bool meets_edge(const Segment& edge, Vec2 at, Vec2 motion, double radius) const {
-    return steps_ == 1 ? segment_meets({edge, at, radius}, motion, 1.0)
-                       : geometry::locate(GrownShape{edge, at + motion, radius}, Vec2{}) == geometry::Place::inside;
   }
 
   void judge_pairs(std::size_t i) {
@@ -216,27 +211,21 @@ class CrowdAuditor {
       if (distance > sum + norm(relative) + rounding) return;
       const bool touches = distance < sum + rounding, both_kept = to_->kept[i] && to_->kept[j];
       if (!both_kept) return void(++(touches ? report.touching_pairs_open : report.pairs_open));
-      if (touches) return judge_touching_pair(i, j, d - relative);
+      const Disc other{d, kind(j).radius};
+      if (touches) return judge_touching_pair(i, j, is_within(other, relative, kind(i).radius));
       ++report.pairs;
-      const bool met = steps_ == 1 ? segment_meets({Disc{d, kind(j).radius}, {}, kind(i).radius}, relative, 1.0)
-                                   : overlap_at(d - relative, i, j);
-      if (!met) return;
+      if (!meets(other, {}, relative, kind(i).radius)) return;
       ++report.pairs_met;
       find(i, " overlaps robot " + std::to_string(j));
     });
   }
 
   /// Half-planes of a pair that touches lead apart within the step: both kept, it does not overlap at the end.
-  void judge_touching_pair(std::size_t i, std::size_t j, Vec2 apart) {
+  void judge_touching_pair(std::size_t i, std::size_t j, bool overlap_at_end) {
     ++report.touching_pairs;
-    if (!overlap_at(apart, i, j)) return;
+    if (!overlap_at_end) return;
     ++report.pairs_not_parted;
     find(i, " touched robot " + std::to_string(j) + ", and still overlaps it");
-  }
-
-  bool overlap_at(Vec2 apart, std::size_t i, std::size_t j) const {
-    return geometry::locate(GrownShape{Disc{apart, kind(j).radius}, {}, kind(i).radius}, Vec2{}) ==
-           geometry::Place::inside;
   }
 
   const CrowdRecordingHead& head_;
@@ -259,28 +248,7 @@ std::size_t motions_in(const std::filesystem::path& path) {
 }  // namespace
 
 void add(CrowdAuditReport& sum, const CrowdAuditReport& other) {
-  using Count = std::size_t CrowdAuditReport::*;
-  for (const Count count : {&CrowdAuditReport::rows,
-                            &CrowdAuditReport::robots,
-                            &CrowdAuditReport::motions,
-                            &CrowdAuditReport::too_fast,
-                            &CrowdAuditReport::pairs,
-                            &CrowdAuditReport::pairs_met,
-                            &CrowdAuditReport::pairs_open,
-                            &CrowdAuditReport::touching_pairs,
-                            &CrowdAuditReport::pairs_not_parted,
-                            &CrowdAuditReport::touching_pairs_open,
-                            &CrowdAuditReport::near_edges,
-                            &CrowdAuditReport::edges_met,
-                            &CrowdAuditReport::touching_edges,
-                            &CrowdAuditReport::edges_neared,
-                            &CrowdAuditReport::touching_edges_open,
-                            &CrowdAuditReport::near_bodies,
-                            &CrowdAuditReport::bodies_met,
-                            &CrowdAuditReport::bodies_open,
-                            &CrowdAuditReport::touching_bodies,
-                            &CrowdAuditReport::bodies_not_parted})
-    sum.*count += other.*count;
+  for (const auto& [name, count] : kCrowdAuditCounts) sum.*count += other.*count;
   sum.cut_off = sum.cut_off || other.cut_off;
   sum.findings.insert(sum.findings.end(), other.findings.begin(), other.findings.end());
 }

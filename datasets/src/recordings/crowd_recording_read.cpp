@@ -140,8 +140,7 @@ struct CrowdRecordingReader::Parts {
   std::string name;
   std::ifstream in;
   CrowdRecordingHead head;
-  std::vector<std::int32_t> x, y;
-  std::vector<std::int64_t> body_x, body_y;
+  CrowdRow row;  ///< the last one
   std::string block;
   std::uint64_t at = 0, block_at = 0;  ///< bytes read, and before the block
   std::uint64_t rows = 0, sum = 0;     ///< of the blocks read
@@ -199,10 +198,11 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   if (!p.read_block()) p.bytes().refuse("its end within the head");
   p.head = to_head(p.bytes(), has_bodies);
   p.sum = checksum(p.block);
-  p.x.assign(p.head.kind_of.size(), 0);
-  p.y = p.x;
-  p.body_x.assign(p.head.bodies.size(), 0);
-  p.body_y = p.body_x;
+  p.row.x.assign(p.head.kind_of.size(), 0);
+  p.row.y = p.row.x;
+  p.row.body_x.assign(p.head.bodies.size(), 0);
+  p.row.body_y = p.row.body_x;
+  p.row.kept.resize(p.row.x.size());
 }
 
 CrowdRecordingReader::~CrowdRecordingReader() = default;
@@ -230,32 +230,29 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
   }
   if (tag != kCrowdRow) p.bytes().refuse("what begins neither a row nor the end");
   CrowdBytes in = p.bytes();
-  row.step = in.get<std::uint32_t>();
-  for (std::vector<std::int32_t>* column : {&p.x, &p.y})
+  p.row.step = in.get<std::uint32_t>();
+  for (std::vector<std::int32_t>* column : {&p.row.x, &p.row.y})
     for (std::int32_t& value : *column) {
       const std::int64_t next = value + in.difference();
       in.require(std::abs(next) <= std::int64_t{1} << 30, "a position beyond the lattice");
       value = static_cast<std::int32_t>(next);
     }
-  for (std::vector<std::int64_t>* column : {&p.body_x, &p.body_y})
+  for (std::vector<std::int64_t>* column : {&p.row.body_x, &p.row.body_y})
     for (std::int64_t& value : *column) {
       const std::int64_t difference = in.difference();
       in.require(std::abs(difference) <= kFarthestBody && std::abs(value + difference) <= kFarthestBody,
                  "a body beyond the lattice");
       value += difference;
     }
-  row.x = p.x;
-  row.y = p.y;
-  row.body_x = p.body_x;
-  row.body_y = p.body_y;
-  row.kept.resize(p.x.size());
-  for (std::size_t first = 0; first < row.kept.size(); first += 8) {
+  std::vector<std::uint8_t>& kept = p.row.kept;
+  for (std::size_t first = 0; first < kept.size(); first += 8) {
     const auto bits = in.get<std::uint8_t>();
-    for (std::size_t k = first; k < std::min(first + 8, row.kept.size()); ++k) row.kept[k] = bits >> (k - first) & 1U;
+    for (std::size_t k = first; k < std::min(first + 8, kept.size()); ++k) kept[k] = bits >> (k - first) & 1U;
   }
   in.require_end();
   p.sum = chained(p.sum, checksum(p.block));
   ++p.rows;
+  row = p.row;
   return true;
 }
 

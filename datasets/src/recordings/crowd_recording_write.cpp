@@ -46,10 +46,10 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
     body_start_.push_back(body.displacement);
   }
   row_.body_x.assign(head_.bodies.size(), 0);
-  last_body_x_ = last_body_y_ = row_.body_y = row_.body_x;
+  last_.body_x = last_.body_y = row_.body_y = row_.body_x;
   row_.x.assign(robots, 0);
   row_.y.assign(robots, 0);
-  last_x_ = last_y_ = row_.x;
+  last_.x = last_.y = row_.x;
   row_.kept.assign(robots, 1);
   const std::string head = to_bytes(head_);
   std::string out(head_.bodies.empty() ? kCrowdMark : kCrowdMarkOfBodies);
@@ -74,9 +74,9 @@ void CrowdRecorder::save(std::ostream& to) {
   for (const std::uint64_t number : {head_sum_, bytes_, rows_, sum_, std::uint64_t{row_.step}, std::uint64_t{is_due_}})
     append(out, number);
   for (const geometry::Vec2 start : body_start_) append(out, start);
-  for (const auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+  for (const auto* all : {&last_.x, &last_.y, &row_.x, &row_.y})
     for (const std::int32_t number : *all) append(out, number);
-  for (const auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+  for (const auto* all : {&last_.body_x, &last_.body_y, &row_.body_x, &row_.body_y})
     for (const std::int64_t number : *all) append(out, number);
   for (const std::uint8_t kept : row_.kept) append(out, kept);
   to.write(out.data(), static_cast<std::streamsize>(out.size()));
@@ -94,9 +94,9 @@ void CrowdRecorder::restore(const formation::Crowd& crowd, std::istream& from) {
   row_.step = static_cast<std::uint32_t>(in.get<std::uint64_t>());
   is_due_ = in.get<std::uint64_t>() != 0;
   for (geometry::Vec2& start : body_start_) start = in.get<geometry::Vec2>();
-  for (auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+  for (auto* all : {&last_.x, &last_.y, &row_.x, &row_.y})
     for (std::int32_t& number : *all) number = in.get<std::int32_t>();
-  for (auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+  for (auto* all : {&last_.body_x, &last_.body_y, &row_.body_x, &row_.body_y})
     for (std::int64_t& number : *all) number = in.get<std::int64_t>();
   for (std::uint8_t& kept : row_.kept) kept = in.get<std::uint8_t>();
   in.require_end();
@@ -128,12 +128,12 @@ void CrowdRecorder::add_step(const formation::Crowd& crowd, std::size_t steps) {
 void CrowdRecorder::write_row() {
   std::string out;
   append(out, row_.step);
-  for (auto [now, last] : {std::pair(&row_.x, &last_x_), std::pair(&row_.y, &last_y_)}) {
+  for (auto [now, last] : {std::pair(&row_.x, &last_.x), std::pair(&row_.y, &last_.y)}) {
     for (std::size_t i = 0; i < now->size(); ++i)
       append_difference(out, std::int64_t{(*now)[i]} - std::int64_t{(*last)[i]});
     *last = *now;
   }
-  for (auto [now, last] : {std::pair(&row_.body_x, &last_body_x_), std::pair(&row_.body_y, &last_body_y_)}) {
+  for (auto [now, last] : {std::pair(&row_.body_x, &last_.body_x), std::pair(&row_.body_y, &last_.body_y)}) {
     for (std::size_t k = 0; k < now->size(); ++k) append_difference(out, (*now)[k] - (*last)[k]);
     *last = *now;
   }

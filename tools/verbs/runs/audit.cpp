@@ -124,29 +124,12 @@ std::string summary(const datasets::CrowdAuditReport& r) {
 }
 
 nlohmann::ordered_json as_json(const datasets::CrowdAuditReport& r) {
-  return {{"rows", r.rows},
-          {"robots", r.robots},
-          {"motions", r.motions},
-          {"too_fast", r.too_fast},
-          {"pairs", r.pairs},
-          {"pairs_met", r.pairs_met},
-          {"pairs_open", r.pairs_open},
-          {"touching_pairs", r.touching_pairs},
-          {"pairs_not_parted", r.pairs_not_parted},
-          {"touching_pairs_open", r.touching_pairs_open},
-          {"near_edges", r.near_edges},
-          {"edges_met", r.edges_met},
-          {"touching_edges", r.touching_edges},
-          {"edges_neared", r.edges_neared},
-          {"touching_edges_open", r.touching_edges_open},
-          {"near_bodies", r.near_bodies},
-          {"bodies_met", r.bodies_met},
-          {"bodies_open", r.bodies_open},
-          {"touching_bodies", r.touching_bodies},
-          {"bodies_not_parted", r.bodies_not_parted},
-          {"cut_off", r.cut_off},
-          {"clean", r.clean()},
-          {"findings", r.findings}};
+  nlohmann::ordered_json json;
+  for (const auto& [name, count] : datasets::kCrowdAuditCounts) json[name] = r.*count;
+  json["cut_off"] = r.cut_off;
+  json["clean"] = r.clean();
+  json["findings"] = r.findings;
+  return json;
 }
 
 // --- All of them ---

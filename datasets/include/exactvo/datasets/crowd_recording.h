@@ -16,6 +16,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -87,9 +88,7 @@ class CrowdRecorder : public formation::CrowdSink {
 
   AtomicFile file_;
   CrowdRecordingHead head_;
-  CrowdRow row_;
-  std::vector<std::int32_t> last_x_, last_y_;
-  std::vector<std::int64_t> last_body_x_, last_body_y_;
+  CrowdRow row_, last_;  ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
   std::vector<geometry::Vec2> body_start_;
   std::vector<geometry::Vec2> at_;
@@ -152,6 +151,29 @@ struct CrowdAuditReport {
     return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared + bodies_met + bodies_not_parted == 0;
   }
 };
+
+/// The counts of a report under their names, in its order.
+inline constexpr std::pair<const char*, std::size_t CrowdAuditReport::*> kCrowdAuditCounts[] = {
+    {"rows", &CrowdAuditReport::rows},
+    {"robots", &CrowdAuditReport::robots},
+    {"motions", &CrowdAuditReport::motions},
+    {"too_fast", &CrowdAuditReport::too_fast},
+    {"pairs", &CrowdAuditReport::pairs},
+    {"pairs_met", &CrowdAuditReport::pairs_met},
+    {"pairs_open", &CrowdAuditReport::pairs_open},
+    {"touching_pairs", &CrowdAuditReport::touching_pairs},
+    {"pairs_not_parted", &CrowdAuditReport::pairs_not_parted},
+    {"touching_pairs_open", &CrowdAuditReport::touching_pairs_open},
+    {"near_edges", &CrowdAuditReport::near_edges},
+    {"edges_met", &CrowdAuditReport::edges_met},
+    {"touching_edges", &CrowdAuditReport::touching_edges},
+    {"edges_neared", &CrowdAuditReport::edges_neared},
+    {"touching_edges_open", &CrowdAuditReport::touching_edges_open},
+    {"near_bodies", &CrowdAuditReport::near_bodies},
+    {"bodies_met", &CrowdAuditReport::bodies_met},
+    {"bodies_open", &CrowdAuditReport::bodies_open},
+    {"touching_bodies", &CrowdAuditReport::touching_bodies},
+    {"bodies_not_parted", &CrowdAuditReport::bodies_not_parted}};
 
 /// Counts added up, findings joined.
 void add(CrowdAuditReport& sum, const CrowdAuditReport& other);
