@@ -61,7 +61,8 @@ bool all_manage(const World& world, const Step& step) {
   } catch (...) {
     failure = std::current_exception();
   }
-  const long first_failed = rank_library().least(failure ? world.rank : world.size);
+  long first_failed = failure ? world.rank : world.size;
+  rank_library().least_of_each(&first_failed, 1);
   if (first_failed == world.rank) std::rethrow_exception(failure);
   return first_failed == world.size;
 }

@@ -37,12 +37,6 @@ long broadcast(long value) {
   return value;
 }
 
-long least(long value) {
-  long least = value;
-  MPI_Allreduce(&value, &least, 1, MPI_LONG, MPI_MIN, MPI_COMM_WORLD);
-  return least;
-}
-
 void send(const long* values, int count, int to, int tag) {
   MPI_Send(values, count, MPI_LONG, to, tag, MPI_COMM_WORLD);
 }
@@ -110,8 +104,8 @@ void broadcast_bytes(char* bytes, std::size_t count) {
 }  // namespace
 
 const RankLibrary& rank_library() {
-  static constexpr RankLibrary kLibrary{join, leave,   rank,          size,  broadcast, least,
-                                        send, receive, least_of_each, share, gather,    broadcast_bytes};
+  static constexpr RankLibrary kLibrary{join,    leave,         rank,  size,   broadcast,      send,
+                                        receive, least_of_each, share, gather, broadcast_bytes};
   return kLibrary;
 }
 

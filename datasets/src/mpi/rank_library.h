@@ -17,8 +17,6 @@ struct RankLibrary {
   int (*size)();
   /// From the first rank to all.
   long (*broadcast)(long value);
-  /// The least that any rank gives, to all.
-  long (*least)(long value);
   void (*send)(const long* values, int count, int to, int tag);
   /// From any rank; returns which.
   int (*receive)(long* values, int count, int tag);
