@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
-#include "lp/exact/exact.h"
 #include "lp/proof/certify.h"
 #include "lp/proof/multipliers.h"
 
@@ -26,7 +25,7 @@ Proven certified(const Problem& problem, const Solution& solution) {
   Proven answer;
   answer.solution = solution;
   const std::optional<ProofInDoubles> proof = proven_with_multipliers(problem, answer.solution);
-  if (!proof) return solve_exactly(problem);
+  if (!proof) return solve_exact(problem);
   answer.certificate = certificate_of(*proof, answer.solution.status);
   return answer;
 }
@@ -34,11 +33,6 @@ Proven certified(const Problem& problem, const Solution& solution) {
 bool is_proven_by_multipliers(const Problem& problem, Solution& solution) {
   require_well_formed(problem);
   return own_multipliers_prove(problem, solution) || proven_with_multipliers(problem, solution).has_value();
-}
-
-Proven solve_exact(const Problem& problem) {
-  require_well_formed(problem);
-  return solve_exactly(problem);
 }
 
 }  // namespace exactvo::lp

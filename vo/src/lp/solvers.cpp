@@ -8,9 +8,7 @@
 
 #include "exactvo/geometry/names.h"
 #include "exactvo/vo/lp/solve.h"
-#include "lp/exact/exact.h"
 #include "lp/lanes/layout.h"
-#include "lp/proof/certify.h"
 #include "lp/proof/multipliers.h"
 
 namespace exactvo::lp {
@@ -174,12 +172,7 @@ std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problem
 }
 
 void prove(const Problem& problem, Proven& answer) {
-  if (answer.certificate) return;
-  answer.certificate = certify(problem, answer.solution);
-  if (!answer.certificate)
-    answer = solve_exactly(problem);
-  else if (!has_multipliers_of(problem, *answer.certificate, answer.solution))
-    set_multipliers(problem, *answer.certificate, answer.solution);
+  if (!answer.certificate) answer = certified(problem, answer.solution);
 }
 
 }  // namespace exactvo::lp

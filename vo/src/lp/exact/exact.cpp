@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lp/exact/exact.h"
-
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
+#include "exactvo/vo/lp/certificate.h"
 #include "lp/exact/exact_search.h"
 #include "lp/problem/exact_sign.h"
 #include "lp/proof/certify.h"
@@ -12,6 +13,44 @@
 
 namespace exactvo::lp {
 namespace {
+
+/// Every constraint and every finite side of the box.
+ExactRegion exact_region(const Problem& problem) {
+  ExactRegion region;
+  region.lines.reserve(problem.constraints.size() + 4);
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+    const Constraint& c = problem.constraints[k];
+    region.lines.push_back({c.half_plane, constraint_at(k), c.priority == Priority::soft});
+  }
+  for (const Binding side : kBoxSides) {
+    const HalfPlane h = half_plane_at(problem, side);
+    if (std::isfinite(h.offset)) region.lines.push_back({h, side, false});
+  }
+  region.has_disc = std::isfinite(problem.bound.disc);
+  if (region.has_disc) region.disc = Exact(problem.bound.disc);
+  return region;
+}
+
+/// The lines that may not give.
+ExactRegion hard_part(const ExactRegion& region) {
+  ExactRegion hard;
+  hard.has_disc = region.has_disc;
+  hard.disc = region.disc;
+  for (const auto& member : region.lines)
+    if (!member.soft) hard.lines.push_back(member);
+  return hard;
+}
+
+/// The constraints may give, the sides of the box may not.
+ExactRegion softened(ExactRegion region) {
+  for (auto& member : region.lines) member.soft = !is_speed_bound(member.binding);
+  return region;
+}
+
+Aim aim_of(const Problem& problem) {
+  if (problem.objective == Objective::nearest) return {{}, problem.preferred};
+  return {{problem.preferred}, {}};
+}
 
 std::vector<Binding> bindings_of(const ExactRegion& region, const ExactOptimum& o) {
   std::vector<Binding> bindings;
@@ -35,15 +74,14 @@ void name_active(const std::vector<Binding>& bindings, Solution& s) {
 /// What the certificate names, then what else is tight: ties leave more of that than bind.
 void take_from(const Certificate& certificate, const Problem& problem, const std::vector<Binding>& tight, Solution& s) {
   std::vector<Binding> bindings;
-  for (const Term& term : certificate.bound) bindings.push_back(term.binding);
+  Multipliers rounded;
+  for (const Term& term : certificate.bound) {
+    bindings.push_back(term.binding);
+    rounded.add(term.binding, std::accumulate(term.multiplier.begin(), term.multiplier.end(), 0.0));
+  }
   bindings.insert(bindings.end(), tight.begin(), tight.end());
   name_active(bindings, s);
-  set_multipliers(problem, certificate, s);
-}
-
-/// The optimum as doubles, or 0 where it lies beyond them.
-Vec2 within_doubles(const ExactOptimum& optimum) {
-  return is_finite(optimum.rounded) ? optimum.rounded : Vec2{};
+  set_multipliers(problem, rounded, s);
 }
 
 /// The point of all that must hold that is nearest 0 is rational: it proves that there is one.
@@ -51,7 +89,7 @@ Proven no_interior(const Problem& problem, const ExactRegion& mandatory, const E
                    const std::vector<Term>& contradiction) {
   Proven answer;
   answer.exact_stage = true;
-  const Vec2 velocity = within_doubles(optimum);
+  const Vec2 velocity = is_finite(optimum.rounded) ? optimum.rounded : Vec2{};  // which may lie beyond the doubles
   answer.solution.velocity = velocity;
   answer.solution.status = Status::no_interior;
   for (const auto& member : mandatory.lines)
@@ -86,15 +124,17 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   name_active(tight, answer.solution);
   set_multipliers(problem, answer.solution);
   answer.certificate = certificate_for(problem, answer.solution, tight, contradiction);
-  const auto& certificate = answer.certificate;
-  if (certificate && is_tight(problem, *certificate) && !has_multipliers_of(problem, *certificate, answer.solution))
-    take_from(*certificate, problem, tight, answer.solution);
+  if (!answer.certificate || !is_tight(problem, *answer.certificate)) return answer;
+  const std::optional<Multipliers> proof = in_doubles(answer.certificate->bound);
+  if (!proof || !has_multipliers_of(problem, *proof, answer.solution))
+    take_from(*answer.certificate, problem, tight, answer.solution);
   return answer;
 }
 
 }  // namespace
 
-Proven solve_exactly(const Problem& problem) {
+Proven solve_exact(const Problem& problem) {
+  require_well_formed(problem);
   const ExactRegion region = exact_region(problem);
   const Aim aim = aim_of(problem);
   const ExactOptimum best = exact_best(region, aim);

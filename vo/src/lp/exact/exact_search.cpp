@@ -6,13 +6,12 @@
 
 #include "exactvo/geometry/infinity.h"
 #include "lp/exact/exact_abscissa.h"
-#include "lp/exact/exact_wall.h"
+#include "lp/problem/region.h"
 
 namespace exactvo::lp {
 namespace {
 
 using geometry::kInfinity;
-constexpr double kUnitRoundoff = 0x1p-53;
 
 /// Two conversions of long numbers to double (2 u each: the leading words are truncated), a root, a product, a quotient
 /// and a sum: below 16 u of the terms.
@@ -24,8 +23,6 @@ constexpr double kPricing = 8.0 * kUnitRoundoff;
 /// Conversions are accurate while no number leaves the normal range, also when two of them are multiplied.
 constexpr double kLeast = 0x1p-500;
 constexpr double kMost = 0x1p500;
-
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 bool ordinary(double x) {
   return x == 0.0 || (std::abs(x) > kLeast && std::abs(x) < kMost);
@@ -83,73 +80,77 @@ ExactOptimum start_of(const ExactRegion& region, const Aim& aim) {
   return o;
 }
 
-struct Scan {
-  const ExactRegion& region;
-  const ExactOptimum& at;
-  bool relaxing;  ///< soft lines may be violated as much as line at.top is
+// --- What others leave of a line ---
+
+/// A line of the working set, and where it stands in the region.
+struct Held {
+  ExactLine line;
+  std::size_t position;
 };
 
-bool violates(const Scan& scan, std::size_t k) {
-  const auto& member = scan.region.lines[k];
-  ExactLine line = exact(member.half_plane);
-  if (scan.relaxing && member.soft) line = below(exact(scan.region.lines[scan.at.top].half_plane), line);
-  return sign_of_violation(line, scan.at.point) > 0;
+/// The part of a carrier that is left, and which line (its position, kDiscPosition or kNoPosition) cut it off.
+struct Interval {
+  Abscissa low = end(-1), high = end(1);
+  std::size_t low_owner = kNoPosition, high_owner = kNoPosition;
+  bool empty = false;  ///< then the owners are what contradicts the carrier
+};
+
+Interval inside_disc(const Carrier& carrier) {
+  Interval interval;
+  if (!carrier.has_disc) return interval;
+  interval.low_owner = interval.high_owner = kDiscPosition;
+  interval.empty = sign_of(carrier.discriminant) < 0;
+  interval.low = disc_end(-1);
+  interval.high = disc_end(1);
+  return interval;
 }
 
-/// A line's violation at the rounded point, and how wrong that can be.
-struct Price {
-  double violation, error;
-};
-
-Price price_of(const HalfPlane& h, Vec2 v, double point_error) {
-  const double x = h.normal.x * v.x;
-  const double y = h.normal.y * v.y;
-  const double terms = std::abs(x) + std::abs(y) + std::abs(h.offset);
-  return {h.offset - (x + y), kPricing * terms + (std::abs(h.normal.x) + std::abs(h.normal.y)) * point_error + kLeast};
+void clip(Interval& interval, const Carrier& carrier, const Held& other) {
+  const int side = allowed_side(carrier, other.line);
+  if (side == 0) {
+    if (sign_of(missing(carrier, other.line)) <= 0) return;
+    interval.empty = true;
+    interval.low_owner = other.position;
+    interval.high_owner = kNoPosition;
+    return;
+  }
+  const Abscissa s = cut(carrier, other.line);
+  if (side > 0 && compare(carrier, s, interval.low) > 0) interval.low = s, interval.low_owner = other.position;
+  if (side < 0 && compare(carrier, s, interval.high) < 0) interval.high = s, interval.high_owner = other.position;
+  interval.empty = compare(carrier, interval.low, interval.high) > 0;
 }
 
-/// The line that enters: the one violated most among those that doubles are sure of, else the first violated exactly.
-class Entering {
- public:
-  explicit Entering(const Scan& scan) : scan_(scan) {
-    if (scan.relaxing) level_ = price_of(scan.region.lines[scan.at.top].half_plane, scan.at.rounded, scan.at.error);
+/// Where the aim would like to be on the carrier: an end, or a foot.
+Abscissa wish(const Carrier& carrier, const Aim& aim) {
+  for (const Vec2 direction : aim.directions) {
+    const int side = sign_of(dot(exact(direction), carrier.direction));
+    if (side != 0) return end(side);
   }
+  return foot(carrier, aim.target);
+}
 
-  void look_at(std::size_t k) {
-    const auto& member = scan_.region.lines[k];
-    Price price = price_of(member.half_plane, scan_.at.rounded, scan_.at.error);
-    if (scan_.relaxing && member.soft) {
-      price.violation -= level_.violation;
-      price.error += level_.error + kPricing * (std::abs(price.violation) + std::abs(level_.violation));
-    }
-    if (price.violation > price.error) {
-      if (price.violation > most_) most_ = price.violation, worst_ = k;
-    } else if (!(price.violation < -price.error)) {
-      undecided_.push_back(k);
-    }
-  }
+Abscissa clamped(const Carrier& carrier, const Interval& interval, const Abscissa& s) {
+  if (compare(carrier, s, interval.low) < 0) return interval.low;
+  return compare(carrier, s, interval.high) > 0 ? interval.high : s;
+}
 
-  std::size_t line() const {
-    if (worst_ != kNone) return worst_;
-    for (const std::size_t k : undecided_)
-      if (std::find(scan_.at.tight.begin(), scan_.at.tight.end(), k) == scan_.at.tight.end() && violates(scan_, k))
-        return k;
-    return kNone;
-  }
+bool at_disc(const Carrier& carrier, const Abscissa& s) {
+  if (!carrier.has_disc) return false;
+  return compare(carrier, s, disc_end(-1)) == 0 || compare(carrier, s, disc_end(1)) == 0;
+}
 
- private:
-  const Scan& scan_;
-  Price level_{};
-  std::vector<std::size_t> undecided_;
-  double most_ = 0.0;
-  std::size_t worst_ = kNone;
-};
+/// What binds there is left to the caller.
+ExactOptimum optimum_at(const Carrier& carrier, const Abscissa& s) {
+  ExactOptimum o;
+  o.point = point_at(carrier, s);
+  o.on_disc = at_disc(carrier, s);
+  round_point(o);
+  return o;
+}
 
-/// The line that enters next.
-std::size_t entering(const Scan& scan) {
-  Entering search(scan);
-  for (std::size_t k = 0; k < scan.region.lines.size(); ++k) search.look_at(k);
-  return search.line();
+/// The soft line `other` as a half-plane on the plane of `top`: where other is violated no more than top.
+ExactLine below(const ExactLine& top, const ExactLine& other) {
+  return {other.normal - top.normal, other.offset - top.offset};
 }
 
 /// The optimum on the boundary of `entering` inside the working set and the disc. `tight` is left to the caller
@@ -157,52 +158,20 @@ std::size_t entering(const Scan& scan) {
 ExactOptimum best_on_line(const Held& entering, const std::vector<Held>& others, const ExactRegion& region,
                           const Aim& aim) {
   const Carrier carrier = carrier_of(entering.line, region.has_disc, region.disc);
-  Stretch stretch = inside_disc(carrier);
+  Interval interval = inside_disc(carrier);
   for (const Held& other : others) {
-    if (stretch.empty) break;
-    clip(stretch, carrier, other.line, other.position);
+    if (interval.empty) break;
+    clip(interval, carrier, other);
   }
+  if (!interval.empty) return optimum_at(carrier, clamped(carrier, interval, wish(carrier, aim)));
   ExactOptimum o;
-  if (stretch.empty) {
-    o.feasible = false;
-    o.tight = {entering.position};
-    for (const std::size_t owner : {stretch.low_owner, stretch.high_owner}) {
-      if (owner == kDiscOwner) o.on_disc = true;
-      if (owner != kDiscOwner && owner != kNoOwner) o.tight.push_back(owner);
-    }
-    return o;
+  o.feasible = false;
+  o.tight = {entering.position};
+  for (const std::size_t owner : {interval.low_owner, interval.high_owner}) {
+    if (owner == kDiscPosition) o.on_disc = true;
+    if (owner != kDiscPosition && owner != kNoPosition) o.tight.push_back(owner);
   }
-  const Abscissa s = clamped(carrier, stretch, wish(carrier, aim));
-  o.point = point_at(carrier, s);
-  o.on_disc = at_disc(carrier, s);
-  round_point(o);
   return o;
-}
-
-std::vector<Held> held(const ExactRegion& region, const std::vector<std::size_t>& positions) {
-  std::vector<Held> lines;
-  for (const std::size_t k : positions) lines.push_back({exact(region.lines[k].half_plane), k});
-  return lines;
-}
-
-/// Keeps those of `candidates` that bind at the optimum: every correct basis is among them, ties or not.
-void keep_tight(ExactOptimum& o, const ExactRegion& region, const std::vector<std::size_t>& candidates, bool relaxing) {
-  for (const std::size_t k : candidates) {
-    const auto& member = region.lines[k];
-    ExactLine line = exact(member.half_plane);
-    if (relaxing && member.soft) line = below(exact(region.lines[o.top].half_plane), line);
-    if ((relaxing && k == o.top) || sign_of_violation(line, o.point) == 0) o.tight.push_back(k);
-  }
-}
-
-ExactOptimum best_step(const ExactRegion& region, const Aim& aim, const ExactOptimum& from, std::size_t enters) {
-  const Held line{exact(region.lines[enters].half_plane), enters};
-  ExactOptimum next = best_on_line(line, held(region, from.tight), region, aim);
-  if (!next.feasible) return next;
-  std::vector<std::size_t> candidates = from.tight;
-  candidates.push_back(enters);
-  keep_tight(next, region, candidates, false);
-  return next;
 }
 
 /// The lowest point of the plane of soft line `top`: a linear program in the plane, the working set line by line.
@@ -225,43 +194,164 @@ ExactOptimum lowest_on_plane(const ExactRegion& region, const Aim& aim, const st
   return o;
 }
 
-/// The point of the hard line `wall` where the soft lines of the working set are violated least.
-ExactOptimum lowest_on_wall(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& in_hand,
-                            std::size_t wall) {
-  WallSearch search(carrier_of(exact(region.lines[wall].half_plane), region.has_disc, region.disc), aim);
-  for (const std::size_t k : in_hand) {
-    const ExactLine line = exact(region.lines[k].half_plane);
-    if (region.lines[k].soft)
-      search.add_soft(line, k);
-    else
-      search.add_hard(line, k);
+/// The point of the hard line `wall` where the soft lines of the working set are violated least: an end of what the
+/// hard ones leave, a crossing of two heights, or where the heights are flat the aim's wish.
+class WallSearch {
+ public:
+  WallSearch(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& in_hand, std::size_t wall)
+      : carrier_(carrier_of(exact(region.lines[wall].half_plane), region.has_disc, region.disc)),
+        wish_(wish(carrier_, aim)),
+        left_(inside_disc(carrier_)) {
+    for (const std::size_t k : in_hand) {
+      const Held line{exact(region.lines[k].half_plane), k};
+      if (region.lines[k].soft)
+        soft_.push_back(line);
+      else if (!left_.empty)
+        clip(left_, carrier_, line);
+    }
   }
-  ExactOptimum o;
-  o.feasible = search.run();
-  if (!o.feasible) return o;
-  o.point = search.point();
-  o.top = search.top();
-  o.on_disc = search.on_disc();
-  round_point(o);
-  return o;
+
+  ExactOptimum run() {
+    if (!left_.empty) {
+      for (const Abscissa& s : {left_.low, left_.high, wish_}) consider(s);
+      consider_crossings();
+    }
+    ExactOptimum o;
+    o.feasible = found_;
+    if (!found_) return o;
+    o = optimum_at(carrier_, best_);
+    o.top = soft_[highest_].position;
+    return o;
+  }
+
+ private:
+  Height height_at(std::size_t soft, const Abscissa& s) const { return lp::height_at(carrier_, soft_[soft].line, s); }
+
+  std::size_t highest_at(const Abscissa& s) const {
+    std::size_t highest = 0;
+    for (std::size_t k = 1; k < soft_.size(); ++k)
+      if (compare(carrier_, height_at(k, s), height_at(highest, s)) > 0) highest = k;
+    return highest;
+  }
+
+  bool nearer_wish(const Abscissa& s) const {
+    const int order = compare(carrier_, s, best_);
+    if (wish_.infinite != 0) return order * wish_.infinite > 0;
+    return order * compare_mean(carrier_, s, best_, wish_) < 0;
+  }
+
+  void consider(const Abscissa& s) {
+    if (s.infinite != 0 || compare(carrier_, s, left_.low) < 0 || compare(carrier_, s, left_.high) > 0) return;
+    const std::size_t highest = highest_at(s);
+    const int order = found_ ? compare(carrier_, height_at(highest, s), height_at(highest_, best_)) : -1;
+    if (order > 0 || (order == 0 && !nearer_wish(s))) return;
+    found_ = true;
+    best_ = s;
+    highest_ = highest;
+  }
+
+  void consider_crossings() {
+    for (std::size_t j = 0; j < soft_.size(); ++j) {
+      for (std::size_t k = j + 1; k < soft_.size(); ++k) {
+        const ExactLine crossing = below(soft_[j].line, soft_[k].line);
+        if (allowed_side(carrier_, crossing) != 0) consider(cut(carrier_, crossing));
+      }
+    }
+  }
+
+  Carrier carrier_;
+  Abscissa wish_;
+  Interval left_;
+  std::vector<Held> soft_;
+  Abscissa best_;
+  bool found_ = false;
+  std::size_t highest_ = 0;
+};
+
+// --- The walk ---
+
+struct Scan {
+  const ExactRegion& region;
+  const ExactOptimum& at;
+  bool relaxing;  ///< soft lines may be violated as much as line at.top is
+};
+
+/// The sign of the violation of line k beyond what it may be violated by.
+int sign_of_violation(const Scan& scan, std::size_t k) {
+  const auto& member = scan.region.lines[k];
+  ExactLine line = exact(member.half_plane);
+  if (scan.relaxing && member.soft) line = below(exact(scan.region.lines[scan.at.top].half_plane), line);
+  return sign_of_violation(line, scan.at.point);
 }
 
-ExactOptimum relaxing_step(const ExactRegion& region, const Aim& aim, const ExactOptimum& from, std::size_t enters) {
-  ExactOptimum next = region.lines[enters].soft ? lowest_on_plane(region, aim, from.tight, enters)
-                                                : lowest_on_wall(region, aim, from.tight, enters);
+/// A line's violation at the rounded point, and how wrong that can be.
+struct Price {
+  double violation = 0.0, error = 0.0;
+};
+
+Price price_of(const HalfPlane& h, Vec2 v, double point_error) {
+  const double x = h.normal.x * v.x;
+  const double y = h.normal.y * v.y;
+  const double terms = std::abs(x) + std::abs(y) + std::abs(h.offset);
+  return {h.offset - (x + y), kPricing * terms + (std::abs(h.normal.x) + std::abs(h.normal.y)) * point_error + kLeast};
+}
+
+/// The line that enters: the one violated most among those that doubles are sure of, else the first violated exactly.
+std::size_t entering(const Scan& scan) {
+  const auto& [region, at, relaxing] = scan;
+  Price level;
+  if (relaxing) level = price_of(region.lines[at.top].half_plane, at.rounded, at.error);
+  std::vector<std::size_t> undecided;
+  double most = 0.0;
+  std::size_t worst = kNoPosition;
+  for (std::size_t k = 0; k < region.lines.size(); ++k) {
+    Price price = price_of(region.lines[k].half_plane, at.rounded, at.error);
+    if (relaxing && region.lines[k].soft) {
+      price.violation -= level.violation;
+      price.error += level.error + kPricing * (std::abs(price.violation) + std::abs(level.violation));
+    }
+    if (price.violation > price.error) {
+      if (price.violation > most) most = price.violation, worst = k;
+    } else if (!(price.violation < -price.error)) {
+      undecided.push_back(k);
+    }
+  }
+  if (worst != kNoPosition) return worst;
+  for (const std::size_t k : undecided)
+    if (std::find(at.tight.begin(), at.tight.end(), k) == at.tight.end() && sign_of_violation(scan, k) > 0) return k;
+  return kNoPosition;
+}
+
+/// The optimum of the working set with the line that enters. Of those lines it keeps as the next working set what binds
+/// there: every correct basis is among them, ties or not.
+ExactOptimum step(const Scan& from, const Aim& aim, std::size_t enters) {
+  const ExactRegion& region = from.region;
+  std::vector<std::size_t> working = from.at.tight;
+  ExactOptimum next;
+  if (!from.relaxing) {
+    std::vector<Held> others;
+    for (const std::size_t k : working) others.push_back({exact(region.lines[k].half_plane), k});
+    next = best_on_line({exact(region.lines[enters].half_plane), enters}, others, region, aim);
+  } else if (region.lines[enters].soft) {
+    next = lowest_on_plane(region, aim, working, enters);
+  } else {
+    next = WallSearch(region, aim, working, enters).run();
+  }
   if (!next.feasible) return next;
   next.tight.clear();
-  std::vector<std::size_t> candidates = from.tight;
-  candidates.push_back(enters);
-  keep_tight(next, region, candidates, true);
+  working.push_back(enters);
+  for (const std::size_t k : working)
+    if ((from.relaxing && k == next.top) || sign_of_violation({region, next, from.relaxing}, k) == 0)
+      next.tight.push_back(k);
   return next;
 }
 
 ExactOptimum walk(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing) {
   while (o.feasible) {
-    const std::size_t enters = entering({region, o, relaxing});
-    if (enters == kNone) break;
-    o = relaxing ? relaxing_step(region, aim, o, enters) : best_step(region, aim, o, enters);
+    const Scan scan{region, o, relaxing};
+    const std::size_t enters = entering(scan);
+    if (enters == kNoPosition) break;
+    o = step(scan, aim, enters);
   }
   return o;
 }

@@ -45,12 +45,6 @@ struct ExactOptimum {
   std::size_t top = 0;             ///< least violation: the soft line whose violation is the level
 };
 
-/// The regions of a problem: all lines; the hard ones; the hard ones made soft.
-ExactRegion exact_region(const Problem& problem);
-ExactRegion hard_part(const ExactRegion& region);
-ExactRegion softened(ExactRegion region);
-Aim aim_of(const Problem& problem);
-
 /// The optimum over every line.
 ExactOptimum exact_best(const ExactRegion& region, const Aim& aim);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "exactvo/geometry/infinity.h"
@@ -30,15 +31,6 @@ std::vector<Term> terms_of(const Multipliers& m) {
   for (std::size_t k = 0; k < m.count; ++k)
     if (m.value[k] > 0.0) terms.push_back({m.binding[k], {m.value[k]}});
   return terms;
-}
-
-Combination combined(const Problem& problem, const Multipliers& m, Scope scope) {
-  Combination sum;
-  sum.well_formed = true;
-  for (std::size_t k = 0; k < m.count; ++k)
-    if (m.value[k] > 0.0)
-      sum.well_formed = sum.well_formed && add_to(sum, problem, m.binding[k], Exact(m.value[k]), scope);
-  return sum;
 }
 
 /// The disc's multiplier is part of the proof for the nearest velocity only.
@@ -120,13 +112,13 @@ class Search {
   /// Tries the solution's own multipliers, then every choice of at most three of `count` candidates.
   void run(const Multipliers& own, const Binding* candidates, std::size_t count) {
     if (own.count > 0) consider(own);
-    if (!settled()) attempt({}, 0);
+    if (!settled()) attempt({});
     for (std::size_t i = 0; i < count && !settled(); ++i) {
-      attempt({candidates[i]}, 1);
+      attempt({candidates[i]});
       for (std::size_t j = i + 1; j < count && !settled(); ++j) {
-        attempt({candidates[i], candidates[j]}, 2);
+        attempt({candidates[i], candidates[j]});
         for (std::size_t k = j + 1; k < count && !settled() && scope_ != Scope::all_must_hold; ++k)
-          attempt({candidates[i], candidates[j], candidates[k]}, 3);
+          attempt({candidates[i], candidates[j], candidates[k]});
       }
     }
   }
@@ -141,25 +133,24 @@ class Search {
 
   double widest(const Multipliers& m) const { return stage_ == Stage::exact ? kInfinity : kWidestGap * unit_.of(m); }
 
-  void attempt(const std::array<Binding, 3>& candidates, std::size_t count) {
-    Chosen chosen;
+  void attempt(std::initializer_list<Binding> candidates) {
+    Multipliers chosen;
+    for (const Binding candidate : candidates)
+      if (scope_ == Scope::all_must_hold || candidate != kDisc) chosen.add(candidate);
     if (scope_ == Scope::all_must_hold) {
-      chosen = {candidates, count};
       consider(without_implied_disc(problem_, multipliers_of_optimum(problem_, claim_.velocity, chosen)));
-      return consider_touching(chosen);
+    } else {
+      consider(weights_of_lines(problem_, claim_.velocity, chosen, false));
+      if (chosen.count == 2) consider(weights_of_lines(problem_, claim_.velocity, chosen, true));
     }
-    for (std::size_t k = 0; k < count; ++k)
-      if (candidates[k] != kDisc) chosen.binding[chosen.count++] = candidates[k];
-    consider(weights_of_lines(problem_, claim_.velocity, chosen, false));
-    if (chosen.count == 2) consider(weights_of_lines(problem_, claim_.velocity, chosen, true));
     consider_touching(chosen);
   }
 
   /// A line that may touch the disc, and at the least violation what is violated there.
-  void consider_touching(const Chosen& chosen) {
+  void consider_touching(const Multipliers& chosen) {
     if (chosen.count != 2 || !std::isfinite(problem_.bound.disc) || settled()) return;
     for (std::size_t k = 0; k < 2; ++k) {
-      const Binding line = chosen[k], other = chosen[1 - k];
+      const Binding line = chosen.binding[k], other = chosen.binding[1 - k];
       if (scope_ == Scope::all_must_hold) {
         if (line != kDisc && other == kDisc) consider(multipliers_where_touching(problem_, claim_.velocity, line));
       } else if (!may_give(problem_, line, scope_) && may_give(problem_, other, scope_)) {
@@ -184,7 +175,7 @@ class Search {
     if (rough && rough->low > limit) return std::nullopt;
     const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
     if (fine && fine->low > limit) return std::nullopt;
-    const auto sum = [&] { return combined(problem_, m, scope_); };
+    const auto sum = [&] { return combine(problem_, terms_of(m), scope_); };
     if (!fine || !(fine->high <= limit) || std::isinf(fine->high))
       return exact_gap(problem_, scope_, claim_, sum(), least_gap(unit_.of(m)), limit);
     const bool may_be_none = fine->low <= 0.0 && fine->high > 0.0;
@@ -243,15 +234,12 @@ bool proves_contradiction(const Problem& problem, const Multipliers& m, Scope sc
     if (surplus->low > 0.0) return true;
     if (surplus->high <= 0.0) return false;
   }
-  return contradicts(problem, combined(problem, positive, scope));
+  return contradicts(problem, combine(problem, terms_of(positive), scope));
 }
 
 bool proves_contradiction(const Problem& problem, const std::vector<Term>& terms, Scope scope) {
-  Multipliers m;
-  for (const Term& term : terms)
-    if (term.multiplier.size() == 1) m.add(term.binding, term.multiplier.front());
-  return m.count == terms.size() ? proves_contradiction(problem, m, scope)
-                                 : contradicts(problem, combine(problem, terms, scope));
+  const std::optional<Multipliers> m = in_doubles(terms);
+  return m ? proves_contradiction(problem, *m, scope) : contradicts(problem, combine(problem, terms, scope));
 }
 
 /// Terms of (2), (3) or (4), and the gap with which they prove a claim.
@@ -275,7 +263,7 @@ std::optional<Bound> exact_bound(const Problem& problem, Scope scope, const Clai
   std::optional<Bound> best;
   const auto consider = [&](const std::vector<Binding>& chosen) {
     Multipliers names;
-    for (const Binding& line : chosen) names.add(line, 1.0);
+    for (const Binding& line : chosen) names.add(line);
     const double least = least_gap(unit.of(names)), limit = best ? 0.5 * best->gap : kInfinity;
     if (best && best->gap <= 64.0 * least) return;
     const std::vector<Term> terms = cancelling_terms(problem, chosen);
@@ -328,7 +316,7 @@ bool is_tight(const Problem& problem, const Certificate& c) {
   constexpr double kWidestOfOptimum = 0x1p-20;
   const Scope scope = scope_of(c.status);
   Multipliers names;
-  for (const Term& term : c.bound) names.add(term.binding, 1.0);
+  for (const Term& term : c.bound) names.add(term.binding);
   const double unit = UnitOfGap(problem, scope, {c.velocity, c.violation}, Stage::exact).of(names);
   return c.gap <= (scope == Scope::all_must_hold ? kWidestOfOptimum : kWidestGap) * unit;
 }

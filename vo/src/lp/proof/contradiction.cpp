@@ -64,10 +64,6 @@ std::vector<Term> proven(const Problem& problem, std::vector<Weighted> weights) 
   return {};
 }
 
-std::vector<Term> of_one(const Problem& problem, Binding a) {
-  return proven(problem, {{a, Exact(1)}});
-}
-
 /// Two opposite lines: the sum of normals cancels.
 std::vector<Weighted> of_opposite(const Problem& problem, Binding a, Binding b) {
   const Vec2 na = half_plane_at(problem, a).normal;
@@ -95,29 +91,26 @@ std::vector<Weighted> of_three(const Problem& problem, Binding a, Binding b, Bin
   return {{a, sign * wa}, {b, sign * wb}, {c, sign * wc}};
 }
 
-std::vector<Term> of_two(const Problem& problem, Binding a, Binding b) {
-  std::vector<Term> terms = proven(problem, of_opposite(problem, a, b));
-  return terms.empty() ? proven(problem, of_crossing(problem, a, b)) : terms;
-}
-
 }  // namespace
 
 std::vector<Term> contradiction_of(const Problem& problem, const std::vector<Binding>& bindings) {
   std::vector<Binding> lines;
   for (const Binding b : bindings)
     if (b != kDisc) lines.push_back(b);
-  for (const Binding a : lines) {
-    const std::vector<Term> terms = of_one(problem, a);
-    if (!terms.empty()) return terms;
-  }
+  std::vector<std::vector<Weighted>> choices;
+  for (const Binding a : lines) choices.push_back({{a, Exact(1)}});
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (std::size_t j = i + 1; j < lines.size(); ++j) {
-      const std::vector<Term> terms = of_two(problem, lines[i], lines[j]);
-      if (!terms.empty()) return terms;
+      choices.push_back(of_opposite(problem, lines[i], lines[j]));
+      choices.push_back(of_crossing(problem, lines[i], lines[j]));
     }
   }
-  if (lines.size() != 3) return {};
-  return proven(problem, of_three(problem, lines[0], lines[1], lines[2]));
+  if (lines.size() == 3) choices.push_back(of_three(problem, lines[0], lines[1], lines[2]));
+  for (const std::vector<Weighted>& weights : choices) {
+    std::vector<Term> terms = proven(problem, weights);
+    if (!terms.empty()) return terms;
+  }
+  return {};
 }
 
 std::vector<Term> cancelling_terms(const Problem& problem, const std::vector<Binding>& lines) {

@@ -8,17 +8,23 @@
 namespace exactvo::lp {
 namespace {
 
-bool sum_exactly(const std::vector<double>& parts, Exact& sum) {
-  for (const double part : parts) {
-    if (!std::isfinite(part)) return false;
-    sum = sum + Exact(part);
-  }
-  return true;
-}
-
+/// False where it may not be used.
 bool add_term(const Problem& problem, const Term& term, Scope scope, Combination& sum) {
   Exact multiplier = 0;
-  return sum_exactly(term.multiplier, multiplier) && add_to(sum, problem, term.binding, multiplier, scope);
+  for (const double part : term.multiplier) {
+    if (!std::isfinite(part)) return false;
+    multiplier = multiplier + Exact(part);
+  }
+  if (!can_be_used(problem, term.binding, scope) || sign_of(multiplier) < 0) return false;
+  if (term.binding == kDisc) {
+    sum.disc = sum.disc + multiplier;
+    return true;
+  }
+  const ExactLine line = exact(half_plane_at(problem, term.binding));
+  sum.normal = sum.normal + multiplier * line.normal;
+  sum.offset = sum.offset + multiplier * line.offset;
+  if (may_give(problem, term.binding, scope)) sum.giving = sum.giving + multiplier;
+  return true;
 }
 
 Exact magnitude(const Exact& x) {
@@ -62,20 +68,6 @@ bool may_give(const Problem& problem, Binding binding, Scope scope) {
 HalfPlane half_plane_at(const Problem& problem, Binding binding) {
   return is_speed_bound(binding) ? side_of_box(problem.bound, binding.kind)
                                  : problem.constraints[binding.index].half_plane;
-}
-
-bool add_to(Combination& sum, const Problem& problem, Binding binding, const Exact& multiplier, Scope scope) {
-  if (!can_be_used(problem, binding, scope) || sign_of(multiplier) < 0) return false;
-  if (binding == kDisc) {
-    sum.disc = sum.disc + multiplier;
-    return true;
-  }
-  const ExactLine line = exact(half_plane_at(problem, binding));
-  sum.normal.x = sum.normal.x + multiplier * line.normal.x;
-  sum.normal.y = sum.normal.y + multiplier * line.normal.y;
-  sum.offset = sum.offset + multiplier * line.offset;
-  if (may_give(problem, binding, scope)) sum.giving = sum.giving + multiplier;
-  return true;
 }
 
 Combination combine(const Problem& problem, const std::vector<Term>& terms, Scope scope) {

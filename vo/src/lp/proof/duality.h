@@ -37,8 +37,6 @@ bool can_be_used(const Problem& problem, Binding binding, Scope scope);
 bool may_give(const Problem& problem, Binding binding, Scope scope);
 
 Combination combine(const Problem& problem, const std::vector<Term>& terms, Scope scope);
-/// One more constraint; false where it may not be used.
-bool add_to(Combination& sum, const Problem& problem, Binding binding, const Exact& multiplier, Scope scope);
 
 /// The half-plane of a constraint or of a side of the box.
 HalfPlane half_plane_at(const Problem& problem, Binding binding);

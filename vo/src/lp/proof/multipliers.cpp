@@ -60,15 +60,16 @@ double multiplier_of_one(Binding binding, Vec2 column, Vec2 sum) {
   return binding == kDisc ? multiplier_of_disc(sum, column) : solve_one(column, sum);
 }
 
-std::array<double, 3> weights_of_three(Vec2 a, Vec2 b, Vec2 c) {
-  const std::array<double, 3> w = {cross(b, c), cross(c, a), cross(a, b)};
-  const double turn = std::copysign(1.0, w[0] + w[1] + w[2]);
-  return {turn * w[0], turn * w[1], turn * w[2]};
-}
-
-std::array<double, 3> weights_of_two(Vec2 a, Vec2 b, Vec2 v, bool on_disc) {
-  const double turn = std::copysign(1.0, cross(a, b));
-  return {on_disc ? turn * cross(v, b) : norm(b), on_disc ? turn * cross(a, v) : norm(a), 0.0};
+/// Of so many lines; `on_disc` is asked of two.
+std::array<double, 3> weights_of(const Normals& n, std::size_t count, Vec2 v, bool on_disc) {
+  if (count == 3) {
+    const std::array<double, 3> w = {cross(n[1], n[2]), cross(n[2], n[0]), cross(n[0], n[1])};
+    const double turn = std::copysign(1.0, w[0] + w[1] + w[2]);
+    return {turn * w[0], turn * w[1], turn * w[2]};
+  }
+  if (count != 2) return {1.0, 0.0, 0.0};
+  const double turn = std::copysign(1.0, cross(n[0], n[1]));
+  return {on_disc ? turn * cross(v, n[1]) : norm(n[1]), on_disc ? turn * cross(n[0], v) : norm(n[0]), 0.0};
 }
 
 /// What is active, as vectors that add up to `wanted`.
@@ -99,9 +100,8 @@ class Stationarity {
     std::size_t count = 0;
     for (std::size_t k = 0; k < s_.active_count; ++k)
       if (s_.active[k].binding != kDisc) line[count++] = k;
-    std::array<double, 3> weight = {1.0, 0.0, 0.0};
-    if (count == 2) weight = weights_of_two(columns_[line[0]], columns_[line[1]], s_.velocity, s_.active_count == 3);
-    if (count == 3) weight = weights_of_three(columns_[0], columns_[1], columns_[2]);
+    const Normals normals = {columns_[line[0]], columns_[line[1]], columns_[line[2]]};
+    const std::array<double, 3> weight = weights_of(normals, count, s_.velocity, s_.active_count == 3);
     for (std::size_t k = 0; k < count; ++k)
       s_.active[line[k]].multiplier = weight[k] > 0.0 && std::isfinite(weight[k]) ? weight[k] : 0.0;
     set_of_disc();
@@ -154,27 +154,23 @@ bool are_among(const Multipliers& some, const Multipliers& all) {
 
 }  // namespace
 
-Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
+Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, Multipliers m) {
   const Vec2 sum = pull(problem.objective, problem.preferred, v);
-  const auto column = [&](std::size_t k) { return chosen[k] == kDisc ? -v : half_plane_at(problem, chosen[k]).normal; };
-  Multipliers m;
-  if (chosen.count == 1) {
-    m.add(chosen[0], multiplier_of_one(chosen[0], column(0), sum));
-  } else if (chosen.count == 2) {
+  const auto column = [&](std::size_t k) {
+    return m.binding[k] == kDisc ? -v : half_plane_at(problem, m.binding[k]).normal;
+  };
+  if (m.count == 1) m.value[0] = multiplier_of_one(m.binding[0], column(0), sum);
+  if (m.count == 2) {
     const auto pair = solve_pair(column(0), column(1), sum);
-    m.add(chosen[0], std::max(0.0, pair[0]));
-    m.add(chosen[1], std::max(0.0, pair[1]));
+    m.value = {std::max(0.0, pair[0]), std::max(0.0, pair[1]), 0.0};
   }
   return m;
 }
 
-Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& chosen, bool on_disc) {
-  const auto normal = [&](std::size_t k) { return half_plane_at(problem, chosen[k]).normal; };
-  std::array<double, 3> weight = {1.0, 0.0, 0.0};
-  if (chosen.count == 2) weight = weights_of_two(normal(0), normal(1), v, on_disc);
-  if (chosen.count == 3) weight = weights_of_three(normal(0), normal(1), normal(2));
-  Multipliers m;
-  for (std::size_t k = 0; k < chosen.count; ++k) m.add(chosen[k], weight[k]);
+Multipliers weights_of_lines(const Problem& problem, Vec2 v, Multipliers m, bool on_disc) {
+  Normals normals{};
+  for (std::size_t k = 0; k < m.count; ++k) normals[k] = half_plane_at(problem, m.binding[k]).normal;
+  m.value = weights_of(normals, m.count, v, on_disc);
   return m;
 }
 
@@ -228,13 +224,13 @@ bool has_multipliers_of(const Problem& problem, const Multipliers& proof, const 
   return are_among(own, proof) && are_among(proof, own);
 }
 
-bool has_multipliers_of(const Problem& problem, const Certificate& certificate, const Solution& s) {
-  Multipliers proof;
-  for (const Term& term : certificate.bound) {
-    if (term.multiplier.size() != 1 || proof.count == proof.binding.size()) return false;
-    proof.add(term.binding, term.multiplier.front());
+std::optional<Multipliers> in_doubles(const std::vector<Term>& terms) {
+  Multipliers m;
+  for (const Term& term : terms) {
+    if (term.multiplier.size() != 1) return std::nullopt;
+    m.add(term.binding, term.multiplier.front());
   }
-  return has_multipliers_of(problem, proof, s);
+  return m;
 }
 
 void set_multipliers(const Problem& problem, const Multipliers& proof, Solution& s) {
@@ -242,16 +238,6 @@ void set_multipliers(const Problem& problem, const Multipliers& proof, Solution&
     s.active[k].multiplier = 0.0;
     for (std::size_t i = 0; i < proof.count; ++i)
       if (proof.binding[i] == s.active[k].binding) s.active[k].multiplier += proof.value[i];
-  }
-  complete_disc(problem, s);
-}
-
-void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& s) {
-  for (std::size_t k = 0; k < s.active_count; ++k) {
-    s.active[k].multiplier = 0.0;
-    for (const Term& term : certificate.bound)
-      if (term.binding == s.active[k].binding)
-        for (const double part : term.multiplier) s.active[k].multiplier += part;
   }
   complete_disc(problem, s);
 }

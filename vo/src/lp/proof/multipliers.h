@@ -6,27 +6,23 @@
 /// they prove an answer is for rounded_gap.h and `check` to say.
 
 #include <array>
-#include <cstddef>
+#include <optional>
+#include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/proof/rounded_gap.h"
 
 namespace exactvo::lp {
 
-/// Up to three of what may bind.
-struct Chosen {
-  std::array<Binding, 3> binding{};
-  std::size_t count = 0;
-  const Binding& operator[](std::size_t k) const { return binding[k]; }
-};
+// Of the first two `m` only names what is meant.
 
 /// Of at most two that bind at the optimum v, the disc's nu among them. Each is 0 or more; not finite where the two are
 /// parallel.
-Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen);
+Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, Multipliers m);
 
 /// Weights of at most three lines (no disc) whose sum of normals vanishes or, `on_disc`, of two lines whose sum points
 /// along v. Negative or not finite where these lines have none.
-Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& lines, bool on_disc);
+Multipliers weights_of_lines(const Problem& problem, Vec2 v, Multipliers m, bool on_disc);
 
 /// For a line that touches the disc at v, so that no other velocity satisfies both: no multipliers make v stationary
 /// there, and the larger they are, the smaller is the gap. These leave about u of its unit. Of the objective, with the
@@ -45,12 +41,13 @@ void set_multipliers(const Problem& problem, Solution& solution);
 /// cannot be used.
 Multipliers own_multipliers(const Problem& problem, const Solution& solution);
 
-/// Whether the terms of the certificate, or these, are the solution's own multipliers, all of them.
-bool has_multipliers_of(const Problem& problem, const Certificate& certificate, const Solution& solution);
+/// The terms of a certificate, at most three, where each is one double.
+std::optional<Multipliers> in_doubles(const std::vector<Term>& terms);
+
+/// Whether these are the solution's own multipliers, all of them.
 bool has_multipliers_of(const Problem& problem, const Multipliers& proof, const Solution& solution);
 
-/// Sets the multipliers of the certificate, or these, and that of a disc which they leave out.
-void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& solution);
+/// Sets these multipliers, and that of a disc which they leave out.
 void set_multipliers(const Problem& problem, const Multipliers& proof, Solution& solution);
 
 }  // namespace exactvo::lp

@@ -20,7 +20,7 @@ struct Multipliers {
   std::array<Binding, 3> binding{};
   std::array<double, 3> value{};  ///< finite, 0 or more
   std::size_t count = 0;
-  void add(Binding b, double multiplier) {
+  void add(Binding b, double multiplier = 0.0) {
     binding[count] = b;
     value[count++] = multiplier;
   }
