@@ -215,11 +215,12 @@ TEST(Pricing, WhatIsNeitherViolatedMostNorTightCanBeLeftOut) {
       add(problem, {std::cos(a), std::sin(a)}, offset(random), i % 4 == 3 ? Priority::soft : Priority::hard);
     }
     Pricing pricing, again;
-    const Solution whole = solve(problem, pricing);
+    SolveMemory memory;
+    const Solution whole = solve(problem, pricing, memory);
     EXPECT_EQ(solve(problem).velocity, whole.velocity);
     if (!pricing.is_all || whole.status != Status::optimal) continue;
     EXPECT_FALSE(pricing.at.empty());
-    const Solution part = solve(with_those_that_count(problem, pricing, left_out), again);
+    const Solution part = solve(with_those_that_count(problem, pricing, left_out), again, memory);
     EXPECT_EQ(part.velocity, whole.velocity);
     EXPECT_EQ(part.status, whole.status);
     ASSERT_EQ(part.active_count, whole.active_count);
@@ -237,7 +238,8 @@ TEST(Pricing, SaysWhereConstraintsWereRelaxed) {
   add(problem, {1.0, 0.0}, 0.5);
   add(problem, {-1.0, 0.0}, 0.5);
   Pricing pricing;
-  EXPECT_NE(solve(problem, pricing).status, Status::optimal);
+  SolveMemory memory;
+  EXPECT_NE(solve(problem, pricing, memory).status, Status::optimal);
   EXPECT_FALSE(pricing.is_all);
 }
 

@@ -70,13 +70,33 @@ Found contradiction(std::size_t line, const Stretch& stretch, Vec2 at) {
   return found;
 }
 
-/// The optimum on the boundary of `line` inside `count` others and the disc.
-Found best_on_line(const Line& line, std::size_t position, const Line* const* others, const std::size_t* owners,
-                   std::size_t count, const Region& region, Objective objective, Vec2 preferred) {
+/// Lines, and where they stand in the region.
+struct Members {
+  std::array<const Line*, 3> lines{};
+  std::array<std::size_t, 3> positions{};
+  std::size_t count = 0;
+  void add(const Line& line, std::size_t position) {
+    lines[count] = &line;
+    positions[count++] = position;
+  }
+};
+
+/// The lines of a basis, without the disc.
+Members members_of(const Basis& basis, const Region& region) {
+  Members members;
+  for (std::size_t k = 0; k < basis.size; ++k)
+    if (basis.member[k] < region.lines.size()) members.add(region.lines[basis.member[k]], basis.member[k]);
+  return members;
+}
+
+/// The optimum on the boundary of `line` inside the others and the disc.
+Found best_on_line(const Line& line, std::size_t position, const Members& others, const Region& region,
+                   Objective objective, Vec2 preferred) {
   const Vec2 q = (line.offset / line.squared_length) * line.normal;
   const Vec2 d = perp(line.normal);
   Stretch stretch = inside_disc(line, region.disc);
-  for (std::size_t k = 0; k < count && !stretch.empty; ++k) cut(stretch, q, d, *others[k], owners[k], region.speed);
+  for (std::size_t k = 0; k < others.count && !stretch.empty; ++k)
+    cut(stretch, q, d, *others.lines[k], others.positions[k], region.speed);
   if (stretch.empty || !(stretch.low <= stretch.high)) return contradiction(position, stretch, q);
 
   Found found;
@@ -131,23 +151,6 @@ std::size_t most_violated(const Region& region, Vec2 v, double level, const Basi
   return worst;
 }
 
-/// The lines of a basis, without the disc.
-struct Members {
-  std::array<const Line*, 3> lines{};
-  std::array<std::size_t, 3> positions{};
-  std::size_t count = 0;
-};
-
-Members members_of(const Basis& basis, const Region& region) {
-  Members members;
-  for (std::size_t k = 0; k < basis.size; ++k) {
-    if (basis.member[k] >= region.lines.size()) continue;
-    members.lines[members.count] = &region.lines[basis.member[k]];
-    members.positions[members.count++] = basis.member[k];
-  }
-  return members;
-}
-
 /// `region` within a disc of that radius where it has none.
 Region within_disc(const Region& region, double radius) {
   Region bounded = region;
@@ -161,9 +164,8 @@ Found walk_to_best(const Region& region, Objective objective, Vec2 preferred, st
     if (priced) priced->push_back(found.velocity);
     const std::size_t entering = most_violated(region, found.velocity, 0.0, found.basis);
     if (entering == kNoPosition) return found;
-    const Members kept = members_of(found.basis, region);
-    found = best_on_line(region.lines[entering], entering, kept.lines.data(), kept.positions.data(), kept.count, region,
-                         objective, preferred);
+    found =
+        best_on_line(region.lines[entering], entering, members_of(found.basis, region), region, objective, preferred);
     if (!found.feasible) return found;
   }
   return found;
@@ -207,22 +209,17 @@ Level lowest_on_plane(std::size_t top, const Basis& basis, const Region& region)
   const Line& plane = region.lines[top];
   const Members members = members_of(basis, region);
   std::array<Line, 3> projected;
-  std::array<const Line*, 3> pointers{};
-  std::array<std::size_t, 3> owners{};
-  std::size_t count = 0;
+  Members before;
   Found found;
   found.feasible = true;
   found.velocity = onto_disc(plane.normal, region.disc);
   found.basis.add(kDiscPosition);
   for (std::size_t k = 0; k < members.count && found.feasible; ++k) {
-    projected[count] = below(plane, *members.lines[k]);
-    const Line& line = projected[count];
+    const Line& line = projected[k] = below(plane, *members.lines[k]);
     if (line.squared_length == 0.0) continue;
     if (excess(line, found.velocity) > 0.0)
-      found = best_on_line(line, members.positions[k], pointers.data(), owners.data(), count, region,
-                           Objective::farthest, plane.normal);
-    pointers[count] = &projected[count];
-    owners[count++] = members.positions[k];
+      found = best_on_line(line, members.positions[k], before, region, Objective::farthest, plane.normal);
+    before.add(line, members.positions[k]);
   }
   Basis with_top;
   with_top.add(top);

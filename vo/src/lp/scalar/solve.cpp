@@ -28,11 +28,6 @@ namespace {
 
 using Regions = detail::ScalarRegions;
 
-bool has_priority(const Problem& problem, Priority priority) {
-  return std::any_of(problem.constraints.begin(), problem.constraints.end(),
-                     [&](const Constraint& c) { return c.priority == priority; });
-}
-
 void set_hard_only(const Region& region, Region& hard) {
   hard.disc = region.disc;
   hard.speed = region.speed;
@@ -170,8 +165,8 @@ Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing
     return s;
   }
   set_hard_only(region, memory.hard);
-  const bool hard_hold =
-      has_priority(problem, Priority::soft) && best_velocity(memory.hard, Objective::nearest, Vec2{}).feasible;
+  const bool some_give = memory.hard.lines.size() < region.lines.size();
+  const bool hard_hold = some_give && best_velocity(memory.hard, Objective::nearest, Vec2{}).feasible;
   return hard_hold ? relaxed(problem, slack, memory) : infeasible(problem, slack, memory);
 }
 
@@ -271,14 +266,10 @@ void SolveMemory::reserve(std::size_t constraints) {
     region->lines.reserve(constraints + kSidesOfBox);
 }
 
-Solution solve(const Problem& problem, Pricing& pricing) {
-  SolveMemory memory;
-  return solve(problem, pricing, memory);
-}
-
 Solution solve(const Problem& problem) {
   Pricing pricing;
-  return solve(problem, pricing);
+  SolveMemory memory;
+  return solve(problem, pricing, memory);
 }
 
 }  // namespace exactvo::lp
