@@ -107,14 +107,6 @@ class Lockstep {
     for_all(states, packs, [this](PackState& w) { price_all<2>(w); });
   }
 
-  template <class Words>
-  static HWY_INLINE V from_words(Words words) {
-    if constexpr (sizeof(T) == 8)
-      return hn::PromoteTo(D(), words);
-    else
-      return hn::ConvertTo(D(), words);
-  }
-
   /// Two rounds, with no line and with one in hand, then as many as it takes.
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
     for_all(states, packs, [](PackState& w) {
@@ -230,7 +222,11 @@ class Lockstep {
   }
 
   static HWY_INLINE V load_counts(const std::int32_t* counts) {
-    return from_words(hn::LoadU(hn::Rebind<std::int32_t, D>(), counts));
+    const auto words = hn::LoadU(hn::Rebind<std::int32_t, D>(), counts);
+    if constexpr (sizeof(T) == 8)
+      return hn::PromoteTo(D(), words);
+    else
+      return hn::ConvertTo(D(), words);
   }
 
   /// Less than a pack, at an end of the range: copied, so that nothing beyond is read. The lanes left over repeat one.

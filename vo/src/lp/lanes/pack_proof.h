@@ -33,10 +33,10 @@ class Proof {
 
   /// Lanes of the feasibility phase whose answer is certain. What must hold was priced with slack in the last round;
   /// the disc is looked at here.
-  HWY_INLINE M optimum() const { return hn::And(keeps_disc(), optimum_is_proven(p_.speed)); }
+  HWY_INLINE M optimum() const { return hn::And(keeps_disc(), optimum_is_proven()); }
 
   /// The same for lanes of the relaxation phase.
-  HWY_INLINE M relaxation() const { return hn::And(keeps_disc(), relaxation_is_proven(p_.speed)); }
+  HWY_INLINE M relaxation() const { return hn::And(keeps_disc(), relaxation_is_proven()); }
 
  private:
   HWY_INLINE M keeps_disc() const {
@@ -50,11 +50,11 @@ class Proof {
   }
 
   /// Inequality (4) of certificate.h in rounded arithmetic. Its error stays below kProofError u times the terms.
-  HWY_INLINE M optimum_is_proven(V speed) const {
+  HWY_INLINE M optimum_is_proven() const {
     const V one = hn::Set(p_.d, T(1)), zero = hn::Zero(p_.d);
     const V pull_x = hn::Sub(p_.vx, p_.px), pull_y = hn::Sub(p_.vy, p_.py);
     const V squared = dot(p_.vx, p_.vy, p_.vx, p_.vy);
-    const V limit = hn::Mul(speed, speed);
+    const V limit = hn::Mul(p_.speed, p_.speed);
     const M at_disc = hn::AndNot(exists(p_.second), hn::Gt(squared, hn::Mul(limit, hn::Set(p_.d, T(1) - T(kOnDisc)))));
     const M line = exists(p_.first), single = hn::AndNot(hn::Or(exists(p_.second), at_disc), line);
     const V yx = pick(at_disc, hn::Neg(p_.vx), p_.second.x), yy = pick(at_disc, hn::Neg(p_.vy), p_.second.y);
@@ -87,7 +87,7 @@ class Proof {
   }
 
   /// Inequalities (1) and (2) of certificate.h in rounded arithmetic.
-  HWY_INLINE M relaxation_is_proven(V speed) const {
+  HWY_INLINE M relaxation_is_proven() const {
     const V violation = positive(p_.level);
     const V zero = hn::Zero(p_.d), one = hn::Set(p_.d, T(1));
     const M two = exists(p_.second), three = exists(p_.third);
@@ -111,12 +111,12 @@ class Proof {
     const V giving = hn::Add(hn::IfThenZeroElse(hard_a, wa),
                              hn::Add(hn::IfThenZeroElse(hard_b, wb), hn::IfThenZeroElse(hard_c, wc)));
     const V all = hn::Add(wa, hn::Add(wb, wc));
-    const V surplus = hn::Sub(offsets, hn::Mul(speed, hn::Sqrt(dot(gx, gy, gx, gy))));
-    const V scale = hn::Add(speed, violation);
+    const V surplus = hn::Sub(offsets, hn::Mul(p_.speed, hn::Sqrt(dot(gx, gy, gx, gy))));
+    const V scale = hn::Add(p_.speed, violation);
     const V error = hn::Mul(hn::Mul(hn::Set(p_.d, T(kProofError * 0x1p-53)), all), scale);
     const V most = hn::Add(violation, hn::Mul(hn::Set(p_.d, T(16 * 0x1p-53)), scale));  // others: noise and rounding
     const V missing = hn::Sub(hn::Mul(most, giving), hn::Sub(surplus, error));
-    const V widest = hn::Mul(hn::Mul(hn::Set(p_.d, T(kWidestGap)), speed), giving);
+    const V widest = hn::Mul(hn::Mul(hn::Set(p_.d, T(kWidestGap)), p_.speed), giving);
     return hn::And(hn::Gt(surplus, error), hn::Le(missing, widest));
   }
 

@@ -66,7 +66,9 @@ class Pool {
     std::uint64_t bits = bits_of(D(), which);
     if (bits == 0) return;
     HWY_ALIGN T state[kState][hn::MaxLanes(D())];
-    store(p, state);
+    const V id = hn::BitCast(D(), p.id);
+    std::size_t known = 0;
+    for_each_row(p, id, [&](const V& v) { hn::Store(v, D(), state[known++]); });
     for (; bits != 0; bits &= bits - 1, ++size_) {
       const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
       for (std::size_t r = 0; r < kState; ++r) row(r)[size_] = state[r][lane];
@@ -84,61 +86,38 @@ class Pool {
   /// The lanes from `from` on as a pack; those past the end hold what was there before.
   HWY_INLINE void load(std::size_t from, Pack<D>& p) const {
     const D d;
-    const auto get = [&](std::size_t r) { return hn::LoadU(d, row(r) + from); };
-    const auto get_line = [&](std::size_t r, LineV<D>& line) {
-      line.x = get(r);
-      line.y = get(r + 1);
-      line.c = get(r + 2);
-      line.index = get(r + 3);
-    };
-    p.px = get(kPreferredX);
-    p.py = get(kPreferredY);
-    p.speed = get(kSpeed);
-    p.hard_count = get(kHard);
-    p.id = hn::BitCast(hn::RebindToUnsigned<D>(), get(kId));
+    V id = hn::Zero(d);
+    std::size_t known = 0;
+    for_each_row(p, id, [&](V& v) { v = hn::LoadU(d, row(known++) + from); });
+    p.id = hn::BitCast(hn::RebindToUnsigned<D>(), id);
     p.derive();
-    get_line(kEntering, p.entering);
-    get_line(kFirst, p.first);
-    get_line(kSecond, p.second);
-    get_line(kThird, p.third);
     p.vx = p.vy = p.level = hn::Zero(d);
     p.violated = p.none();
     p.relaxing = hn::Not(p.violated);
   }
 
  private:
-  static HWY_INLINE void store(const Pack<D>& p, T (*state)[hn::MaxLanes(D())]) {
-    const D d;
-    const auto put = [&](std::size_t r, V v) { hn::Store(v, d, state[r]); };
-    const auto put_line = [&](std::size_t r, const LineV<D>& line) {
-      put(r, line.x);
-      put(r + 1, line.y);
-      put(r + 2, line.c);
-      put(r + 3, line.index);
-    };
-    put(kPreferredX, p.px);
-    put(kPreferredY, p.py);
-    put(kSpeed, p.speed);
-    put(kHard, p.hard_count);
-    put(kId, hn::BitCast(d, p.id));
-    put_line(kEntering, p.entering);
-    put_line(kFirst, p.first);
-    put_line(kSecond, p.second);
-    put_line(kThird, p.third);
-  }
+  /// What is known of a problem, a row each: five numbers and four lines. `id` stands for the pack's.
+  static constexpr std::size_t kState = 5 + 4 * 4;
 
-  enum Row : std::size_t {
-    kPreferredX,
-    kPreferredY,
-    kSpeed,
-    kHard,
-    kId,
-    kEntering,
-    kFirst = kEntering + 4,
-    kSecond = kFirst + 4,
-    kThird = kSecond + 4,
-    kState = kThird + 4
-  };
+  template <class P, class Id, class Visit>
+  static HWY_INLINE void for_each_row(P& p, Id& id, Visit visit) {
+    visit(p.px);
+    visit(p.py);
+    visit(p.speed);
+    visit(p.hard_count);
+    visit(id);
+    const auto visit_line = [&](auto& line) {
+      visit(line.x);
+      visit(line.y);
+      visit(line.c);
+      visit(line.index);
+    };
+    visit_line(p.entering);
+    visit_line(p.first);
+    visit_line(p.second);
+    visit_line(p.third);
+  }
 
   T* row(std::size_t r) const { return memory_ + r * slots(); }
 

@@ -146,10 +146,10 @@ class Descent {
     for (int round = 0; round < kMostLockstepRounds && !hn::AllFalse(p_.d, moving); ++round) {
       if (kHard) {
         const M wall = hn::AndNot(p_.is_soft(p_.entering), moving);
-        lowest_on_plane(p_.entering, p_.first, p_.second, p_.third, hn::AndNot(wall, moving));
+        lowest_on_plane(hn::AndNot(wall, moving));
         if (!hn::AllFalse(p_.d, wall)) lowest_on_wall(wall);
       } else {
-        lowest_on_plane(p_.entering, p_.first, p_.second, p_.third, moving);
+        lowest_on_plane(moving);
       }
       const M priced = hn::AndNot(unsettled, moving);
       price<kHard, kIndex, false>(rows, p_);
@@ -179,13 +179,11 @@ class Descent {
   /// A contradiction as the first basis. Its third line was found last and enters: the others alone leave velocities
   /// that violate nothing, so that it binds at the optimum, as a plane or as a wall.
   HWY_INLINE void start(M fresh) {
-    const M some_give = hn::Or(gives(p_.first), hn::Or(gives(p_.second), gives(p_.third)));
+    const M some_give = hn::Or(p_.is_soft(p_.first), hn::Or(p_.is_soft(p_.second), p_.is_soft(p_.third)));
     p_.entering = pick(fresh, p_.third, p_.entering);
     p_.third = pick(fresh, no_line(p_.d), p_.third);
     unsettled = hn::Or(unsettled, hn::AndNot(some_give, fresh));
   }
-
-  HWY_INLINE M gives(const Line& line) const { return hn::And(p_.is_soft(line), p_.exists(line)); }
 
   /// `line` as a half-plane on the plane of soft line `top`: where it is violated no more than top.
   HWY_INLINE Line below(const Line& top, const Line& line) const {
@@ -247,10 +245,10 @@ class Descent {
     p_.third = pick(moving, at.also, p_.third);
   }
 
-  HWY_INLINE void lowest_on_plane(const Line& top, const Line& first, const Line& second, const Line& third, M moving) {
-    const Lowest at = lowest(top, first, second, third);
+  HWY_INLINE void lowest_on_plane(M moving) {
+    const Lowest at = lowest(p_.entering, p_.first, p_.second, p_.third);
     unsettled = hn::Or(unsettled, hn::And(moving, at.failed));
-    take(at, Line(top), moving);
+    take(at, p_.entering, moving);
   }
 
   /// A hard line enters. Whatever the new lowest point is, a soft plane of the old basis binds there: of the lowest
@@ -265,7 +263,7 @@ class Descent {
       const Line& plane = lines[k];
       const Lowest at = lowest(plane, wall, lines[(k + 1) % 3], lines[(k + 2) % 3]);
       const V height = excess(plane, at.x, at.y);
-      const M can = hn::AndNot(at.failed, gives(plane));
+      const M can = hn::AndNot(at.failed, p_.is_soft(plane));
       const M better = hn::And(can, hn::Lt(height, level));
       level = pick(better, height, level);
       best.x = pick(better, at.x, best.x);
