@@ -70,12 +70,6 @@ Normals of_polygon(const std::vector<Vec2>& v, Vec2 origin, double radius, Vec2 
 
 // --- Ellipse ---
 
-/// The axis-aligned frame of an ellipse: L = R diag(a, b) V, columns of R the axes.
-struct EllipseFrame {
-  double a, b;
-  Vec2 major, minor;
-};
-
 EllipseFrame frame_of(const Ellipse& e) {
   const double s11 = e.l11 * e.l11;
   const double s12 = e.l11 * e.l21;
@@ -123,32 +117,15 @@ double foot(double n0, double z1, double r0) {
   return bisect_foot(n0, z1, r0, z1, std::max(1.0, std::hypot(n0, z1)), /*decreasing=*/true);
 }
 
-/// The unit normal at the foot for parameter s, in the folded frame: proportional to (qx / (s + r0 - 1), qy / s),
-/// scaled by a, b.
-Vec2 normal_for(double n0, double z1, double r0, double s, double a, double b) {
-  // Foot x = (a n0' , b z1'), with n0' = n0/(s+r0-1), z1' = z1/s on the unit circle; its normal is (n0'/a, z1'/b).
-  const double cx = n0 / (s + r0 - 1.0);
-  const double cy = z1 / s;
-  return normalized({cx * b, cy * a});
-}
-
-Vec2 unfold(Vec2 n, double sign_x, double sign_y, const EllipseFrame& f) {
-  return (n.x * sign_x) * f.major + (n.y * sign_y) * f.minor;
-}
-
 }  // namespace
 
-EllipseNormals::EllipseNormals(const Ellipse& e, Vec2 centre, Vec2 y) {
-  const EllipseFrame f = frame_of(e);
+EllipseNormals::EllipseNormals(const Ellipse& e, Vec2 centre, Vec2 y) : frame_(frame_of(e)) {
+  const EllipseFrame& f = frame_;
   constexpr double kFlat = 0x1p-40;  // thinner than this share of a, the ellipse is taken as its segment
   if (!(f.b > kFlat * f.a)) {
     first_ = of_segment(centre - f.a * f.major, centre + f.a * f.major, y);
     return;
   }
-  a_ = f.a;
-  b_ = f.b;
-  major_ = f.major;
-  minor_ = f.minor;
   const Vec2 q = y - centre;
   const double qx = std::fabs(dot(q, f.major));
   const double qy = std::fabs(dot(q, f.minor));
@@ -158,18 +135,28 @@ EllipseNormals::EllipseNormals(const Ellipse& e, Vec2 centre, Vec2 y) {
   z1_ = qy / f.b;
   n0_ = f.a * qx / (f.b * f.b);
   if (z1_ > 0.0) {
-    const double s = foot(n0_, z1_, r0_);
-    first_.add(unfold(normal_for(n0_, z1_, r0_, s, f.a, f.b), sign_x_, sign_y_, f));
+    first_.add(normal_at(foot(n0_, z1_, r0_)));
     may_have_second_ = true;
   } else if (n0_ < r0_ - 1.0) {
     // On the major axis inside the evolute: the feet lie to both sides, at cos = n0 / (r0 - 1).
     const double cx = n0_ / (r0_ - 1.0);
     const Vec2 n = normalized({cx * f.b, std::sqrt(1.0 - cx * cx) * f.a});
-    first_.add(unfold(n, sign_x_, 1.0, f));
-    first_.add(unfold(n, sign_x_, -1.0, f));
+    first_.add(unfolded(n, 1.0));
+    first_.add(unfolded(n, -1.0));
   } else {
-    first_.add(unfold({1.0, 0.0}, sign_x_, 1.0, f));
+    first_.add(unfolded({1.0, 0.0}, 1.0));
   }
+}
+
+Vec2 EllipseNormals::unfolded(Vec2 n, double sign_y) const {
+  return (n.x * sign_x_) * frame_.major + (n.y * sign_y) * frame_.minor;
+}
+
+// Foot x = (a n0' , b z1'), with n0' = n0/(s+r0-1), z1' = z1/s on the unit circle; its normal is (n0'/a, z1'/b).
+Vec2 EllipseNormals::normal_at(double s) const {
+  const double cx = n0_ / (s + r0_ - 1.0);
+  const double cy = z1_ / s;
+  return unfolded(normalized({cx * frame_.b, cy * frame_.a}), sign_y_);
 }
 
 Normals EllipseNormals::all() const {
@@ -180,10 +167,8 @@ Normals EllipseNormals::all() const {
   const double s_m = 1.0 - (r0_ + k) / (1.0 + k);
   const double fx = n0_ / (s_m + r0_ - 1.0);
   const double fy = z1_ / s_m;
-  if (s_m < -z1_ && s_m + r0_ - 1.0 > 0.0 && fx * fx + fy * fy < 1.0) {
-    const double s = bisect_foot(n0_, z1_, r0_, s_m, -z1_, /*decreasing=*/false);
-    out.add(unfold(normal_for(n0_, z1_, r0_, s, a_, b_), sign_x_, sign_y_, {a_, b_, major_, minor_}));
-  }
+  if (s_m < -z1_ && s_m + r0_ - 1.0 > 0.0 && fx * fx + fy * fy < 1.0)
+    out.add(normal_at(bisect_foot(n0_, z1_, r0_, s_m, -z1_, /*decreasing=*/false)));
   return out;
 }
 

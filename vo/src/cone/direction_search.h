@@ -44,6 +44,12 @@ inline Vec2 side_of(Vec2 a, Vec2 b) {
   return a == b ? kAnyDirection : unit(geometry::perp(b - a));
 }
 
+/// The axis-aligned frame of an ellipse: L = R diag(a, b) V, columns of R the axes.
+struct EllipseFrame {
+  double a, b;  ///< m, the half-axes
+  Vec2 major, minor;
+};
+
 /// Those of an ellipse, the second looked for when it is asked for: with y outside, it is seldom needed.
 ///
 /// In the ellipse's frame with y = (qx, qy), both >= 0, the first normal is that of the least f, and the second one
@@ -58,8 +64,12 @@ class EllipseNormals {
   Normals all() const;
 
  private:
-  double a_ = 0.0, b_ = 0.0;  ///< m, the half-axes
-  Vec2 major_, minor_;
+  /// From the folded frame.
+  Vec2 unfolded(Vec2 n, double sign_y) const;
+  /// Of length 1, at the foot of parameter s.
+  Vec2 normal_at(double s) const;
+
+  EllipseFrame frame_;
   double sign_x_ = 1.0, sign_y_ = 1.0;
   double r0_ = 0.0, z1_ = 0.0, n0_ = 0.0;
   Normals first_;

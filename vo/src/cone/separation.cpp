@@ -99,11 +99,11 @@ Vec2 middle_of(const GrownShape& s) {
   return a + ((b - a) + (c - a)) / 3.0;
 }
 
-Vec2 origin_of(const GrownShape& s) {
-  return s.origin;
+const GrownShape& whole_of(const GrownShape& s) {
+  return s;
 }
-Vec2 origin_of(const SeenSegment& s) {
-  return s.whole.origin;
+const GrownShape& whole_of(const SeenSegment& s) {
+  return s.whole;
 }
 
 /// Calls visit(normal) until it is true.
@@ -162,7 +162,7 @@ struct Inward {
 };
 template <class Seen>
 std::optional<Inward> inward(const Seen& s) {
-  const Vec2 away = origin_of(s) - middle_of(s);
+  const Vec2 away = whole_of(s).origin - middle_of(s);
   const double length = std::sqrt(squared_norm(away));
   if (length > 0.0) {
     const Vec2 m = away / length;
@@ -205,14 +205,6 @@ std::optional<Vec2> inside(const Seen& s, Vec2 n) {
   if (!in) return std::nullopt;
   const SupportValue v = support(s, n);
   return tilted_until_inside(s, n, in->m, first_tilt(v.h, v, in->depth));
-}
-
-/// Half-planes through 0: the legs and the apex. Nudging an offset would not do, since the cone is unbounded.
-template <class Seen>
-std::optional<HalfPlane> leg_half_plane(const Seen& s, Vec2 n) {
-  const std::optional<Vec2> tilted = inside(s, n);
-  if (!tilted) return std::nullopt;
-  return HalfPlane{*tilted, 0.0};
 }
 
 /// At the ends of the doubles' range a normalisation may give 0 or worse.
@@ -275,14 +267,17 @@ std::optional<Direction> best_direction_truncated(const Seen& s, Vec2 y) {
   return best.direction;
 }
 
-/// The certified half-plane in the best direction.
+/// The certified half-plane in the best direction. Through 0 for the legs and the apex: nudging an offset would not do,
+/// since the cone is unbounded.
 template <class Seen>
-std::optional<HalfPlane> half_plane_along(const Seen& s, double tau, const Direction& best) {
-  if (best.part == BoundaryPart::cut_off) {
-    const double h_up = best.h + error_of({best.h, best.magnitude});
-    if (h_up <= 0.0) return HalfPlane{best.normal, offset_above(h_up, tau)};
+std::optional<HalfPlane> half_plane_along(const Seen& s, double tau, const std::optional<Direction>& best) {
+  if (!best || !is_about_unit(best->normal)) return contact(whole_of(s));
+  if (best->part == BoundaryPart::cut_off) {
+    const double h_up = best->h + error_of({best->h, best->magnitude});
+    if (h_up <= 0.0) return HalfPlane{best->normal, offset_above(h_up, tau)};
   }
-  return leg_half_plane(s, best.normal);
+  if (const std::optional<Vec2> tilted = inside(s, best->normal)) return HalfPlane{*tilted, 0.0};
+  return contact(whole_of(s));
 }
 
 }  // namespace
@@ -318,18 +313,12 @@ std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, 
     HalfPlane h;
     if (tau <= kLongest && disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, tau * v, h)) return h;
   }
-  const std::optional<Direction> best = best_direction(s, tau, v);
-  if (!best || !is_about_unit(best->normal)) return contact(s);
-  const std::optional<HalfPlane> h = half_plane_along(s, tau, *best);
-  return h ? h : contact(s);
+  return half_plane_along(s, tau, best_direction(s, tau, v));
 }
 
 std::optional<HalfPlane> separating_half_plane(const SeenSegment& s, double tau, Vec2 v) {
   if (!std::isfinite(tau)) return separating_half_plane(s.whole, tau, v);
-  const std::optional<Direction> best = best_direction_truncated(s, tau * v);
-  if (!best || !is_about_unit(best->normal)) return contact(s.whole);
-  const std::optional<HalfPlane> h = half_plane_along(s, tau, *best);
-  return h ? h : contact(s.whole);
+  return half_plane_along(s, tau, best_direction_truncated(s, tau * v));
 }
 
 }  // namespace exactvo::vo::detail
