@@ -10,7 +10,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "exactvo/geometry/infinity.h"
@@ -20,9 +22,12 @@
 namespace exactvo::vo {
 namespace {
 
+using detail::bits_of;
 using detail::Fnv;
+using detail::Reader;
 using geometry::Disc;
 using geometry::Ellipse;
+using geometry::hex_text;
 using geometry::Vec2;
 using Rational = mpq_class;
 
@@ -108,11 +113,6 @@ double double_of(std::uint64_t bits) {
   std::memcpy(&x, &bits, sizeof x);
   return x;
 }
-std::uint64_t bits_of(double x) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
 
 /// The largest double <= the exact margin, which is not negative. From a guess, however wrong (a root may underflow),
 /// by ever longer strides until it lies between two doubles, then by halves.
@@ -136,7 +136,18 @@ double exact_margin(const RootSum& excess) {
   return double_of(low);
 }
 
-// --- The digest ---
+// --- Digest and text ---
+
+/// The numbers behind the shape, each with its word, in the order of both.
+template <class Claim, class Visit>
+void for_each_number(Claim& c, Visit visit) {
+  visit("position", c.position);
+  visit("radius", c.radius);
+  visit("horizon", c.time_horizon);
+  visit("velocity", c.shape_velocity);
+  visit("normal", c.half_plane.normal);
+  visit("offset", c.half_plane.offset);
+}
 
 std::uint64_t digest_of(const HalfPlaneClaim& c, double margin) {
   Fnv hash;
@@ -144,14 +155,32 @@ std::uint64_t digest_of(const HalfPlaneClaim& c, double margin) {
   if (const auto* p = std::get_if<geometry::ConvexPolygon>(&c.shape))
     hash.add(static_cast<std::uint64_t>(p->vertices.size()));
   for (const double x : geometry::numbers_of(c.shape)) hash.add(x);
-  hash.add(c.position);
-  hash.add(c.radius);
-  hash.add(c.time_horizon);
-  hash.add(c.shape_velocity);
-  hash.add(c.half_plane.normal);
-  hash.add(c.half_plane.offset);
+  for_each_number(c, [&](const char*, const auto& x) { hash.add(x); });
   hash.add(margin);
   return hash.value();
+}
+
+std::string text(double x) {
+  return hex_text(x);
+}
+std::string text(Vec2 v) {
+  return hex_text(v.x) + " " + hex_text(v.y);
+}
+
+geometry::ConvexShape read_shape(Reader& in) {
+  constexpr std::string_view kKinds[] = {"disc", "segment", "convex_polygon", "ellipse"};
+  constexpr std::size_t kCounts[] = {3, 4, 0, 5};
+  const auto kind = static_cast<std::size_t>(std::find(std::begin(kKinds), std::end(kKinds), in.next()) - kKinds);
+  if (kind == std::size(kKinds)) in.expect("a shape");
+  std::vector<double> numbers;
+  const auto read = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count && in.ok(); ++i) numbers.push_back(in.number());
+  };
+  if (kind == 2)
+    for (auto left = in.integer<std::size_t>(10); left > 0 && in.ok(); --left) read(2);
+  else if (in.ok())
+    read(kCounts[kind]);
+  return geometry::shape_of(kind, numbers).value_or(geometry::Disc{});
 }
 
 }  // namespace
@@ -179,6 +208,34 @@ Verdict check(const Certificate& c) {
 const char* name(Verdict verdict) {
   constexpr const char* kNames[] = {"valid", "malformed", "altered", "wrong margin"};
   return kNames[static_cast<int>(verdict)];
+}
+
+std::optional<geometry::ConvexShape> read_shape(const std::string& text) {
+  Reader in(text);
+  geometry::ConvexShape shape = read_shape(in);
+  if (!in.finished() || to_string(shape) != text) return std::nullopt;
+  return shape;
+}
+
+std::string write_certificate(const Certificate& c) {
+  std::string out = "half-plane-certificate 1 " + to_string(c.claim.shape);
+  const auto add = [&](const char* word, const auto& x) { out.append(" ").append(word).append(" ").append(text(x)); };
+  for_each_number(c.claim, add);
+  add("margin", c.margin);
+  return out + " digest " + detail::digest_text(c.digest);
+}
+
+std::optional<Certificate> read_certificate(const std::string& text) {
+  Reader in(text);
+  Certificate c;
+  in.expect("half-plane-certificate");
+  in.expect("1");
+  c.claim.shape = read_shape(in);
+  for_each_number(c.claim, [&](const char* word, auto& x) { in.read(word, x); });
+  in.read("margin", c.margin);
+  c.digest = in.digest();
+  if (!in.finished() || write_certificate(c) != text) return std::nullopt;
+  return c;
 }
 
 }  // namespace exactvo::vo

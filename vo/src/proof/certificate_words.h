@@ -49,13 +49,13 @@ class Reader {
     return {x, number()};
   }
   /// The same behind a word.
-  double number(std::string_view name) {
+  void read(std::string_view name, double& x) {
     expect(name);
-    return number();
+    x = number();
   }
-  Vec2 point(std::string_view name) {
+  void read(std::string_view name, Vec2& v) {
     expect(name);
-    return point();
+    v = point();
   }
   template <typename Integer>
   Integer integer(int base) {
@@ -84,14 +84,16 @@ inline std::string digest_text(std::uint64_t digest) {
   return buffer;
 }
 
+inline std::uint64_t bits_of(double x) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
 /// FNV-1a, 64 bits, of 8-byte words, low byte first.
 class Fnv {
  public:
-  void add(double x) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &x, sizeof bits);
-    add(bits);
-  }
+  void add(double x) { add(bits_of(x)); }
   void add(Vec2 v) {
     add(v.x);
     add(v.y);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exactvo/geometry/shape_numbers.h"
 #include "proof/certificate_words.h"
 
 namespace exactvo::vo {
@@ -38,10 +39,7 @@ Rational least_room(const Ellipse& e, const std::vector<Vec2>& points) {
 
 std::uint64_t digest_of(const Containment& c) {
   detail::Fnv hash;
-  hash.add(c.ellipse.center);
-  hash.add(c.ellipse.l11);
-  hash.add(c.ellipse.l21);
-  hash.add(c.ellipse.l22);
+  for (const double x : geometry::numbers_of(c.ellipse)) hash.add(x);
   hash.add(static_cast<std::uint64_t>(c.points.size()));
   for (const Vec2 x : c.points) hash.add(x);
   hash.add(c.margin);
@@ -81,7 +79,7 @@ std::optional<Containment> read_containment(const std::string& text) {
   in.expect("points");
   const auto count = in.integer<std::size_t>(10);
   for (std::size_t k = 0; k < count && in.ok(); ++k) c.points.push_back(in.point());
-  c.margin = in.number("margin");
+  in.read("margin", c.margin);
   c.digest = in.digest();
   if (!in.finished() || write_containment(c) != text) return std::nullopt;
   return c;
