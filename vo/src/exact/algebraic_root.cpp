@@ -104,11 +104,6 @@ void isolate_within(const Polynomial& f, const SturmChain& chain, const Rational
   isolate_within(f, chain, half, high, out);
 }
 
-int compare_rationals(const Rational& a, const Rational& b) {
-  const int order = cmp(a, b);
-  return (order > 0) - (order < 0);
-}
-
 /// Whether the common divisor of both has a root where the intervals overlap: that is then the root of both.
 bool are_equal(const Root& a, const Root& b) {
   const Polynomial common = gcd(a.f, b.f);
@@ -184,7 +179,10 @@ void halve(Root& root) {
 }
 
 int compare(const Root& a, const Rational& b) {
-  if (a.is_settled()) return compare_rationals(a.low, b);
+  if (a.is_settled()) {
+    const int order = cmp(a.low, b);
+    return (order > 0) - (order < 0);
+  }
   if (b <= a.low) return 1;
   if (b >= a.high) return -1;
   const int sign = sign_at(a.f, b);

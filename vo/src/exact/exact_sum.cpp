@@ -8,31 +8,22 @@ namespace {
 
 using geometry::Disc;
 using geometry::Ellipse;
+using geometry::detail::make;
 using geometry::detail::squared;
-
-RationalVector exact(Vec2 v) {
-  return {Rational(v.x), Rational(v.y)};
-}
 
 ExactSum sum_of(const geometry::ConvexShape& shape) {
   const auto disc = [](double radius) { return Body{0, 0, 0, abs(Rational(radius))}; };
-  if (const auto* d = std::get_if<Disc>(&shape)) return {{exact(d->center)}, disc(d->radius)};
+  if (const auto* d = std::get_if<Disc>(&shape)) return {{make<Rational>(d->center)}, disc(d->radius)};
   if (const auto* e = std::get_if<Ellipse>(&shape)) {
-    const RationalVector c = exact(e->center);
+    const RationalVector c = make<Rational>(e->center);
     const Rational l11(e->l11), l21(e->l21), l22(e->l22);
     if (sgn(l22) == 0) return {{{c.x - l11, c.y - l21}, {c.x + l11, c.y + l21}}, {}};
     if (sgn(l21) == 0 && abs(l11) == abs(l22)) return {{c}, disc(e->l11)};
     return {{c}, {squared(l11), l11 * l21, squared(l21) + squared(l22), 0}};
   }
   ExactSum out;
-  for (const Vec2 v : corners_of(shape)) out.centres.push_back(exact(v));
+  for (const Vec2 v : corners_of(shape)) out.centres.push_back(make<Rational>(v));
   return out;
-}
-
-ExactSum seen_from(Vec2 origin, ExactSum s, const Rational& radius) {
-  for (RationalVector& c : s.centres) c = c - exact(origin);
-  s.body.radius += radius;
-  return s;
 }
 
 // --- Polynomials in the slope ---
@@ -132,12 +123,14 @@ UnroundedInput unrounded_input(const VelocityObstacle& obstacle) {
 }
 
 ExactSum exact_sum(const VelocityObstacle& obstacle) {
-  const geometry::GrownShape& s = obstacle.grown_;
-  if (!obstacle.polygonal_) return seen_from(s.origin, sum_of(s.shape), Rational(s.radius));
-  const ExactSum alone = seen_from(s.origin, sum_of(obstacle.polygonal_->obstacle), 0);
+  const UnroundedInput input = unrounded_input(obstacle);
+  ExactSum alone = sum_of(input.obstacle);
+  for (RationalVector& c : alone.centres) c = c - make<Rational>(input.position);
+  alone.body.radius += Rational(input.radius);
+  if (!input.robot) return alone;
   ExactSum out{{}, alone.body};
   for (const RationalVector& c : alone.centres)
-    for (const Vec2 v : obstacle.polygonal_->robot.vertices) out.centres.push_back(c - exact(v));
+    for (const Vec2 v : input.robot->vertices) out.centres.push_back(c - make<Rational>(v));
   return out;
 }
 

@@ -21,23 +21,13 @@ RationalVector approximate(const Point& x, int bits) {
   return {x.x.approximate(bits), x.y.approximate(bits)};
 }
 
-Rational power_of_two(int exponent) {
-  const Rational one = 1;
-  Rational out;
-  if (exponent >= 0) mpq_mul_2exp(out.get_mpq_t(), one.get_mpq_t(), static_cast<unsigned long>(exponent));
-  if (exponent < 0) mpq_div_2exp(out.get_mpq_t(), one.get_mpq_t(), static_cast<unsigned long>(-exponent));
-  return out;
-}
-
-geometry::Bracket rounded_outward(const Rational& low, const Rational& high) {
+/// x up to 2^error, rounded outward.
+geometry::Bracket bracket_of(const Rational& x, int error) {
+  const Rational low = x - Rational(std::ldexp(1.0, error)), high = x + Rational(std::ldexp(1.0, error));
   double a = low.get_d(), b = high.get_d();
   while (Rational(a) > low) a = std::nextafter(a, -kInfinity);
   while (Rational(b) < high) b = std::nextafter(b, kInfinity);
   return {a, b};
-}
-
-geometry::Bracket bracket_of(const Rational& x, const Rational& error) {
-  return rounded_outward(x - error, x + error);
 }
 
 class Real {
@@ -93,9 +83,8 @@ struct Fineness {
 
 PointBracket bracket_of(const Point& x, double max_speed) {
   const int bits = kBits - std::ilogb(max_speed);
-  const Rational error = power_of_two(-bits);
   const RationalVector at = approximate(x, bits);
-  return {bracket_of(at.x, error), bracket_of(at.y, error)};
+  return {bracket_of(at.x, -bits), bracket_of(at.y, -bits)};
 }
 
 // Green's theorem: the triangles with the origin, and the segments between arcs and their chords.
@@ -113,7 +102,7 @@ geometry::Bracket area_of(const Arrangement& arrangement, const std::vector<Stre
     if (c.is_counter_clockwise) twice += r2 * angle_without_sine(a, b, fineness.precision);
     if (!c.is_counter_clockwise) twice -= r2 * angle_without_sine(b, a, fineness.precision);
   }
-  return bracket_of(twice / 2, power_of_two(2 * std::ilogb(max_speed) - kBits + 1));
+  return bracket_of(twice / 2, 2 * std::ilogb(max_speed) - kBits + 1);
 }
 
 }  // namespace exactvo::vo::detail

@@ -10,8 +10,8 @@
 #include "cgal_guard.h"
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/shape_numbers.h"
 #include "free/arc_measure.h"
-#include "free/supported_range.h"
 
 namespace exactvo::vo {
 namespace {
@@ -122,11 +122,26 @@ std::vector<FreePiece> pieces_of(const Arrangement& arrangement, double max_spee
   return pieces;
 }
 
+/// Towards the ends of the doubles' range CORE's expressions take minutes or divide by an exponent that is none.
+bool has_size_from(double least, double x) {
+  return x == 0.0 || (std::fabs(x) >= least && std::fabs(x) <= kMostArrangedNumber);
+}
+
 bool is_in_range(const HalfPlane& h) {
-  const auto in_range = [](double x) {
-    return x == 0.0 || (std::fabs(x) >= kLeastOfHalfPlane && std::fabs(x) <= kMostArrangedNumber);
-  };
-  return in_range(h.normal.x) && in_range(h.normal.y) && in_range(h.offset);
+  return has_size_from(kLeastOfHalfPlane, h.normal.x) && has_size_from(kLeastOfHalfPlane, h.normal.y) &&
+         has_size_from(kLeastOfHalfPlane, h.offset);
+}
+
+/// All numbers of the cone as they were given: obstacle, robot, horizon (which may be infinite) and apex.
+bool cone_is_in_range(const ShiftedCone& cone) {
+  const detail::UnroundedInput input = detail::unrounded_input(cone.cone);
+  std::vector<double> numbers = geometry::numbers_of(input.obstacle);
+  numbers.insert(numbers.end(), {input.position.x, input.position.y, input.radius});
+  std::vector<Vec2> vectors(cone.minus_apex.terms.begin(), cone.minus_apex.terms.end());
+  if (input.robot) vectors.insert(vectors.end(), input.robot->vertices.begin(), input.robot->vertices.end());
+  for (const Vec2 v : vectors) numbers.insert(numbers.end(), {v.x, v.y});
+  if (std::isfinite(cone.cone.time_horizon())) numbers.push_back(cone.cone.time_horizon());
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return has_size_from(kLeastArrangedNumber, x); });
 }
 
 bool is_ray(const Owner& owner) {
@@ -160,9 +175,8 @@ std::size_t FreeArrangement::curves_of(const ShiftedCone& cone) {
 }
 
 Refusal FreeArrangement::refusal_of(const std::vector<ShiftedCone>& cones, double max_speed) {
-  const auto in_supported_range = [](const ShiftedCone& c) { return detail::is_in_supported_range(c); };
   const bool in_range = max_speed >= kLeastArrangedNumber && max_speed <= kMostArrangedNumber;
-  if (!in_range || !std::all_of(cones.begin(), cones.end(), in_supported_range)) return Refusal::range;
+  if (!in_range || !std::all_of(cones.begin(), cones.end(), cone_is_in_range)) return Refusal::range;
   if (!std::all_of(cones.begin(), cones.end(), can_hold)) return Refusal::ellipse;
   if (cones.size() > kMostCones) return Refusal::cones;
   return has_too_many_curves(cones) ? Refusal::curves : Refusal::none;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cone/separation.h"
 #include "exactvo/geometry/predicates.h"
@@ -48,7 +49,6 @@ struct Edge {
 
 /// The two rays that bound the edge's velocity obstacle. A foreign one runs along the neighbouring edge.
 struct Ray {
-  Vec2 apex;  ///< the vertex it starts beside, relative to the robot
   Vec2 direction;
   bool foreign = false;
 };
@@ -62,7 +62,7 @@ Vec2 tangent(Vec2 c, double radius, double side) {
 
 struct EdgeCone {
   Ray left, right;
-  Vec2 cut_left, cut_right;  ///< the ends of the cut-off before division by the horizon
+  Vec2 cut_left, cut_right;  ///< the ends of the cut-off before division by the horizon, beside which the rays start
 };
 
 /// The cone of an edge; nothing where the neighbours already stand for it.
@@ -77,8 +77,8 @@ std::optional<EdgeCone> cone_of(const Edge& e, double radius) {
   cone.cut_right = before_left ? e.left : e.right;
   const bool left_is_vertex = before_left || beyond_right || e.left_convex;
   const bool right_is_vertex = before_left || beyond_right || e.right_convex;
-  cone.left = {cone.cut_left, left_is_vertex ? tangent(cone.cut_left, radius, 1.0) : -e.direction};
-  cone.right = {cone.cut_right, right_is_vertex ? tangent(cone.cut_right, radius, -1.0) : e.direction};
+  cone.left.direction = left_is_vertex ? tangent(cone.cut_left, radius, 1.0) : -e.direction;
+  cone.right.direction = right_is_vertex ? tangent(cone.cut_right, radius, -1.0) : e.direction;
   return cone;
 }
 
@@ -154,26 +154,17 @@ Edge edge_at(const OrcaChain& chain, std::size_t i, Vec2 position) {
           chain.convex[(i + 1) % n], direction(i + n - 1),     direction(i + 1)};
 }
 
-/// Of edges equally near the one that is listed first.
-std::vector<std::size_t> nearest_first(const OrcaChain& chain, const std::vector<std::size_t>& edges, Vec2 position) {
-  struct Near {
-    double distance;
-    std::size_t edge;
-  };
-  std::vector<Near> order;
+/// Each with its distance; of edges equally near the one of the lower number.
+std::vector<std::pair<double, std::size_t>> nearest_first(const OrcaChain& chain, const std::vector<std::size_t>& edges,
+                                                          Vec2 position) {
+  std::vector<std::pair<double, std::size_t>> order;
   order.reserve(edges.size());
-  const std::size_t n = chain.vertices.size();
   for (const std::size_t i : edges) {
-    const Vec2 a = chain.vertices[i];
-    const Vec2 e = chain.vertices[(i + 1) % n] - a;
-    const double t = std::clamp(dot(position - a, e) / squared_norm(e), 0.0, 1.0);
-    order.push_back({norm(position - (a + t * e)), i});
+    const Vec2 a = chain.vertices[i], b = chain.vertices[(i + 1) % chain.vertices.size()];
+    order.emplace_back(norm(position - detail::nearest_on(a, b, position)), i);
   }
-  std::stable_sort(order.begin(), order.end(), [](const Near& x, const Near& y) { return x.distance < y.distance; });
-  std::vector<std::size_t> sorted;
-  sorted.reserve(order.size());
-  for (const Near& near : order) sorted.push_back(near.edge);
-  return sorted;
+  std::sort(order.begin(), order.end());
+  return order;
 }
 
 }  // namespace
@@ -197,7 +188,7 @@ std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::v
   EXACTVO_REQUIRE(radius >= 0.0 && time_horizon > 0.0, std::to_string(radius) + ", " + std::to_string(time_horizon));
   EXACTVO_REQUIRE(geometry::is_finite(position) && geometry::is_finite(velocity), "a vector that is not finite");
   std::vector<OrcaHalfPlane> found;
-  for (const std::size_t i : nearest_first(chain, edges, position)) {
+  for (const auto& [distance, i] : nearest_first(chain, edges, position)) {
     const Edge edge = edge_at(chain, i, position);
     // The free side is on the right: from the left of an edge another edge is in front of it.
     if (cross(edge.direction, -edge.left) > 0.0) continue;

@@ -49,9 +49,7 @@ using geometry::Vec2;
 
 class VelocityObstacle;
 namespace detail {
-struct ExactSum;
 struct UnroundedInput;
-ExactSum exact_sum(const VelocityObstacle& obstacle);
 UnroundedInput unrounded_input(const VelocityObstacle& obstacle);
 }  // namespace detail
 
@@ -150,7 +148,6 @@ class VelocityObstacle {
     double error;
   };
 
-  friend detail::ExactSum detail::exact_sum(const VelocityObstacle& obstacle);
   friend detail::UnroundedInput detail::unrounded_input(const VelocityObstacle& obstacle);
 
   geometry::GrownShape grown_;
