@@ -119,12 +119,25 @@ void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std:
                   "an array that is null or too short");
 }
 
-template <class T, class Range>
-BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
+}  // namespace
+
+template <class T>
+BatchCounts solve_batch(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last) {
+  require_arrays(in, out, first, last);
+  if constexpr (std::is_same_v<T, double>) {
+    return HWY_DYNAMIC_DISPATCH(run_double)(in, out, first, last, &solve_alone<double>);
+  } else {
+    EXACTVO_REQUIRE(!out.proven, "a proof asked of float");
+    return HWY_DYNAMIC_DISPATCH(run_float)(in, out, first, last, &solve_alone<float>);
+  }
+}
+
+template <class T>
+BatchCounts solve_batch_parallel(const BatchProblems<T>& in, const BatchAnswers<T>& out) {
   const auto plus = [](BatchCounts a, BatchCounts b) { return BatchCounts{a.scalar + b.scalar, a.exact + b.exact}; };
   const auto add = [&](const tbb::blocked_range<std::size_t>& range, BatchCounts counts) {
     const geometry::TaskAtWork seen;
-    return plus(counts, solve_range(range.begin() * kGrain, std::min(in.count, range.end() * kGrain)));
+    return plus(counts, solve_batch(in, out, range.begin() * kGrain, std::min(in.count, range.end() * kGrain)));
   };
   const std::size_t tasks = (in.count + kGrain - 1) / kGrain;
   geometry::gives_tasks();
@@ -133,28 +146,10 @@ BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
   return counts;
 }
 
-}  // namespace
-
-BatchCounts solve_batch(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
-                        std::size_t last) {
-  require_arrays(in, out, first, last);
-  return HWY_DYNAMIC_DISPATCH(run_double)(in, out, first, last, &solve_alone<double>);
-}
-
-BatchCounts solve_batch(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
-                        std::size_t last) {
-  require_arrays(in, out, first, last);
-  EXACTVO_REQUIRE(!out.proven, "a proof asked of float");
-  return HWY_DYNAMIC_DISPATCH(run_float)(in, out, first, last, &solve_alone<float>);
-}
-
-BatchCounts solve_batch_parallel(const BatchProblems<double>& in, const BatchAnswers<double>& out) {
-  return in_parallel(in, [&](std::size_t first, std::size_t last) { return solve_batch(in, out, first, last); });
-}
-
-BatchCounts solve_batch_parallel(const BatchProblems<float>& in, const BatchAnswers<float>& out) {
-  return in_parallel(in, [&](std::size_t first, std::size_t last) { return solve_batch(in, out, first, last); });
-}
+template BatchCounts solve_batch(const BatchProblems<double>&, const BatchAnswers<double>&, std::size_t, std::size_t);
+template BatchCounts solve_batch(const BatchProblems<float>&, const BatchAnswers<float>&, std::size_t, std::size_t);
+template BatchCounts solve_batch_parallel(const BatchProblems<double>&, const BatchAnswers<double>&);
+template BatchCounts solve_batch_parallel(const BatchProblems<float>&, const BatchAnswers<float>&);
 
 const char* batch_target() {
   const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;

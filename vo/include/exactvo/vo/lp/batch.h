@@ -61,17 +61,15 @@ struct BatchCounts {
   std::size_t exact = 0;   ///< those among them that needed exact arithmetic; only with `proven`
 };
 
-/// Solves problems first .. last - 1 on the caller's thread. REQUIRES: finite numbers as described.
-BatchCounts solve_batch(const BatchProblems<double>& problems, const BatchAnswers<double>& answers, std::size_t first,
-                        std::size_t last);
-/// The same in float.
-BatchCounts solve_batch(const BatchProblems<float>& problems, const BatchAnswers<float>& answers, std::size_t first,
+/// Solves problems first .. last - 1 on the caller's thread. T is double or float. REQUIRES: finite numbers as
+/// described.
+template <class T>
+BatchCounts solve_batch(const BatchProblems<T>& problems, const BatchAnswers<T>& answers, std::size_t first,
                         std::size_t last);
 
 /// All problems, on oneTBB's threads. The same bits as on one.
-BatchCounts solve_batch_parallel(const BatchProblems<double>& problems, const BatchAnswers<double>& answers);
-/// The same in float.
-BatchCounts solve_batch_parallel(const BatchProblems<float>& problems, const BatchAnswers<float>& answers);
+template <class T>
+BatchCounts solve_batch_parallel(const BatchProblems<T>& problems, const BatchAnswers<T>& answers);
 
 /// The name of the target that runs ("AVX3", "AVX2", "SSE4", ...).
 const char* batch_target();
