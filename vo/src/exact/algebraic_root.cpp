@@ -33,15 +33,14 @@ Polynomial remainder(Polynomial a, const Polynomial& b) {
   return a;
 }
 
-/// A multiple of a / b. REQUIRES: b divides a.
+/// REQUIRES: b divides a. Of coprime coefficients the quotient has whole ones (Gauss's lemma).
 Polynomial quotient(Polynomial a, const Polynomial& b) {
-  std::vector<Rational> out(a.size() - b.size() + 1);
-  std::vector<Rational> rest(a.begin(), a.end());
+  Polynomial out(a.size() - b.size() + 1);
   for (std::size_t k = out.size(); k-- > 0;) {
-    out[k] = rest[k + b.size() - 1] / Rational(b.back());
-    for (std::size_t i = 0; i < b.size(); ++i) rest[k + i] -= out[k] * Rational(b[i]);
+    out[k] = a[k + b.size() - 1] / b.back();
+    for (std::size_t i = 0; i < b.size(); ++i) a[k + i] -= out[k] * b[i];
   }
-  return primitive(out);
+  return out;
 }
 
 Polynomial derivative(const Polynomial& f) {

@@ -85,16 +85,10 @@ std::optional<EdgeCone> cone_of(const Edge& e, double radius) {
 void replace_foreign_legs(const Edge& e, EdgeCone& cone) {
   const bool left_vertex_convex = cone.cut_left == e.left ? e.left_convex : e.right_convex;
   const Vec2 before = cone.cut_left == e.left ? e.previous_direction : e.direction;
-  if (left_vertex_convex && cross(cone.left.direction, -before) >= 0.0) {
-    cone.left.direction = -before;
-    cone.left.foreign = true;
-  }
+  if (left_vertex_convex && cross(cone.left.direction, -before) >= 0.0) cone.left = {-before, true};
   const bool right_vertex_convex = cone.cut_right == e.right ? e.right_convex : e.left_convex;
   const Vec2 after = cone.cut_right == e.right ? e.next_direction : e.direction;
-  if (right_vertex_convex && cross(cone.right.direction, after) <= 0.0) {
-    cone.right.direction = after;
-    cone.right.foreign = true;
-  }
+  if (right_vertex_convex && cross(cone.right.direction, after) <= 0.0) cone.right = {after, true};
 }
 
 /// The outward normal at the point of the cone's boundary nearest to v; nothing where that lies on a foreign leg.
