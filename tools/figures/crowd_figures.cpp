@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
+#include "figures/local_origin.h"
 #include "figures/outlines.h"
 
 namespace exactvo::tools {
@@ -63,7 +64,7 @@ std::size_t look_over(const std::filesystem::path& recording, CrowdCourse& cours
     for (std::size_t i = 0; i < course.robots; ++i) course.view.add(place(row, head, i));
   }
   course.cut_off = reader.is_cut_off();
-  if (course.view.empty()) course.view.add(Vec2{});
+  if (course.view.is_empty()) course.view.add(Vec2{});
   return rows;
 }
 
@@ -122,11 +123,6 @@ Canvas canvas_for(const Box& plane) {
   const double scale = kLongestSide / std::max(plane.width(), plane.height());
   const auto side = [&](double length, double least) { return static_cast<int>(std::max(scale * length, least)); };
   return {side(plane.width(), 300.0) + 180, side(plane.height(), 160.0) + 110};
-}
-
-std::string ranges(const Box& plane) {
-  return fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", plane.low.x, plane.high.x, plane.low.y,
-                     plane.high.y);
 }
 
 /// Obstacles, and bodies where they stood at the start.
@@ -192,7 +188,7 @@ Figure map_figure(const CrowdCourse& course, const std::string& name, const std:
   const std::string title = title_of(course, what);
   return {name, data.text(), title + fmt::format(". Cells of {:.3g} m.", course.grid.cell), canvas,
           filled("crowd_map", {{"title", quoted(shortened(title, characters_in(canvas.width - 60.0)))},
-                               {"ranges", ranges(plane)},
+                               {"ranges", axis_ranges(plane)},
                                {"value", markup(unit)},
                                {"most", fmt::format("{:.6g}", largest(course, value))},
                                {"plot", plot.text()}})};
@@ -219,7 +215,7 @@ Figure paths_of_some(const CrowdCourse& course) {
   const std::string title = title_of(course, what);
   return {"paths", data.text(), title + ".", canvas,
           filled("paths", {{"title", quoted(shortened(title, characters_in(canvas.width - 60.0)))},
-                           {"ranges", ranges(plane)},
+                           {"ranges", axis_ranges(plane)},
                            {"x_label", "'x [m]'"},
                            {"y_label", "'y [m]'"},
                            {"plot", plot.text()}})};

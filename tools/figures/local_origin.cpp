@@ -17,9 +17,14 @@ constexpr double kMostViews = 100.0;
 
 }  // namespace
 
+std::string axis_ranges(const Box& view) {
+  return fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", view.low.x, view.high.x, view.low.y,
+                     view.high.y);
+}
+
 LocalOrigin::LocalOrigin(const Box& view) {
   const double extent = std::max(view.width(), view.height());
-  if (view.empty() || !(extent > 0.0) || !std::isfinite(extent)) return;
+  if (view.is_empty() || !(extent > 0.0) || !std::isfinite(extent)) return;
   x_ = round_number_near(view.low.x, view.high.x, extent);
   y_ = round_number_near(view.low.y, view.high.y, extent);
 }
@@ -42,8 +47,7 @@ std::string LocalOrigin::using_columns(int x, int y, const std::string& more) co
 
 std::string LocalOrigin::ranges(const Box& view) const {
   const std::string settings = is_far() ? fmt::format("x0 = {:#}\ny0 = {:#}\n", x_.first, y_.first) : "";
-  return settings + fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", view.low.x - x_.first,
-                                view.high.x - x_.first, view.low.y - y_.first, view.high.y - y_.first);
+  return settings + axis_ranges({view.low - place(), view.high - place()});
 }
 
 std::string LocalOrigin::in_title() const {

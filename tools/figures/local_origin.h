@@ -14,6 +14,9 @@
 
 namespace exactvo::tools {
 
+/// Sets the ranges of both axes.
+std::string axis_ranges(const Box& view);
+
 class LocalOrigin {
  public:
   /// (0, 0) where the numbers in view can be read as they are: below 10^5 and a hundred times the view.

@@ -2,18 +2,16 @@
 #pragma once
 
 /// \file
-/// What the figures share: colours, boxes that views are made of, and shapes as rings of points, for drawing only:
+/// What the figures share: colours, and shapes as rings of points, for drawing only:
 /// sampled finely enough for the eye, certified for nothing.
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/support.h"
@@ -21,6 +19,7 @@
 
 namespace exactvo::tools {
 
+using geometry::Box;
 using geometry::Vec2;
 
 /// Colours that colour-blind readers can tell apart (Okabe and Ito, 2008; the yellow, too pale on white, left out).
@@ -42,28 +41,6 @@ inline constexpr const char* kRouteColour = "#0072B2";
 inline constexpr const char* kGoalColour = "#CC79A7";
 inline constexpr const char* kObstacleFill = "#c9ccd2";
 inline constexpr const char* kObstacleLine = "#3f444d";
-
-/// An axis-parallel box; empty until something is put in.
-struct Box {
-  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-
-  bool empty() const { return !(low.x <= high.x); }
-  void add(Vec2 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  void add(const Box& other) {
-    if (other.empty()) return;
-    add(other.low);
-    add(other.high);
-  }
-  double width() const { return empty() ? 0.0 : high.x - low.x; }
-  double height() const { return empty() ? 0.0 : high.y - low.y; }
-  double diagonal() const { return std::hypot(width(), height()); }
-  Box grown(double by) const { return empty() ? *this : Box{{low.x - by, low.y - by}, {high.x + by, high.y + by}}; }
-  bool contains(Vec2 p) const { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; }
-};
 
 using Points = std::vector<Vec2>;
 

@@ -11,14 +11,6 @@
 namespace exactvo::geometry {
 namespace {
 
-bool holds(const Box& box, Vec2 x) {
-  return box.low.x <= x.x && x.x <= box.high.x && box.low.y <= x.y && x.y <= box.high.y;
-}
-
-Box grown(const Box& box, double by) {
-  return {box.low - Vec2{by, by}, box.high + Vec2{by, by}};
-}
-
 /// Whether every two points of the boxes are farther from each other than that, beyond the rounding of it.
 bool are_apart(const Box& a, const Box& b, double distance) {
   constexpr double kRounding = 1.0 + 1e-12;
@@ -49,7 +41,7 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
 
 /// Of a polygon: by the edges that the ray towards +x may cross.
 bool ObstacleIndex::is_inside(Vec2 x) const {
-  if (!has_interior_ || !holds(box_, x)) return false;
+  if (!has_interior_ || !box_.contains(x)) return false;
   return detail::even_odd_place(x, [&](const auto& visit) {
            edges_by_place_.for_each_meeting({x, {box_.high.x, x.y}}, [&](std::size_t e) { visit(edges_[e]); });
          }) != Place::outside;
@@ -64,7 +56,7 @@ double ObstacleIndex::edge_distance(const Segment& path, double enough) const {
   const double rounding = rounding_of_distance(std::max({largest_, largest(path.a), largest(path.b)}));
   double least = kInfinity;
   for (double reach = std::min(std::max({size.x, size.y, 1.0}), std::max(enough, 0.0));; reach *= 2.0) {
-    edges_by_place_.for_each_meeting(grown(round, reach * (1.0 + kRounding) + 2.0 * rounding), [&](std::size_t e) {
+    edges_by_place_.for_each_meeting(round.grown(reach * (1.0 + kRounding) + 2.0 * rounding), [&](std::size_t e) {
       if (!are_apart(edges_by_place_.box(e), round, std::min(least, enough) + 2.0 * rounding))
         least = std::min(least, distance(edges_[e], path));
     });

@@ -5,6 +5,7 @@
 /// Upright boxes round shapes: what is looked up by place. Never too small, at most a few ulps too large.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "exactvo/geometry/shapes.h"
@@ -24,13 +25,18 @@ struct Box {
   }
   /// Grows to hold b.
   void add(const Box& b) {
-    add(b.low);
-    add(b.high);
+    low = {std::min(low.x, b.low.x), std::min(low.y, b.low.y)};
+    high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y)};
   }
   /// Larger by that on every side, m. Rounded.
   Box grown(double by) const { return {low - Vec2{by, by}, high + Vec2{by, by}}; }
   /// Whether it holds no point.
   bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
+  /// Whether it holds p. Exact.
+  bool contains(Vec2 p) const { return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y; }
+  double width() const { return is_empty() ? 0.0 : high.x - low.x; }   ///< m, rounded; 0 of an empty one
+  double height() const { return is_empty() ? 0.0 : high.y - low.y; }  ///< m, rounded; 0 of an empty one
+  double diagonal() const { return std::hypot(width(), height()); }    ///< m, rounded; 0 of an empty one
 };
 
 /// Whether they have a point in common; none where one is empty. Exact.
