@@ -172,10 +172,6 @@ int DataFile::begin(const std::string& title, const std::string& columns) {
   return count_++;
 }
 
-void DataFile::row(std::initializer_list<double> values) {
-  row(std::vector<double>(values));
-}
-
 void DataFile::row(const std::vector<double>& values) {
   const char* separator = "";
   for (const double value : values) {
@@ -202,7 +198,7 @@ void DataFile::ring(const std::vector<geometry::Vec2>& points) {
   curve({points.front()});
 }
 
-void DataFile::labelled_row(std::initializer_list<double> values, const std::string& label) {
+void DataFile::labelled_row(const std::vector<double>& values, const std::string& label) {
   row(values);
   text_.pop_back();
   // A data file has no way to write a double quote or a backslash within double quotes.

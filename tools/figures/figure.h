@@ -17,7 +17,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
@@ -61,7 +60,6 @@ class DataFile {
   /// the same doubles back.
   void write_all_digits() { all_digits_ = true; }
   /// One line of the current data set.
-  void row(std::initializer_list<double> values);
   void row(const std::vector<double>& values);
   /// One line per point.
   void rows(const std::vector<geometry::Vec2>& points);
@@ -70,7 +68,7 @@ class DataFile {
   /// The same, closed; nothing of no points.
   void ring(const std::vector<geometry::Vec2>& points);
   /// One line of numbers and a closing word of the program's own, for labels; gnuplot's markup works in it.
-  void labelled_row(std::initializer_list<double> values, const std::string& label);
+  void labelled_row(const std::vector<double>& values, const std::string& label);
   /// Lifts the pen: the next row starts a new curve or polygon of the same data set. Lifted twice is lifted once.
   void gap();
   const std::string& text() const { return text_; }
@@ -94,7 +92,6 @@ class PlotCommand {
   void data(int index, const std::string& what, const std::string& title = "");
   /// An item that is no data set: a function or a key entry, complete but for its title.
   void item(const std::string& what, const std::string& title = "");
-  bool empty() const { return items_.empty(); }
   std::string text() const;
 
  private:

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <system_error>
 
 #include "support/stop.h"
@@ -92,24 +91,6 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-/// Blocks the signals whose handlers look at children, for as long as it lives.
-class SignalsBlocked {
- public:
-  SignalsBlocked() {
-    sigset_t ours;
-    ::sigemptyset(&ours);
-    for (const int signal : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&ours, signal);
-    ::pthread_sigmask(SIG_BLOCK, &ours, &before_);
-  }
-  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsBlocked(const SignalsBlocked&) = delete;
-  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
-  const sigset_t& before() const { return before_; }
-
- private:
-  sigset_t before_{};
-};
-
 /// The error code of the attempt to start, 0 where `pid` runs, with the signals of `mask` blocked.
 int spawn_gnuplot(std::FILE* input, std::FILE* messages, const sigset_t& mask, pid_t& pid) {
   posix_spawn_file_actions_t actions;
@@ -151,14 +132,16 @@ bool succeeded(pid_t pid) {
 
 /// The error code of the attempt to start; else `pid` has run to its end.
 int run_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
-  std::optional<KillChildOnSignal> ours;
-  {
-    const SignalsBlocked until_it_is_known;
-    if (const int error = spawn_gnuplot(input, messages, until_it_is_known.before(), pid)) return error;
-    ours.emplace(pid);
-  }
-  await_end(pid);
-  return 0;
+  // Signals whose handlers look at children wait until this one is known.
+  sigset_t ours, before;
+  ::sigemptyset(&ours);
+  for (const int signal : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&ours, signal);
+  ::pthread_sigmask(SIG_BLOCK, &ours, &before);
+  const int error = spawn_gnuplot(input, messages, before, pid);
+  const KillChildOnSignal until_it_ends(error == 0 ? pid : 0);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (error == 0) await_end(pid);
+  return error;
 }
 
 /// Cairo writes the time into a PDF. The same input gives the same bytes: it becomes the beginning of 1970.

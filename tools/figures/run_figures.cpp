@@ -270,8 +270,9 @@ std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
   return rows;
 }
 
-}  // namespace
+// --- All of them ---
 
+/// From each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
 Figure obstacle_distance_figure(const RecordingFile& run) {
   std::vector<Series> all;
   for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
@@ -280,6 +281,8 @@ Figure obstacle_distance_figure(const RecordingFile& run) {
   return distance_figure(run, "obstacle_distance", "distance from the robot's rim to the nearest obstacle", all);
 }
 
+/// Between the rims of each pair of up to four robots; with more robots, from each to the nearest other (paper,
+/// Figs. 6(c), 8(d)). REQUIRES two robots.
 Figure robot_distance_figure(const RecordingFile& run) {
   const bool pairs = run.scenario.robots.size() <= kMostRobotsInPairs;
   return distance_figure(
@@ -288,6 +291,7 @@ Figure robot_distance_figure(const RecordingFile& run) {
       pairs ? pair_distances(run) : nearest_distances(run));
 }
 
+/// Both components of each robot and of the leader (paper, Fig. 8(c)).
 Figure velocity_figure(const RecordingFile& run) {
   DataFile data;
   const std::string x = velocity_panel(
@@ -298,6 +302,7 @@ Figure velocity_figure(const RecordingFile& run) {
           filled("velocity", {{"x", x}, {"y", y}})};
 }
 
+/// |x_i - x_L - Delta_i|, logarithmic. REQUIRES a formation.
 Figure formation_error_figure(const RecordingFile& run) {
   DataFile data;
   PlotCommand plot;
@@ -312,6 +317,8 @@ Figure formation_error_figure(const RecordingFile& run) {
           series_body(run, title, "|{/:Italic x}_i − {/:Italic x}_L − {/:Italic Δ}_i| [m]",
                       "set logscale y\nunset mytics\nset format y '10^{%T}'", plot)};
 }
+
+}  // namespace
 
 std::vector<Figure> run_figures(const datasets::RecordingFile& run) {
   std::vector<Figure> figures = {paths_figure(run)};

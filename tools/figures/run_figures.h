@@ -20,19 +20,6 @@ namespace exactvo::tools {
 /// more); `velocity`; `formation_error` and `lyapunov` (with a formation).
 std::vector<Figure> run_figures(const datasets::RecordingFile& run);
 
-/// `obstacle_distance`: from each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
-Figure obstacle_distance_figure(const datasets::RecordingFile& run);
-
-/// `robot_distance`: between the rims of each pair of up to four robots; with more robots, from each to the
-/// nearest other (paper, Figs. 6(c), 8(d)). REQUIRES two robots.
-Figure robot_distance_figure(const datasets::RecordingFile& run);
-
-/// `velocity`: both components of each robot and of the leader (paper, Fig. 8(c)).
-Figure velocity_figure(const datasets::RecordingFile& run);
-
-/// `formation_error`: |x_i - x_L - Delta_i|, logarithmic. REQUIRES a formation.
-Figure formation_error_figure(const datasets::RecordingFile& run);
-
 /// `lyapunov`: the paper's (18) and its derivative above, the function that holds and its derivative below.
 /// REQUIRES: a formation's run with its rows of `lyapunov`.
 Figure lyapunov_figure(const datasets::RecordingFile& run);

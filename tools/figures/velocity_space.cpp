@@ -260,27 +260,20 @@ class VelocitySpace {
     if (!constraints().empty()) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
   }
 
-  void add_arrow(const std::string& title, Vec2 v, const char* colour, double width, double head) {
+  /// `tip`: the size of the point at its end.
+  void add_arrow(const std::string& title, Vec2 v, const std::string& shaft, double tip, const char* colour) {
     const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
     data_.row({0.0, 0.0, v.x, v.y});
-    const std::string style = fmt::format("lw {} lc rgb '{}'", width, colour);
-    plot_.data(index, fmt::format("using 1:2:3:4 with vectors head filled size screen {},18 {}", head, style), title);
-    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps {} lc rgb '{}'", 39.0 * head, colour));
+    plot_.data(index, fmt::format("using 1:2:3:4 with vectors {} lc rgb '{}'", shaft, colour), title);
+    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps {} lc rgb '{}'", tip, colour));
   }
 
   void add_arrows() {
     // Thinner and thinner: where they are the same, each is seen on those before.
-    add_arrow("chosen velocity", d_.step.chosen, kChosenColour, 4.5, 0.018);
-    add_arrow("present velocity", d_.step.velocity, "#444444", 1.5, 0.01);
-    add_dashed("preferred velocity", d_.step.preferred, kPreferredColour);
-  }
-
-  /// Without a head, which gnuplot would dash too.
-  void add_dashed(const std::string& title, Vec2 v, const char* colour) {
-    const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
-    data_.row({0.0, 0.0, v.x, v.y});
-    plot_.data(index, fmt::format("using 1:2:3:4 with vectors nohead lw 2 dt (8,8) lc rgb '{}'", colour), title);
-    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps 1.1 lc rgb '{}'", colour));
+    add_arrow("chosen velocity", d_.step.chosen, "head filled size screen 0.018,18 lw 4.5", 0.702, kChosenColour);
+    add_arrow("present velocity", d_.step.velocity, "head filled size screen 0.01,18 lw 1.5", 0.39, "#444444");
+    // Without a head, which gnuplot would dash too.
+    add_arrow("preferred velocity", d_.step.preferred, "nohead lw 2 dt (8,8)", 1.1, kPreferredColour);
   }
 
   const Decision& d_;
