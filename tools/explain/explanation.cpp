@@ -236,9 +236,8 @@ std::string turned_words(const Decision& d) {
 std::string idle_words(const Decision& d, const Balance& b) {
   std::vector<std::string> idle;
   for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
-    const bool pushes = std::any_of(b.forces.begin(), b.forces.end(),
-                                    [&](const Balance::Force& f) { return f.constraint == i && f.factor >= kNotSeen; });
-    if (effect_of(d, d.step.constraints[i]) == Effect::binding && !pushes) idle.push_back(fmt::format("[{}]", i + 1));
+    const bool binds = effect_of(d, d.step.constraints[i]) == Effect::binding;
+    if (binds && b.factor_of(i) < kNotSeen) idle.push_back(fmt::format("[{}]", i + 1));
   }
   if (idle.empty()) return "";
   return fmt::format("     It lies on the line{} of {}, which {} not change it.\n", idle.size() == 1 ? "" : "s",

@@ -35,12 +35,7 @@ struct HttpSite {
   std::function<void(const std::string& address)> ready;
 };
 
-/// Until it is interrupted. False where the port cannot be had.
-using ServeHttp = bool(const HttpSite& site);
-
-/// What the module gives.
-struct HttpLibrary {
-  ServeHttp* serve;
-};
+/// What the module gives. Until it is interrupted; false where the port cannot be had.
+using ServeHttp = bool (*)(const HttpSite& site);
 
 }  // namespace exactvo::tools

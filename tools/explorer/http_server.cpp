@@ -15,14 +15,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include "explorer/http.h"
 #include "modules/module.h"
@@ -55,55 +51,29 @@ thread_local Clock::time_point came_at;
 thread_local bool is_refused = false;
 
 /// Threads that take connections in turn. What waits was taken from the system already, so that its time runs.
-class Workers : public httplib::TaskQueue {
+class Workers : public httplib::ThreadPool {
  public:
-  Workers() {
-    for (unsigned k = 0; k < kThreads; ++k) threads_.emplace_back([this] { work(); });
-  }
+  explicit Workers(httplib::Server& server) : ThreadPool(kThreads), server_(server) {}
+
   void enqueue(std::function<void()> task) override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (waiting_.size() < kMostWaiting) {
-        waiting_.emplace_back(Clock::now(), std::move(task));
-        task = nullptr;
-      }
-    }
-    if (!task) {
-      came_.notify_one();
-      return;
-    }
-    is_refused = true;
-    task();
-    is_refused = false;
+    on_idle();
+    is_refused = waiting_ >= kMostWaiting;
+    if (is_refused) return task();
+    ++waiting_;
+    ThreadPool::enqueue([this, came = Clock::now(), task = std::move(task)] {
+      --waiting_;
+      came_at = came;
+      task();
+    });
   }
-  void shutdown() override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      ends_ = true;
-    }
-    came_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
+  /// Whenever no connection came for a while: stops the server when the user has interrupted the program.
+  void on_idle() override {
+    if (is_interrupted()) server_.stop();
   }
 
  private:
-  void work() {
-    for (;;) {
-      std::unique_lock<std::mutex> lock(mutex_);
-      came_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
-      if (waiting_.empty()) return;
-      auto [time, task] = std::move(waiting_.front());
-      waiting_.pop_front();
-      lock.unlock();
-      came_at = time;
-      task();
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable came_;
-  std::deque<std::pair<Clock::time_point, std::function<void()>>> waiting_;
-  std::vector<std::thread> threads_;
-  bool ends_ = false;
+  httplib::Server& server_;
+  std::atomic<std::size_t> waiting_{0};
 };
 
 /// A connection with so much time and so many bytes for the whole request, however slowly they come.
@@ -270,34 +240,12 @@ class Gate {
   std::string token_;
 };
 
-/// Stops the server when the user interrupts the program.
-class StopOnInterrupt {
- public:
-  explicit StopOnInterrupt(Server& server)
-      : thread_([this, &server] {
-          for (bool is_stopped = false; !is_over_; std::this_thread::sleep_for(kSlice)) {
-            if (is_stopped || !is_interrupted() || !server.is_running()) continue;
-            server.stop();
-            is_stopped = true;
-          }
-        }) {}
-  ~StopOnInterrupt() {
-    is_over_ = true;
-    thread_.join();
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
- private:
-  std::atomic<bool> is_over_{false};
-  std::thread thread_;
-};
-
 /// As server.h promises it.
 bool serve_http(const HttpSite& site) {
   is_interrupted = site.is_interrupted;
   Server server;
-  server.new_task_queue = [] { return new Workers; };
+  server.new_task_queue = [&server] { return new Workers(server); };
+  server.set_idle_interval(kSlice);
   server.set_payload_max_length(kMostBody);
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
@@ -330,12 +278,11 @@ bool serve_http(const HttpSite& site) {
     if (response.body.empty()) refuse(response, response.status, "nothing is here");
   });
   site.ready(fmt::format("http://127.0.0.1:{}{}", port, root));
-  const StopOnInterrupt stop(server);
   server.listen_after_bind();
   return true;
 }
 
-constexpr HttpLibrary kLibrary{serve_http};
+constexpr ServeHttp kLibrary = serve_http;
 
 }  // namespace
 

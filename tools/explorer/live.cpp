@@ -215,37 +215,17 @@ void keep_what_is_shown(std::size_t robot, formation::Step& row) {
 }
 
 /// The first row of a run, its decisions with the preferred velocity that was asked for, and the row after it.
-class MomentRecorder : public formation::RunSink {
- public:
-  explicit MomentRecorder(const LiveQuestion& question) : question_(question) {}
-  void add_row(formation::Step row) override {
-    const std::size_t changed = question_.preferred_robot;
-    if (rows_.empty() && question_.preferred)
-      choose_anew(question_.scenario, question_.scenario.robots[changed].max_speed, *question_.preferred,
-                  row.robots[changed]);
-    keep_what_is_shown(question_.robot, row);
-    rows_.push_back(std::move(row));
-  }
-  std::vector<formation::Step> take_rows() { return std::move(rows_); }
-
- private:
-  const LiveQuestion& question_;
-  std::vector<formation::Step> rows_;
-};
-
-struct Moment {
-  formation::Recording about;  ///< without rows
-  std::vector<formation::Step> rows;
-};
-
-Moment moment_of(const LiveQuestion& question) {
+formation::Recording moment_of(const LiveQuestion& question) {
   formation::SimulationOptions options = question.options;
   options.record_all = true;
   options.stop_at = 0.0;
-  MomentRecorder recorder(question);
-  formation::Recording about = formation::simulate(question.scenario, options, recorder);
-  about.all_half_planes = true;
-  return {std::move(about), recorder.take_rows()};
+  formation::Recording moment = formation::simulate(question.scenario, options);
+  const std::size_t changed = question.preferred_robot;
+  if (question.preferred)
+    choose_anew(question.scenario, question.scenario.robots[changed].max_speed, *question.preferred,
+                moment.steps.front().robots[changed]);
+  for (formation::Step& row : moment.steps) keep_what_is_shown(question.robot, row);
+  return moment;
 }
 
 const datasets::Provenance& provenance() {
@@ -298,13 +278,11 @@ LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& op
 }
 
 std::string live_decision(const LiveQuestion& question) {
-  Moment moment = moment_of(question);
   datasets::RecordingFile about;
   about.info = datasets::run_info(question.scenario, question.options, provenance());
   about.info.integrator.reset();  // it moves nothing here
   about.scenario = question.scenario;
-  about.recording = std::move(moment.about);
-  about.recording.steps = std::move(moment.rows);
+  about.recording = moment_of(question);
   return packed_run(about, "");
 }
 
@@ -313,8 +291,8 @@ std::string live_free_velocities(const LiveQuestion& question) {
   const double max_speed = question.scenario.robots[question.robot].max_speed;
   if (question.scenario.speed_bound != formation::SpeedBoundKind::disc)
     return Json{{"why_not", "the speed bound is a box, and free velocities are counted within a disc"}}.dump();
-  const Moment moment = moment_of(question);
-  const RobotStep& step = moment.rows.front().robots[question.robot];
+  const formation::Recording moment = moment_of(question);
+  const RobotStep& step = moment.steps.front().robots[question.robot];
   std::vector<vo::ShiftedCone> cones = cones_of(step);
   const bool overlaps = std::any_of(cones.begin(), cones.end(), [](const auto& c) { return c.cone.overlaps(); });
   if (overlaps) return Json{{"why_not", "the robot touches or overlaps what it must avoid: no cone exists"}}.dump();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include "exactvo/formation/simulation.h"
@@ -78,8 +79,7 @@ class PackedColumns {
 
 namespace {
 
-constexpr char kMagic[] = "EXVIEW01";
-constexpr std::size_t kMagicLength = sizeof kMagic - 1;
+constexpr const char* kMagic = "EXVIEW01";
 constexpr std::size_t kMostEvents = 2000;
 /// m and m/s: what a picture does not show.
 constexpr double kFinestQuantum = 0x1p-13;
@@ -140,63 +140,64 @@ std::uint8_t flags_of(const RecordedConstraint& c) {
   return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0));
 }
 
+void append(std::vector<double>& numbers, Vec2 v) {
+  numbers.insert(numbers.end(), {v.x, v.y});
+}
+
+/// Of each entry the number that `of`, a member or a function, is of it.
+template <class Number, class Entry, class Of>
+std::vector<Number> each(const std::vector<const Entry*>& entries, const Of& of) {
+  std::vector<Number> numbers;
+  numbers.reserve(entries.size());
+  for (const Entry* entry : entries) numbers.push_back(static_cast<Number>(std::invoke(of, *entry)));
+  return numbers;
+}
+
 void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, PackedColumns& columns) {
-  std::vector<double> time, moving, state, violation, pressed, line, tau, clearance, multiplier;
-  std::vector<std::uint32_t> counts, parts, waits, body, index, piece;
-  std::vector<std::uint8_t> flags, kinds, status, exact;
+  std::vector<double> time, moving, state, line;
+  std::vector<std::uint32_t> waits;
+  std::vector<const RobotStep*> robots;
+  std::vector<const lp::ActiveConstraint*> parts;
+  std::vector<const RecordedConstraint*> half_planes;
   for (const Step& row : rows) {
     time.push_back(row.time);
     // Of each robot the one that holds it most, by its number from 1 on.
     for (const std::vector<std::size_t>& by : formation::waiting_in(scenario, row))
       waits.push_back(by.empty() ? 0 : static_cast<std::uint32_t>(by.front() + 1));
     for (const RobotStep& r : row.robots) {
-      for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen}) {
-        state.push_back(v.x);
-        state.push_back(v.y);
-      }
-      violation.push_back(r.violation);
-      status.push_back(static_cast<std::uint8_t>(r.status));
-      exact.push_back(r.exact_multipliers ? 1 : 0);
-      counts.push_back(static_cast<std::uint32_t>(r.constraints.size()));
-      parts.push_back(static_cast<std::uint32_t>(r.bound.size()));
-      for (const lp::ActiveConstraint& part : r.bound) {
-        kinds.push_back(static_cast<std::uint8_t>(part.binding.kind));
-        pressed.push_back(part.multiplier);
-      }
+      robots.push_back(&r);
+      for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen})
+        append(state, v);
+      for (const lp::ActiveConstraint& part : r.bound) parts.push_back(&part);
       for (const RecordedConstraint& c : r.constraints) {
-        body.push_back(static_cast<std::uint32_t>(c.body));
-        index.push_back(static_cast<std::uint32_t>(c.index));
-        piece.push_back(static_cast<std::uint32_t>(c.piece));
-        flags.push_back(flags_of(c));
-        line.insert(line.end(), {c.half_plane.normal.x, c.half_plane.normal.y, c.half_plane.offset});
-        tau.push_back(c.tau);
-        clearance.push_back(c.clearance);
-        multiplier.push_back(c.multiplier);
+        half_planes.push_back(&c);
+        append(line, c.half_plane.normal);
+        line.push_back(c.half_plane.offset);
       }
     }
     for (const formation::MovedObstacle& o : row.moving)
-      moving.insert(moving.end(), {o.displacement.x, o.displacement.y, o.velocity.x, o.velocity.y});
+      for (const Vec2 v : {o.displacement, o.velocity}) append(moving, v);
   }
-  const std::size_t robots = rows.empty() ? 0 : rows.front().robots.size();
   columns.add("decision.time", time, 0);
-  columns.add("decision.state", state, 12 * robots);
-  columns.add("decision.violation", violation, 0);
-  columns.add("decision.status", status, 0);
-  columns.add("decision.exact_multipliers", exact, 0);
-  columns.add("decision.half_planes", counts);
-  columns.add("decision.parts", parts);
+  columns.add("decision.state", state, rows.empty() ? 0 : 12 * rows.front().robots.size());
+  columns.add("decision.violation", each<double>(robots, &RobotStep::violation), 0);
+  columns.add("decision.status", each<std::uint8_t>(robots, &RobotStep::status), 0);
+  columns.add("decision.exact_multipliers", each<std::uint8_t>(robots, &RobotStep::exact_multipliers), 0);
+  columns.add("decision.half_planes",
+              each<std::uint32_t>(robots, [](const RobotStep& r) { return r.constraints.size(); }));
+  columns.add("decision.parts", each<std::uint32_t>(robots, [](const RobotStep& r) { return r.bound.size(); }));
   columns.add("decision.moving", moving, 0);
   columns.add("decision.waits", waits);
-  columns.add("part.kind", kinds, 0);
-  columns.add("part.multiplier", pressed, 0);
-  columns.add("half_plane.body", body);
-  columns.add("half_plane.index", index);
-  columns.add("half_plane.piece", piece);
-  columns.add("half_plane.flags", flags, 0);
+  columns.add("part.kind", each<std::uint8_t>(parts, [](const auto& part) { return part.binding.kind; }), 0);
+  columns.add("part.multiplier", each<double>(parts, &lp::ActiveConstraint::multiplier), 0);
+  columns.add("half_plane.body", each<std::uint32_t>(half_planes, &RecordedConstraint::body));
+  columns.add("half_plane.index", each<std::uint32_t>(half_planes, &RecordedConstraint::index));
+  columns.add("half_plane.piece", each<std::uint32_t>(half_planes, &RecordedConstraint::piece));
+  columns.add("half_plane.flags", each<std::uint8_t>(half_planes, flags_of), 0);
   columns.add("half_plane.line", line, 0);
-  columns.add("half_plane.tau", tau, 0);
-  columns.add("half_plane.clearance", clearance, 0);
-  columns.add("half_plane.multiplier", multiplier, 0);
+  columns.add("half_plane.tau", each<double>(half_planes, &RecordedConstraint::tau), 0);
+  columns.add("half_plane.clearance", each<double>(half_planes, &RecordedConstraint::clearance), 0);
+  columns.add("half_plane.multiplier", each<double>(half_planes, &RecordedConstraint::multiplier), 0);
 }
 
 /// In zlib's format (RFC 1950), which ends in a checksum.
@@ -214,7 +215,7 @@ std::string deflated(const std::string& bytes) {
 std::string whole(const Json& head, const std::string& columns) {
   // Names are what their files hold: bytes that are no UTF-8 become U+FFFD.
   const std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string all(kMagic, kMagicLength);
+  std::string all = kMagic;
   const auto length = static_cast<std::uint32_t>(text.size());
   for (int shift = 0; shift < 32; shift += 8) all.push_back(static_cast<char>(length >> shift));
   all += text;
@@ -226,12 +227,12 @@ std::string whole(const Json& head, const std::string& columns) {
 
 // --- RunPacker ---
 
-void RunPacker::add_event(double time, std::size_t robot, const char* kind, std::string text) {
+void RunPacker::add_event(double time, std::size_t robot, const char* kind, const std::string& text) {
   if (events_.size() == kMostEvents) {
     ++events_left_out_;
     return;
   }
-  events_.push_back({time, robot, kind, std::move(text)});
+  events_.push_back({{"time", time}, {"robot", robot}, {"kind", kind}, {"text", text}});
 }
 
 void RunPacker::note_events(const Step& row) {
@@ -309,31 +310,24 @@ Json RunPacker::add_rows(std::size_t robots, PackedColumns& columns) const {
     }
   const double metres = quantum_for(reach), per_second = quantum_for(speed);
   std::vector<double> time, leader, moving;
-  std::vector<std::int32_t> x, y, vx, vy;
-  std::vector<std::uint8_t> mode, status, side;
+  std::vector<const State*> states;
   for (const Row& row : rows_) {
     time.push_back(row.time);
-    leader.insert(leader.end(), {row.leader.x, row.leader.y});
-    for (const formation::MovedObstacle& o : row.moving)
-      moving.insert(moving.end(), {o.displacement.x, o.displacement.y});
-    for (const State& s : row.states) {
-      x.push_back(in_quanta(s.x, metres));
-      y.push_back(in_quanta(s.y, metres));
-      vx.push_back(in_quanta(s.vx, per_second));
-      vy.push_back(in_quanta(s.vy, per_second));
-      mode.push_back(s.mode);
-      status.push_back(s.status);
-      side.push_back(static_cast<std::uint8_t>(s.side + 1));
-    }
+    append(leader, row.leader);
+    for (const formation::MovedObstacle& o : row.moving) append(moving, o.displacement);
+    for (const State& s : row.states) states.push_back(&s);
   }
+  const auto in_quanta_of = [&](double quantum, double State::*member) {
+    return each<std::int32_t>(states, [&](const State& s) { return in_quanta(s.*member, quantum); });
+  };
   columns.add("time", time, 0);
-  columns.add("x", x, robots);
-  columns.add("y", y, robots);
-  columns.add("vx", vx, robots);
-  columns.add("vy", vy, robots);
-  columns.add("mode", mode, robots);
-  columns.add("status", status, robots);
-  columns.add("side", side, robots);
+  columns.add("x", in_quanta_of(metres, &State::x), robots);
+  columns.add("y", in_quanta_of(metres, &State::y), robots);
+  columns.add("vx", in_quanta_of(per_second, &State::vx), robots);
+  columns.add("vy", in_quanta_of(per_second, &State::vy), robots);
+  columns.add("mode", each<std::uint8_t>(states, &State::mode), robots);
+  columns.add("status", each<std::uint8_t>(states, &State::status), robots);
+  columns.add("side", each<std::uint8_t>(states, [](const State& s) { return s.side + 1; }), robots);
   columns.add("leader", leader, 2);
   columns.add("moving", moving, 0);
   return {{"position", metres}, {"velocity", per_second}};
@@ -346,20 +340,13 @@ std::vector<Step> RunPacker::decided() const {
   return rows;
 }
 
-Json RunPacker::events_json() const {
-  Json events = Json::array();
-  for (const Event& e : events_)
-    events.push_back({{"time", e.time}, {"robot", e.robot}, {"kind", e.kind}, {"text", e.text}});
-  return events;
-}
-
 std::string RunPacker::finish(const datasets::RecordingFile& about, const std::string& metrics_json) const {
   PackedColumns columns;
   const Json quantum = add_rows(about.scenario.robots.size(), columns);
   const std::vector<Step> decisions = decided();
   add_decisions(decisions, about.scenario, columns);
   Json head = packed_head(about, limits_);
-  head["events"] = events_json();
+  head["events"] = events_;
   head["events_left_out"] = events_left_out_;
   head["metrics"] = shown_metrics(metrics_json);
   head["rows"] = {{"count", rows_.size()}, {"of", count_}, {"every", every_row_}};

@@ -73,17 +73,11 @@ class RunPacker {
     std::vector<State> states;
     std::vector<formation::MovedObstacle> moving;
   };
-  struct Event {
-    double time = 0.0;
-    std::size_t robot = 0;
-    std::string kind, text;
-  };
 
   nlohmann::ordered_json add_rows(std::size_t robots, PackedColumns& columns) const;
-  nlohmann::ordered_json events_json() const;
   std::vector<formation::Step> decided() const;
   void note_events(const formation::Step& row);
-  void add_event(double time, std::size_t robot, const char* kind, std::string text);
+  void add_event(double time, std::size_t robot, const char* kind, const std::string& text);
   void keep_row(const formation::Step& row);
   void keep_decisions(const formation::Step& row);
 
@@ -96,7 +90,7 @@ class RunPacker {
   std::size_t every_decision_ = 1, decision_numbers_ = 0;
   std::vector<formation::Mode> modes_;  ///< of the row before, by robot, as the next
   std::vector<bool> is_relaxed_;
-  std::vector<Event> events_;
+  nlohmann::ordered_json events_ = nlohmann::ordered_json::array();
   std::size_t events_left_out_ = 0;
 };
 

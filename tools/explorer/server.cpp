@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
-#include "explorer/http.h"
 #include "explorer/page.h"
 #include "modules/load.h"
 #include "support/terminal.h"
@@ -33,11 +32,6 @@ constexpr std::chrono::seconds kToRun{60};  // of a run on from a moment
 struct GivesWay : std::runtime_error {
   GivesWay() : std::runtime_error("another run was asked for") {}
 };
-struct TakesTooLong : std::runtime_error {
-  TakesTooLong()
-      : std::runtime_error(
-            fmt::format("the run takes more than {} s: simulate it with exactvo simulate", kToRun.count())) {}
-};
 
 class RunQueue {
  public:
@@ -47,7 +41,9 @@ class RunQueue {
     const Clock::time_point until = Clock::now() + kToRun;
     return live_run(question, [&] {
       if (mine != latest_) throw GivesWay();
-      if (Clock::now() > until) throw TakesTooLong();
+      if (Clock::now() > until)
+        throw std::runtime_error(
+            fmt::format("the run takes more than {} s: simulate it with exactvo simulate", kToRun.count()));
     });
   }
 
@@ -65,21 +61,10 @@ double processor_time() {
 
 using AnswerOfPage = std::function<std::string(const LiveQuestion&)>;
 
-HttpAnswer refused(int status, const nlohmann::json& body) {
-  return {status, body.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), "application/json", ""};
-}
-
-HttpAnswer refusal(int status, const std::string& why) {
-  return refused(status, nlohmann::json{{"error", why}});
-}
-
-/// What is wrong with a question, as JSON for the page.
-HttpAnswer refusal(const datasets::DataError& error) {
-  return refused(400, nlohmann::json{{"error", error.what()},
-                                     {"code", code_name(error.code())},
-                                     {"place", error.place()},
-                                     {"found", error.found()},
-                                     {"expected", error.expected()}});
+/// JSON for the page.
+HttpAnswer refusal(int status, const char* why, nlohmann::json more = nlohmann::json::object()) {
+  more["error"] = why;
+  return {status, more.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), "application/json", ""};
 }
 
 HttpAnswer answer_untimed(const std::string& body, const OptionsOfRun& options_of, const char* type,
@@ -87,7 +72,11 @@ HttpAnswer answer_untimed(const std::string& body, const OptionsOfRun& options_o
   try {
     return {200, answer_of(parse_live_question(body, options_of)), type, ""};
   } catch (const datasets::DataError& error) {
-    return refusal(error);
+    return refusal(400, error.what(),
+                   {{"code", code_name(error.code())},
+                    {"place", error.place()},
+                    {"found", error.found()},
+                    {"expected", error.expected()}});
   } catch (const GivesWay& error) {
     return refusal(409, error.what());
   } catch (const Interrupted&) {
@@ -123,10 +112,6 @@ std::string policy() {
 
 }  // namespace
 
-bool has_http() {
-  return true;
-}
-
 std::string page_for_server(std::string page) {
   const std::size_t at = page.find(kConnectNothing);
   if (at == std::string::npos) throw std::logic_error("the page has no policy to widen");
@@ -136,27 +121,23 @@ std::string page_for_server(std::string page) {
   return page.insert(body + std::string("<body>").size(), std::string("\n<script>\n") + kServedScript + "</script>");
 }
 
-void serve(const ServerOptions& options) {
+void serve(HttpSite site, const OptionsOfRun& options_of) {
   RunQueue runs;
   const auto question = [&](const char* path, const char* type, AnswerOfPage answer_of) {
-    return HttpQuestion{path, [&options, type, answer_of = std::move(answer_of)](const std::string& body) {
-                          return answer(body, options.options_of, type, answer_of);
+    return HttpQuestion{path, [&options_of, type, answer_of = std::move(answer_of)](const std::string& body) {
+                          return answer(body, options_of, type, answer_of);
                         }};
   };
   const char* const packed = "application/octet-stream";
-  HttpSite site;
-  site.port = options.port;
-  site.page = options.page;
   site.policy = policy();
   site.questions = {question("decide", packed, live_decision),
                     question("free", "application/json", live_free_velocities),
                     question("run", packed, [&](const LiveQuestion& asked) { return runs.run(asked); })};
   site.is_interrupted = interrupted;
-  site.ready = options.ready;
-  const auto& library =
-      *static_cast<const HttpLibrary*>(datasets::load_module("http", "the server of the page (cpp-httplib)"));
-  if (!library.serve(site))
-    throw UsageError("--port", std::to_string(options.port), "a port of 127.0.0.1 that is free [E_PORT]");
+  const auto serve_http =
+      *static_cast<const ServeHttp*>(datasets::load_module("http", "the server of the page (cpp-httplib)"));
+  if (!serve_http(site))
+    throw UsageError("--port", std::to_string(site.port), "a port of 127.0.0.1 that is free [E_PORT]");
 }
 
 }  // namespace exactvo::tools

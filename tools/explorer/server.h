@@ -8,8 +8,6 @@
 /// Requests are bounded in size and time, connections in number. Nothing is read from disk: the page is in memory, and
 /// what is asked for is computed from the request (live.cpp).
 ///
-/// Built where cpp-httplib is; elsewhere `has_http` is false and `serve` throws.
-///
 /// What the page of `exactvo serve` asks while things are dragged in it: a scenario as it stands at a moment, and what
 /// a robot decides then. A question holds everything it needs; nothing is kept from one to the next. An answer is a
 /// packed run (packed_run.h) of two rows, so that the page draws and checks it as it does a recorded one.
@@ -26,6 +24,7 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
+#include "explorer/http.h"
 
 namespace exactvo::tools {
 
@@ -60,21 +59,11 @@ std::string live_free_velocities(const LiveQuestion& question);
 /// second; an exception that it throws is passed on. The preferred velocity is the method's.
 std::string live_run(const LiveQuestion& question, const std::function<void()>& goes_on);
 
-/// Whether this build has a server.
-bool has_http();
-
 /// The page of cmake/EmbedExplorer.cmake with requests to its own server allowed, and to nothing else.
 std::string page_for_server(std::string page);
 
-struct ServerOptions {
-  int port = 0;             ///< 0: one that is free
-  std::string page;         ///< HTML
-  OptionsOfRun options_of;  ///< of the runs in it
-  /// Called once, when connections are taken. "http://127.0.0.1:PORT/TOKEN/".
-  std::function<void(const std::string& address)> ready;
-};
-
-/// Until the user interrupts it. Throws UsageError where the port cannot be had.
-void serve(const ServerOptions& options);
+/// Until the user interrupts it. Of `site` the port, the page and `ready` are the caller's; `options_of` is of the runs
+/// in the page. Throws UsageError where the port cannot be had, DataError where the module that speaks HTTP is missing.
+void serve(HttpSite site, const OptionsOfRun& options_of);
 
 }  // namespace exactvo::tools

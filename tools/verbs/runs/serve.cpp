@@ -47,24 +47,23 @@ OptionsOfRun options_by_key(const std::vector<MadeRun>& runs) {
 }
 
 ExitCode serve_page(const ServeFlags& given) {
-  if (!has_http())
+  if (!EXACTVO_WITH_HTTP)
     throw UsageError("serve", "a program built without cpp-httplib (Debian: libcpp-httplib-dev)",
                      "one built with it; exactvo view makes a page that needs no server [E_NOT_BUILT]");
   ServeFlags flags = given;
   flags.page.limits.has_scenario = true;
   const std::vector<MadeRun> runs = page_runs(flags.page);
-  ServerOptions options;
-  options.port = flags.port;
-  options.options_of = options_by_key(runs);
+  HttpSite site;
+  site.port = flags.port;
   std::vector<PageRun> shown;
   for (const MadeRun& made : runs) shown.push_back(made.shown);
-  options.page = page_for_server(explorer_page(shown, flags.page.runs.empty()));
-  options.ready = [&](const std::string& address) {
+  site.page = page_for_server(explorer_page(shown, flags.page.runs.empty()));
+  site.ready = [&](const std::string& address) {
     print(address + "\n");
     message("open this address in a browser on this computer; Ctrl-C ends the server");
     if (flags.opens) open_in_browser(address);
   };
-  serve(options);
+  serve(std::move(site), options_by_key(runs));
   message("stopped");
   return ExitCode::success;
 }
