@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/datasets/data_error.h"
 #include "exactvo/formation/crowd.h"
 #include "exactvo/geometry/routes.h"
 #include "module.h"
@@ -28,8 +27,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const ArgumentError& e) {
     raise("ArgumentError", py::make_tuple(e.where, e.found, e.expected));
   } catch (const datasets::DataError& e) {
-    raise(e.code() == datasets::DataCode::file_missing ? "MissingFileError" : "DataError",
-          py::make_tuple(datasets::code_name(e.code()), e.file(), e.place(), e.found(), e.expected()));
+    raise(e.code() == datasets::DataCode::file_missing ? "MissingFileError" : "DataError", as_tuple(e));
   } catch (const formation::CrowdError& e) {
     raise("CrowdError", py::make_tuple(name(e.problem()), std::string(e.what())));
   } catch (const geometry::RouteNotProven& e) {
@@ -128,6 +126,10 @@ void require_word(const std::string& text, const char* name, const std::vector<s
   if (std::find(words.begin(), words.end(), text) == words.end()) refuse_word(text, name, words);
 }
 
+py::tuple as_tuple(const datasets::DataError& e) {
+  return py::make_tuple(datasets::code_name(e.code()), e.file(), e.place(), e.found(), e.expected());
+}
+
 std::string shape_words(const py::array& array) {
   std::string text;
   for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
@@ -164,9 +166,9 @@ std::vector<Vec2> points(py::handle object, const char* name) {
 py::array_t<double> as_array(const std::vector<Vec2>& points) {
   py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});
   double* xy = array.mutable_data();
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    xy[2 * k] = points[k].x;
-    xy[2 * k + 1] = points[k].y;
+  for (const Vec2 p : points) {
+    *xy++ = p.x;
+    *xy++ = p.y;
   }
   return array;
 }

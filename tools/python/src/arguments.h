@@ -10,8 +10,10 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/geometry/vec2.h"
 
@@ -67,15 +69,23 @@ py::array_t<T, py::array::c_style | py::array::forcecast> array_of(py::handle ob
   throw ArgumentError(name, shown(object), expected);
 }
 
+py::tuple as_tuple(const datasets::DataError& error);
 inline py::tuple as_tuple(Vec2 v) {
   return py::make_tuple(v.x, v.y);
 }
 inline py::tuple as_tuple(const geometry::HalfPlane& h) {
   return py::make_tuple(as_tuple(h.normal), h.offset);
 }
-/// Such a view is what an answer shows of its memory. (The attribute `flags` does the same, a microsecond slower.)
+/// (The attribute `flags` does the same, a microsecond slower.)
 inline void make_read_only(py::array& array) {
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+}
+/// What an answer shows of its memory: an array in that order that keeps `owner` alive.
+template <int order = py::array::c_style, class T>
+py::array view(const T* data, std::vector<py::ssize_t> shape, const py::object& owner, bool is_writable = false) {
+  py::array_t<T, order> array(std::move(shape), data, owner);
+  if (!is_writable) make_read_only(array);
+  return std::move(array);
 }
 /// n x 2.
 py::array_t<double> as_array(const std::vector<Vec2>& points);

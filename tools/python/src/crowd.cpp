@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <type_traits>
 
 #include "module.h"
 #include "shapes.h"
@@ -19,24 +20,24 @@ namespace exactvo::python {
 namespace {
 
 using formation::RobotId;
+using namespace py::literals;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Of an id that names nobody.
+constexpr Vec2 kNowhere{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
-/// Numbers by id that Python sees. They grow by a new allocation; what saw the old one keeps it alive.
+/// Values by id that Python sees: numbers, or rows of two. They grow by a new allocation; what saw the old one keeps it
+/// alive.
 template <class T>
 class Column {
  public:
-  explicit Column(py::ssize_t columns) : columns_(columns) {}
-
   void grow(std::size_t rows, T value) {
     if (rows <= rows_) return;
     view_ = py::none();
     if (rows > capacity_) {
       const std::size_t capacity = std::max(rows, 2 * capacity_);
-      const std::size_t size = capacity * static_cast<std::size_t>(columns_);
-      auto memory = std::make_unique<T[]>(size);
-      std::fill_n(memory.get(), size, value);
-      std::copy_n(data_, rows_ * static_cast<std::size_t>(columns_), memory.get());
+      auto memory = std::make_unique<T[]>(capacity);
+      std::fill_n(memory.get(), capacity, value);
+      std::copy_n(data_, rows_, memory.get());
       data_ = memory.get();
       owner_ = py::capsule(memory.release(), [](void* p) { delete[] static_cast<T*>(p); });
       capacity_ = capacity;
@@ -45,23 +46,17 @@ class Column {
   }
 
   T* data() { return data_; }
-  std::size_t rows() const { return rows_; }
 
   py::object view(bool is_writable) {
     if (!view_.is_none()) return view_;
-    const auto n = static_cast<py::ssize_t>(rows_);
-    const auto size = static_cast<py::ssize_t>(sizeof(T));
-    py::array array =
-        rows_ == 0      ? (columns_ == 1 ? py::array(py::array_t<T>(n)) : py::array(py::array_t<T>({n, columns_})))
-        : columns_ == 1 ? py::array(py::dtype::of<T>(), {n}, {size}, data_, owner_)
-                        : py::array(py::dtype::of<T>(), {n, columns_}, {columns_ * size, size}, data_, owner_);
-    if (!is_writable) make_read_only(array);
-    view_ = array;
+    using Number = std::conditional_t<std::is_same_v<T, Vec2>, double, T>;
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows_)};
+    if (sizeof(T) > sizeof(Number)) shape.push_back(2);
+    view_ = python::view(reinterpret_cast<const Number*>(data_), std::move(shape), owner_, is_writable);
     return view_;
   }
 
  private:
-  py::ssize_t columns_;
   std::size_t rows_ = 0, capacity_ = 0;
   T* data_ = nullptr;
   py::object owner_ = py::none(), view_ = py::none();
@@ -74,16 +69,17 @@ class PythonCrowd {
   /// One thread at a time: another that calls meanwhile, while the interpreter's lock is released, is refused.
   class Use {
    public:
-    explicit Use(PythonCrowd& crowd) : busy_(crowd.busy_) {
-      if (busy_.exchange(true))
+    explicit Use(PythonCrowd& crowd) : crowd_(crowd) {
+      if (crowd.busy_.exchange(true))
         throw ArgumentError("crowd", "a crowd that another thread is using", "one thread at a time for each crowd");
     }
-    ~Use() { busy_ = false; }
+    ~Use() { crowd_.busy_ = false; }
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
+    formation::Crowd* operator->() const { return &crowd_.crowd_; }
 
    private:
-    std::atomic<bool>& busy_;
+    PythonCrowd& crowd_;
   };
 
   formation::Crowd& crowd() { return crowd_; }
@@ -97,27 +93,23 @@ class PythonCrowd {
 
   void remove_robot(RobotId id) {
     crowd_.remove_robot(id);
-    for (double* xy : {positions_.data() + 2 * id, velocities_.data() + 2 * id}) xy[0] = xy[1] = kNone;
-    double* const preferred = preferred_.data() + 2 * id;
-    preferred[0] = preferred[1] = 0.0;
-    kept_.data()[id] = 0;
+    positions_.data()[id] = velocities_.data()[id] = kNowhere;
+    preferred_.data()[id] = {};
+    kept_.data()[id] = false;
   }
 
   /// After a change of the crowd: rows for new ids.
   void grow() {
     const std::size_t rows = crowd_.id_end();
-    positions_.grow(rows, kNone);
-    velocities_.grow(rows, kNone);
-    preferred_.grow(rows, 0.0);
+    positions_.grow(rows, kNowhere);
+    velocities_.grow(rows, kNowhere);
+    preferred_.grow(rows, {});
     kept_.grow(rows, false);
   }
 
   void take(RobotId id) {
-    const Vec2 p = crowd_.position(id), v = crowd_.velocity(id);
-    positions_.data()[2 * id] = p.x;
-    positions_.data()[2 * id + 1] = p.y;
-    velocities_.data()[2 * id] = v.x;
-    velocities_.data()[2 * id + 1] = v.y;
+    positions_.data()[id] = crowd_.position(id);
+    velocities_.data()[id] = crowd_.velocity(id);
   }
 
   /// Everything that the robots have now into the arrays.
@@ -131,13 +123,11 @@ class PythonCrowd {
   formation::StepReport step(std::size_t count) {
     const Use use(*this);
     const std::size_t rows = crowd_.id_end();
-    const double* const xy = preferred_.data();
     const py::gil_scoped_release released;
     formation::StepReport sum;
     for (std::size_t k = 0; k < count; ++k) {
       if (!heads_for_goals_) {
-        preferred_now_.resize(rows);
-        for (std::size_t r = 0; r < rows; ++r) preferred_now_[r] = {xy[2 * r], xy[2 * r + 1]};
+        preferred_now_.assign(preferred_.data(), preferred_.data() + rows);
         crowd_.set_preferred(preferred_now_);
       }
       try {
@@ -156,16 +146,14 @@ class PythonCrowd {
   void head_for(const Doubles& goals, double speed) {
     const Use use(*this);
     const py::gil_scoped_release released;
-    goal_copy_.assign(goals.data(), goals.data() + goals.size());
-    goal_copy_.resize(2 * crowd_.id_end(), kNone);
+    goals_.resize(static_cast<std::size_t>(goals.shape(0)));
+    for (std::size_t id = 0; id < goals_.size(); ++id) goals_[id] = {goals.data()[2 * id], goals.data()[2 * id + 1]};
     const double time_step = crowd_.options().time_step;
     crowd_.set_steering([this, speed, time_step](formation::CrowdSlice& slice) {
       for (std::size_t k = 0; k < slice.size(); ++k) {
         const std::size_t id = slice.id(k);
-        if (2 * id + 1 >= goal_copy_.size() || !std::isfinite(goal_copy_[2 * id]) ||
-            !std::isfinite(goal_copy_[2 * id + 1]))
-          continue;
-        const Vec2 way = Vec2{goal_copy_[2 * id], goal_copy_[2 * id + 1]} - slice.position(k);
+        if (id >= goals_.size() || !is_finite(goals_[id])) continue;
+        const Vec2 way = goals_[id] - slice.position(k);
         const double most = std::isinf(speed) ? crowd_.kind(slice.kind(k)).max_speed : speed;
         const double length = std::hypot(way.x, way.y);
         if (length > 0.0) slice.prefer(k, way * (std::fmin(most, length / time_step) / length));
@@ -178,9 +166,9 @@ class PythonCrowd {
     heads_for_goals_ = false;
   }
 
-  Column<double>& positions() { return positions_; }
-  Column<double>& velocities() { return velocities_; }
-  Column<double>& preferred() { return preferred_; }
+  Column<Vec2>& positions() { return positions_; }
+  Column<Vec2>& velocities() { return velocities_; }
+  Column<Vec2>& preferred() { return preferred_; }
   Column<bool>& kept() { return kept_; }
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
@@ -195,20 +183,16 @@ class PythonCrowd {
   }
 
   /// By way of an array that is kept: entries of ids that name nobody are not written.
-  void write(void (formation::Crowd::*fill)(std::vector<Vec2>&) const, double* out) {
-    by_id_.assign(crowd_.id_end(), {kNone, kNone});
+  void write(void (formation::Crowd::*fill)(std::vector<Vec2>&) const, Vec2* out) {
+    by_id_.assign(crowd_.id_end(), kNowhere);
     (crowd_.*fill)(by_id_);
-    for (std::size_t k = 0; k < by_id_.size(); ++k) {
-      out[2 * k] = by_id_[k].x;
-      out[2 * k + 1] = by_id_[k].y;
-    }
+    std::copy(by_id_.begin(), by_id_.end(), out);
   }
 
   formation::Crowd crowd_;
-  Column<double> positions_{2}, velocities_{2}, preferred_{2};
-  Column<bool> kept_{1};
-  std::vector<Vec2> by_id_, preferred_now_;
-  std::vector<double> goal_copy_;
+  Column<Vec2> positions_, velocities_, preferred_;
+  Column<bool> kept_;
+  std::vector<Vec2> by_id_, preferred_now_, goals_;
   std::vector<std::uint8_t> kept_now_;
   std::atomic<bool> busy_{false};
   bool heads_for_goals_ = false;
@@ -242,17 +226,10 @@ py::dict as_dict(const formation::CrowdExplanation& e) {
   for (const auto& n : e.edges)
     edges.append(py::make_tuple(python::as_tuple(n.edge.a), python::as_tuple(n.edge.b), python::as_tuple(n.half_plane),
                                 n.touching));
-  py::dict result;
-  result["robot"] = e.robot;
-  result["position"] = python::as_tuple(e.position);
-  result["velocity"] = python::as_tuple(e.velocity);
-  result["preferred"] = python::as_tuple(e.preferred);
-  result["chosen"] = python::as_tuple(e.chosen);
-  result["kept"] = e.kept;
-  result["widened"] = e.widened;
-  result["neighbours"] = neighbours;
-  result["edges"] = edges;
-  return result;
+  return py::dict("robot"_a = e.robot, "position"_a = python::as_tuple(e.position),
+                  "velocity"_a = python::as_tuple(e.velocity), "preferred"_a = python::as_tuple(e.preferred),
+                  "chosen"_a = python::as_tuple(e.chosen), "kept"_a = e.kept, "widened"_a = e.widened,
+                  "neighbours"_a = neighbours, "edges"_a = edges);
 }
 
 std::unique_ptr<PythonCrowd> make_crowd(py::handle time_step, py::handle position_step, const std::string& precision,
@@ -320,10 +297,9 @@ void bind_crowd(py::module_& module) {
       .def("add_kind",
            [](PythonCrowd& self, py::handle radius, py::handle max_speed, py::handle time_horizon,
               py::handle neighbour_distance, int neighbours) {
-             const PythonCrowd::Use use(self);
-             return self.crowd().add_kind({number(radius, "radius"), number(max_speed, "max_speed"),
-                                           number(time_horizon, "time_horizon"),
-                                           number(neighbour_distance, "neighbour_distance"), neighbours});
+             return PythonCrowd::Use(self)->add_kind({number(radius, "radius"), number(max_speed, "max_speed"),
+                                                      number(time_horizon, "time_horizon"),
+                                                      number(neighbour_distance, "neighbour_distance"), neighbours});
            })
       .def("kind",
            [](PythonCrowd& self, const py::int_& kind) {
@@ -332,10 +308,7 @@ void bind_crowd(py::module_& module) {
              return py::make_tuple(k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.neighbours);
            })
       .def("kind_of",
-           [](PythonCrowd& self, const py::int_& id) {
-             const PythonCrowd::Use use(self);
-             return self.crowd().kind_of(robot_id(id));
-           })
+           [](PythonCrowd& self, const py::int_& id) { return PythonCrowd::Use(self)->kind_of(robot_id(id)); })
       .def("add_robot",
            [](PythonCrowd& self, py::handle position, const py::int_& kind) {
              const PythonCrowd::Use use(self);
@@ -356,11 +329,7 @@ void bind_crowd(py::module_& module) {
                ids.push_back(self.crowd().add_obstacle(obstacle.shape));
              return ids;
            })
-      .def("remove_obstacle",
-           [](PythonCrowd& self, std::uint32_t id) {
-             const PythonCrowd::Use use(self);
-             self.crowd().remove_obstacle(id);
-           })
+      .def("remove_obstacle", [](PythonCrowd& self, std::uint32_t id) { PythonCrowd::Use(self)->remove_obstacle(id); })
       .def("__len__", [](PythonCrowd& self) { return self.crowd().size(); })
       .def("step", [](PythonCrowd& self, std::size_t count) { return as_tuple(self.step(count)); })
       .def("head_for",

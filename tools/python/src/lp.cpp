@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "exactvo/geometry/names.h"
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/lp/solvers.h"
 #include "lp_values.h"
@@ -15,17 +14,10 @@ namespace exactvo::python {
 
 namespace {
 
-constexpr geometry::Names<lp::Objective, 2> kObjectives{
-    {{lp::Objective::nearest, "nearest"}, {lp::Objective::farthest, "farthest"}}};
-
-bool parse_objective(const std::string& text, lp::Objective& out) {
-  return geometry::parse_in(kObjectives, text, out);
-}
-
-bool parse_status(const std::string& text, lp::Status& out) {
+lp::Status status_of(const std::string& text) {
   for (const auto status : {lp::Status::optimal, lp::Status::relaxed, lp::Status::infeasible, lp::Status::no_interior})
-    if (text == name(status)) return out = status, true;
-  return false;
+    if (text == name(status)) return status;
+  refuse_word(text, "status", {"optimal", "relaxed", "infeasible", "no-interior"});
 }
 
 void require_finite(const Doubles& array, const char* name) {
@@ -55,8 +47,9 @@ lp::Problem problem_of(py::handle normals, py::handle offsets, py::handle prefer
   problem.preferred = vector(preferred, "preferred");
   problem.bound = {positive_or_infinite(disc, "max_speed"), positive_or_infinite(box_x, "max_speed_x"),
                    positive_or_infinite(box_y, "max_speed_y")};
-  problem.objective = word<lp::Objective>(objective, "objective", {"nearest", "farthest"}, &parse_objective);
-  if (problem.objective == lp::Objective::farthest) {
+  require_word(objective, "objective", {"nearest", "farthest"});
+  if (objective == "farthest") {
+    problem.objective = lp::Objective::farthest;
     const lp::SpeedBound& b = problem.bound;
     if (std::isinf(b.disc) && (std::isinf(b.box_x) || std::isinf(b.box_y)))
       throw ArgumentError("max_speed", "no bound", "a finite speed bound for the objective \"farthest\"");
@@ -139,8 +132,7 @@ py::tuple as_tuple(const lp::Certificate& c) {
 lp::Certificate certificate_of(py::handle object) {
   const auto fields = py::cast<py::tuple>(object);
   lp::Certificate c;
-  c.status = word<lp::Status>(py::cast<std::string>(fields[0]), "status",
-                              {"optimal", "relaxed", "infeasible", "no-interior"}, &parse_status);
+  c.status = status_of(py::cast<std::string>(fields[0]));
   const auto velocity = py::cast<py::tuple>(fields[1]);  // any numbers: a broken certificate is answered, not refused
   c.velocity = {number(velocity[0], "velocity"), number(velocity[1], "velocity")};
   c.violation = number(fields[2], "violation");

@@ -117,26 +117,14 @@ Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, 
   return batch;
 }
 
-/// A view of `count` x `columns` numbers, column by column, that keeps `owner` alive and cannot be written.
+/// A getter of so many numbers for each problem, column by column.
 template <class T>
-py::array view(const std::vector<T>& data, std::size_t count, std::size_t columns, const py::object& owner) {
-  const auto n = static_cast<py::ssize_t>(count);
-  const auto size = static_cast<py::ssize_t>(sizeof(T));
-  py::array array = columns == 1 ? py::array(py::dtype::of<T>(), {n}, {size}, data.data(), owner)
-                                 : py::array(py::dtype::of<T>(), {n, static_cast<py::ssize_t>(columns)},
-                                             {size, n * size}, data.data(), owner);
-  make_read_only(array);
-  return array;
-}
-
-const Batch& batch_of(const py::object& self) {
-  return self.cast<const Batch&>();
-}
-
-template <class T>
-auto column(std::vector<T> Batch::*data, std::size_t columns) {
+auto column(std::vector<T> Batch::*data, py::ssize_t columns) {
   return [data, columns](const py::object& self) {
-    return view(batch_of(self).*data, batch_of(self).count, columns, self);
+    const auto& batch = self.cast<const Batch&>();
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(batch.count)};
+    if (columns > 1) shape.push_back(columns);
+    return view<py::array::f_style>((batch.*data).data(), std::move(shape), self);
   };
 }
 
@@ -188,10 +176,9 @@ void bind_lp_batch(py::module_& module) {
       .def_property_readonly("active", column(&Batch::active, 3))
       .def_property_readonly("proven",
                              [](const py::object& self) -> py::object {
-                               const Batch& b = batch_of(self);
+                               const auto& b = self.cast<const Batch&>();
                                if (b.proven.size() != b.count) return py::none();
-                               py::array array = view(b.proven, b.count, 1, self);
-                               return array.attr("view")(py::dtype::of<bool>());
+                               return column(&Batch::proven, 1)(self).attr("view")(py::dtype::of<bool>());
                              })
       .def_readonly("copied", &Batch::is_copied)
       .def_property_readonly("scalar_count", [](const Batch& b) { return b.counts.scalar; })

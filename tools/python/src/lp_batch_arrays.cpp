@@ -97,36 +97,29 @@ void take_lines(BatchArrays& b, py::handle normals, py::handle offsets, bool may
 }
 
 void take_preferred(BatchArrays& b, py::handle preferred, bool may_copy) {
-  const py::array p = array_of_doubles(preferred, "preferred", 2, "an array of numbers of shape (problems, 2)");
+  py::array p = array_of_doubles(preferred, "preferred", 2, "an array of numbers of shape (problems, 2)");
   if (static_cast<std::size_t>(p.shape(0)) != b.count || p.shape(1) != 2)
     throw ArgumentError("preferred", shown(p), "shape (" + std::to_string(b.count) + ", 2)");
-  if (is_in_place(p, preferred.ptr())) {
-    b.problems.preferred_x = static_cast<const double*>(p.data());
-    b.problems.preferred_y = b.problems.preferred_x + b.count;
-    b.kept.push_back(p);
-    return;
+  if (!is_in_place(p, preferred.ptr())) {
+    if (!may_copy) refuse_copy("preferred", p);
+    b.is_copied = true;
+    p = py::array_t<double, py::array::f_style>(p);
   }
-  if (!may_copy) refuse_copy("preferred", p);
-  b.is_copied = true;
-  for (std::size_t i = 0; i < b.count; ++i) {
-    b.preferred_x.push_back(at(p, i, 0));
-    b.preferred_y.push_back(at(p, i, 1));
-  }
-  b.problems.preferred_x = b.preferred_x.data();
-  b.problems.preferred_y = b.preferred_y.data();
+  b.problems.preferred_x = static_cast<const double*>(p.data());
+  b.problems.preferred_y = b.problems.preferred_x + b.count;
+  b.kept.push_back(std::move(p));
 }
 
 /// One number for all, or an array of one for each.
 void take_speeds(BatchArrays& b, py::handle max_speed) {
   if (PyFloat_Check(max_speed.ptr()) || PyLong_Check(max_speed.ptr())) {
     b.disc.assign(b.count, positive(max_speed, "max_speed"));
+    b.problems.disc = b.disc.data();
   } else {
     const Doubles array = doubles(max_speed, "max_speed", {static_cast<py::ssize_t>(b.count)});
     b.problems.disc = array.data();
     b.kept.push_back(array);
-    return;
   }
-  b.problems.disc = b.disc.data();
 }
 
 void take_hard(BatchArrays& b, py::handle hard) {

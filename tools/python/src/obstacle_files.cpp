@@ -34,10 +34,6 @@ datasets::ReadOptions reading(const py::object& format, const std::string& units
   return options;
 }
 
-py::tuple as_tuple(const datasets::DataError& e) {
-  return py::make_tuple(datasets::code_name(e.code()), e.file(), e.place(), e.found(), e.expected());
-}
-
 py::tuple as_tuple(const datasets::RingFinding& f) {
   py::object in_file = py::none();
   if (f.in_file) in_file = py::make_tuple(python::as_tuple(f.in_file->where), f.in_file->is_degrees);
@@ -59,26 +55,19 @@ py::list properties_of(const ObstacleFile& file) {
 
 py::dict as_dict(ObstacleFile file) {
   py::list rejected, findings;
-  for (const datasets::DataError& e : file.rejected) rejected.append(as_tuple(e));
+  for (const datasets::DataError& e : file.rejected) rejected.append(python::as_tuple(e));
   for (const datasets::RingFinding& f : file.findings) findings.append(as_tuple(f));
   const datasets::ReadCounts& n = file.counts;
   const py::dict counts("read"_a = n.read, "done"_a = n.done, "repaired"_a = n.repaired,
                         "passed_over"_a = n.passed_over, "rejected"_a = n.rejected);
   py::object origin = py::none();
   if (file.origin) origin = py::make_tuple(file.origin->longitude, file.origin->latitude);
-  py::dict result;
-  result["file"] = file.file;
-  result["format"] = file.format;
-  result["notes"] = notes_of(file);
-  result["rejected"] = rejected;
-  result["findings"] = findings;
-  result["counts"] = counts;
-  result["origin"] = origin;
-  result["properties"] = properties_of(file);
-  result["obstacles"] = py::cast(Obstacles{std::move(file.obstacles)});
-  // What a write needs to know of where obstacles lie, and their properties.
-  result["context"] = py::cast(datasets::WriteOptions{{}, std::move(file.plane), false, std::move(file.properties)});
-  return result;
+  const py::list properties = properties_of(file);
+  // The context: what a write needs to know of where obstacles lie, and their properties.
+  return py::dict("file"_a = file.file, "format"_a = file.format, "notes"_a = notes_of(file), "rejected"_a = rejected,
+                  "findings"_a = findings, "counts"_a = counts, "origin"_a = origin, "properties"_a = properties,
+                  "obstacles"_a = Obstacles{std::move(file.obstacles)},
+                  "context"_a = datasets::WriteOptions{{}, std::move(file.plane), false, std::move(file.properties)});
 }
 
 py::dict read(const fs::path& path, const py::object& format, const std::string& units, py::handle cell_size,

@@ -13,18 +13,14 @@ namespace {
 
 constexpr double kLeastRadius = 0x1p-100;
 
-struct Map {
-  std::shared_ptr<const std::vector<geometry::Obstacle>> obstacles;
-  geometry::RouteMap map;
-};
+using geometry::RouteMap;
 
 struct Plan {
-  std::shared_ptr<const std::vector<geometry::Obstacle>> obstacles;
-  geometry::RouteMap map;
+  RouteMap map;
   geometry::RoutePlan plan;
 };
 
-Vec2 covered(const geometry::RouteMap& map, py::handle point, const char* name) {
+Vec2 covered(const RouteMap& map, py::handle point, const char* name) {
   const Vec2 p = vector(point, name);
   if (!map.covers(p))
     throw ArgumentError(name, shown(point),
@@ -97,38 +93,37 @@ geometry::RouteAnswer answer_of(py::handle object) {
   throw ArgumentError("answer", shown(object), "the answer of a certificate");
 }
 
-Map make_map(const Obstacles& obstacles, py::handle largest_radius, py::handle largest_distance) {
+RouteMap make_map(const Obstacles& obstacles, py::handle largest_radius, py::handle largest_distance) {
   const geometry::RouteMapOptions options{at_least_zero(largest_radius, "largest_radius"),
                                           at_least_zero(largest_distance, "largest_distance")};
-  auto shapes = std::make_shared<const std::vector<geometry::Obstacle>>(shapes_of(obstacles));
   const py::gil_scoped_release released;
-  return {shapes, geometry::RouteMap(*shapes, options)};
+  return RouteMap(shapes_of(obstacles), options);
 }
 
-Plan make_plan(const Map& map, py::handle radius) {
+Plan make_plan(const RouteMap& map, py::handle radius) {
   const double r = at_least_zero(radius, "radius");
-  if (r != 0.0 && (r < kLeastRadius || r > map.map.largest_radius()))
+  if (r != 0.0 && (r < kLeastRadius || r > map.largest_radius()))
     throw ArgumentError("radius", shown(radius),
-                        "0, or 2^-100 m to " + std::to_string(map.map.largest_radius()) +
+                        "0, or 2^-100 m to " + std::to_string(map.largest_radius()) +
                             " m; RouteMap(..., largest_radius=...) allows more");
   const py::gil_scoped_release released;
-  return {map.obstacles, map.map, geometry::RoutePlan(map.map, r)};
+  return {map, geometry::RoutePlan(map, r)};
 }
 
 }  // namespace
 
 void bind_routes(py::module_& module) {
-  py::class_<Map>(module, "RouteMap")
+  py::class_<RouteMap>(module, "RouteMap")
       .def(py::init(&make_map))
-      .def_property_readonly("vertex_count", [](const Map& m) { return m.map.vertex_count(); })
-      .def_property_readonly("cell_count", [](const Map& m) { return m.map.cell_count(); })
-      .def_property_readonly("largest_radius", [](const Map& m) { return m.map.largest_radius(); })
-      .def("covers", [](const Map& m, py::handle point) { return m.map.covers(vector(point, "point")); })
+      .def_property_readonly("vertex_count", &RouteMap::vertex_count)
+      .def_property_readonly("cell_count", &RouteMap::cell_count)
+      .def_property_readonly("largest_radius", &RouteMap::largest_radius)
+      .def("covers", [](const RouteMap& map, py::handle point) { return map.covers(vector(point, "point")); })
       .def("widest_radius",
-           [](const Map& m, py::handle start, py::handle goal) {
-             const Vec2 a = covered(m.map, start, "start"), b = covered(m.map, goal, "goal");
+           [](const RouteMap& map, py::handle start, py::handle goal) {
+             const Vec2 a = covered(map, start, "start"), b = covered(map, goal, "goal");
              const py::gil_scoped_release released;
-             return m.map.widest_radius(a, b);
+             return map.widest_radius(a, b);
            })
       .def("plan", &make_plan);
   py::class_<Plan>(module, "RoutePlan")

@@ -49,23 +49,20 @@ std::size_t agent(const RVOSimulator& sim, py::handle object) {
   return index(object, "agent_no", sim.getNumAgents());
 }
 
-template <class Value>
-auto of_agent(Value (RVOSimulator::*get)(std::size_t) const) {
-  return [get](const RVOSimulator& sim, py::handle no) { return as_value((sim.*get)(agent(sim, no))); };
+std::size_t vertex(const RVOSimulator& sim, py::handle object) {
+  return index(object, "vertex_no", sim.getNumObstacleVertices());
 }
 
-template <class Set>
-auto set_number(Set set, const char* name) {
-  return [set, name](RVOSimulator& sim, py::handle no, py::handle value) {
-    (sim.*set)(agent(sim, no), single(value, name));
-  };
+/// A getter of what `index_of`, agent or vertex, numbers.
+template <class IndexOf, class Value>
+auto of(IndexOf index_of, Value (RVOSimulator::*get)(std::size_t) const) {
+  return [=](const RVOSimulator& sim, py::handle no) { return as_value((sim.*get)(index_of(sim, no))); };
 }
 
-template <class Set>
-auto set_vector(Set set, const char* name) {
-  return [set, name](RVOSimulator& sim, py::handle no, py::handle value) {
-    (sim.*set)(agent(sim, no), vector2(value, name));
-  };
+/// `read` makes the value of the argument `name`.
+template <class Set, class Value>
+auto set_of_agent(Set set, Value (*read)(py::handle, const char*), const char* name) {
+  return [=](RVOSimulator& sim, py::handle no, py::handle value) { (sim.*set)(agent(sim, no), read(value, name)); };
 }
 
 std::size_t add_obstacle(RVOSimulator& sim, const py::list& vertices) {
@@ -91,18 +88,18 @@ std::size_t add_agent(RVOSimulator& sim, py::handle pos, const py::object& neigh
 }
 
 void bind_agents(py::class_<RVOSimulator>& c) {
-  c.def("getAgentPosition", of_agent(&RVOSimulator::getAgentPosition))
-      .def("getAgentVelocity", of_agent(&RVOSimulator::getAgentVelocity))
-      .def("getAgentPrefVelocity", of_agent(&RVOSimulator::getAgentPrefVelocity))
-      .def("getAgentMaxNeighbors", of_agent(&RVOSimulator::getAgentMaxNeighbors))
-      .def("getAgentMaxSpeed", of_agent(&RVOSimulator::getAgentMaxSpeed))
-      .def("getAgentNeighborDist", of_agent(&RVOSimulator::getAgentNeighborDist))
-      .def("getAgentRadius", of_agent(&RVOSimulator::getAgentRadius))
-      .def("getAgentTimeHorizon", of_agent(&RVOSimulator::getAgentTimeHorizon))
-      .def("getAgentTimeHorizonObst", of_agent(&RVOSimulator::getAgentTimeHorizonObst))
-      .def("getAgentNumAgentNeighbors", of_agent(&RVOSimulator::getAgentNumAgentNeighbors))
-      .def("getAgentNumObstacleNeighbors", of_agent(&RVOSimulator::getAgentNumObstacleNeighbors))
-      .def("getAgentNumORCALines", of_agent(&RVOSimulator::getAgentNumORCALines))
+  c.def("getAgentPosition", of(agent, &RVOSimulator::getAgentPosition))
+      .def("getAgentVelocity", of(agent, &RVOSimulator::getAgentVelocity))
+      .def("getAgentPrefVelocity", of(agent, &RVOSimulator::getAgentPrefVelocity))
+      .def("getAgentMaxNeighbors", of(agent, &RVOSimulator::getAgentMaxNeighbors))
+      .def("getAgentMaxSpeed", of(agent, &RVOSimulator::getAgentMaxSpeed))
+      .def("getAgentNeighborDist", of(agent, &RVOSimulator::getAgentNeighborDist))
+      .def("getAgentRadius", of(agent, &RVOSimulator::getAgentRadius))
+      .def("getAgentTimeHorizon", of(agent, &RVOSimulator::getAgentTimeHorizon))
+      .def("getAgentTimeHorizonObst", of(agent, &RVOSimulator::getAgentTimeHorizonObst))
+      .def("getAgentNumAgentNeighbors", of(agent, &RVOSimulator::getAgentNumAgentNeighbors))
+      .def("getAgentNumObstacleNeighbors", of(agent, &RVOSimulator::getAgentNumObstacleNeighbors))
+      .def("getAgentNumORCALines", of(agent, &RVOSimulator::getAgentNumORCALines))
       .def("getAgentAgentNeighbor",
            [](const RVOSimulator& s, py::handle no, py::handle neighbour) {
              const std::size_t k = agent(s, no);
@@ -119,22 +116,15 @@ void bind_agents(py::class_<RVOSimulator>& c) {
              const RVO::Line& l = s.getAgentORCALine(k, index(line, "line_no", s.getAgentNumORCALines(k)));
              return py::make_tuple(l.point.x(), l.point.y(), l.direction.x(), l.direction.y());
            })
-      .def("setAgentMaxNeighbors",
-           [](RVOSimulator& s, py::handle no, py::handle value) {
-             s.setAgentMaxNeighbors(agent(s, no), count(value, "max_neighbors"));
-           })
-      .def("setAgentMaxSpeed", set_number(&RVOSimulator::setAgentMaxSpeed, "max_speed"))
-      .def("setAgentNeighborDist", set_number(&RVOSimulator::setAgentNeighborDist, "neighbor_dist"))
-      .def("setAgentRadius", set_number(&RVOSimulator::setAgentRadius, "radius"))
-      .def("setAgentTimeHorizon", set_number(&RVOSimulator::setAgentTimeHorizon, "time_horizon"))
-      .def("setAgentTimeHorizonObst", set_number(&RVOSimulator::setAgentTimeHorizonObst, "time_horizon_obst"))
-      .def("setAgentPosition", set_vector(&RVOSimulator::setAgentPosition, "position"))
-      .def("setAgentVelocity", set_vector(&RVOSimulator::setAgentVelocity, "velocity"))
-      .def("setAgentPrefVelocity", set_vector(&RVOSimulator::setAgentPrefVelocity, "velocity"));
-}
-
-std::size_t vertex(const RVOSimulator& sim, py::handle object) {
-  return index(object, "vertex_no", sim.getNumObstacleVertices());
+      .def("setAgentMaxNeighbors", set_of_agent(&RVOSimulator::setAgentMaxNeighbors, count, "max_neighbors"))
+      .def("setAgentMaxSpeed", set_of_agent(&RVOSimulator::setAgentMaxSpeed, single, "max_speed"))
+      .def("setAgentNeighborDist", set_of_agent(&RVOSimulator::setAgentNeighborDist, single, "neighbor_dist"))
+      .def("setAgentRadius", set_of_agent(&RVOSimulator::setAgentRadius, single, "radius"))
+      .def("setAgentTimeHorizon", set_of_agent(&RVOSimulator::setAgentTimeHorizon, single, "time_horizon"))
+      .def("setAgentTimeHorizonObst", set_of_agent(&RVOSimulator::setAgentTimeHorizonObst, single, "time_horizon_obst"))
+      .def("setAgentPosition", set_of_agent(&RVOSimulator::setAgentPosition, vector2, "position"))
+      .def("setAgentVelocity", set_of_agent(&RVOSimulator::setAgentVelocity, vector2, "velocity"))
+      .def("setAgentPrefVelocity", set_of_agent(&RVOSimulator::setAgentPrefVelocity, vector2, "velocity"));
 }
 
 }  // namespace
@@ -157,12 +147,9 @@ void bind_rvo2(py::module_& module) {
       .def("setTimeStep", [](RVOSimulator& s, py::handle step) { s.setTimeStep(single(step, "time_step")); })
       .def("getNumAgents", &RVOSimulator::getNumAgents)
       .def("getNumObstacleVertices", &RVOSimulator::getNumObstacleVertices)
-      .def("getObstacleVertex",
-           [](const RVOSimulator& s, py::handle no) { return as_value(s.getObstacleVertex(vertex(s, no))); })
-      .def("getNextObstacleVertexNo",
-           [](const RVOSimulator& s, py::handle no) { return s.getNextObstacleVertexNo(vertex(s, no)); })
-      .def("getPrevObstacleVertexNo",
-           [](const RVOSimulator& s, py::handle no) { return s.getPrevObstacleVertexNo(vertex(s, no)); })
+      .def("getObstacleVertex", of(vertex, &RVOSimulator::getObstacleVertex))
+      .def("getNextObstacleVertexNo", of(vertex, &RVOSimulator::getNextObstacleVertexNo))
+      .def("getPrevObstacleVertexNo", of(vertex, &RVOSimulator::getPrevObstacleVertexNo))
       .def("queryVisibility",
            [](const RVOSimulator& s, py::handle point1, py::handle point2, py::handle radius) {
              const RVO::Vector2 a = vector2(point1, "point1"), b = vector2(point2, "point2");

@@ -107,19 +107,12 @@ std::string explorer_page(const std::vector<const Run*>& runs) {
 }
 
 template <class T>
-py::array view(const std::vector<T>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
-  py::array_t<T> array(shape, data.data(), owner);
-  make_read_only(array);
-  return std::move(array);
-}
-
-template <class T>
 void def_column(py::class_<Run>& run_class, const char* name, std::vector<T> Run::*column, bool is_vector) {
   run_class.def_property_readonly(name, [column, is_vector](const py::object& self) {
     const Run& run = self.cast<const Run&>();
     std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(run.time.size()), static_cast<py::ssize_t>(run.robots())};
     if (is_vector) shape.push_back(2);
-    return view(run.*column, shape, self);
+    return view((run.*column).data(), std::move(shape), self);
   });
 }
 
@@ -198,7 +191,7 @@ void bind_simulate(py::module_& module) {
       .def_property_readonly("time",
                              [](const py::object& self) {
                                const Run& run = self.cast<const Run&>();
-                               return view(run.time, {static_cast<py::ssize_t>(run.time.size())}, self);
+                               return view(run.time.data(), {static_cast<py::ssize_t>(run.time.size())}, self);
                              })
       .def(
           "metrics_json", [](const Run& run) { return datasets::metrics_json(run.file.info, run.metrics); },

@@ -19,32 +19,25 @@ using namespace py::literals;
 
 namespace {
 
-/// A velocity obstacle of a convex shape, with what it was made of, and the velocity of the shape.
-struct Cone {
-  geometry::ConvexShape shape;
-  Vec2 position;
-  double radius;
-  double time_horizon;
-  Vec2 shape_velocity;
-  vo::ShiftedCone shifted;
-
-  const vo::VelocityObstacle& obstacle() const { return shifted.cone; }
-  bool moves() const { return shape_velocity != Vec2{}; }
-};
+/// Of a convex shape: the apex is the shape's velocity.
+using Cone = vo::ShiftedCone;
 
 Cone make_cone(py::handle shape, py::handle position, py::handle radius, py::handle time_horizon, py::handle velocity) {
-  const geometry::ConvexShape s = convex_shape(shape, "obstacle");
+  geometry::ConvexShape s = convex_shape(shape, "obstacle");
   const Vec2 p = vector(position, "position");
   const double r = at_least_zero(radius, "radius");
   const double tau = positive_or_infinite(time_horizon, "time_horizon");
   const Vec2 u = vector(velocity, "obstacle_velocity");
-  geometry::VectorSum minus_apex;
-  minus_apex.terms[0] = -u;
-  return {s, p, r, tau, u, {vo::VelocityObstacle(s, p, r, tau), minus_apex, u}};
+  return {vo::VelocityObstacle(std::move(s), p, r, tau), {{-u}}, u};
+}
+
+vo::HalfPlaneClaim claim_of(const Cone& c, const HalfPlane& h) {
+  const geometry::GrownShape& s = c.cone.grown();
+  return {s.shape, s.origin, s.radius, c.cone.time_horizon(), c.apex, h};
 }
 
 void require_apart(const Cone& cone, const char* what) {
-  if (cone.obstacle().overlaps())
+  if (cone.cone.overlaps())
     throw ArgumentError(what, "a robot that touches or overlaps the obstacle: it has no velocity obstacle",
                         "a robot apart from it (see `overlaps`); `contact_half_plane()` leads away");
 }
@@ -56,13 +49,12 @@ py::object as_object(const std::optional<HalfPlane>& h) {
 /// The half-plane of the obstacle at rest, moved by the obstacle's velocity and rounded up: still certified, by
 /// `is_true`.
 std::optional<HalfPlane> half_plane(const Cone& cone, Vec2 v, double alpha) {
-  if (!cone.moves()) return cone.obstacle().half_plane(v, alpha);
-  std::optional<HalfPlane> h = cone.obstacle().half_plane(v - cone.shape_velocity, alpha);
-  if (!h) return h;
-  const double moved = dot(h->normal, cone.shape_velocity);
+  std::optional<HalfPlane> h = cone.cone.half_plane(v - cone.apex, alpha);
+  if (!h || cone.apex == Vec2{}) return h;
+  const double moved = dot(h->normal, cone.apex);
   h->offset += moved;
   for (double step = std::ldexp(std::fabs(h->offset) + std::fabs(moved), -52); alpha >= 1.0; step *= 2.0) {
-    if (vo::is_true({cone.shape, cone.position, cone.radius, cone.time_horizon, cone.shape_velocity, *h})) break;
+    if (vo::is_true(claim_of(cone, *h))) break;
     if (!(step < 1.0)) return std::nullopt;
     h->offset += std::fmax(step, 0x1p-1070);
   }
@@ -70,7 +62,7 @@ std::optional<HalfPlane> half_plane(const Cone& cone, Vec2 v, double alpha) {
 }
 
 py::object certificate_text(const Cone& cone, const HalfPlane& h) {
-  const auto c = vo::certify({cone.shape, cone.position, cone.radius, cone.time_horizon, cone.shape_velocity, h});
+  const auto c = vo::certify(claim_of(cone, h));
   return c ? py::object(py::str(write_certificate(*c))) : py::none();
 }
 
@@ -92,13 +84,13 @@ py::array_t<bool> contains_many(const Cone& cone, py::handle velocities) {
   py::array_t<bool> result(static_cast<py::ssize_t>(all.size()));
   bool* const out = result.mutable_data();
   const py::gil_scoped_release released;
-  for (std::size_t k = 0; k < all.size(); ++k) out[k] = cone.shifted.contains(all[k]);
+  for (std::size_t k = 0; k < all.size(); ++k) out[k] = cone.contains(all[k]);
   return result;
 }
 
 std::vector<vo::ShiftedCone> cones_of(const py::list& cones) {
   std::vector<vo::ShiftedCone> result;
-  for (const py::handle cone : cones) result.push_back(cone.cast<const Cone&>().shifted);
+  for (const py::handle cone : cones) result.push_back(cone.cast<const Cone&>());
   return result;
 }
 
@@ -162,27 +154,27 @@ py::object exact_free(const py::list& cones, py::handle max_speed) {
 void bind_vo(py::module_& module) {
   py::class_<Cone>(module, "Cone")
       .def(py::init(&make_cone))
-      .def("overlaps", [](const Cone& c) { return c.obstacle().overlaps(); })
+      .def("overlaps", [](const Cone& c) { return c.cone.overlaps(); })
       .def("contains",
            [](const Cone& c, py::handle v) {
              require_apart(c, "contains");
-             return c.shifted.contains(vector(v, "velocity"));
+             return c.contains(vector(v, "velocity"));
            })
       .def("contains_many", &contains_many)
       .def("nearest",
            [](const Cone& c) {
-             const auto n = c.obstacle().nearest();
+             const auto n = c.cone.nearest();
              return py::make_tuple(as_tuple(n.normal), n.distance);
            })
       .def("legs",
            [](const Cone& c) -> py::object {
-             const auto legs = c.obstacle().legs();
+             const auto legs = c.cone.legs();
              return legs ? py::object(py::make_tuple(leg_tuple(legs->left), leg_tuple(legs->right))) : py::none();
            })
       .def("nearest_boundary",
            [](const Cone& c, py::handle velocity) {
              require_apart(c, "nearest_boundary");
-             const auto b = c.obstacle().nearest_boundary(vector(velocity, "velocity") - c.shape_velocity);
+             const auto b = c.cone.nearest_boundary(vector(velocity, "velocity") - c.apex);
              return py::make_tuple(as_tuple(b.normal), b.signed_distance, as_tuple(b.u), name(b.part));
            })
       .def("half_plane",
@@ -194,8 +186,8 @@ void bind_vo(py::module_& module) {
            })
       .def("contact_half_plane",
            [](const Cone& c) {
-             std::optional<HalfPlane> h = c.obstacle().contact_half_plane();
-             if (h && c.moves()) h->offset += dot(h->normal, c.shape_velocity);
+             std::optional<HalfPlane> h = c.cone.contact_half_plane();
+             if (h && c.apex != Vec2{}) h->offset += dot(h->normal, c.apex);
              return as_object(h);
            })
       .def("certificate", [](const Cone& c, py::handle normal, py::handle offset) {
