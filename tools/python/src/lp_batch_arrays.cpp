@@ -97,17 +97,20 @@ void take_lines(BatchArrays& b, py::handle normals, py::handle offsets, bool may
 }
 
 void take_preferred(BatchArrays& b, py::handle preferred, bool may_copy) {
-  py::array p = array_of_doubles(preferred, "preferred", 2, "an array of numbers of shape (problems, 2)");
+  const py::array p = array_of_doubles(preferred, "preferred", 2, "an array of numbers of shape (problems, 2)");
   if (static_cast<std::size_t>(p.shape(0)) != b.count || p.shape(1) != 2)
     throw ArgumentError("preferred", shown(p), "shape (" + std::to_string(b.count) + ", 2)");
-  if (!is_in_place(p, preferred.ptr())) {
+  if (is_in_place(p, preferred.ptr())) {
+    b.problems.preferred_x = static_cast<const double*>(p.data());
+    b.kept.push_back(p);
+  } else {
     if (!may_copy) refuse_copy("preferred", p);
     b.is_copied = true;
-    p = py::array_t<double, py::array::f_style>(p);
+    for (const int xy : {0, 1})
+      for (std::size_t i = 0; i < b.count; ++i) b.preferred.push_back(at(p, i, xy));
+    b.problems.preferred_x = b.preferred.data();
   }
-  b.problems.preferred_x = static_cast<const double*>(p.data());
   b.problems.preferred_y = b.problems.preferred_x + b.count;
-  b.kept.push_back(std::move(p));
 }
 
 /// One number for all, or an array of one for each.
@@ -208,14 +211,12 @@ void require_in_range(const BatchArrays& b) {
     break;
   }
   if (bad == size) return;
-  for (std::size_t i = 0; i < b.count; ++i)
-    for (std::size_t k = 0; k < b.lines; ++k)
-      if (b.place(i, k) == bad)
-        throw ArgumentError("normals",
-                            "(" + std::to_string(p.normal_x[bad]) + ", " + std::to_string(p.normal_y[bad]) +
-                                ") with offset " + std::to_string(p.offset[bad]) + " at [" + std::to_string(i) + ", " +
-                                std::to_string(k) + "]",
-                            "unit normals (to 1e-3) and finite offsets; solve() takes normals of any length");
+  const std::size_t i = bad / (p.block * b.lines) * p.block + bad % p.block, k = bad / p.block % b.lines;
+  throw ArgumentError("normals",
+                      "(" + std::to_string(p.normal_x[bad]) + ", " + std::to_string(p.normal_y[bad]) +
+                          ") with offset " + std::to_string(p.offset[bad]) + " at [" + std::to_string(i) + ", " +
+                          std::to_string(k) + "]",
+                      "unit normals (to 1e-3) and finite offsets; solve() takes normals of any length");
 }
 
 lp::Problem problem_at(const BatchArrays& b, std::size_t i) {
@@ -250,7 +251,7 @@ void CertificateArrays::each(py::ssize_t count, py::ssize_t parts, const Take& t
 CertificateArrays::CertificateArrays(const std::vector<std::optional<lp::Certificate>>& all) {
   const std::size_t parts = most_parts(all);
   each(static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(parts), [](const char*, auto& array, auto shape) {
-    using Number = std::remove_reference_t<decltype(*array.mutable_data())>;
+    using Number = typename std::remove_reference_t<decltype(array)>::value_type;
     array = std::remove_reference_t<decltype(array)>(shape);
     const int empty = std::is_same_v<Number, std::int32_t> ? kNoBinding : 0;
     std::fill_n(array.mutable_data(), array.size(), static_cast<Number>(empty));
@@ -275,10 +276,8 @@ CertificateArrays::CertificateArrays(const std::vector<std::optional<lp::Certifi
 
 CertificateArrays::CertificateArrays(const py::dict& arrays, std::size_t count) {
   each(static_cast<py::ssize_t>(count), -1, [&](const char* name, auto& array, const auto& shape) {
-    array = std::remove_reference_t<decltype(array)>::ensure(arrays[name]);
-    if (array && has_shape(array, shape)) return;
-    PyErr_Clear();
-    throw ArgumentError(name, shown(arrays[name]), "as many as problems, in the shape that solve_batch gives");
+    using Number = typename std::remove_reference_t<decltype(array)>::value_type;
+    array = array_of<Number>(arrays[name], name, shape, "as many as problems, in the shape that solve_batch gives");
   });
 }
 

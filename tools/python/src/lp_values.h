@@ -34,7 +34,7 @@ lp::Certificate certificate_of(py::handle fields);
 struct BatchArrays {
   std::size_t count = 0, lines = 0;
   std::vector<py::array> kept;  ///< alive while they are pointed to
-  std::vector<double> normal_x, normal_y, offset, disc;
+  std::vector<double> normal_x, normal_y, offset, preferred, disc;
   std::vector<std::int32_t> hard;
   lp::BatchProblems<double> problems;
   bool is_copied = false;

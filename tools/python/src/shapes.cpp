@@ -22,6 +22,7 @@ using geometry::Obstacle;
 using geometry::Polygon;
 using geometry::Polyline;
 using geometry::Segment;
+using namespace py::literals;
 
 namespace {
 
@@ -136,15 +137,11 @@ py::dict ragged(const Obstacles& obstacles) {
     obstacle_offsets.push_back(static_cast<std::int64_t>(ring_offsets.size()) - 1);
     ids.append(obstacles.list[k].id);
   }
-  py::dict result;
-  result["coordinates"] = as_array(all);
-  result["ring_offsets"] =
-      py::array_t<std::int64_t>(static_cast<py::ssize_t>(ring_offsets.size()), ring_offsets.data());
-  result["obstacle_offsets"] =
-      py::array_t<std::int64_t>(static_cast<py::ssize_t>(obstacle_offsets.size()), obstacle_offsets.data());
-  result["is_polygon"] = is_polygon;
-  result["ids"] = ids;
-  return result;
+  const auto array = [](const std::vector<std::int64_t>& numbers) {
+    return py::array_t<std::int64_t>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  };
+  return py::dict("coordinates"_a = as_array(all), "ring_offsets"_a = array(ring_offsets),
+                  "obstacle_offsets"_a = array(obstacle_offsets), "is_polygon"_a = is_polygon, "ids"_a = ids);
 }
 
 py::list convex_cover_of(const Obstacles& obstacles) {
