@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "metrics/divergence.h"
-#include "motion/leader.h"
 
 namespace exactvo::formation::detail {
 
@@ -17,21 +16,6 @@ constexpr double kLeastTurn = 1e-3;
 
 /// Of the greatest speed: what is slower rests, and its heading is noise.
 constexpr double kLeastHeadway = 1e-3;
-
-/// What a formation is measured by of a row.
-Step state_of(const Step& row) {
-  Step state;
-  state.time = row.time;
-  state.robots.reserve(row.robots.size());
-  state.leader_position = row.leader_position;
-  state.leader_velocity = row.leader_velocity;
-  for (const RobotStep& r : row.robots) {
-    RobotStep& robot = state.robots.emplace_back();
-    robot.position = r.position;
-    robot.velocity = r.velocity;
-  }
-  return state;
-}
 
 }  // namespace
 
@@ -52,7 +36,7 @@ void MetricsAccumulator::add(const Step& row) {
     OfRobot& r = robots_[i];
     const RobotStep& step = row.robots[i];
     if (scenario_.formation)
-      r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - last_.leader_position);
+      r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - leader_.position);
     if (rows_ > 0) add_motion(r, step, kLeastHeadway * scenario_.robots[i].max_speed);
     add_decision(r, step);
     add_arrival(i, row);
@@ -60,7 +44,8 @@ void MetricsAccumulator::add(const Step& row) {
     r.velocity = step.velocity;
   }
   if (scenario_.formation) add_to_course(row);
-  if (scenario_.formation) last_ = state_of(row);
+  leader_ = {row.leader_position, row.leader_velocity};
+  time_ = row.time;
   ++rows_;
 }
 
@@ -128,6 +113,7 @@ void MetricsAccumulator::add_to_course(const Step& row) {
   }
   if (!first_formed_ && worst <= scenario_.arrival_tolerance) first_formed_ = row.time;
   formed_.add(row.time, worst, scenario_.arrival_tolerance);
+  error_ = worst;
 }
 
 void MetricsAccumulator::write_to(Metrics& m) const {
@@ -154,10 +140,10 @@ void MetricsAccumulator::write_to(Metrics& m) const {
 
 void MetricsAccumulator::write_formation(Metrics& m) const {
   const double arrival = leader_arrival(scenario_.formation->leader);
-  if (arrival <= last_.time) m.leader_arrival_time = arrival;
+  if (arrival <= time_) m.leader_arrival_time = arrival;
   double velocity = 0.0;
-  for (const RobotStep& r : last_.robots) velocity = std::max(velocity, norm(r.velocity - last_.leader_velocity));
-  m.formation_position_error = formation_error(last_, run_.offsets);
+  for (const OfRobot& r : robots_) velocity = std::max(velocity, norm(r.velocity - leader_.velocity));
+  m.formation_position_error = error_;
   m.formation_velocity_error = velocity;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
+#include "motion/leader.h"
 
 namespace exactvo::formation::detail {
 
@@ -81,7 +82,10 @@ class MetricsAccumulator {
   Counts counted_, of_last_row_;
   std::optional<double> first_formed_;
   SettledSince formed_;
-  Step last_;  ///< the last row, without its decisions
+  // In the last row.
+  double time_ = 0.0;   ///< s
+  LeaderState leader_;  ///< of a formation
+  double error_ = 0.0;  ///< m, of a formation: the largest distance of a robot from its slot
 };
 
 }  // namespace exactvo::formation::detail
