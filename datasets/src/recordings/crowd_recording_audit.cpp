@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of recordings of crowds (crowd_recording.h): shares nothing with the engine that made them.
 //
-// What it asks of robots that touch follows from the half-planes (formation/src/crowd/pair_line.h, edges.cpp). A pair
+// What it asks of robots that touch follows from the half-planes (formation/src/crowd/lines.cpp, edge_pack.cpp). A pair
 // that touches has a cut-off for one time step: n.(v_a - v_b) dt >= n.p + R|n|. So p - (v_a - v_b) dt, where the other
 // is afterwards, has -n.p' >= R|n|, and |p'| >= R. For an edge that is touched the half-plane is n.v >= 0 with n from
 // its nearest point q to the robot. The edge lies in n.(x - q) <= 0, so that no motion in the half-plane leads nearer.

@@ -30,6 +30,11 @@ constexpr double kVelocityError = 16.0 * kUnit;
 
 using geometry::kInfinity;
 
+/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
+[[gnu::noinline]] double rounded_to_float(double x) {
+  return static_cast<double>(static_cast<float>(x));
+}
+
 double one_norm(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
 }
@@ -44,13 +49,6 @@ std::vector<Vec2> corners_round(const geometry::Ellipse& e) {
   if (e.l11 * e.l22 < 0.0) std::reverse(corners.begin(), corners.end());
   return corners;
 }
-
-struct CornersOf {
-  std::vector<Vec2> operator()(const geometry::Disc& s) const { return {s.center}; }
-  std::vector<Vec2> operator()(const geometry::Segment& s) const { return {s.a, s.b}; }
-  std::vector<Vec2> operator()(const geometry::ConvexPolygon& s) const { return s.vertices; }
-  std::vector<Vec2> operator()(const geometry::Ellipse& s) const { return corners_round(s); }
-};
 
 /// A body as a robot sees it.
 class Sight {
@@ -81,7 +79,7 @@ class Sight {
       for (std::size_t k = 0; k < body_.normals.size(); ++k) try_face(k);
     try_leg(1.0);
     try_leg(-1.0);
-    ObstacleLine line = line_with(found_, query_);
+    ObstacleLine line = line_with(found_);
     const double support = least_ < kInfinity ? support_above(line.normal) : 1.0;
     if (!(support <= 0.0)) return facing();
     set_offset(line, std::min(0.0, support / horizon_ * kTowardsZero));
@@ -184,6 +182,13 @@ class Sight {
     try_normal(leg, error_);
   }
 
+  /// With a normal of the precision asked for, and no offset yet.
+  ObstacleLine line_with(Vec2 normal) const {
+    ObstacleLine line;
+    line.normal = query_.float_normals ? Vec2{rounded_to_float(normal.x), rounded_to_float(normal.y)} : normal;
+    return line;
+  }
+
   /// n.(v - w) >= relative, as a bound of n.v.
   void set_offset(ObstacleLine& line, double relative) const {
     line.offset = relative;
@@ -204,7 +209,7 @@ class Sight {
         n = refined(body_.normals[k], {});
       }
     if (n == Vec2{}) n = {1.0, 0.0};
-    ObstacleLine line = line_with(n, query_);
+    ObstacleLine line = line_with(n);
     const double support = support_above(line.normal);
     line.touching = !(support <= 0.0);
     set_offset(line, body_.moves ? std::max(0.0, support) / time_step_ * kAwayFromZero : 0.0);
@@ -245,19 +250,21 @@ Body* Bodies::find(ObstacleId id) {
   return const_cast<Body*>(std::as_const(*this).find(id));
 }
 
-void Bodies::add(ObstacleId id, const geometry::ConvexShape& shape, bool moves) {
+Body& Bodies::add(ObstacleId id, const geometry::ConvexShape& shape, bool moves) {
   Body& body = bodies_.emplace_back();
   body.id = id;
   body.shape = shape;
   body.moves = moves;
-  body.corners = std::visit(CornersOf{}, shape);
-  if (const auto* disc = std::get_if<geometry::Disc>(&shape)) body.round = disc->radius;
+  body.corners = geometry::corners_of(shape);
+  if (const auto* disc = std::get_if<geometry::Disc>(&shape)) body.corners = {disc->center}, body.round = disc->radius;
+  if (const auto* ellipse = std::get_if<geometry::Ellipse>(&shape)) body.corners = corners_round(*ellipse);
   const std::size_t count = body.corners.size();
   for (std::size_t k = 0; count > 1 && k < count; ++k)
     body.normals.push_back(-direction(geometry::perp(body.corners[(k + 1) % count] - body.corners[k])));
   for (const Vec2 c : body.corners) body.box.add(c);
   body.box = grown(body.box, body.round);
   changed_ = true;
+  return body;
 }
 
 bool Bodies::remove(ObstacleId id) {

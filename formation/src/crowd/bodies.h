@@ -15,12 +15,13 @@
 #include <optional>
 #include <vector>
 
-#include "crowd/edges.h"
 #include "exactvo/formation/crowd.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::formation::crowd {
+
+using geometry::Vec2;
 
 /// A body where it was added, and how far it has come since.
 struct Body {
@@ -35,6 +36,25 @@ struct Body {
   geometry::Box box;            ///< m, round it where it was added
 };
 
+/// The robot that asks for half-planes.
+struct ObstacleQuery {
+  std::int32_t x = 0, y = 0;   ///< lattice, of `position`
+  Vec2 position, velocity;     ///< m, m/s
+  double radius = 0.0;         ///< m
+  double still_horizon = 0.0;  ///< s, of bodies at rest
+  double horizon = 0.0;        ///< s, of bodies that move
+  double max_speed = 0.0;      ///< m/s
+  bool float_normals = false;  ///< normals are to be floats
+};
+
+/// A half-plane against a body.
+struct ObstacleLine {
+  Vec2 normal;                 ///< of the precision asked for
+  double offset = 0.0;         ///< m/s, rounded up; <= 0 against what stands still
+  std::uint32_t obstacle = 0;  ///< number of the body
+  bool touching = false;       ///< the disc meets it, or all but
+};
+
 /// By their ids.
 class Bodies {
  public:
@@ -45,7 +65,7 @@ class Bodies {
   const Body* find(ObstacleId id) const;
   Body* find(ObstacleId id);
   /// REQUIRES: a valid shape; an id above those of the bodies that are there.
-  void add(ObstacleId id, const geometry::ConvexShape& shape, bool moves);
+  Body& add(ObstacleId id, const geometry::ConvexShape& shape, bool moves);
   /// False where there is none of this id.
   bool remove(ObstacleId id);
   /// After changes, and before robots ask.

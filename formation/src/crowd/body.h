@@ -4,7 +4,6 @@
 /// \file
 /// A crowd behind its interface: robots by id, what callers may get wrong, when to sort.
 
-#include <chrono>
 #include <iosfwd>
 #include <map>
 #include <memory>
@@ -57,10 +56,7 @@ class CrowdBody {
     const double q = core->options.position_step;
     return {q * core->robots.x[at], q * core->robots.y[at]};
   }
-  Vec2 velocity(std::size_t at) const {
-    const CrowdOptions& o = core->options;
-    return {o.position_step * core->robots.mx[at] / o.time_step, o.position_step * core->robots.my[at] / o.time_step};
-  }
+  Vec2 velocity(std::size_t at) const { return core->velocity_of(core->robots.mx[at], core->robots.my[at]); }
   /// Puts what `value_of` says of each place where its robot's id is; grows the array to `id_end`.
   template <class Value, class ValueOf>
   void fill(std::vector<Value>& by_id, const ValueOf& value_of) const {
@@ -89,10 +85,6 @@ class CrowdBody {
     std::int32_t x, y;
   };
   Motion motion_of(Vec2 velocity, const CrowdKind& kind) const;
-  static double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
-  void find_places();
   std::size_t obstacle_size() const;
   std::pair<std::int32_t, std::int32_t> body_motion(Vec2 velocity) const;
   void lay_out_edges();

@@ -27,9 +27,6 @@ constexpr double kFirstGuess = 1.1;
 /// At least the corners of a polygon round an ellipse.
 constexpr std::size_t kMostCornersRound = 32;
 
-/// Lattice steps of a body in a time step.
-constexpr double kLongestMotion = 0x1p22;
-
 std::string number(double x) {
   return detail::number_text(x, 17);
 }
@@ -109,7 +106,7 @@ void require_valid(const CrowdKind& k, const CrowdOptions& o) {
 
 CrowdBody::CrowdBody(const CrowdOptions& options) {
   require_valid(options);
-  core = options.precision == CrowdPrecision::float_lines ? make_float_core(options) : make_double_core(options);
+  core = make_core(options);
 }
 
 KindId CrowdBody::add_kind(const CrowdKind& kind) {
@@ -166,15 +163,12 @@ CrowdBody::Motion CrowdBody::motion_of(Vec2 velocity, const CrowdKind& kind) con
   return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
 }
 
-void CrowdBody::find_places() {
-  if (!places.empty()) return;
-  places.assign(id_end, kNowhere);
-  for (std::size_t i = 0; i < core->robots.size(); ++i)
-    places[static_cast<std::size_t>(core->robots.id[i])] = static_cast<std::uint32_t>(i);
-}
-
 std::size_t CrowdBody::place_of(RobotId robot) {
-  find_places();
+  if (places.empty()) {
+    places.assign(id_end, kNowhere);
+    for (std::size_t i = 0; i < core->robots.size(); ++i)
+      places[static_cast<std::size_t>(core->robots.id[i])] = static_cast<std::uint32_t>(i);
+  }
   if (robot >= places.size() || places[robot] == kNowhere)
     throw CrowdError(CrowdProblem::unknown_robot, "robot " + std::to_string(robot) + ": found no robot of this id");
   return places[robot];
@@ -263,9 +257,8 @@ ObstacleId CrowdBody::add_body(const geometry::ConvexShape& shape, bool moves, V
   const auto [mx, my] = body_motion(velocity);
   if (obstacle_size() + kMostCornersRound + geometry::numbers_of(shape).size() > kMostEdgesOfAll)
     throw CrowdError(CrowdProblem::too_many, "edges and corners: found more than 2^24, expected 2^24 at most");
-  core->bodies.add(next_obstacle, shape, moves);
-  core->bodies.find(next_obstacle)->mx = mx;
-  core->bodies.find(next_obstacle)->my = my;
+  Body& body = core->bodies.add(next_obstacle, shape, moves);
+  body.mx = mx, body.my = my;
   return next_obstacle++;
 }
 
@@ -321,7 +314,7 @@ void CrowdBody::make_ready() {
   core->bodies.lay_out();
   if (!unsorted) return;
   Robots& r = core->robots;
-  const double start = core->options.time_phases ? now() : 0.0;
+  const Timed timed(core->options.time_phases, core->phases.sort);
   if (unchecked) {
     places.clear();
     r.shrink();
@@ -333,7 +326,6 @@ void CrowdBody::make_ready() {
   r.sort(core->tasks);
   places.clear();
   unsorted = false;
-  if (core->options.time_phases) core->phases.sort += now() - start;
 }
 
 /// Looks at every robot only where one could be near the end.
@@ -399,9 +391,6 @@ Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 
 KindId Crowd::add_kind(const CrowdKind& kind) {
   return body_->add_kind(kind);
-}
-RobotId Crowd::add_robot(Vec2 position, KindId kind) {
-  return body_->add_robot(position, kind, {});
 }
 RobotId Crowd::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
   return body_->add_robot(position, kind, velocity);
@@ -496,7 +485,7 @@ Vec2 Crowd::velocity(RobotId robot) const {
 }
 
 KindId Crowd::kind_of(RobotId robot) const {
-  return static_cast<KindId>(body_->core->robots.tag[body_->place_of(robot)] & Robots::kKind);
+  return static_cast<KindId>(body_->core->robots.kind(body_->place_of(robot)));
 }
 
 CrowdExplanation Crowd::explain(RobotId robot) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/edge_pack.h"
 
+#include <algorithm>
+
 #include "crowd/edge_rounding.h"
 #include "exactvo/geometry/infinity.h"
 
@@ -83,7 +85,8 @@ HWY_INLINE void clip(V a, V b, V far, V& from, V& to) {
   to = hn::IfThenElse(same, to, hn::Min(to, hn::Max(one, other)));
 }
 
-/// `cut` of edges.cpp.
+/// The part of an edge within |x|, |y| <= far: what is beyond the range cannot be met, and a normal that is rounded
+/// turns the far end of a long wall across the way. A new end is off the edge by a rounding error of the old ones.
 HWY_INLINE void cut(Vec& a, Vec& b, V far) {
   const V most = hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Max(hn::Abs(b.x), hn::Abs(b.y)));
   const M beyond = hn::Gt(most, far);
@@ -195,13 +198,14 @@ class EdgeLanes {
       for (std::size_t k = 0;; ++k) {
         M at_work = hn::Lt(best_squared_, set(kInfinity));
         if (hn::AllFalse(d, at_work)) break;
-        if (k == kMostEdges) {
+        if (k == out.room) {
           overflow = at_work;
           break;
         }
         lines = hn::IfThenElse(at_work, set(static_cast<double>(k + 1)), lines);
         const std::size_t to = k * out.stride + lane_;
         make_line(out.x + to, out.y + to, out.c + to);
+        if (out.edge) name_edges(out.edge + to, out.touching + to);
         drop_excluded();
       }
     }
@@ -213,15 +217,28 @@ class EdgeLanes {
   }
 
  private:
+  HWY_INLINE std::uint32_t number_of(std::size_t lane, std::size_t row) const {
+    return query_.items[HWY_MIN(first_[lane] + row, last_[lane])];
+  }
+
+  /// Of the last lines.
+  HWY_INLINE void name_edges(std::uint32_t* edge, std::uint8_t* touching) const {
+    alignas(64) double row[kPack], threshold[kPack];
+    hn::Store(best_row_, Doubles(), row);
+    hn::Store(threshold_, Doubles(), threshold);
+    for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) {
+      edge[lane] = number_of(lane, static_cast<std::size_t>(row[lane]) / hn::Lanes(Doubles()));
+      touching[lane] = threshold[lane] == -kInfinity;
+    }
+  }
+
   /// The edges of a row as seen from the robots: that of each lane's cell, its last where it has fewer, any where it
   /// has none. An edge is one load, and four by four they are transposed: processors take gathers apart, number by
   /// number.
   HWY_INLINE void edges_of_row(std::size_t row, Vec& a, Vec& b) const {
     const Doubles d;
     static_assert(sizeof(Segment) == 4 * sizeof(double));
-    const auto edge_of = [&](std::size_t lane) {
-      return &query_.edges[query_.items[HWY_MIN(first_[lane] + row, last_[lane])]].a.x;
-    };
+    const auto edge_of = [&](std::size_t lane) { return &query_.edges[number_of(lane, row)].a.x; };
 #if HWY_CAP_GE256
     if constexpr (hn::MaxLanes(Doubles()) >= 4) {
       V v[4];
@@ -274,14 +291,14 @@ class EdgeLanes {
       const V error = hn::Mul(set(kSupportError), hn::Add(magnitude(a, b), radius_));
       cut(a, b, far);
       const std::size_t to = row * hn::Lanes(d);
-      hn::Store(a.x, d, t_.ax + to);
-      hn::Store(a.y, d, t_.ay + to);
-      hn::Store(b.x, d, t_.bx + to);
-      hn::Store(b.y, d, t_.by + to);
-      hn::Store(error, d, t_.error + to);
-      hn::Store(squared, d, t_.squared + to);
-      row_at_[used_] = static_cast<std::uint32_t>(to);
-      row_number_[used_++] = static_cast<double>(to);
+      hn::Store(a.x, d, &t_.ax[to]);
+      hn::Store(a.y, d, &t_.ay[to]);
+      hn::Store(b.x, d, &t_.bx[to]);
+      hn::Store(b.y, d, &t_.by[to]);
+      hn::Store(error, d, &t_.error[to]);
+      hn::Store(squared, d, &t_.squared[to]);
+      t_.row_at[used_] = static_cast<std::uint32_t>(to);
+      t_.row_number[used_++] = static_cast<double>(to);
       take_if_nearer(squared, set(static_cast<double>(to)));
     }
   }
@@ -303,10 +320,10 @@ class EdgeLanes {
     const Index index;
     const auto at = hn::Add(hn::PromoteTo(index, hn::DemoteTo(Words(), best_row_)), hn::Iota(index, 0));
     Search search;
-    search.a = {hn::GatherIndex(d, t_.ax, at), hn::GatherIndex(d, t_.ay, at)};
-    search.b = {hn::GatherIndex(d, t_.bx, at), hn::GatherIndex(d, t_.by, at)};
-    const V error = hn::GatherIndex(d, t_.error, at);
-    hn::ScatterIndex(set(kInfinity), d, t_.squared, at);  // it has its line
+    search.a = {hn::GatherIndex(d, t_.ax.data(), at), hn::GatherIndex(d, t_.ay.data(), at)};
+    search.b = {hn::GatherIndex(d, t_.bx.data(), at), hn::GatherIndex(d, t_.by.data(), at)};
+    const V error = hn::GatherIndex(d, t_.error.data(), at);
+    hn::ScatterIndex(set(kInfinity), d, t_.squared.data(), at);  // it has its line
     constexpr double u = sizeof(T) == 4 ? 0x1p-24 : kUnit;
     const V room = hn::Mul(set(kRoundingRoom * u), hn::Add(magnitude(search.a, search.b), radius_));
     const V size = hn::Mul(error, set(1.0 / kSupportError));
@@ -360,17 +377,17 @@ class EdgeLanes {
     const std::size_t used = used_;
     used_ = 0;
     for (std::size_t k = 0; k < used; ++k) {
-      const std::size_t at = row_at_[k];
-      const double number = row_number_[k];
-      const Vec a = {hn::Load(d, t_.ax + at), hn::Load(d, t_.ay + at)};
-      const Vec b = {hn::Load(d, t_.bx + at), hn::Load(d, t_.by + at)};
-      const V support = support_above(normal_, length_, a, b, hn::Load(d, t_.error + at));
+      const std::size_t at = t_.row_at[k];
+      const double number = t_.row_number[k];
+      const Vec a = {hn::Load(d, &t_.ax[at]), hn::Load(d, &t_.ay[at])};
+      const Vec b = {hn::Load(d, &t_.bx[at]), hn::Load(d, &t_.by[at])};
+      const V support = support_above(normal_, length_, a, b, hn::Load(d, &t_.error[at]));
       const M excluded = hn::Le(support, threshold_);
-      const V squared = hn::IfThenElse(excluded, set(kInfinity), hn::Load(d, t_.squared + at));
-      hn::Store(squared, d, t_.squared + at);
+      const V squared = hn::IfThenElse(excluded, set(kInfinity), hn::Load(d, &t_.squared[at]));
+      hn::Store(squared, d, &t_.squared[at]);
       take_if_nearer(squared, set(number));
-      row_at_[used_] = static_cast<std::uint32_t>(at);
-      row_number_[used_] = number;
+      t_.row_at[used_] = static_cast<std::uint32_t>(at);
+      t_.row_number[used_] = number;
       used_ += hn::AllFalse(d, hn::Lt(squared, set(kInfinity))) ? 0 : 1;
     }
   }
@@ -385,9 +402,6 @@ class EdgeLanes {
   Vec normal_;                 ///< of the last lines
   V length_;                   ///< |normal|
   V threshold_;  ///< edges with support values up to it are excluded; minus infinity where the robot touches
-  /// Where rows begin that a lane still has an edge in; the same as numbers, to be broadcast.
-  std::uint32_t row_at_[kMostPackEdges];
-  double row_number_[kMostPackEdges];
 };
 
 template <class T>
@@ -414,12 +428,27 @@ namespace exactvo::formation::crowd {
 HWY_EXPORT(float_edges);
 HWY_EXPORT(double_edges);
 
+namespace {
+
+void make_room(const std::int32_t (&counts)[kPack], EdgePackTable& table) {
+  const auto rows = static_cast<std::size_t>(*std::max_element(counts, counts + kPack));
+  if (table.row_at.size() >= rows) return;
+  for (auto* field : {&table.ax, &table.ay, &table.bx, &table.by, &table.error, &table.squared})
+    field->resize(rows * kPack);
+  table.row_at.resize(rows);
+  table.row_number.resize(rows);
+}
+
+}  // namespace
+
 std::uint32_t make_edge_lines(const EdgePackQuery<float>& query, EdgePackTable& table,
                               const EdgePackLines<float>& out) {
+  make_room(query.count, table);
   return HWY_DYNAMIC_DISPATCH(float_edges)(query, table, out);
 }
 std::uint32_t make_edge_lines(const EdgePackQuery<double>& query, EdgePackTable& table,
                               const EdgePackLines<double>& out) {
+  make_room(query.count, table);
   return HWY_DYNAMIC_DISPATCH(double_edges)(query, table, out);
 }
 

@@ -2,12 +2,11 @@
 #pragma once
 
 /// \file
-/// By what half-planes against edges and bodies are rounded to the safe side: constants, the same for one robot and for
-/// a pack, and the rounding of one robot's normals.
+/// By what half-planes against edges and bodies are rounded to the safe side.
 
 #include <cmath>
 
-#include "crowd/edges.h"
+#include "exactvo/geometry/vec2.h"
 
 namespace exactvo::formation::crowd::edge_rounding {
 
@@ -44,21 +43,6 @@ inline constexpr double kCutRanges = 2.0;
 inline geometry::Vec2 direction(geometry::Vec2 a) {
   const double squared = geometry::squared_norm(a);
   return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : geometry::Vec2{};
-}
-
-/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
-[[gnu::noinline]] inline double rounded_to_float(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
-inline geometry::Vec2 rounded_to_floats(geometry::Vec2 v) {
-  return {rounded_to_float(v.x), rounded_to_float(v.y)};
-}
-
-/// With a normal of the precision asked for, and no offset yet.
-inline ObstacleLine line_with(geometry::Vec2 normal, const ObstacleQuery& query) {
-  ObstacleLine line;
-  line.normal = query.float_normals ? rounded_to_floats(normal) : normal;
-  return line;
 }
 
 }  // namespace exactvo::formation::crowd::edge_rounding

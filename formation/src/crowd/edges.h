@@ -2,14 +2,8 @@
 #pragma once
 
 /// \file
-/// Static edges: which are near a robot, and half-planes that keep it off them.
-///
-/// Every cell of a grid lists all edges within reach of any of its points, so that a robot asks one cell. Each edge is
-/// a segment of its own, seen from both sides. With a and b its ends seen from the robot, r the radius and h(n) =
-/// max(n.a, n.b) + r |n|, the half-plane n.v >= c excludes what meets the edge within the horizon t iff h(n) <= 0 and
-/// h(n) <= t c: for any n (docs/guide/velocity-obstacles.md). The best of finitely many n is that at which the velocity
-/// is deepest inside; the nearest edge comes first, and an edge that an earlier half-plane provably excludes needs
-/// none.
+/// Static edges by place: every cell of a grid lists all edges within reach of any of its points, so that a robot asks
+/// one cell.
 
 #include <cstdint>
 #include <utility>
@@ -31,14 +25,7 @@ class EdgeGrid {
   void lay_out(double reach);
   std::size_t bytes() const;
 
-  /// Calls what(number of an edge) for each within reach of p, and for some beyond.
-  template <class Do>
-  void for_near(Vec2 p, const Do& what) const {
-    const Range cell = near(p);
-    for (std::uint32_t k = cell.first; k < cell.last; ++k) what(items_[k]);
-  }
-
-  /// Where in `items` the edges of p's cell stand.
+  /// Where in `items` the edges of p's cell stand: all within reach of p, and some beyond.
   struct Range {
     std::uint32_t first = 0, last = 0;
   };
@@ -60,32 +47,5 @@ class EdgeGrid {
   Vec2 low_;
   double cell_ = 1.0, per_cell_ = 1.0, columns_ = 0.0, rows_ = 0.0, reach_ = 0.0;
 };
-
-/// The robot that asks for half-planes against edges and bodies.
-struct ObstacleQuery {
-  std::int32_t x = 0, y = 0;   ///< lattice, of `position`
-  Vec2 position, velocity;     ///< m, m/s
-  double radius = 0.0;         ///< m
-  double still_horizon = 0.0;  ///< s, of edges and bodies at rest
-  double horizon = 0.0;        ///< s, of bodies that move
-  double max_speed = 0.0;      ///< m/s
-  bool float_normals = false;  ///< normals are to be floats
-};
-
-/// A half-plane against an edge or a body.
-struct ObstacleLine {
-  Vec2 normal;                 ///< of the precision asked for
-  double offset = 0.0;         ///< m/s, rounded up; <= 0 against what stands still
-  std::uint32_t obstacle = 0;  ///< number of the edge or body
-  bool touching = false;       ///< the disc meets it, or all but: nothing is promised of an edge
-};
-
-/// An edge by its squared distance, m^2, and its place in the grid's items.
-using NearEdge = std::pair<double, std::uint32_t>;
-
-/// Half-planes against all edges that can be met within the horizon, nearest first. Certified: a velocity that
-/// satisfies them all meets no edge within it that is not touching. `near` is scratch.
-void edge_lines(const EdgeGrid& grid, const ObstacleQuery& query, std::vector<NearEdge>& near,
-                std::vector<ObstacleLine>& out);
 
 }  // namespace exactvo::formation::crowd

@@ -2,7 +2,6 @@
 #include "crowd/engine.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -21,10 +20,6 @@ namespace {
 /// A preference beyond it is refused.
 constexpr double kFastestPreference = 0x1p20;
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 void add(StepReport& sum, const StepReport& more) {
   using R = StepReport;
   for (const auto count : {&R::robots, &R::neighbours, &R::relaxed, &R::touching, &R::widened, &R::nudged, &R::edges,
@@ -37,21 +32,6 @@ void add(CrowdPhases& sum, const CrowdPhases& more) {
   for (const auto phase : {&P::sort, &P::search, &P::edges, &P::lines, &P::solve, &P::finish})
     sum.*phase += more.*phase;
 }
-
-/// Adds the time it lives to a phase, where phases are timed.
-class Timed {
- public:
-  Timed(bool on, double& phase) : phase_(on ? &phase : nullptr), start_(on ? seconds() : 0.0) {}
-  ~Timed() {
-    if (phase_) *phase_ += seconds() - start_;
-  }
-  Timed(const Timed&) = delete;
-  Timed& operator=(const Timed&) = delete;
-
- private:
-  double* phase_;
-  double start_;
-};
 
 }  // namespace
 
@@ -70,8 +50,6 @@ struct CrowdScratch {
   std::int32_t hard[kSlots];    ///< lines that are never relaxed
   std::int32_t moving[kSlots];  ///< lines against bodies that move
   OneRobotBuffers<T> one;
-  EdgePackQuery<T> edge_query;
-  EdgePackTable edge_table;
   alignas(64) T edge_x[kRobotRows], edge_y[kRobotRows], edge_c[kRobotRows];  ///< of a group, by number and slot
   alignas(64) T moving_x[kMostMoving * kSlots], moving_y[kMostMoving * kSlots], moving_c[kMostMoving * kSlots];
   StepReport counts;
@@ -83,19 +61,7 @@ class CrowdEngine final : public CrowdCore {
  public:
   explicit CrowdEngine(const CrowdOptions& given) : CrowdCore(given) { take_kinds(); }
 
-  void take_kinds() override {
-    table_ = kind_table<T>(options, kinds);
-    rule_.position_step = static_cast<T>(options.position_step);
-    rule_.velocity_step = static_cast<T>(table_.velocity_step);
-    rule_.inverse_step = static_cast<T>(1.0 / table_.velocity_step);
-    rule_.inverse_time = static_cast<T>(1.0 / options.time_step);
-    rule_.lattice_slack = table_.lattice_slack;
-    rule_.certified = options.certified;
-    rule_.mixed = kinds.size() > 1;
-    rule_.radius = table_.radius.data();
-    rule_.inverse_horizon = table_.inverse_horizon.data();
-    rule_.least_offset = table_.least_offset.data();
-  }
+  void take_kinds() override { table_ = kind_table<T>(options, kinds); }
 
   void set_preferred(const std::vector<Vec2>& by_id) override {
     for (std::size_t i = 0; i < robots.size(); ++i)
@@ -150,7 +116,7 @@ class CrowdEngine final : public CrowdCore {
     const CrowdDecision d = one_.decide(robot, words.preferred, s.one, &words);
     words.chosen = velocity_of(d.motion.mx, d.motion.my);
     words.kept = d.motion.kept;
-    words.widened = d.widened;
+    words.widened = d.counts.widened > 0;
     return words;
   }
 
@@ -175,8 +141,6 @@ class CrowdEngine final : public CrowdCore {
     for (const StepReport& r : reports) add(report, r);
   }
 
-  std::size_t kind_of(std::size_t robot) const { return robots.kind(robot); }
-
   void require_preference(Vec2 v, std::size_t robot) const {
     if (geometry::is_finite(v) && std::max(std::fabs(v.x), std::fabs(v.y)) < kFastestPreference) return;
     const bool finite = geometry::is_finite(v);
@@ -186,14 +150,16 @@ class CrowdEngine final : public CrowdCore {
   }
 
   /// What set_preferred was told, nothing: 0.
-  T told(std::size_t place) const { return place < preferred_.size() ? preferred_[place] : T(0); }
-
-  std::size_t place_of_told(std::size_t robot) const { return 2 * static_cast<std::size_t>(robots.id[robot]); }
+  Vec2 told(std::size_t robot) const {
+    const std::size_t at = 2 * static_cast<std::size_t>(robots.id[robot]);
+    if (at >= preferred_.size()) return {};
+    return {static_cast<double>(preferred_[at]), static_cast<double>(preferred_[at + 1])};
+  }
 
   Vec2 preferred_of(std::size_t robot, Scratch& s) const {
-    if (steering) return ask_steering(robot, robot + 1, s), s.preferred[0];
-    const std::size_t place = place_of_told(robot);
-    return {static_cast<double>(told(place)), static_cast<double>(told(place + 1))};
+    if (!steering) return told(robot);
+    ask_steering(robot, robot + 1, s);
+    return s.preferred[0];
   }
 
   /// Into s.preferred, from `first` on.
@@ -220,15 +186,10 @@ class CrowdEngine final : public CrowdCore {
     if (steering) ask_steering(packs[0].begin, packs[count - 1].end, s);
     for (std::size_t p = 0; p < count; ++p) {
       const std::size_t slot = p * kPack, begin = packs[p].begin, size = packs[p].size();
-      for (std::size_t lane = 0; steering && lane < size; ++lane) {
-        const Vec2 v = s.preferred[begin - packs[0].begin + lane];
+      for (std::size_t lane = 0; lane < size; ++lane) {
+        const Vec2 v = steering ? s.preferred[begin - packs[0].begin + lane] : told(begin + lane);
         s.px[slot + lane] = static_cast<T>(v.x);
         s.py[slot + lane] = static_cast<T>(v.y);
-      }
-      for (std::size_t lane = 0; !steering && lane < size; ++lane) {
-        const std::size_t place = place_of_told(begin + lane);
-        s.px[slot + lane] = told(place);
-        s.py[slot + lane] = told(place + 1);
       }
       for (std::size_t lane = size; lane < kPack; ++lane) s.px[slot + lane] = s.py[slot + lane] = T(0);
       put_by_kind(packs[p], table_.disc, T(1), s.disc + slot);
@@ -238,8 +199,8 @@ class CrowdEngine final : public CrowdCore {
   /// Of each lane what a table says of its kind; `otherwise` where nobody is.
   void put_by_kind(const Pack& pack, const std::vector<T>& table, T otherwise, T* by_lane) const {
     std::fill(by_lane, by_lane + kPack, table[0]);
-    for (std::size_t lane = 0; rule_.mixed && lane < pack.size(); ++lane)
-      by_lane[lane] = table[kind_of(pack.begin + lane)];
+    for (std::size_t lane = 0; table_.is_mixed() && lane < pack.size(); ++lane)
+      by_lane[lane] = table[robots.kind(pack.begin + lane)];
     for (std::size_t lane = pack.size(); lane < kPack; ++lane) by_lane[lane] = otherwise;
   }
 
@@ -280,7 +241,7 @@ class CrowdEngine final : public CrowdCore {
     query.mx = &robots.mx[pack.begin];
     query.my = &robots.my[pack.begin];
     query.kind = s.found.limits.kind;
-    const LineFlags flags = make_lines(rule_, query, robot_rows(s, slot));
+    const LineFlags flags = make_lines(table_, query, robot_rows(s, slot));
     const std::uint32_t lanes = pack.lanes();
     pack.alone |= flags.coincident & lanes;
     pack.touching = flags.touching & lanes & ~pack.alone;
@@ -297,20 +258,15 @@ class CrowdEngine final : public CrowdCore {
 
   // --- Edges ---
 
-  /// Of a group, by number and slot.
-  struct GroupLines {
-    const T *x, *y, *c;
-  };
-
   static std::size_t most_of(const std::int32_t* counts, std::size_t packs) {
     return static_cast<std::size_t>(*std::max_element(counts, counts + packs * kPack));
   }
 
   /// Into the rows at `first` and after; slots with fewer lines get some that hold everywhere.
-  static void put_rows(const GroupLines& from, const std::int32_t* counts, std::size_t rows, std::size_t first,
+  static void put_rows(const LineRows<T>& from, const std::int32_t* counts, std::size_t rows, std::size_t first,
                        std::size_t packs, Scratch& s) {
     for (std::size_t k = 0; k < rows; ++k) {
-      const std::size_t to = first + k * kSlots, row = k * kSlots;
+      const std::size_t to = first + k * kSlots, row = k * from.stride;
       for (std::size_t slot = 0; slot < packs * kPack; ++slot) {
         const bool there = static_cast<std::int32_t>(k) < counts[slot];
         s.x[to + slot] = there ? from.x[row + slot] : T(1);
@@ -332,7 +288,7 @@ class CrowdEngine final : public CrowdCore {
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
     const std::size_t rows = most_of(s.hard, count);
-    put_rows({s.edge_x, s.edge_y, s.edge_c}, s.hard, rows, kRobotRows - rows * kSlots, count, s);
+    put_rows({s.edge_x, s.edge_y, s.edge_c, kSlots}, s.hard, rows, kRobotRows - rows * kSlots, count, s);
     return rows;
   }
 
@@ -341,7 +297,7 @@ class CrowdEngine final : public CrowdCore {
     std::int32_t* const lines = s.hard + slot;
     if (!ask_edges(pack, s)) return;
     const EdgePackLines<T> out{s.edge_x + slot, s.edge_y + slot, s.edge_c + slot, kSlots, lines};
-    const std::uint32_t overflow = make_edge_lines(s.edge_query, s.edge_table, out);
+    const std::uint32_t overflow = make_edge_lines(s.one.edge_query, s.one.edge_table, out);
     for (std::size_t lane = 0; lane < pack.size(); ++lane) {
       if (overflow >> lane & 1U) be_alone(pack, lane, s);
       s.counts.edges += static_cast<std::size_t>(lines[lane]);
@@ -377,38 +333,18 @@ class CrowdEngine final : public CrowdCore {
   std::size_t moving_of(std::size_t count, std::size_t first, Scratch& s) const {
     if (bodies.empty()) return 0;
     const std::size_t rows = most_of(s.moving, count);
-    put_rows({s.moving_x, s.moving_y, s.moving_c}, s.moving, rows, first, count, s);
+    put_rows({s.moving_x, s.moving_y, s.moving_c, kSlots}, s.moving, rows, first, count, s);
     return rows;
   }
 
-  /// Writes s.edge_query; whether a lane has edges nearby. Whoever has too many for a pack is decided alone.
-  bool ask_edges(Pack& pack, Scratch& s) const {
-    EdgePackQuery<T>& query = s.edge_query;
-    query.edges = edges.edges().data();
-    query.items = edges.items().data();
-    query.slack = table_.lattice_slack;
-    std::uint32_t any = 0;
+  /// Writes s.one.edge_query; whether a lane has edges nearby.
+  bool ask_edges(const Pack& pack, Scratch& s) const {
+    EdgePackQuery<T>& query = s.one.edge_query;
+    std::int32_t any = 0;
     for (std::size_t lane = 0; lane < kPack; ++lane) {
-      const std::size_t robot = pack.begin + std::min(lane, pack.size() - 1), kind = kind_of(robot);
-      const Vec2 velocity = velocity_of(robots.mx[robot], robots.my[robot]);
-      query.x[lane] = options.position_step * robots.x[robot];
-      query.y[lane] = options.position_step * robots.y[robot];
-      query.vx[lane] = velocity.x;
-      query.vy[lane] = velocity.y;
-      query.radius[lane] = kinds[kind].radius;
-      query.horizon[lane] = edge_horizon(kinds[kind]);
-      query.max_speed[lane] = kinds[kind].max_speed;
-      query.least[lane] = table_.least_offset[kind];
-      query.first[lane] = query.count[lane] = 0;
-      if (lane >= pack.size() || (pack.alone >> lane & 1U)) continue;
-      const EdgeGrid::Range near = edges.near({query.x[lane], query.y[lane]});
-      if (near.last - near.first > kMostPackEdges) {
-        be_alone(pack, lane, s);
-        continue;
-      }
-      query.first[lane] = static_cast<std::int32_t>(near.first);
-      query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
-      any |= near.last - near.first;
+      query.count[lane] = 0;
+      if (lane < pack.size() && !(pack.alone >> lane & 1U)) one_.ask_edges(pack.begin + lane, lane, query);
+      any |= query.count[lane];
     }
     return any != 0;
   }
@@ -471,7 +407,7 @@ class CrowdEngine final : public CrowdCore {
       put_by_kind(pack, table_.allowed, T(0), allowed);
       const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at,        s.y + at, s.c + at,
                           lines,       kSlots,      s.status + slot, allowed};
-      const std::uint32_t kept = round_to_lattice(rule_, in, rounded) & ~pack.alone;
+      const std::uint32_t kept = round_to_lattice(table_, in, rounded) & ~pack.alone;
       take_all(pack, rounded, kept);
       for (std::uint32_t rest = pack.lanes() & ~kept; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
@@ -513,11 +449,7 @@ class CrowdEngine final : public CrowdCore {
   void take(std::size_t robot, const CrowdDecision& d, Scratch& s) {
     take(robot, d.motion, s);
     robots.hint[robot] = d.hint;
-    s.counts.touching += d.touching;
-    s.counts.widened += d.widened;
-    s.counts.neighbours += d.neighbours;
-    s.counts.edges += d.edges;
-    s.counts.bodies += d.bodies;
+    add(s.counts, d.counts);
   }
 
   static Answers<T> offset(Answers<T> a, std::size_t lane) {
@@ -526,16 +458,13 @@ class CrowdEngine final : public CrowdCore {
   }
 
   KindTable<T> table_;
-  LineRule<T> rule_;
-  const OneRobot<T> one_{*this, table_, rule_};
+  const OneRobot<T> one_{*this, table_};
   Array<T> preferred_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };
 
-std::unique_ptr<CrowdCore> make_float_core(const CrowdOptions& options) {
-  return std::make_unique<CrowdEngine<float>>(options);
-}
-std::unique_ptr<CrowdCore> make_double_core(const CrowdOptions& options) {
+std::unique_ptr<CrowdCore> make_core(const CrowdOptions& options) {
+  if (options.precision == CrowdPrecision::float_lines) return std::make_unique<CrowdEngine<float>>(options);
   return std::make_unique<CrowdEngine<double>>(options);
 }
 

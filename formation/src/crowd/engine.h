@@ -8,6 +8,7 @@
 /// alone, with any number of neighbours: where it stands too densely for a pack, where more can be met within the step
 /// than its kind has neighbours, where another stands in its very place, and for `explain`.
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -57,7 +58,26 @@ inline double edge_horizon(const CrowdKind& kind) {
   return kind.edge_horizon > 0.0 ? kind.edge_horizon : kind.time_horizon;
 }
 
-std::unique_ptr<CrowdCore> make_float_core(const CrowdOptions& options);
-std::unique_ptr<CrowdCore> make_double_core(const CrowdOptions& options);
+/// Of the precision that the options ask for.
+std::unique_ptr<CrowdCore> make_core(const CrowdOptions& options);
+
+/// Adds the time it lives to a phase, where phases are timed.
+class Timed {
+ public:
+  Timed(bool on, double& phase) : phase_(on ? &phase : nullptr), start_(on ? now() : 0.0) {}
+  ~Timed() {
+    if (phase_) *phase_ += now() - start_;
+  }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  double* phase_;
+  double start_;
+};
 
 }  // namespace exactvo::formation

@@ -42,6 +42,10 @@ KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind
   }
   KindTable<T> table;
   table.velocity_step = q / dt;
+  table.position_step = static_cast<T>(q);
+  table.inverse_step = static_cast<T>(1.0 / table.velocity_step);
+  table.inverse_time = static_cast<T>(1.0 / dt);
+  table.certified = options.certified;
   table.nearby = kNearby / q;
   if (options.certified) {
     table.lattice_slack = static_cast<T>(kSlackSteps * q / dt + 2.0 * kCheckUnits * u * fastest);

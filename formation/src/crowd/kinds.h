@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What the engine looks up by kind, in its own arithmetic and rounded to the safe side.
+/// What the engine looks up, most of it by kind, in its own arithmetic and rounded to the safe side.
 
 #include <cmath>
 #include <cstdint>
@@ -36,6 +36,13 @@ struct KindTable : ReachTable {
   T lattice_slack = 0;             ///< m/s, in every offset
   double spare = 0.0;  ///< m/s, how much of it the rounding to the lattice may use up; the rest covers underflow
   double velocity_step = 0.0;  ///< m/s, q / dt
+  T position_step = 0;         ///< m
+  T inverse_step = 0;          ///< dt / q
+  T inverse_time = 0;          ///< 1/s, 1 / dt
+  bool certified = true;       ///< offsets are rounded up
+
+  /// m/s: what a motion of one lattice step is taken for.
+  T unit() const { return static_cast<T>(velocity_step); }
 };
 
 template <class T>

@@ -30,8 +30,18 @@ inline constexpr std::size_t kMostMoving = 4;
 inline constexpr std::size_t kPadding = 64;
 /// Coordinates stay below it, so that differences fit 32 bits.
 inline constexpr std::int32_t kLatticeEnd = 1 << 30;
+/// Lattice steps of a robot or a body in a time step.
+inline constexpr double kLongestMotion = 0x1p22;
 /// An offset that always holds.
 inline constexpr double kNever = -1e30;
+
+/// m: the finest lattice that reaches so far and whose steps are long enough for the longest way in a time step, both
+/// m.
+inline double lattice_for(double reach, double way) {
+  double step = 0x1p-18;
+  while (step < 1.0 && (reach >= kLatticeEnd * step || way > kLongestMotion * step)) step *= 2.0;
+  return step;
+}
 
 /// Begins with a line of the cache.
 template <class A>
@@ -80,21 +90,6 @@ struct LaneFinds {
   int neighbours = 0;                ///< of all lanes
   std::uint32_t unseen = 0;          ///< bit `lane`: the last neighbour is farther than `seen`, or is missing
   std::uint32_t crowded = 0;         ///< has as many as it wants, and could meet all of them within the step
-};
-
-/// What every half-plane of a crowd has in common.
-template <class T>
-struct LineRule {
-  T position_step = 0;  ///< m
-  T velocity_step = 0;  ///< m/s, q / dt rounded: what a motion of one lattice step is taken for
-  T inverse_step = 0;   ///< dt / q
-  T inverse_time = 0;   ///< 1/s, 1 / dt
-  T lattice_slack = 0;  ///< m/s: room for the rounding of velocities to the lattice
-  bool certified = true;
-  bool mixed = false;                  ///< more than one kind
-  const T* radius = nullptr;           ///< m, by kind, rounded up
-  const T* inverse_horizon = nullptr;  ///< 1/s, by kind
-  const T* least_offset = nullptr;     ///< m/s, by kind: below it an offset never binds
 };
 
 /// Up to kPack robots whose half-planes are made, rank by rank. The robots' own arrays are read to kPack.

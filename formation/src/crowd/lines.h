@@ -5,14 +5,15 @@
 /// The half-planes of up to sixteen robots, in the layout that the linear program reads, and its answers on the
 /// lattice.
 
+#include "crowd/kinds.h"
 #include "crowd/layout.h"
 
 namespace exactvo::formation::crowd {
 
-/// Half-planes of the ranks of the query; lanes without a neighbour at a rank get (1, 0), kNever. Certified
-/// (pair_line.h): satisfied with `lattice_slack` to spare they are safe.
-LineFlags make_lines(const LineRule<float>& rule, const LineQuery& query, const LineRows<float>& out);
-LineFlags make_lines(const LineRule<double>& rule, const LineQuery& query, const LineRows<double>& out);
+/// Half-planes of the ranks of the query; lanes without a neighbour at a rank get (1, 0), kNever. Certified: satisfied
+/// with `lattice_slack` to spare they are safe.
+LineFlags make_lines(const KindTable<float>& table, const LineQuery& query, const LineRows<float>& out);
+LineFlags make_lines(const KindTable<double>& table, const LineQuery& query, const LineRows<double>& out);
 
 /// Answers of the linear program, by lane.
 template <class T>
@@ -31,7 +32,7 @@ struct Rounded {
 
 /// Velocities rounded to whole motions. Bit `lane`: kept, max c - n.v, computed in T, is not above what is allowed; of
 /// lines that are not certified: the status is 0.
-std::uint32_t round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded& out);
-std::uint32_t round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded& out);
+std::uint32_t round_to_lattice(const KindTable<float>& table, const Answers<float>& answers, Rounded& out);
+std::uint32_t round_to_lattice(const KindTable<double>& table, const Answers<double>& answers, Rounded& out);
 
 }  // namespace exactvo::formation::crowd

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/one_robot.h"
 
+#include <cmath>
 #include <limits>
 
+#include "crowd/packs.h"
 #include "exactvo/vo/lp/batch.h"
 
 namespace exactvo::formation {
@@ -10,6 +12,59 @@ namespace exactvo::formation {
 using namespace crowd;
 
 namespace {
+
+/// Of a squared reach: above what squared distances in float are rounded by.
+constexpr double kFarthest = 1.0 + 0x1p-16;
+
+/// Everybody nearer than `reach` (lattice steps), and maybe some beyond, by the order of neighbours.
+void everybody_near(const Robots& robots, std::size_t robot, double reach, std::vector<Near>& near) {
+  const Window at{robots.x[robot], robots.x[robot], robots.y[robot], robots.y[robot]};
+  const Cells cells = robots.cells_of(grown(at, reach));
+  const auto farthest = static_cast<float>(reach * reach * kFarthest);
+  near.clear();
+  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
+    const Stretch stretch = robots.stretch(cells, row);
+    for (std::size_t j = stretch.from; j < stretch.to; ++j) {
+      if (j == robot) continue;
+      const auto dx = static_cast<float>(robots.x[j] - robots.x[robot]),
+                 dy = static_cast<float>(robots.y[j] - robots.y[robot]);
+      const float squared = without_number(dx * dx + dy * dy);
+      if (squared <= farthest) near.emplace_back(squared, static_cast<std::int32_t>(j));
+    }
+  }
+  std::sort(near.begin(), near.end());
+}
+
+/// Into `near`, nearest first: the k nearest, k the number of neighbours of the robot's kind, and all that can be met
+/// within the step, by the order that packs have (packs.h). `last`: the squared distance (lattice steps) of the k-th.
+/// True where k or more can be met.
+bool neighbours_of(const Robots& robots, const ReachTable& table, std::size_t robot, std::vector<Near>& near,
+                   float& last) {
+  const std::size_t kind = robots.kind(robot);
+  const auto most = static_cast<std::size_t>(table.neighbours[kind]);
+  double reach = std::min(table.window[kind], kFirstReach * robots.hint[robot] + table.nearby);
+  reach = std::max(reach, std::sqrt(static_cast<double>(table.reach[kind])) * (1.0 + 0x1p-10));
+  for (;; reach = std::min(table.window[kind], reach * kWiderReach)) {
+    everybody_near(robots, robot, reach, near);
+    const bool full = near.size() >= most && static_cast<double>(near[most - 1].first) <= reach * reach * kWholeKey;
+    if (full || reach >= table.window[kind]) break;
+  }
+  last = near.size() >= most ? near[most - 1].first : table.none[kind];
+  std::size_t count = 0;
+  while (count < near.size() && near[count].first < table.none[kind] &&
+         (count < most || near[count].first < table.reach[kind]))
+    ++count;
+  near.resize(count);
+  return count > most || (count == most && last < table.reach[kind]);
+}
+
+/// Lattice steps, from the squared distance of the last neighbour: what the next step's search begins with.
+std::int32_t hint_of(const ReachTable& table, float key, std::size_t kind) {
+  const double most = table.window[kind];
+  if (!(key < table.none[kind])) return static_cast<std::int32_t>(std::min(most, 0x1p30));
+  const double distance = static_cast<double>(std::sqrt(float_of(bits_of(key) & ~kIndexBits)));
+  return static_cast<std::int32_t>(std::min({distance, most, 0x1p30}));
+}
 
 // Motions near the answer of the linear program that keep half-planes which the nearest one, by rounding, does not.
 
@@ -54,29 +109,32 @@ bool nudge(const KindTable<T>& table, const Answers<T>& in, double max_speed, st
 template <class T>
 CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const {
   CrowdDecision d{};
+  StepReport& counts = d.counts;
   float last = 0;
-  d.widened = neighbours_of(crowd_.robots, table_, robot, b.near, last);
+  counts.widened = neighbours_of(crowd_.robots, table_, robot, b.near, last);
   d.hint = hint_of(table_, last, crowd_.robots.kind(robot));
-  edge_lines(crowd_.edges, query_of(robot), b.near_edges, b.edge_lines);
+  counts.edges = lines_of_edges(robot, b);
   b.body_lines.clear();
   b.still = 0;
   if (!crowd_.bodies.empty()) lines_of_bodies(robot, b);
-  d.neighbours = b.near.size();
-  d.edges = b.edge_lines.size();
-  d.bodies = b.body_lines.size();
-  const std::size_t lines = d.edges + d.bodies + d.neighbours, rows = std::max<std::size_t>(1, lines);
+  counts.bodies = b.body_lines.size();
+  counts.neighbours = b.near.size();
+  const std::size_t hard = counts.edges + b.still, lines = counts.edges + counts.bodies + counts.neighbours;
+  const std::size_t rows = std::max<std::size_t>(1, lines);
   b.row_x.assign(rows * kPack, T(1));
   b.row_y.assign(rows * kPack, T(0));
   b.row_c.assign(rows * kPack, static_cast<T>(kNever));
-  put_obstacles(robot, b, words);
-  for (std::size_t k = 0; k < b.near.size(); k += kPack) d.touching |= put_neighbours(robot, k, b, words);
-  d.motion = solve(robot, preferred, lines, static_cast<std::int32_t>(d.edges + b.still), b);
+  put_obstacles(robot, counts.edges, b, words);
+  bool touches = false;
+  for (std::size_t k = 0; k < b.near.size(); k += kPack) touches |= put_neighbours(robot, k, hard + k, b, words);
+  counts.touching = touches;
+  d.motion = solve(robot, preferred, lines, static_cast<std::int32_t>(hard), b);
   return d;
 }
 
 template <class T>
 ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
-  const CrowdKind& kind = crowd_.kinds[crowd_.robots.kind(robot)];
+  const CrowdKind& kind = kind_of(robot);
   const Robots& robots = crowd_.robots;
   ObstacleQuery query;
   query.x = robots.x[robot];
@@ -92,37 +150,77 @@ ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
 }
 
 template <class T>
+void OneRobot<T>::ask_edges(std::size_t robot, std::size_t lane, EdgePackQuery<T>& query) const {
+  const ObstacleQuery own = query_of(robot);
+  const EdgeGrid::Range near = crowd_.edges.near(own.position);
+  query.edges = crowd_.edges.edges().data();
+  query.items = crowd_.edges.items().data();
+  query.slack = table_.lattice_slack;
+  query.first[lane] = static_cast<std::int32_t>(near.first);
+  query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
+  if (near.first == near.last) return;  // the rest of the lane may be anything
+  query.x[lane] = own.position.x;
+  query.y[lane] = own.position.y;
+  query.vx[lane] = own.velocity.x;
+  query.vy[lane] = own.velocity.y;
+  query.radius[lane] = own.radius;
+  query.horizon[lane] = own.still_horizon;
+  query.max_speed[lane] = own.max_speed;
+  query.least[lane] = table_.least_offset[crowd_.robots.kind(robot)];
+}
+
+/// Into b.edge_x and so on; how many.
+template <class T>
+std::size_t OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
+  if (crowd_.edges.empty()) return 0;
+  std::fill(b.edge_query.count, b.edge_query.count + kPack, 0);
+  ask_edges(robot, 0, b.edge_query);
+  const auto most = static_cast<std::size_t>(b.edge_query.count[0]);
+  for (auto* row : {&b.edge_x, &b.edge_y, &b.edge_c}) row->resize(most * kPack);
+  b.edge.resize(most * kPack);
+  b.edge_touching.resize(most * kPack);
+  std::int32_t lines[kPack];
+  make_edge_lines(b.edge_query, b.edge_table,
+                  EdgePackLines<T>{b.edge_x.data(), b.edge_y.data(), b.edge_c.data(), kPack, lines, most, b.edge.data(),
+                                   b.edge_touching.data()});
+  return static_cast<std::size_t>(lines[0]);
+}
+
+template <class T>
 void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
   b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
 }
 
-/// Returns the half-plane without what covers the rounding to the lattice.
+/// The half-plane of a row, without what covers the rounding to the lattice.
 template <class T>
-geometry::HalfPlane OneRobot<T>::put_row(const ObstacleLine& line, std::size_t robot, std::size_t row,
-                                         Buffers& b) const {
-  const std::size_t to = row * kPack;
-  put(line, robot, b.row_x[to], b.row_y[to], b.row_c[to]);
-  return {line.normal, static_cast<double>(b.row_c[to]) - table_.spare};
+geometry::HalfPlane OneRobot<T>::half_plane(std::size_t row, const Buffers& b) const {
+  const std::size_t at = row * kPack;
+  return {{static_cast<double>(b.row_x[at]), static_cast<double>(b.row_y[at])},
+          static_cast<double>(b.row_c[at]) - table_.spare};
 }
 
 template <class T>
-void OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const {
-  for (std::size_t k = 0; k < b.edge_lines.size(); ++k) {
-    const ObstacleLine& line = b.edge_lines[k];
-    const geometry::HalfPlane h = put_row(line, robot, k, b);
-    if (words) words->edges.push_back({crowd_.edges.edges()[line.obstacle], h, line.touching});
+void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const {
+  for (std::size_t k = 0; k < edges; ++k) {
+    const std::size_t at = k * kPack;
+    b.row_x[at] = b.edge_x[at];
+    b.row_y[at] = b.edge_y[at];
+    b.row_c[at] = b.edge_c[at];
+    if (words) words->edges.push_back({crowd_.edges.edges()[b.edge[at]], half_plane(k, b), b.edge_touching[at] != 0});
   }
   for (std::size_t k = 0; k < b.body_lines.size(); ++k) {
     const ObstacleLine& line = b.body_lines[k];
-    const std::size_t row = b.edge_lines.size() + k + (k < b.still ? 0 : b.near.size());
-    const geometry::HalfPlane h = put_row(line, robot, row, b);
-    if (words) words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, h, line.touching});
+    const std::size_t row = edges + k + (k < b.still ? 0 : b.near.size()), at = row * kPack;
+    put(line, robot, b.row_x[at], b.row_y[at], b.row_c[at]);
+    if (words) words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});
   }
 }
 
-/// The lines of neighbours `first` to `first` + 15, one per lane; whether one of them touches.
+/// The lines of neighbours `first` to `first` + 15, one per lane, into the rows from `row` on; whether one of them
+/// touches.
 template <class T>
-bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, Buffers& b, CrowdExplanation* words) const {
+bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, std::size_t row, Buffers& b,
+                                 CrowdExplanation* words) const {
   const Robots& robots = crowd_.robots;
   const std::size_t count = std::min(kPack, b.near.size() - first);
   Candidates others;
@@ -147,18 +245,17 @@ bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, Buffers& 
   }
   const LineQuery query{&others, &ranked, none, 0, 1, own[0], own[1], own[2], own[3], own[4]};
   alignas(64) T x[kPack], y[kPack], c[kPack];
-  const LineFlags flags = make_lines(rule_, query, LineRows<T>{x, y, c, kPack});
+  const LineFlags flags = make_lines(table_, query, LineRows<T>{x, y, c, kPack});
   for (std::size_t lane = 0; lane < count; ++lane) {
     const auto other = static_cast<std::size_t>(b.near[first + lane].second);
     if (flags.coincident >> lane & 1U) part(robot, other, x[lane], y[lane], c[lane]);
-    const std::size_t to = (b.edge_lines.size() + b.still + first + lane) * kPack;
+    const std::size_t to = (row + lane) * kPack;
     b.row_x[to] = x[lane];
     b.row_y[to] = y[lane];
     b.row_c[to] = c[lane];
-    if (!words) continue;
-    const geometry::HalfPlane h{{static_cast<double>(x[lane]), static_cast<double>(y[lane])},
-                                static_cast<double>(c[lane]) - table_.spare};
-    words->neighbours.push_back({static_cast<RobotId>(robots.id[other]), h, (flags.touching >> lane & 1U) != 0});
+    if (words)
+      words->neighbours.push_back(
+          {static_cast<RobotId>(robots.id[other]), half_plane(row + lane, b), (flags.touching >> lane & 1U) != 0});
   }
   return (flags.touching & ((1U << count) - 1U)) != 0;
 }
@@ -207,7 +304,7 @@ CrowdMotion OneRobot<T>::solve(std::size_t robot, Vec2 preferred, std::size_t li
   std::fill(allowed, allowed + kPack, table_.allowed[crowd_.robots.kind(robot)]);
   const Answers<T> answer{vx, vy, b.row_x.data(), b.row_y.data(), b.row_c.data(), lines, kPack, status, allowed};
   Rounded rounded;
-  const bool kept = (round_to_lattice(rule_, answer, rounded) & 1U) != 0;
+  const bool kept = (round_to_lattice(table_, answer, rounded) & 1U) != 0;
   const CrowdMotion m{rounded.mx[0], rounded.my[0], kept};
   return kept ? m : settled(robot, answer, status[0], hard, m);
 }

@@ -7,10 +7,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "crowd/edge_pack.h"
 #include "crowd/engine.h"
-#include "crowd/near.h"
 
 namespace exactvo::formation {
 
@@ -23,16 +24,21 @@ struct CrowdMotion {
 struct CrowdDecision {
   CrowdMotion motion;
   std::int32_t hint;  ///< lattice steps, for the next search
-  bool touching, widened;
-  std::size_t neighbours, edges, bodies;  ///< half-planes
+  StepReport counts;  ///< half-planes, touching, widened
 };
+
+/// A robot near another, by cut squared distance (lattice steps) and place in the sorted order.
+using Near = std::pair<float, std::int32_t>;
 
 /// Of a thread.
 template <class T>
 struct OneRobotBuffers {
-  std::vector<crowd::Near> near;
-  std::vector<crowd::NearEdge> near_edges;
-  std::vector<crowd::ObstacleLine> edge_lines;
+  std::vector<Near> near;
+  crowd::EdgePackQuery<T> edge_query;
+  crowd::EdgePackTable edge_table;
+  crowd::Array<T> edge_x, edge_y, edge_c;  ///< half-planes of edges, lane 0 of a row each
+  std::vector<std::uint32_t> edge;         ///< their numbers
+  std::vector<std::uint8_t> edge_touching;
   std::vector<std::uint32_t> near_bodies;
   std::vector<crowd::ObstacleLine> body_lines;
   std::size_t still = 0;                ///< of body_lines, the first: against bodies at rest
@@ -44,12 +50,14 @@ class OneRobot {
  public:
   using Buffers = OneRobotBuffers<T>;
 
-  /// All of them are looked at when a robot is decided.
-  OneRobot(const CrowdCore& crowd, const crowd::KindTable<T>& table, const crowd::LineRule<T>& rule)
-      : crowd_(crowd), table_(table), rule_(rule) {}
+  /// Both are looked at when a robot is decided.
+  OneRobot(const CrowdCore& crowd, const crowd::KindTable<T>& table) : crowd_(crowd), table_(table) {}
 
   /// `words`: gets the half-planes, unless null.
   CrowdDecision decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const;
+
+  /// A lane of the query for the robot.
+  void ask_edges(std::size_t robot, std::size_t lane, crowd::EdgePackQuery<T>& query) const;
 
   /// Into b.body_lines and b.still.
   void lines_of_bodies(std::size_t robot, Buffers& b) const;
@@ -70,16 +78,16 @@ class OneRobot {
  private:
   const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
   crowd::ObstacleQuery query_of(std::size_t robot) const;
-  void put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const;
-  geometry::HalfPlane put_row(const crowd::ObstacleLine& line, std::size_t robot, std::size_t row, Buffers& b) const;
-  bool put_neighbours(std::size_t robot, std::size_t first, Buffers& b, CrowdExplanation* words) const;
+  std::size_t lines_of_edges(std::size_t robot, Buffers& b) const;
+  void put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const;
+  geometry::HalfPlane half_plane(std::size_t row, const Buffers& b) const;
+  bool put_neighbours(std::size_t robot, std::size_t first, std::size_t row, Buffers& b, CrowdExplanation* words) const;
   void part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const;
   CrowdMotion solve(std::size_t robot, Vec2 preferred, std::size_t lines, std::int32_t hard, const Buffers& b) const;
   CrowdMotion kept_off_edges(std::size_t robot, crowd::Answers<T> in, std::size_t hard, CrowdMotion m) const;
 
   const CrowdCore& crowd_;
   const crowd::KindTable<T>& table_;
-  const crowd::LineRule<T>& rule_;
 };
 
 }  // namespace exactvo::formation

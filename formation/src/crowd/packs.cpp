@@ -43,25 +43,6 @@ class PackSearch {
   }
 
  private:
-  Window box_of(std::size_t begin, std::size_t end, double& hint) const {
-    if (end - begin == kPack) {
-      const LaneBox box = box_of_pack(&robots_.x[begin], &robots_.y[begin], &robots_.hint[begin]);
-      hint = box.hint;
-      return {box.x0, box.x1, box.y0, box.y1};
-    }
-    const std::int32_t *x = robots_.x.data(), *y = robots_.y.data(), *hints = robots_.hint.data();
-    std::int32_t x0 = x[begin], x1 = x0, y0 = y[begin], y1 = y0, farthest = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      x0 = std::min(x0, x[i]);
-      x1 = std::max(x1, x[i]);
-      y0 = std::min(y0, y[i]);
-      y1 = std::max(y1, y[i]);
-      farthest = std::max(farthest, hints[i]);
-    }
-    hint = farthest;
-    return {x0, x1, y0, y1};
-  }
-
   double widest_window(const Pack& pack) const {
     if (!mixed_) return table_.window[0];
     double most = 0.0;
@@ -70,9 +51,11 @@ class PackSearch {
   }
 
   void place(Pack& pack, std::size_t end) const {
-    double hint = 0.0;
     pack.end = end;
-    pack.box = box_of(pack.begin, end, hint);
+    const Extent in_x = extent_of(&robots_.x[pack.begin], pack.size());
+    const Extent in_y = extent_of(&robots_.y[pack.begin], pack.size());
+    pack.box = {in_x.low, in_x.high, in_y.low, in_y.high};
+    const std::int32_t hint = extent_of(&robots_.hint[pack.begin], pack.size()).high;
     pack.reach = std::min(widest_window(pack), kFirstReach * hint + table_.nearby);
     look(pack);
   }
@@ -122,9 +105,14 @@ class PackSearch {
   void load_lanes(const Pack& pack, PackBuffers& out) const {
     LaneLimits& limits = out.limits;
     if (mixed_) {
-      for (std::size_t lane = 0; lane < kPack; ++lane)
-        limits.kind[lane] = lane < pack.size() ? static_cast<std::int32_t>(robots_.kind(pack.begin + lane)) : 0;
-      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, static_cast<std::size_t>(limits.kind[lane]));
+      for (std::size_t lane = 0; lane < kPack; ++lane) {
+        const std::size_t kind = lane < pack.size() ? robots_.kind(pack.begin + lane) : 0;
+        limits.kind[lane] = static_cast<std::int32_t>(kind);
+        limits.none[lane] = table_.none[kind];
+        limits.reach[lane] = table_.reach[kind];
+        limits.wanted[lane] = table_.neighbours[kind];
+        limits.window[lane] = table_.whole_window[kind];
+      }
     } else {
       std::fill(limits.kind, limits.kind + kPack, 0);
       std::fill(limits.none, limits.none + kPack, table_.none[0]);
@@ -133,13 +121,6 @@ class PackSearch {
       std::fill(limits.window, limits.window + kPack, table_.whole_window[0]);
     }
     for (std::size_t lane = pack.size(); lane < kPack; ++lane) limits.none[lane] = 0.0F;
-  }
-
-  void limit(LaneLimits& limits, std::size_t lane, std::size_t kind) const {
-    limits.none[lane] = table_.none[kind];
-    limits.reach[lane] = table_.reach[kind];
-    limits.wanted[lane] = table_.neighbours[kind];
-    limits.window[lane] = table_.whole_window[kind];
   }
 
   void collect(const Pack& pack, PackBuffers& out) const {

@@ -59,6 +59,8 @@ class Robots {
   Window bounds() const { return bounds_; }
 
   void reserve(std::size_t robots);
+  /// Whoever is new is to be written.
+  void resize(std::size_t robots);
   /// Gives back what is far more than robots need.
   void shrink();
   void append(std::int32_t at_x, std::int32_t at_y, std::int32_t robot, KindId kind);
@@ -96,7 +98,6 @@ class Robots {
     for (auto* field : {&x, &y, &mx, &my, &id, &hint, &next_mx, &next_my, &order_}) what(*field);
     what(tag), what(tags_scratch_), what(next_kept);
   }
-  void resize(std::size_t robots);
   void find_bounds(Tasks& tasks);
   void lay_out_cells();
   void scatter(Tasks& tasks);

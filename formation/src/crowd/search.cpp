@@ -125,20 +125,6 @@ void nearest(const Candidates& among, const LaneQuery& q, const float* none, Ran
   return nearest_in<16>(among, q.x, q.y, none, out);
 }
 
-LaneBox box_of_lanes(const std::int32_t* x, const std::int32_t* y, const std::int32_t* hint) {
-  const Words d;
-  auto x0 = hn::LoadU(d, x), x1 = x0, y0 = hn::LoadU(d, y), y1 = y0, farthest = hn::LoadU(d, hint);
-  for (std::size_t lane = hn::Lanes(d); lane < kPack; lane += hn::Lanes(d)) {
-    x0 = hn::Min(x0, hn::LoadU(d, x + lane));
-    x1 = hn::Max(x1, hn::LoadU(d, x + lane));
-    y0 = hn::Min(y0, hn::LoadU(d, y + lane));
-    y1 = hn::Max(y1, hn::LoadU(d, y + lane));
-    farthest = hn::Max(farthest, hn::LoadU(d, hint + lane));
-  }
-  return {hn::GetLane(hn::MinOfLanes(d, x0)), hn::GetLane(hn::MaxOfLanes(d, x1)), hn::GetLane(hn::MinOfLanes(d, y0)),
-          hn::GetLane(hn::MaxOfLanes(d, y1)), hn::GetLane(hn::MaxOfLanes(d, farthest))};
-}
-
 void add_near(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch& s, Candidates& to) {
   const Words words;
   const auto lowest = hn::Set(words, rule.low), highest = hn::Set(words, rule.high);
@@ -263,17 +249,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace exactvo::formation::crowd {
 
-HWY_EXPORT(box_of_lanes);
 HWY_EXPORT(add_to_table);
 HWY_EXPORT(find_and_count);
 HWY_EXPORT(count_all);
 
 int ranks_sought(int wanted) {
   return wanted <= 6 ? 6 : wanted <= 11 ? 11 : 16;
-}
-
-LaneBox box_of_pack(const std::int32_t* x, const std::int32_t* y, const std::int32_t* hint) {
-  return HWY_DYNAMIC_DISPATCH(box_of_lanes)(x, y, hint);
 }
 
 void add_candidates(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch* stretches,

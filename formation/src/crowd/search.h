@@ -17,14 +17,6 @@ struct RobotColumns {
   const std::uint16_t* tag = nullptr;
 };
 
-/// Round some robots, lattice steps, both ends included; and the greatest of their hints.
-struct LaneBox {
-  std::int32_t x0, x1, y0, y1, hint;
-};
-
-/// Of kPack robots.
-LaneBox box_of_pack(const std::int32_t* x, const std::int32_t* y, const std::int32_t* hint);
-
 /// Which robots become candidates of those from `begin` to `end`.
 struct CandidateRule {
   std::size_t begin, end;

@@ -262,7 +262,8 @@ TEST(CrowdEdges, TheGridKnowsAllWithinReachByBruteForce) {
     for (int k = 0; k < 2000; ++k) {
       const Vec2 p = {140.0 * random() - 20.0, 100.0 * random() - 20.0};
       std::vector<bool> known(edges.size());
-      grid.for_near(p, [&](std::uint32_t e) { known[e] = true; });
+      const crowd::EdgeGrid::Range cell = grid.near(p);
+      for (std::uint32_t k = cell.first; k < cell.last; ++k) known[grid.items()[k]] = true;
       for (std::size_t e = 0; e < edges.size(); ++e) {
         const geometry::Segment& s = edges[e];
         const double squared = geometry::squared_norm(s.b - s.a);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Half-planes against edges for a pack of robots against those for one robot, bit for bit.
+// Half-planes against edges for a pack of robots against those that are made one by one, bit for bit.
 #include "crowd/edge_pack.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "crowd/edge_oracle.h"
 #include "crowd/kinds.h"
 #include "crowd_scenes.h"
 #include "exactvo/vo/lp/batch.h"
@@ -29,7 +30,7 @@ struct Setting {
 };
 
 /// Robots of three kinds among edges: short, long, of no length, with an end or a point in the place of a robot,
-/// touching robots, and in a few places far more of them than a pack or a lane has room for.
+/// touching robots, and in a few places far more of them than a lane has room for.
 Setting setting() {
   SceneRandom random;
   Setting s;
@@ -96,20 +97,24 @@ Setting setting() {
 template <class T>
 struct Pack {
   EdgePackQuery<T> query;
-  alignas(64) T x[kMostEdges * kPack], y[kMostEdges * kPack], c[kMostEdges * kPack];
+  std::vector<T> x, y, c;
+  std::vector<std::uint32_t> edge;
+  std::vector<std::uint8_t> touching;
   std::int32_t lines[kPack];
   std::uint32_t overflow = 0;
 };
 
 constexpr double kSlack = 0x1p-16;
 
+/// With room for some lines, and where there is room for all, with their edges.
 template <class T>
-std::unique_ptr<Pack<T>> lines_of_pack(const Setting& s, std::size_t first, EdgePackTable& table) {
+std::unique_ptr<Pack<T>> lines_of_pack(const Setting& s, std::size_t first, std::size_t room, EdgePackTable& table) {
   auto pack = std::make_unique<Pack<T>>();
   EdgePackQuery<T>& query = pack->query;
   query.edges = s.grid.edges().data();
   query.items = s.grid.items().data();
   query.slack = static_cast<T>(kSlack);
+  std::size_t most = 0;
   for (std::size_t lane = 0; lane < kPack; ++lane) {
     const ObstacleQuery& q = s.robots[first + lane].query;
     query.x[lane] = q.position.x;
@@ -121,11 +126,17 @@ std::unique_ptr<Pack<T>> lines_of_pack(const Setting& s, std::size_t first, Edge
     query.max_speed[lane] = q.max_speed;
     query.least[lane] = static_cast<T>(-1.0);  // binds now and then
     const EdgeGrid::Range near = s.grid.near(q.position);
-    const bool room = near.last - near.first <= kMostPackEdges;
     query.first[lane] = static_cast<std::int32_t>(near.first);
-    query.count[lane] = room ? static_cast<std::int32_t>(near.last - near.first) : 0;
+    query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
+    most = std::max<std::size_t>(most, near.last - near.first);
   }
-  const EdgePackLines<T> out{pack->x, pack->y, pack->c, kPack, pack->lines};
+  const bool for_all = room >= most;
+  room = std::min(room, most);
+  for (auto* row : {&pack->x, &pack->y, &pack->c}) row->resize(room * kPack);
+  pack->edge.resize(room * kPack);
+  pack->touching.resize(room * kPack);
+  EdgePackLines<T> out{pack->x.data(), pack->y.data(), pack->c.data(), kPack, pack->lines, room};
+  if (for_all) out.edge = pack->edge.data(), out.touching = pack->touching.data();
   pack->overflow = make_edge_lines(query, table, out);
   return pack;
 }
@@ -134,32 +145,34 @@ template <class T>
 void expect_the_same(const std::string& target) {
   const Setting s = setting();
   EdgePackTable table;
-  std::vector<NearEdge> near;
-  std::vector<ObstacleLine> alone;
   std::size_t lines = 0, overflows = 0, touching = 0, crowded = 0;
   for (std::size_t first = 0; first < kRobots; first += kPack) {
-    const auto pack = lines_of_pack<T>(s, first, table);
+    const auto pack = lines_of_pack<T>(s, first, kMostEdges, table);
+    const auto whole = lines_of_pack<T>(s, first, s.grid.edges().size(), table);
+    ASSERT_EQ(whole->overflow, 0U) << target << ' ' << first;
     for (std::size_t lane = 0; lane < kPack; ++lane) {
       ObstacleQuery query = s.robots[first + lane].query;
       query.float_normals = sizeof(T) == 4;
-      const EdgeGrid::Range cell = s.grid.near(query.position);
-      if (cell.last - cell.first > kMostPackEdges) {
-        ++crowded;
-        continue;
-      }
-      edge_lines(s.grid, query, near, alone);
+      const std::vector<ObstacleLine> alone = edge_lines(s.grid, query);
       const bool overflow = (pack->overflow >> lane & 1U) != 0;
       ASSERT_EQ(overflow, alone.size() > kMostEdges) << target << ' ' << first + lane;
       ASSERT_EQ(static_cast<std::size_t>(pack->lines[lane]), overflow ? 0 : alone.size())
           << target << ' ' << first + lane;
+      ASSERT_EQ(static_cast<std::size_t>(whole->lines[lane]), alone.size()) << target << ' ' << first + lane;
       overflows += overflow;
-      for (std::size_t k = 0; k < alone.size() && !overflow; ++k, ++lines) {
+      crowded += whole->query.count[lane] > 96;
+      for (std::size_t k = 0; k < alone.size(); ++k, ++lines) {
         const std::size_t at = k * kPack + lane;
         touching += alone[k].touching;
-        ASSERT_EQ(static_cast<double>(pack->x[at]), alone[k].normal.x) << target << ' ' << first + lane << ' ' << k;
-        ASSERT_EQ(static_cast<double>(pack->y[at]), alone[k].normal.y) << target << ' ' << first + lane << ' ' << k;
-        ASSERT_EQ(pack->c[at], std::max(T(-1), rounded_up<T>(alone[k].offset + kSlack)))
-            << target << ' ' << first + lane << ' ' << k;
+        ASSERT_EQ(whole->edge[at], alone[k].obstacle) << target << ' ' << first + lane << ' ' << k;
+        ASSERT_EQ(whole->touching[at] != 0, alone[k].touching) << target << ' ' << first + lane << ' ' << k;
+        for (const Pack<T>* p : {pack.get(), whole.get()}) {
+          if (p == pack.get() && overflow) continue;
+          ASSERT_EQ(static_cast<double>(p->x[at]), alone[k].normal.x) << target << ' ' << first + lane << ' ' << k;
+          ASSERT_EQ(static_cast<double>(p->y[at]), alone[k].normal.y) << target << ' ' << first + lane << ' ' << k;
+          ASSERT_EQ(p->c[at], std::max(T(-1), rounded_up<T>(alone[k].offset + kSlack)))
+              << target << ' ' << first + lane << ' ' << k;
+        }
       }
     }
   }

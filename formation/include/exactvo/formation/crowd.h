@@ -235,11 +235,9 @@ class Crowd {
 
   /// Numbered from 0. Throws CrowdError: `out_of_range`, `too_many`.
   KindId add_kind(const CrowdKind& kind);
-  /// At rest, at the place of the lattice nearest to `position`. O(1); two robots in one place are found by `step`.
-  RobotId add_robot(Vec2 position, KindId kind = 0);
-  /// In motion, at the velocity of the lattice that is nearest among those within the kind's speed limit. |velocity| <=
-  /// max_speed.
-  RobotId add_robot(Vec2 position, KindId kind, Vec2 velocity);
+  /// At the place of the lattice nearest to `position`, at the velocity of the lattice that is nearest among those
+  /// within the kind's speed limit. |velocity| <= max_speed. O(1); two robots in one place are found by `step`.
+  RobotId add_robot(Vec2 position, KindId kind = 0, Vec2 velocity = {});
   /// Memory for so many, where it is known how many there will be.
   void reserve(std::size_t robots);
   /// O(1), but O(n) the first time after a step.
