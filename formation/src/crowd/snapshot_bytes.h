@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <ios>
 #include <istream>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "exactvo/formation/crowd.h"
 
@@ -42,6 +44,8 @@ template <class A>
 inline constexpr std::size_t doubles_of = 0;
 template <>
 inline constexpr std::size_t doubles_of<geometry::Vec2> = 2;
+template <>
+inline constexpr std::size_t doubles_of<geometry::Segment> = 4;
 
 template <class A>
 inline constexpr bool is_plain = std::is_arithmetic_v<A> ||
@@ -51,10 +55,26 @@ class SnapshotWriter {
  public:
   explicit SnapshotWriter(std::ostream& to) : to_(to) {}
 
+  /// One after the other: what names fields to a writer can name them to a reader.
+  template <class... Fields>
+  void fields(const Fields&... values) {
+    (put(values), ...);
+  }
   template <class A>
   void put(const A& value) {
     put_all(&value, 1);
   }
+  /// Whether there is one, then it or what stands for none.
+  template <class A>
+  void put(const std::optional<A>& value) {
+    fields(value.has_value(), value.value_or(A{}));
+  }
+  /// Its size, and what it holds.
+  template <class A>
+  void put(const std::vector<A>& list) {
+    put_list(list);
+  }
+  void put(const std::string& text) { put_list(text); }
   template <class A>
   void put_all(const A* values, std::size_t count) {
     static_assert(is_plain<A>);
@@ -62,15 +82,15 @@ class SnapshotWriter {
     to_.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
     if (!to_) throw std::ios_base::failure("a snapshot could not be written");
   }
-  /// A vector or a string: its size, and what it holds.
+  void finish() { put(std::uint64_t{sum_.value()}), to_.flush(); }
+
+ private:
   template <class List>
   void put_list(const List& list) {
     put(static_cast<std::uint64_t>(list.size()));
     put_all(list.data(), list.size());
   }
-  void finish() { put(std::uint64_t{sum_.value()}), to_.flush(); }
 
- private:
   std::ostream& to_;
   Checksum sum_;
 };
@@ -80,12 +100,31 @@ class SnapshotReader {
  public:
   SnapshotReader(std::istream& from, std::string expected) : from_(from), expected_(std::move(expected)) {}
 
+  template <class... Fields>
+  void fields(Fields&... values) {
+    (get(values), ...);
+  }
   template <class A>
   A get() {
     A value{};
-    get_all(&value, 1);
+    get(value);
     return value;
   }
+  template <class A>
+  void get(A& value) {
+    get_all(&value, 1);
+  }
+  template <class A>
+  void get(std::optional<A>& value) {
+    const bool is_any = get<bool>();
+    const A any = get<A>();
+    value = is_any ? std::optional(any) : std::nullopt;
+  }
+  template <class A>
+  void get(std::vector<A>& list) {
+    get_some(list, get<std::uint64_t>());
+  }
+  void get(std::string& text) { get_some(text, get<std::uint64_t>()); }
   template <class A>
   void get_all(A* values, std::size_t count) {
     static_assert(is_plain<A>);
@@ -103,13 +142,6 @@ class SnapshotReader {
       list.resize(had + more);
       get_all(list.data() + had, more);
     }
-  }
-  /// What `put_list` has put.
-  template <class List>
-  List get_list() {
-    List list;
-    get_some(list, get<std::uint64_t>());
-    return list;
   }
   void finish() {
     const std::uint64_t computed = sum_.value();

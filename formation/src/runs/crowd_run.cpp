@@ -9,10 +9,10 @@
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "crowd/layout.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
@@ -42,10 +42,8 @@ constexpr std::size_t kLookAgain = 8;
 /// Neighbours of a robot, the number of RVO2's examples and of the published comparisons.
 constexpr int kNeighbours = 10;
 
-/// m: the finest lattice; steps of it that must lie between a robot and its end.
-constexpr double kFinestLattice = 0x1p-18, kReach = 0x1p29;
-/// Steps of the lattice that a robot makes in a time step at most.
-constexpr double kLongestMotion = 0x1p22;
+/// The lattice reaches so many times as far as robots, goals and obstacles.
+constexpr double kReach = 2.0;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
 constexpr double kFastestBody = 0x1p14;
@@ -79,9 +77,7 @@ double fastest(const Scenario& s) {
 
 /// m, of the lattice of positions.
 double position_step_for(const Scenario& s) {
-  double step = kFinestLattice;
-  while (step < 1.0 && (extent(s) >= kReach * step || fastest(s) * s.time_step > kLongestMotion * step)) step *= 2.0;
-  return step;
+  return crowd::lattice_for(kReach * extent(s), fastest(s) * s.time_step);
 }
 
 CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
@@ -212,15 +208,14 @@ class CrowdRun {
   std::string snapshot() const {
     std::ostringstream run, crowd, sink, whole;
     SnapshotWriter of_run(run), to(whole);
-    of_run.put(static_cast<std::uint64_t>(ways_.size()));
+    of_run.put(ways_.size());
     for_each_count(report_, [&](const auto& count) { of_run.put(count); });
-    put_count(of_run, moved_);
-    put_count(of_run, claimed_);
+    of_run.fields(moved_, claimed_);
     for (const CrowdWay& way : ways_) put(of_run, way);
     if (claims_) put(of_run, *claims_);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
-    for (const std::string& part : {run.str(), crowd.str(), sink.str()}) to.put_list(part);
+    to.fields(run.str(), crowd.str(), sink.str());
     to.finish();
     return whole.str();
   }
@@ -228,14 +223,12 @@ class CrowdRun {
   void restore(const std::string& bytes) {
     std::istringstream whole(bytes);
     SnapshotReader from(whole, kSnapshotOfRun);
-    std::istringstream run(from.get_list<std::string>()), crowd(from.get_list<std::string>()),
-        sink(from.get_list<std::string>());
+    std::istringstream run(from.get<std::string>()), crowd(from.get<std::string>()), sink(from.get<std::string>());
     from.finish();
     SnapshotReader of_run(run, kSnapshotOfRun);
-    require(is_at_end(whole) && of_run.get<std::uint64_t>() == ways_.size());
-    for_each_count(report_, [&](auto& count) { count = of_run.get<std::decay_t<decltype(count)>>(); });
-    moved_ = get_count(of_run);
-    claimed_ = get_count(of_run);
+    require(is_at_end(whole) && of_run.get<std::size_t>() == ways_.size());
+    for_each_count(report_, [&](auto& count) { of_run.get(count); });
+    of_run.fields(moved_, claimed_);
     for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way_of(of_run, i);
     if (claims_) get_claims(of_run, *claims_);
     const CrowdOptions wanted = crowd_.options();

@@ -37,9 +37,6 @@ struct CrowdWay {
   std::size_t turned = 0;               ///< step at which one of these changed last, but for `arrived` and `why_not`
 };
 
-void put_count(crowd::SnapshotWriter& to, std::size_t count);
-std::size_t get_count(crowd::SnapshotReader& from);
-
 void put(crowd::SnapshotWriter& to, const CrowdWay& way);
 /// `goals`: how many the robot has. Throws CrowdError (bad_snapshot).
 CrowdWay get_way(crowd::SnapshotReader& from, std::size_t goals, bool is_guided);
