@@ -174,7 +174,11 @@ template <class T>
 class EdgeLanes {
  public:
   HWY_INLINE EdgeLanes(const EdgePackQuery<T>& query, EdgePackTable& table, std::size_t lane)
-      : query_(query), t_(table), lane_(lane) {
+      : query_(query),
+        cells_(table.cells.data()),
+        row_at_(table.row_at.data()),
+        row_number_(table.row_number.data()),
+        lane_(lane) {
     const Doubles d;
     place_ = {hn::LoadU(d, query.x + lane), hn::LoadU(d, query.y + lane)};
     radius_ = hn::LoadU(d, query.radius + lane);
@@ -217,6 +221,11 @@ class EdgeLanes {
   }
 
  private:
+  enum Field { kAx, kAy, kBx, kBy, kError, kSquared };
+  HWY_INLINE double* cell(Field field, std::size_t row_at) const {
+    return cells_ + row_at + static_cast<std::size_t>(field) * hn::Lanes(Doubles());
+  }
+
   HWY_INLINE std::uint32_t number_of(std::size_t lane, std::size_t row) const {
     return query_.items[HWY_MIN(first_[lane] + row, last_[lane])];
   }
@@ -227,7 +236,8 @@ class EdgeLanes {
     hn::Store(best_row_, Doubles(), row);
     hn::Store(threshold_, Doubles(), threshold);
     for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) {
-      edge[lane] = number_of(lane, static_cast<std::size_t>(row[lane]) / hn::Lanes(Doubles()));
+      edge[lane] =
+          number_of(lane, static_cast<std::size_t>(row[lane]) / (EdgePackTable::kFields * hn::Lanes(Doubles())));
       touching[lane] = threshold[lane] == -kInfinity;
     }
   }
@@ -290,15 +300,15 @@ class EdgeLanes {
       squared = hn::IfThenElse(within, squared, set(kInfinity));
       const V error = hn::Mul(set(kSupportError), hn::Add(magnitude(a, b), radius_));
       cut(a, b, far);
-      const std::size_t to = row * hn::Lanes(d);
-      hn::Store(a.x, d, &t_.ax[to]);
-      hn::Store(a.y, d, &t_.ay[to]);
-      hn::Store(b.x, d, &t_.bx[to]);
-      hn::Store(b.y, d, &t_.by[to]);
-      hn::Store(error, d, &t_.error[to]);
-      hn::Store(squared, d, &t_.squared[to]);
-      t_.row_at[used_] = static_cast<std::uint32_t>(to);
-      t_.row_number[used_++] = static_cast<double>(to);
+      const std::size_t to = row * EdgePackTable::kFields * hn::Lanes(d);
+      hn::Store(a.x, d, cell(kAx, to));
+      hn::Store(a.y, d, cell(kAy, to));
+      hn::Store(b.x, d, cell(kBx, to));
+      hn::Store(b.y, d, cell(kBy, to));
+      hn::Store(error, d, cell(kError, to));
+      hn::Store(squared, d, cell(kSquared, to));
+      row_at_[used_] = static_cast<std::uint32_t>(to);
+      row_number_[used_++] = static_cast<double>(to);
       take_if_nearer(squared, set(static_cast<double>(to)));
     }
   }
@@ -320,10 +330,10 @@ class EdgeLanes {
     const Index index;
     const auto at = hn::Add(hn::PromoteTo(index, hn::DemoteTo(Words(), best_row_)), hn::Iota(index, 0));
     Search search;
-    search.a = {hn::GatherIndex(d, t_.ax.data(), at), hn::GatherIndex(d, t_.ay.data(), at)};
-    search.b = {hn::GatherIndex(d, t_.bx.data(), at), hn::GatherIndex(d, t_.by.data(), at)};
-    const V error = hn::GatherIndex(d, t_.error.data(), at);
-    hn::ScatterIndex(set(kInfinity), d, t_.squared.data(), at);  // it has its line
+    search.a = {hn::GatherIndex(d, cell(kAx, 0), at), hn::GatherIndex(d, cell(kAy, 0), at)};
+    search.b = {hn::GatherIndex(d, cell(kBx, 0), at), hn::GatherIndex(d, cell(kBy, 0), at)};
+    const V error = hn::GatherIndex(d, cell(kError, 0), at);
+    hn::ScatterIndex(set(kInfinity), d, cell(kSquared, 0), at);  // it has its line
     constexpr double u = sizeof(T) == 4 ? 0x1p-24 : kUnit;
     const V room = hn::Mul(set(kRoundingRoom * u), hn::Add(magnitude(search.a, search.b), radius_));
     const V size = hn::Mul(error, set(1.0 / kSupportError));
@@ -377,23 +387,25 @@ class EdgeLanes {
     const std::size_t used = used_;
     used_ = 0;
     for (std::size_t k = 0; k < used; ++k) {
-      const std::size_t at = t_.row_at[k];
-      const double number = t_.row_number[k];
-      const Vec a = {hn::Load(d, &t_.ax[at]), hn::Load(d, &t_.ay[at])};
-      const Vec b = {hn::Load(d, &t_.bx[at]), hn::Load(d, &t_.by[at])};
-      const V support = support_above(normal_, length_, a, b, hn::Load(d, &t_.error[at]));
+      const std::size_t at = row_at_[k];
+      const double number = row_number_[k];
+      const Vec a = {hn::Load(d, cell(kAx, at)), hn::Load(d, cell(kAy, at))};
+      const Vec b = {hn::Load(d, cell(kBx, at)), hn::Load(d, cell(kBy, at))};
+      const V support = support_above(normal_, length_, a, b, hn::Load(d, cell(kError, at)));
       const M excluded = hn::Le(support, threshold_);
-      const V squared = hn::IfThenElse(excluded, set(kInfinity), hn::Load(d, &t_.squared[at]));
-      hn::Store(squared, d, &t_.squared[at]);
+      const V squared = hn::IfThenElse(excluded, set(kInfinity), hn::Load(d, cell(kSquared, at)));
+      hn::Store(squared, d, cell(kSquared, at));
       take_if_nearer(squared, set(number));
-      t_.row_at[used_] = static_cast<std::uint32_t>(at);
-      t_.row_number[used_] = number;
+      row_at_[used_] = static_cast<std::uint32_t>(at);
+      row_number_[used_] = number;
       used_ += hn::AllFalse(d, hn::Lt(squared, set(kInfinity))) ? 0 : 1;
     }
   }
 
   const EdgePackQuery<T>& query_;
-  EdgePackTable& t_;
+  double* cells_;          ///< of the table, by row, field and lane
+  std::uint32_t* row_at_;  ///< where rows begin that a lane still has an edge in
+  double* row_number_;     ///< the same as numbers, to be broadcast
   std::size_t lane_, count_ = 0, used_ = 0;
   std::size_t first_[kPack], last_[kPack];  ///< of each lane's cell in the query's items
   Vec place_, velocity_;
@@ -433,8 +445,7 @@ namespace {
 void make_room(const std::int32_t (&counts)[kPack], EdgePackTable& table) {
   const auto rows = static_cast<std::size_t>(*std::max_element(counts, counts + kPack));
   if (table.row_at.size() >= rows) return;
-  for (auto* field : {&table.ax, &table.ay, &table.bx, &table.by, &table.error, &table.squared})
-    field->resize(rows * kPack);
+  table.cells.resize(rows * EdgePackTable::kFields * kPack);
   table.row_at.resize(rows);
   table.row_number.resize(rows);
 }

@@ -26,15 +26,16 @@ struct EdgePackQuery {
   alignas(64) double x[kPack], y[kPack], vx[kPack], vy[kPack], radius[kPack], horizon[kPack], max_speed[kPack];
   alignas(64) T least[kPack];             ///< m/s, no offset is below it
   alignas(64) std::int32_t first[kPack];  ///< of the lane's cell in `items`
-  alignas(64) std::int32_t count[kPack];  ///< 0: no edges
+  alignas(64) std::int32_t count[kPack];  ///< 0: no edges, and the rest of the lane may be anything
   T slack = 0;                            ///< m/s, added to every offset before it is rounded up
 };
 
-/// Memory of a thread: edges by row and lane.
+/// Memory of a thread: what is known of edges, by row and lane, and the rows that a lane still has an edge in.
 struct EdgePackTable {
-  Array<double> ax, ay, bx, by, error, squared;
-  std::vector<std::uint32_t> row_at;  ///< where rows begin that a lane still has an edge in
-  std::vector<double> row_number;     ///< the same as numbers, to be broadcast
+  static constexpr std::size_t kFields = 6;  ///< of an edge: its ends, the error of its support values, its distance
+  Array<double> cells;
+  std::vector<std::uint32_t> row_at;
+  std::vector<double> row_number;
 };
 
 /// Line k of lane l goes to [k * stride + l], k < lines[l]. The rows beyond a lane's lines are not written, or with

@@ -109,7 +109,7 @@ class CrowdEngine final : public CrowdCore {
     const Vec2 preferred = preferred_of(robot, s);
     CrowdExplanation words;
     words.robot = static_cast<RobotId>(robots.id[robot]);
-    words.position = {options.position_step * robots.x[robot], options.position_step * robots.y[robot]};
+    words.position = position_of(robot);
     words.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
     words.preferred = {static_cast<double>(static_cast<T>(preferred.x)),
                        static_cast<double>(static_cast<T>(preferred.y))};

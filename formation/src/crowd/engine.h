@@ -37,6 +37,10 @@ class CrowdCore {
   virtual CrowdExplanation explain(std::size_t robot) = 0;
   virtual std::size_t bytes() const = 0;
 
+  /// m, exact.
+  Vec2 position_of(std::size_t robot) const {
+    return {options.position_step * robots.x[robot], options.position_step * robots.y[robot]};
+  }
   /// m/s
   Vec2 velocity_of(std::int32_t mx, std::int32_t my) const {
     return {options.position_step * mx / options.time_step, options.position_step * my / options.time_step};

@@ -139,7 +139,7 @@ ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
   ObstacleQuery query;
   query.x = robots.x[robot];
   query.y = robots.y[robot];
-  query.position = {crowd_.options.position_step * query.x, crowd_.options.position_step * query.y};
+  query.position = crowd_.position_of(robot);
   query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
   query.radius = kind.radius;
   query.still_horizon = edge_horizon(kind);
@@ -147,26 +147,6 @@ ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
   query.max_speed = kind.max_speed;
   query.float_normals = sizeof(T) == 4;
   return query;
-}
-
-template <class T>
-void OneRobot<T>::ask_edges(std::size_t robot, std::size_t lane, EdgePackQuery<T>& query) const {
-  const ObstacleQuery own = query_of(robot);
-  const EdgeGrid::Range near = crowd_.edges.near(own.position);
-  query.edges = crowd_.edges.edges().data();
-  query.items = crowd_.edges.items().data();
-  query.slack = table_.lattice_slack;
-  query.first[lane] = static_cast<std::int32_t>(near.first);
-  query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
-  if (near.first == near.last) return;  // the rest of the lane may be anything
-  query.x[lane] = own.position.x;
-  query.y[lane] = own.position.y;
-  query.vx[lane] = own.velocity.x;
-  query.vy[lane] = own.velocity.y;
-  query.radius[lane] = own.radius;
-  query.horizon[lane] = own.still_horizon;
-  query.max_speed[lane] = own.max_speed;
-  query.least[lane] = table_.least_offset[crowd_.robots.kind(robot)];
 }
 
 /// Into b.edge_x and so on; how many.

@@ -56,8 +56,27 @@ class OneRobot {
   /// `words`: gets the half-planes, unless null.
   CrowdDecision decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const;
 
-  /// A lane of the query for the robot.
-  void ask_edges(std::size_t robot, std::size_t lane, crowd::EdgePackQuery<T>& query) const;
+  /// A lane of the query for the robot: most have no edges nearby, and ask for nothing else then.
+  void ask_edges(std::size_t robot, std::size_t lane, crowd::EdgePackQuery<T>& query) const {
+    const Vec2 at = crowd_.position_of(robot);
+    const crowd::EdgeGrid::Range near = crowd_.edges.near(at);
+    query.first[lane] = static_cast<std::int32_t>(near.first);
+    query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
+    if (query.count[lane] == 0) return;
+    const Vec2 velocity = crowd_.velocity_of(crowd_.robots.mx[robot], crowd_.robots.my[robot]);
+    const CrowdKind& kind = kind_of(robot);
+    query.edges = crowd_.edges.edges().data();
+    query.items = crowd_.edges.items().data();
+    query.slack = table_.lattice_slack;
+    query.x[lane] = at.x;
+    query.y[lane] = at.y;
+    query.vx[lane] = velocity.x;
+    query.vy[lane] = velocity.y;
+    query.radius[lane] = kind.radius;
+    query.horizon[lane] = edge_horizon(kind);
+    query.max_speed[lane] = kind.max_speed;
+    query.least[lane] = table_.least_offset[crowd_.robots.kind(robot)];
+  }
 
   /// Into b.body_lines and b.still.
   void lines_of_bodies(std::size_t robot, Buffers& b) const;
