@@ -160,7 +160,13 @@ void append_geometry(JsonWriter& json, const Feature& feature, const Place& plac
   json.key("geometry");
   std::vector<Ring> rings;
   try {
-    for (const Ring& ring : feature.rings) rings.push_back(feature.is_polygon ? closed(place(ring)) : place(ring));
+    for (const Ring& ring : feature.rings) {
+      Ring points;
+      points.reserve(ring.size() + 1);  // so that it is closed where it stands
+      points.assign(ring.begin(), ring.end());
+      points = place(std::move(points));
+      rings.push_back(feature.is_polygon ? closed(std::move(points)) : std::move(points));
+    }
   } catch (const DataError&) {
     json.null();
     return;
@@ -199,10 +205,10 @@ std::string geometry_of(const Feature& feature) {
   bytes += kLittleEndian;
   append_raw(bytes, feature.is_polygon ? kPolygon : kLineString);
   if (feature.is_polygon) append_raw(bytes, static_cast<std::uint32_t>(feature.rings.size()));
-  for (const Ring& given : feature.rings) {
-    const Ring ring = feature.is_polygon ? closed(given) : given;
-    append_raw(bytes, static_cast<std::uint32_t>(ring.size()));
+  for (const Ring& ring : feature.rings) {
+    append_raw(bytes, static_cast<std::uint32_t>(ring.size() + (feature.is_polygon ? 1 : 0)));
     for (const Vec2 p : ring) append_raw(bytes, p);
+    if (feature.is_polygon) append_raw(bytes, ring.front());
   }
   return bytes;
 }
