@@ -116,7 +116,7 @@ class Backwards {
     last.time = time();
     for (const detail::Anchor& a : at_) add_robot(last, a);
     file_.recording.steps.push_back(last);
-    file_.recording.bodies = scene.copied_bodies();
+    for (std::size_t k = 0; k < scene.bodies().size(); ++k) file_.recording.bodies.push_back(scene.bodies()[k]);
     return file_;
   }
 
@@ -157,7 +157,7 @@ class Backwards {
       fields[i]->constraints(here, statics_, detail::reach_of_step(scenario_, here));
       const std::optional<double> share = detail::allowed_share(*back[i], statics_, others_[i]);
       EXPECT_TRUE(share.has_value() && *share == 1.0) << "row " << row << ", robot " << i;
-      decider.decide({share.value_or(0.0) * *back[i], here, &statics_, &others_[i], false, nullptr, nullptr}, r);
+      decider.decide({share.value_or(0.0) * *back[i], here, &statics_, &others_[i], false}, r);
     }
     for (std::size_t i = 0; i < at_.size(); ++i) {
       at_[i].velocity = step.robots[i].chosen;

@@ -356,17 +356,13 @@ void Groups::forget_without_plan(const Members& who) {
 }
 
 std::string Groups::no_plan_words(const Members& robots) const {
-  std::vector<std::string> texts;
+  std::string text;
   for (const WithoutPlan& w : without_plan_) {
     std::vector<std::string> names;
     for (const std::size_t i : w.who)
       if (contains(robots, i)) names.push_back(scenario_.robots[i].id);
-    if (names.empty()) continue;
-    const std::string who = abridged(std::move(names));
-    texts.push_back(words_of(w.why) + who);
+    if (!names.empty()) add_note(text, words_of(w.why) + abridged(std::move(names)));
   }
-  std::string text;
-  for (const std::string& t : texts) text += (text.empty() ? "" : "; ") + t;
   return text;
 }
 

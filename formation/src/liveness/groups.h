@@ -34,6 +34,9 @@ Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
 /// Where robots were, row by row, as far back as memory allows: they can go back as they came (liveness, rule R3).
 class History {
  public:
+  /// 2^23 positions are 128 MiB: more than 40 s of 10,000 robots, and a day of three.
+  explicit History(std::size_t most_positions = std::size_t{1} << 23) : most_(most_positions) {}
+
   /// `row`: m, of each robot.
   void add(std::vector<Vec2> row) { rows_.push_back(std::move(row)); }
 
@@ -47,16 +50,14 @@ class History {
   /// Forgets the oldest rows that are too many, but none from `needed` on, nor the last.
   void forget_before(std::size_t needed) {
     while (rows_.size() > 1 && first_ < needed &&
-           rows_.size() * std::max<std::size_t>(1, rows_.back().size()) > kMostPositions) {
+           rows_.size() * std::max<std::size_t>(1, rows_.back().size()) > most_) {
       rows_.pop_front();
       ++first_;
     }
   }
 
  private:
-  /// 128 MiB: more than 40 s of 10,000 robots, and a day of three.
-  static constexpr std::size_t kMostPositions = std::size_t{1} << 23;
-
+  std::size_t most_;
   std::size_t first_ = 0;
   std::deque<std::vector<Vec2>> rows_;
 };

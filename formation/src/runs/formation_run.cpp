@@ -3,7 +3,6 @@
 // controller is put together from the terms of control/consensus.h: `wanted_velocity`, `tracked_velocity`.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -319,7 +318,7 @@ class FormationRun {
                             : "formation error " + metres(last) + " at the end";
     if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
-    if (!spec_.leader.why_short.empty()) recording.outcome += "; " + spec_.leader.why_short;
+    add_note(recording.outcome, spec_.leader.why_short);
   }
 
   void add_words_of_plans(const Step& end, Recording& recording) const {
@@ -333,8 +332,7 @@ class FormationRun {
         recording.outcome += "; " + scenario_.robots[i].id + " cannot take its slot, " + printed_place(slot) + ": " +
                              plans_->places()[i].why_not + "; it ends " + metres(error) + " from it";
     }
-    const std::string words = plans_->groups().no_plan_words(not_there);
-    if (!words.empty()) recording.outcome += "; " + words;
+    add_note(recording.outcome, plans_->groups().no_plan_words(not_there));
   }
 
   Remedies remedies_;

@@ -439,8 +439,8 @@ class KinematicRun {
     }
     if (!all_there) text += no_passing_words();
     if (!groups_ || waiting.empty()) return text;
-    for (const std::string& words : {groups_->no_plan_words(waiting), groups_->still_going_words()})
-      if (!words.empty()) text += "; " + words;
+    add_note(text, groups_->no_plan_words(waiting));
+    add_note(text, groups_->still_going_words());
     return text;
   }
 

@@ -239,8 +239,9 @@ class Navigator::Core {
     constexpr double kLooksRound = 2.0, kRounding = 1e-6;  // m; of what distances are off by
     if (norm(x - clear_place_) < clear_) return nullptr;
     const double clear = space_.clearance(x, kLooksRound);
-    const auto is_round = [&](const SceneObstacle& o) { return geometry::signed_distance(o.shape, x) < 0.0; };
-    if (clear < 0.0) return &*std::find_if(scenario_.obstacles.begin(), scenario_.obstacles.end(), is_round);
+    if (clear < 0.0)
+      for (const SceneObstacle& o : scenario_.obstacles)
+        if (geometry::signed_distance(o.shape, x) < 0.0) return &o;
     clear_place_ = x;
     clear_ = clear - kRounding;
     return nullptr;
