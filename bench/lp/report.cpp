@@ -73,7 +73,7 @@ Accuracies accuracies_of(const json& arena) {
   for (const json& row : arena.at("benchmarks")) {
     const std::string name = row.at("name");
     const std::size_t slash = name.find('/');
-    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.value("inaccurate", 0.0),
+    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.at("inaccurate"),
                                                           row.at("worst_violation")};
   }
   return all;

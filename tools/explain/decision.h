@@ -5,7 +5,7 @@
 /// One robot's choice of a velocity at one moment, in detail: what each half-plane stands for and what it did.
 /// Rounded, for readers; the proofs are elsewhere (geometry/predicates.h).
 ///
-/// Neighbours: explanation.cpp says it in words, figures/velocity_space.h draws it.
+/// See also: explanation.cpp says it in words, figures/velocity_space.h draws it.
 
 #include <cstddef>
 #include <optional>

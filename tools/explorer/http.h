@@ -35,7 +35,7 @@ struct HttpSite {
   std::function<void(const std::string& address)> ready;
 };
 
-/// What the module gives. Until it is interrupted; false where the port cannot be had.
+/// What the module gives: serves the site until it is interrupted; false where the port cannot be had.
 using ServeHttp = bool (*)(const HttpSite& site);
 
 }  // namespace exactvo::tools

@@ -56,7 +56,7 @@ class Workers : public httplib::ThreadPool {
   explicit Workers(httplib::Server& server) : ThreadPool(kThreads), server_(server) {}
 
   void enqueue(std::function<void()> task) override {
-    on_idle();
+    stop_if_interrupted();
     is_refused = waiting_ >= kMostWaiting;
     if (is_refused) return task();
     ++waiting_;
@@ -66,12 +66,14 @@ class Workers : public httplib::ThreadPool {
       task();
     });
   }
-  /// Whenever no connection came for a while: stops the server when the user has interrupted the program.
-  void on_idle() override {
+  /// The library calls it where no connection came for a while.
+  void on_idle() override { stop_if_interrupted(); }
+
+ private:
+  void stop_if_interrupted() {
     if (is_interrupted()) server_.stop();
   }
 
- private:
   httplib::Server& server_;
   std::atomic<std::size_t> waiting_{0};
 };

@@ -144,7 +144,7 @@ void append(std::vector<double>& numbers, Vec2 v) {
   numbers.insert(numbers.end(), {v.x, v.y});
 }
 
-/// Of each entry the number that `of`, a member or a function, is of it.
+/// `of` applied to each entry; `of` is a member or a function.
 template <class Number, class Entry, class Of>
 std::vector<Number> each(const std::vector<const Entry*>& entries, const Of& of) {
   std::vector<Number> numbers;

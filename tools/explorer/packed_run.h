@@ -15,7 +15,7 @@
 /// Long runs are thinned: of rows and of decisions every second, fourth and so on is kept, and always the last one. The
 /// head says which.
 ///
-/// Neighbours: page.h puts it into a page; support/run_recorder.h fills one while a run is made.
+/// See also: page.h puts it into a page; support/run_recorder.h fills one while a run is made.
 
 #include <cstddef>
 #include <cstdint>

@@ -5,7 +5,7 @@
 /// The page of `exactvo view`: one HTML file with its program, its style and its runs, which needs no network. Its
 /// sources are in page/; cmake/EmbedExplorer.cmake joins them and puts them into the program.
 ///
-/// Neighbours: packed_run.h (how a run stands in it).
+/// See also: packed_run.h (how a run stands in it).
 
 #include <optional>
 #include <set>

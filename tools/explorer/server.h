@@ -15,7 +15,7 @@
 /// The decision is that of a run that begins at that moment: the same half-planes and the same proof. A mode with a
 /// memory (following, a joint plan, a side committed to) begins anew.
 ///
-/// Neighbours: support/run.h runs on from a moment.
+/// See also: support/run.h runs on from a moment.
 
 #include <cstddef>
 #include <functional>

@@ -6,7 +6,7 @@
 /// robots for a line each, and a sample of its robots. Read row by row, twice, in memory that grows with neither robots
 /// nor rows, but for one row. Rounded, for drawing.
 ///
-/// Neighbours: run_figures.h draws runs of few robots.
+/// See also: run_figures.h draws runs of few robots.
 
 #include <cstddef>
 #include <filesystem>

@@ -12,7 +12,7 @@
 /// The scripts are files to edit: tools/figures/templates/NAME.gp, embedded in the program when it is built. `@place@`
 /// in them stands for what the program fills in.
 ///
-/// Neighbours: gnuplot.h runs the scripts; outlines.h has the colours; run_figures.h
+/// See also: gnuplot.h runs the scripts; outlines.h has the colours; run_figures.h
 /// and velocity_space.h make figures.
 
 #include <cstddef>

@@ -91,8 +91,19 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-/// The error code of the attempt to start, 0 where `pid` runs, with the signals of `mask` blocked.
-int spawn_gnuplot(std::FILE* input, std::FILE* messages, const sigset_t& mask, pid_t& pid) {
+/// This program's, with UTC as the time zone of the date that is in a PDF: one length everywhere (undate).
+std::vector<char*> environment_in_utc() {
+  static char utc[] = "TZ=UTC";
+  std::vector<char*> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (std::string(*variable).rfind("TZ=", 0) != 0) environment.push_back(*variable);
+  environment.insert(environment.end(), {utc, nullptr});
+  return environment;
+}
+
+/// The error code of the attempt to start, 0 where `pid` runs, with the signals of `mask` blocked. Throws nothing.
+int spawn_gnuplot(std::FILE* input, std::FILE* messages, const std::vector<char*>& environment, const sigset_t& mask,
+                  pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, fileno(input), 0);
@@ -101,11 +112,6 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, const sigset_t& mask, p
   char program[] = "gnuplot";
   char defaults[] = "-d";  // the settings of the user's own ~/.gnuplot are left alone
   char* arguments[] = {program, defaults, nullptr};
-  std::vector<char*> environment;
-  char utc[] = "TZ=UTC";  // of the date that is in a PDF: one length everywhere (undate)
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (std::string(*variable).rfind("TZ=", 0) != 0) environment.push_back(*variable);
-  environment.insert(environment.end(), {utc, nullptr});
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setsigmask(&attributes, &mask);
@@ -132,12 +138,13 @@ bool succeeded(pid_t pid) {
 
 /// The error code of the attempt to start; else `pid` has run to its end.
 int run_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
+  const std::vector<char*> environment = environment_in_utc();
   // Signals whose handlers look at children wait until this one is known.
   sigset_t ours, before;
   ::sigemptyset(&ours);
   for (const int signal : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&ours, signal);
   ::pthread_sigmask(SIG_BLOCK, &ours, &before);
-  const int error = spawn_gnuplot(input, messages, before, pid);
+  const int error = spawn_gnuplot(input, messages, environment, before, pid);
   const KillChildOnSignal until_it_ends(error == 0 ? pid : 0);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (error == 0) await_end(pid);

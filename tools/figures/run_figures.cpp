@@ -270,8 +270,6 @@ std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
   return rows;
 }
 
-// --- All of them ---
-
 /// From each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
 Figure obstacle_distance_figure(const RecordingFile& run) {
   std::vector<Series> all;

@@ -96,7 +96,8 @@ auto no(const Holds& holds) {
 template <typename Measure>
 std::optional<double> least(const Runs& runs, const Measure& measure) {
   std::optional<double> least = measure(*runs.front());
-  for (const Json* r : runs) least = std::min(least, measure(*r));  // nothing is less than any number
+  for (const Json* r : runs)
+    least = std::min(least, measure(*r));  // an empty optional is less than any number, so it stays
   return least;
 }
 template <typename Measure>

@@ -4,7 +4,7 @@
 /// \file
 /// Folders that appear whole or not at all.
 ///
-/// Neighbours: datasets/atomic_file.h does the same for one file.
+/// See also: datasets/atomic_file.h does the same for one file.
 
 #include <filesystem>
 #include <optional>

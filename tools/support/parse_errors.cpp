@@ -15,7 +15,7 @@ namespace exactvo::tools {
 
 namespace {
 
-/// Of the program, and of the verbs for which that holds.
+/// Of the program, and of the verbs for which `is_meant` holds.
 std::vector<const CLI::Option*> options_of(const CLI::App& app, const std::function<bool(const CLI::App*)>& is_meant) {
   std::vector<const CLI::Option*> all = app.get_options();
   for (const CLI::App* verb : app.get_subcommands(is_meant)) {

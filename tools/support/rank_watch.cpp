@@ -85,7 +85,7 @@ void say_which_rank_is_lost() {
   int lost = 0;
   while (lost < all_ranks && !is_gone(lost)) ++lost;
   if (lost < all_ranks) {
-    const fmt::format_int rank(lost), count(all_ranks);  // have buffers of their own
+    const fmt::format_int rank(lost), count(all_ranks);  // each has its own buffer: nothing is allocated in a handler
     for (const char* some : {"rank ", rank.c_str(), " of ", count.c_str(), " is gone"}) write_words(some);
   } else {
     write_words("a rank is gone, or all were told to end");

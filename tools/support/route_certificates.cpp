@@ -86,8 +86,8 @@ void add(const Blocked& blocked, OrderedJson& json) {
   if (!blocked.inside) json["edge"] = blocked.by.edge;
 }
 
-// --- Reading. What is missing or of another type throws OrderedJson::exception, what has no such value
-// std::invalid_argument. (No number that was parsed is infinite.) ---
+// --- Reading. Whatever cannot be read throws OrderedJson::exception or std::invalid_argument. (No number that was
+// parsed is infinite.) ---
 
 void require_readable(bool holds) {
   if (!holds) throw std::invalid_argument("");

@@ -6,7 +6,7 @@
 /// written so that they read back as the same; a coordinate that is no double stands as a fraction beside its rounded
 /// value. docs/guide/routes.md has the format; examples/check_route.py checks it without this program.
 ///
-/// Neighbours: certificates.h checks whole files, geometry/route_certificate.h decides.
+/// See also: certificates.h checks whole files, geometry/route_certificate.h decides.
 
 #include <optional>
 #include <vector>

@@ -5,7 +5,7 @@
 /// A run on its way to its files: every row is measured and written as it is made and then forgotten, but for those
 /// that figures show.
 ///
-/// Neighbours: run.h runs a scenario into one.
+/// See also: run.h runs a scenario into one.
 
 #include <cstddef>
 #include <filesystem>

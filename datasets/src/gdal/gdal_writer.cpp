@@ -6,6 +6,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "gdal/gdal_session.h"
+#include "obstacles/courses.h"
 #include "writers/property_table.h"
 #include "writers/writers.h"
 

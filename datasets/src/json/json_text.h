@@ -79,7 +79,7 @@ std::string described(const Json& value);
 /// The JSON pointer of a value that stands in `all`, searched by its address: only messages need it.
 std::string pointer_to(const Json& value, const Json& all);
 
-/// As `members` takes what it lists: constant where it is written.
+/// The type by which `members` takes a T: const for a writer.
 template <class Way, class T>
 using For = std::conditional_t<Way::kReads, T, const T>;
 
@@ -152,7 +152,7 @@ class JsonWriter {
     append_value(*this, v);
     return *this;
   }
-  /// Of what readers do not need.
+  /// A member that may be missing when it is read; always written.
   template <class T>
   JsonWriter& optional(std::string_view name, const T& v) {
     return member(name, v);
@@ -162,6 +162,7 @@ class JsonWriter {
   JsonWriter& optional(std::string_view name, const std::optional<T>& v) {
     return v ? member(name, *v) : *this;
   }
+  /// Written where `is_told`; may be missing when it is read.
   template <class T>
   JsonWriter& member_if(bool is_told, std::string_view name, const T& v) {
     return is_told ? member(name, v) : *this;
@@ -254,7 +255,7 @@ class JsonCursor {
   const JsonCursor& optional(const char* key, T& v) const {
     return has(key) ? member(key, v) : *this;
   }
-  /// Null is no value here.
+  /// null is refused, not taken for an empty value.
   template <class T>
   const JsonCursor& optional(const char* key, std::optional<T>& v) const {
     return has(key) ? member(key, v.emplace()) : *this;
@@ -318,8 +319,8 @@ void read_value(const JsonCursor& at, std::optional<T>& v) {
 }
 template <class T>
 void read_value(const JsonCursor& at, std::vector<T>& entries) {
-  entries.resize(at.size());
-  for (std::size_t k = 0; k < entries.size(); ++k) read_value(at.at(k), entries[k]);
+  entries.clear();  // one by one: a long list of what is no entry ends at the first
+  for (std::size_t k = 0; k < at.size(); ++k) read_value(at.at(k), entries.emplace_back());
 }
 
 }  // namespace exactvo::datasets

@@ -8,7 +8,7 @@
 #include "exactvo/geometry/even_odd.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/too_many_contacts.h"
-#include "writers/writers.h"
+#include "obstacles/courses.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -5,8 +5,8 @@
 #include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
+#include "obstacles/courses.h"
 #include "readers/readers.h"
-#include "writers/writers.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -112,7 +112,7 @@ class SequenceAudit : public RowAudit {
   };
 
   void ask(bool holds, std::size_t row, const std::string& what) {
-    run_.tally.ask(AuditPoint::sequence, holds, at_row(row, what));
+    holds ? run_.tally.proven(AuditPoint::sequence) : run_.tally.refuted(AuditPoint::sequence, at_row(row, what));
   }
 
   bool is_on_way(const ExactWay& way, const Leader& motion, double time, Vec2 displacement, Vec2 velocity) const {

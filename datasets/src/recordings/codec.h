@@ -29,11 +29,15 @@ void members(Way& json, For<Way, geometry::Ellipse>& e) {
 void append_value(JsonWriter& json, const geometry::ConvexShape& shape);
 void read_value(const JsonCursor& at, geometry::ConvexShape& shape);
 
+inline bool moves(vo::BodyKind kind) {
+  return kind == vo::BodyKind::robot || kind == vo::BodyKind::moving_obstacle;
+}
+
 /// Of a robot or moving obstacle the shape is left out: its place changes, and rows have it.
 template <class Way>
 void members(Way& json, For<Way, vo::Body>& body) {
   json.member("kind", body.kind);
-  if (body.kind != vo::BodyKind::robot && body.kind != vo::BodyKind::moving_obstacle) json.member("shape", body.shape);
+  if (!moves(body.kind)) json.member("shape", body.shape);
   json.member("owners", body.owners);
 }
 
@@ -49,7 +53,7 @@ void members(Way& json, For<Way, lp::ActiveConstraint>& part) {
   json.member("part", part.binding.kind).member("multiplier", part.multiplier);
 }
 
-/// What is not its own comes from elsewhere: source, shape, position, radius and velocity.
+/// Source, shape, position, radius and velocity are not here: the reader takes them from the body and the row.
 template <class Way>
 void members(Way& json, For<Way, formation::RecordedConstraint>& c) {
   json.member("body", c.body).member("index", c.index).member_if(c.piece != 0, "piece", c.piece);
@@ -77,7 +81,10 @@ inline void exact_multipliers(const JsonCursor& json, bool& are_exact) {
 template <class Way>
 void members(Way& json, For<Way, formation::RobotStep>& robot) {
   json.member("position", robot.position).member("velocity", robot.velocity);
-  if constexpr (Way::kReads) robot.anchor = robot.position, robot.anchor_velocity = robot.velocity;
+  if constexpr (Way::kReads) {  // as usual, where they are left out
+    robot.anchor = robot.position;
+    robot.anchor_velocity = robot.velocity;
+  }
   json.member_if(!is_same(robot.anchor, robot.position), "anchor", robot.anchor);
   json.member_if(!is_same(robot.anchor_velocity, robot.velocity), "anchor_velocity", robot.anchor_velocity);
   json.member("preferred", robot.preferred).member("chosen", robot.chosen).member("status", robot.status);
@@ -139,7 +146,8 @@ void members(Way& json, For<Way, formation::Remedies>& remedies) {
   json.member("acceleration_bound", remedies.acceleration_bound);
 }
 
-/// What is known before a run. Of remedies whether there are any.
+/// What is known before a run. REQUIRES: `run.remedies` has a value already where there are any, which the scenario
+/// says.
 template <class Way>
 void members(Way& json, For<Way, formation::Recording>& run) {
   json.member("time_step", run.time_step).member("motion", run.motion);
@@ -181,8 +189,8 @@ void members(Way& json, For<Way, formation::StuckReport>& r) {
 template <class Way>
 void members(Way& json, For<Way, RecordingFile>& file) {
   auto& run = file.recording;
-  json.member("diverged", run.diverged);
-  json.member("outcome", Way::kReads || !file.outcome.empty() ? file.outcome : run.outcome);
+  auto& outcome = Way::kReads || !file.outcome.empty() ? file.outcome : run.outcome;  // what is read is the file's
+  json.member("diverged", run.diverged).member("outcome", outcome);
   json.member("ended", run.outcome).member("warnings", run.warnings).member("stuck", file.stuck);
   json.optional("collisions", file.collisions).member("wall_time", run.wall_time);
   json.member("written_at", file.info.provenance.written_at);

@@ -92,7 +92,7 @@ class RecordReader {
     const std::size_t all = body.kind == vo::BodyKind::robot             ? s.robots.size()
                             : body.kind == vo::BodyKind::moving_obstacle ? s.moving_obstacles.size()
                                                                          : s.obstacles.size();
-    const bool is_one = body.kind == vo::BodyKind::robot || body.kind == vo::BodyKind::moving_obstacle;
+    const bool is_one = moves(body.kind);
     if (is_one && body.owners.size() != 1) at.refuse("one owner", DataCode::wrong_count);
     for (std::size_t k = 0; k < body.owners.size(); ++k)
       if (body.owners[k] >= all) at.at(k).refuse("a number below " + std::to_string(all), DataCode::out_of_range);

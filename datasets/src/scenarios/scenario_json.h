@@ -12,7 +12,7 @@ namespace exactvo::datasets {
 /// The scenario as one JSON value, where a writer stands: recordings carry it in their header.
 void append_scenario(JsonWriter& json, const formation::Scenario& scenario);
 
-/// In braces, too.
+/// Also takes points in braces: `append_points(json, {a, b})`.
 inline void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& points) {
   append_value(json, points);
 }
@@ -39,7 +39,7 @@ void members(Way& json, For<Way, formation::RemedySwitches>& asked) {
   json.optional("acceleration_bound", asked.acceleration_bound);
 }
 
-/// But who hears whom, the offsets, and where the leader goes.
+/// All but the topology, the offsets, `recentre` and the leader.
 template <class Way>
 void members(Way& json, For<Way, formation::FormationSpec>& spec) {
   json.optional("gains", spec.gains).optional("catch_up_speed", spec.catch_up_speed);
@@ -62,7 +62,7 @@ void members(Way& json, For<Way, formation::Margins>& margins) {
   json.optional("obstacle", margins.obstacle).optional("robot", margins.robot);
 }
 
-/// Its figures.
+/// Its numbers: horizons, margins, times, distances.
 template <class Way>
 void members(Way& json, For<Way, formation::Scenario>& scenario) {
   json.optional("horizons", scenario.horizons).optional("margins", scenario.margins);

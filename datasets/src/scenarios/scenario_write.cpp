@@ -39,8 +39,8 @@ void append_speed(JsonWriter& json, const formation::Leader& leader) {
 }
 
 void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
-  json.object("topology", [&](JsonWriter&) {
-    json.member("adjacency", spec.topology.adjacency).member("pinning", spec.topology.pinning);
+  json.object("topology", [&](JsonWriter& topology) {
+    topology.member("adjacency", spec.topology.adjacency).member("pinning", spec.topology.pinning);
   });
   json.member("offsets", spec.offsets).member("recentre", spec.recentre);
   json.key("leader").begin_object().member("path", spec.leader.path);

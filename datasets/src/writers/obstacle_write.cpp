@@ -15,6 +15,7 @@
 #include "files/file_names.h"
 #include "gdal/vector_library.h"
 #include "json/json_text.h"
+#include "obstacles/courses.h"
 #include "scenarios/scenario_json.h"
 #include "writers/property_table.h"
 #include "writers/writers.h"
@@ -208,19 +209,6 @@ const Writer& writer_for(const std::filesystem::path& path, const std::string& f
 }
 
 }  // namespace
-
-geometry::Ring closed(geometry::Ring ring) {
-  if (!ring.empty()) ring.push_back(ring.front());
-  return ring;
-}
-
-std::vector<geometry::Ring> courses_of(const geometry::Obstacle& shape) {
-  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) return {line->points};
-  const auto& polygon = std::get<geometry::Polygon>(shape);
-  std::vector<geometry::Ring> rings{closed(polygon.outer)};
-  for (const geometry::Ring& hole : polygon.holes) rings.push_back(closed(hole));
-  return rings;
-}
 
 void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses) {
   json.member("type", is_polygon ? "Polygon" : "LineString").key("coordinates");

@@ -4,13 +4,15 @@
 #include "exactvo/datasets/markup.h"
 #include "exactvo/geometry/counted.h"
 #include "json/json_text.h"
+#include "obstacles/courses.h"
 #include "scenarios/scenario_json.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
 namespace {
 
-/// What becomes of outlines alone. Where holes are lost, what was free in them counts as solid.
+/// The file `bytes`, of a format that has outlines only, with what that loses. Where holes are lost, what was free in
+/// them counts as solid.
 Written outlines(std::string bytes, const Obstacles& obstacles, const WriteOptions& options, const char* format) {
   Written written{std::move(bytes), {}};
   std::size_t holes = 0;

@@ -26,10 +26,6 @@ void add_plane_losses(const WriteOptions& options, const char* format, std::vect
 /// feature ids.
 void add_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses);
 
-geometry::Ring closed(geometry::Ring ring);
-
-/// The outer ring, then the holes, each closed; of a polyline its points.
-std::vector<geometry::Ring> courses_of(const geometry::Obstacle& shape);
 /// The members "type" and "coordinates" of GeoJSON.
 void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses);
 std::string wkt_of(const geometry::Obstacle& shape);

@@ -37,7 +37,7 @@ struct PairConstraints {
   Constraint of_a, of_b;
 };
 
-/// How robots keep clear of each other, but for their shares.
+/// The rule for a pair of robots, without their responsibilities.
 vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOptions& options);
 /// Soft. Each half is the same bits whoever is `a`.
 PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule);

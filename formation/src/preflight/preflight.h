@@ -14,8 +14,8 @@ namespace exactvo::formation::detail {
 ///     that is proven out of reach (reachability.h); or that a moving obstacle covers where it comes to rest;
 ///   - two goals or slots too near to each other for both robots; last goals nearer than radii and margin take; a goal
 ///     on the way that another robot at its last goal leaves no room in, if no plan makes it;
-///   - two robots, none of which that is said of, that would have to pass each other and are proven to have no room to,
-///     or none with the gaps of plans (passing.h);
+///   - two robots that must pass each other but provably have no room, or not enough for the gaps that plans keep
+///     (passing.h), unless a warning above names one of them already;
 ///   - a leader that reaches its end after the time limit, that moves faster than a robot can, or whose path was
 ///     planned and does not lead where it should or leaves no room for the formation;
 ///   - a robot that starts faster than its max_speed, or inside the hull of a moving obstacle;

@@ -46,8 +46,8 @@ class GoalClaims {
 
   // REQUIRES of what follows: its place is taken.
 
-  /// In place of a velocity that it prefers: out of the taken place, where it is in it; none, where it rests; else so
-  /// slow that half-planes do not push off its place who has taken it.
+  /// The preferred velocity of a robot whose goal is taken. Inside the taken place: out of it. At rest beside it: 0.
+  /// Otherwise `preferred`, slowed down so that the half-planes do not push the robot that has taken the place off it.
   Vec2 beside_taken_place(std::size_t i, Vec2 preferred) const;
   /// "R1 was first at its goal, 0.3 m from that of R2, which leaves no room for both".
   std::string words(std::size_t i) const;

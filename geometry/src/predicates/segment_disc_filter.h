@@ -21,7 +21,8 @@ enum class FilterAnswer { disjoint, intersects, uncertain };
 /// taken for beyond an end though it lies before it, then by at most e / |v|, and the distance is less than that
 /// to the end by e^2 / |v|^2 <= 32 u^2 (P + t V)^2 at most, squared: no more than the second order. Beside it
 /// what underflow adds to p.v (2^-1073) can move the squared distance by 2 t times as much.
-/// REQUIRES: p and r2 in error by at most u and 12 u of themselves, t >= 0. NaN and overflow are unknown.
+/// REQUIRES: p and r2 in error by at most u and 12 u of themselves, t >= 0. `uncertain` for NaN and on
+/// overflow.
 inline FilterAnswer segment_disc_filter(Vec2 p, Vec2 v, double t, double r2) {
   constexpr double kError = 32.0 * kUnitRoundoff;
   constexpr double kMost = 0x1p100;              // of a number; no product of them overflows

@@ -76,7 +76,7 @@ inline py::tuple as_tuple(Vec2 v) {
 inline py::tuple as_tuple(const geometry::HalfPlane& h) {
   return py::make_tuple(as_tuple(h.normal), h.offset);
 }
-/// (The attribute `flags` does the same, a microsecond slower.)
+/// Takes the right to write away. (The attribute `flags` does the same, a microsecond slower.)
 inline void make_read_only(py::array& array) {
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
 }

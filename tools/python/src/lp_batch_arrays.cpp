@@ -202,7 +202,7 @@ void require_in_range(const BatchArrays& b) {
                           "a finite number above 0");
   }
   // Line by line where they lie side by side. In blocks the padding is in range too.
-  const std::size_t size = b.is_copied && p.block == kBlock ? b.normal_x.size() : b.count * b.lines;
+  const std::size_t size = b.normal_x.empty() ? b.count * b.lines : b.normal_x.size();
   std::size_t bad = size;
   for (std::size_t k = 0; k < size; ++k) {
     const double length = p.normal_x[k] * p.normal_x[k] + p.normal_y[k] * p.normal_y[k];

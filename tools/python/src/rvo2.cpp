@@ -53,7 +53,7 @@ std::size_t vertex(const RVOSimulator& sim, py::handle object) {
   return index(object, "vertex_no", sim.getNumObstacleVertices());
 }
 
-/// A getter of what `index_of`, agent or vertex, numbers.
+/// A getter by number; `index_of` (`agent` or `vertex`) checks the number.
 template <class IndexOf, class Value>
 auto of(IndexOf index_of, Value (RVOSimulator::*get)(std::size_t) const) {
   return [=](const RVOSimulator& sim, py::handle no) { return as_value((sim.*get)(index_of(sim, no))); };

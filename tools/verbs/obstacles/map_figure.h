@@ -72,7 +72,7 @@ struct RepairedPolygon {
 /// As many as go onto a sheet.
 inline constexpr std::size_t kMostRepairedDrawn = 6;
 
-/// A row each. REQUIRES: at least one.
+/// A row each. REQUIRES: at least one, at most kMostRepairedDrawn.
 Figure repair_figure(const std::vector<RepairedPolygon>& polygons);
 
 }  // namespace exactvo::tools

@@ -254,7 +254,7 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const RepairRecord& r : answer.content->repairs) {
-      // Those that are drawn alone: each takes a look at all findings and obstacles.
+      // Only those that are drawn: each takes a look at all findings and obstacles.
       if (!r.recombined || ++number > kMostRepairedDrawn) continue;
       const std::string name = std::filesystem::path(answer.file).filename().string();
       polygons.push_back(

@@ -113,7 +113,7 @@ ExitCode kept_parts(const PaperFlags& flags) {
   return ExitCode::interrupted;
 }
 
-/// Each in a folder of its own, which is called as its files are.
+/// Each in a folder of its own that has the name of its files.
 void publish(const CampaignFiles& files, const char* name, const PaperFlags& flags) {
   const fs::path folder = fs::path(flags.out) / name;
   write_campaign(files, folder, name);

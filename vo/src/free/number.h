@@ -8,7 +8,8 @@
 ///  - a value whose size *equals* its error bound passes the filter, but the logarithm of their difference, -2^31, is
 ///    taken for the number's size: what is computed from it then asks for 2^31 bits. Inputs that are an ulp or two from
 ///    a coincidence get there.
-///  - a divisor that rounds to zero, or a root of what rounds to less, is written to a file Core_Diagnostics.
+///  - division by a value whose double approximation is 0 writes a message to the file Core_Diagnostics;
+///  - so does the square root of a value whose approximation is negative.
 
 #include <CGAL/CORE_Expr.h>
 

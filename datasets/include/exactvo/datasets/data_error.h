@@ -6,7 +6,7 @@
 /// explains. Everything in this room that reads a file throws `DataError` for what is wrong *in the file*; a caller's
 /// mistake stays a `std::logic_error`.
 ///
-/// Neighbours: geometry/validity.h finds the problems of a ring, whose codes appear here under the same names.
+/// See also: geometry/validity.h finds the problems of a ring, whose codes appear here under the same names.
 
 #include <stdexcept>
 #include <string>

@@ -19,7 +19,7 @@
 ///
 /// A polygon that was valid but for winding, closure and consecutive duplicates comes back as `normalize` gives it.
 ///
-/// Neighbours: `ReadOptions::repair` (obstacle_file.h) does this to every polygon of a file.
+/// See also: `ReadOptions::repair` (obstacle_file.h) does this to every polygon of a file.
 ///
 /// Properties (tests quote the numbers):
 ///  (1) what comes back is valid: `normalize` repairs nothing of it but closure, and the polygons' insides are

@@ -5,7 +5,7 @@
 /// Scenarios as they stand at a later moment: the text has robots at that moment, but the leader and moving obstacles
 /// where their paths begin.
 ///
-/// Neighbours: scenario_file.h reads scenarios that begin where their text says.
+/// See also: scenario_file.h reads scenarios that begin where their text says.
 
 #include <filesystem>
 #include <functional>

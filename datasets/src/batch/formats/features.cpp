@@ -6,6 +6,7 @@
 #include "batch/formats/bytes.h"
 #include "exactvo/geometry/pi.h"
 #include "json/json_text.h"
+#include "obstacles/courses.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets::batch {

@@ -23,7 +23,7 @@ namespace exactvo::datasets::batch {
 class Outputs {
  public:
   /// Starts them in `journal.final_folder()`. Throws DataError (E_FILE_UNWRITABLE), as the others do.
-  /// They go with the object, unless they were published.
+  /// The folder is removed with the object, unless it was published.
   Outputs(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance);
 
   /// From one thread at a time.

@@ -30,7 +30,7 @@
 /// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
 /// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
 ///
-/// Units are metres, seconds, metres per second. Neighbours: vo/reciprocal.h is the rule for one pair in double.
+/// Units are metres, seconds, metres per second. See also: vo/reciprocal.h is the rule for one pair in double.
 
 #include <cstddef>
 #include <cstdint>

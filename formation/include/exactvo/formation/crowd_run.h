@@ -19,7 +19,7 @@
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
 /// whole report are those of rank 0. Whatever `run_crowd` throws is followed by `Ranks::fail`.
 ///
-/// Neighbours: simulation.h runs everything else; datasets/crowd_recording.h records.
+/// See also: simulation.h runs everything else; datasets/crowd_recording.h records.
 
 #include <functional>
 #include <iosfwd>

@@ -85,7 +85,7 @@ struct Metrics {
   double velocity_variation = 0.0;                 ///< m/s: sum over steps and robots of |v_{k+1} - v_k|
   double peak_acceleration = 0.0;                  ///< m/s^2: the greatest |v_{k+1} - v_k| over the time step
   std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
-  std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
+  std::size_t active_set_switches = 0;  ///< decisions whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
   std::size_t uncertified_half_planes = 0;          ///< half-planes of all decisions that could not be certified
   std::size_t steps = 0;                            ///< rows but the last

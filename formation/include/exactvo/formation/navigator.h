@@ -17,7 +17,7 @@
 /// robot), and the choice among them, by its multipliers. Heuristic: the preferred velocity. What is certified holds
 /// until the time step has passed, for neighbours that keep their half of a pair and bodies that keep their velocity.
 ///
-/// Neighbours: simulation.h runs scenarios, crowd.h is for very many robots, vo/constraint.h is one half-plane by
+/// See also: simulation.h runs scenarios, crowd.h is for very many robots, vo/constraint.h is one half-plane by
 /// itself.
 
 #include <cstddef>

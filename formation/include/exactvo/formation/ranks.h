@@ -10,7 +10,7 @@
 /// What fails in one rank ends all of them, whatever it is and wherever: who fails says so once (`fail`), and the
 /// others learn of it in what they call next.
 ///
-/// Neighbours: datasets/ranks.h has those of mpirun.
+/// See also: datasets/ranks.h has those of mpirun.
 
 #include <cstddef>
 #include <cstdint>

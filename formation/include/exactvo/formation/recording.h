@@ -67,7 +67,7 @@ struct Decision {
   std::vector<lp::ActiveConstraint> bound;
   Vec2 chosen;  ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
   lp::Status status = lp::Status::optimal;  ///< of the linear program
-  double violation = 0.0;                   ///< m/s, of the soft half-planes
+  double violation = 0.0;                   ///< m/s, of the half-planes that gave (lp/solution.h)
   /// No multipliers in double prove the choice: they are left at 0. The exact ones follow from the half-planes
   /// (lp::solve_exact). Seen where robots rest in contact and their half-planes leave a rounding error of room.
   bool exact_multipliers = false;

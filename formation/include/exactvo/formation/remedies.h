@@ -11,7 +11,8 @@
 
 namespace exactvo::formation {
 
-/// The switches, as they are in the default controller but for `smoothing` and the bound.
+/// The options of a formation's controller. The initial values are those of the default controller: all on, except
+/// `smoothing`, and no acceleration bound.
 struct Remedies {
   bool signs = true;                ///< (15) and (17) with their signs corrected; without it they are as printed
   bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
@@ -62,14 +63,14 @@ struct NamedRemedies {
   Remedies remedies;  ///< the whole set
 };
 
-/// From the corrected signs without margins to the default, one remedy more a rung. (The paper's controllers themselves
+/// From the corrected signs without margins to the default, adding one option per step. (The paper's controllers themselves
 /// keep the scenario's margins.)
 std::vector<NamedRemedies> remedy_ladder();
 
 /// The default with one remedy taken away (or smoothing added) at a time.
 std::vector<NamedRemedies> remedy_ablations();
 
-/// The rung or ablation of that name; nothing where there is none.
+/// The step or ablation of that name; nothing where there is none.
 std::optional<Remedies> remedies_named(const std::string& name);
 /// The names that `remedies_named` knows.
 std::vector<std::string> remedy_set_names();

@@ -6,7 +6,7 @@
 /// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md, but for `guidance` and
 /// `liveness`, which the paper has not. SI units throughout.
 ///
-/// Neighbours: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
+/// See also: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
 
 #include <cstdint>
 #include <optional>
@@ -137,7 +137,7 @@ struct FormationSpec {
 struct Scenario {
   std::string name;                                   ///< for people, and part of results
   std::string description;                            ///< for people
-  std::vector<Robot> robots;                          ///< with `formation` one a slot
+  std::vector<Robot> robots;                          ///< in a formation, one robot per slot
   std::vector<SceneObstacle> obstacles;               ///< static
   std::optional<FormationSpec> formation;             ///< none: kinematic robots with goals (Section V.A)
   Guidance guidance = Guidance::route;                ///< of robots with goals

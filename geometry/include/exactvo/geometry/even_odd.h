@@ -10,7 +10,7 @@
 /// Crossings are then rounded to doubles, and what the rounding made meet is cut again, until nothing changes; where
 /// that takes long, all vertices go to a grid by snap rounding (Hobby, 1999), which makes no new crossings.
 ///
-/// Neighbours: validity.h says whether rings need this; datasets/repair.h does it for obstacles and reports.
+/// See also: validity.h says whether rings need this; datasets/repair.h does it for obstacles and reports.
 ///
 /// Properties (tests quote the numbers):
 ///  (1) every polygon of the answer is valid (`normalize` repairs nothing but closure), and their insides are disjoint;

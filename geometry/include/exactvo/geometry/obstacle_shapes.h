@@ -11,7 +11,7 @@
 /// Nothing throws for an obstacle, valid or not: an invalid one has its problems and nothing else, and a shape that
 /// can't be had has a failed verdict that says why. Deterministic; no time in it.
 ///
-/// Neighbours: validity.h (the problems), facades.h, hull.h, enclosure.h (the parts, one by one).
+/// See also: validity.h (the problems), facades.h, hull.h, enclosure.h (the parts, one by one).
 
 #include <optional>
 #include <string>

@@ -4,7 +4,7 @@
 /// \file
 /// Decomposes any obstacle into convex shapes whose union it is, for functions that take convex shapes only.
 ///
-/// Exact: no point is added and none is lost. Neighbours: hull.h (the partition of a polygon, proved before it is
+/// Exact: no point is added and none is lost. See also: hull.h (the partition of a polygon, proved before it is
 /// given), obstacle_shapes.h (the same with facades, enclosures and verdicts), enclosure.h (`parts_of`).
 
 #include <vector>

@@ -8,7 +8,7 @@
 /// Exact: everything but the doubles that show it (`pieces`, `area`), whose rounding is stated. Regions are
 /// regularised: closures of their interiors, so that what has no area is nothing.
 ///
-/// Neighbours: vo/free_velocities.h, whose sets of free velocities are such regions; minkowski.h, sums of convex
+/// See also: vo/free_velocities.h, whose sets of free velocities are such regions; minkowski.h, sums of convex
 /// polygons.
 
 #include <memory>

@@ -12,7 +12,7 @@
 /// factor 1 - (k + 1) u, and adding the bound rounds once more, by u of the value. Twice the first-order bound covers
 /// all of it for 2 <= k <= 2^20, and 2^-1060 covers 2^14 products that underflow.
 ///
-/// Certified. Neighbours: support.h has u and the bound of a support function.
+/// Certified. See also: support.h has u and the bound of a support function.
 
 #include <cmath>
 #include <limits>

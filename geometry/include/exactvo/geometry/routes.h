@@ -20,7 +20,7 @@
 /// how the plane outside of the obstacles is cut: with others the answer is of the same kind, a route and its bound may
 /// differ.
 ///
-/// Neighbours: route_certificate.h (checks answers), datasets/obstacle_file.h (obstacles from files).
+/// See also: route_certificate.h (checks answers), datasets/obstacle_file.h (obstacles from files).
 
 #include <cstddef>
 #include <memory>
@@ -61,8 +61,8 @@ struct ChainPoint {
 };
 
 /// No route: the closed chain separates start from goal. Each of its pieces lies on an obstacle's edge or bridges a gap
-/// narrower than two radii, so that no centre gets across it, and it winds round one of the two an odd number of times
-/// more than round the other.
+/// narrower than two radii, so that no centre gets across it, and its winding numbers around start and goal differ by an
+/// odd number.
 struct Separated {
   std::vector<ChainPoint> chain;  ///< closed: the last point goes on to the first
 };

@@ -5,7 +5,7 @@
 /// The shapes of the project: plain values of doubles in metres. All are closed sets. `is_valid` functions say whether
 /// a value is one that the other headers accept; nothing here rounds.
 ///
-/// Neighbours: support.h (support functions), predicates.h (exact questions), enclosure.h (ellipses round facades).
+/// See also: support.h (support functions), predicates.h (exact questions), enclosure.h (ellipses round facades).
 
 #include <cstddef>
 #include <string>

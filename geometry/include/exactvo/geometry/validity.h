@@ -45,13 +45,13 @@ struct NormalizedPolygon {
   bool ok() const;                    ///< every problem was repaired
 };
 
-/// Puts right what has one right answer (winding, closure, consecutive duplicates) and reports the rest. Exact: no
+/// Repairs the problems that have one correct repair (winding, closure, consecutive duplicates) and reports the rest. Exact: no
 /// tolerance, only comparisons and orientation tests. O(n log n) while rings keep apart; rings that touch cost a search
 /// over pairs of edges whose boxes meet.
 ///
 /// `rings[0]` is the outer ring; each may or may not repeat its first point. Holes may touch each other or the outer
 /// ring in single points, as in OGC simple features; that the interior stays connected is not checked. A ring's own
-/// vertices and edges may not touch. One self-intersection and one misplacement at most is reported a ring.
+/// vertices and edges may not touch. At most one self-intersection and one misplaced hole are reported per ring.
 ///
 /// Properties: (1) a valid polygon comes back unchanged; (2) the result of an ok() answer is valid: normalising it
 /// again repairs nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point

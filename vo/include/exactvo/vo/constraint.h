@@ -11,7 +11,7 @@
 ///     push-out   overlap: nothing can be proven, the robot is asked to leave.
 ///
 /// Certified where `proof` says so. Bodies have numbers: a constraint, a recording and an audit name the body by its
-/// number, and its shape is not copied. Neighbours: velocity_obstacle.h (one velocity obstacle by itself), reciprocal.h
+/// number, and its shape is not copied. See also: velocity_obstacle.h (one velocity obstacle by itself), reciprocal.h
 /// (the halves of a pair of robots), orca_obstacle.h (the baseline's rule for edges), lp/ (the best velocity).
 
 #include <cstddef>

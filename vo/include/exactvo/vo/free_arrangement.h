@@ -127,7 +127,8 @@ class FreeArrangement {
   /// (m/s)^2, of all components together. Certified.
   geometry::Bracket area() const;
 
-  /// Whether all that |v| <= max_speed and the half-planes allow (equation (13)) is free, up to sets without area.
+  /// Whether every velocity that satisfies the half-planes and |v| <= max_speed (equation (13)) is free, up to a set of
+  /// measure zero.
   /// Exact, for the doubles of the half-planes. REQUIRES (std::logic_error otherwise): what `attempt_holds` answers.
   bool holds(const std::vector<HalfPlane>& half_planes) const;
 

@@ -6,9 +6,8 @@
 ///
 ///     F = { v : |v| <= max_speed } minus the union of the obstacles' cones, boundaries included.
 ///
-/// F has circular arcs, irrational lines and, where ellipses take part, curves of degree eight. It is held between two
-/// regions with straight edges over exact numbers, `inner` and `outer`: inner, F, outer, each within the next. Every
-/// cone is convex, so a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies
+/// F has circular arcs, irrational lines and, where ellipses take part, curves of degree eight. Two polygonal regions
+/// with exact coordinates enclose it: `inner` is a subset of F, and F is a subset of `outer`. Every cone is convex, so a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies
 /// in it; the same construction for every shape, a disc or a polygon for a robot, finite or infinite horizon. What is
 /// between the two is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon), but for two
 /// exceptions: where doubles of the size of the coordinates over tau, or of the apex, are coarser than that, it is as
@@ -32,9 +31,9 @@
 
 namespace exactvo::vo {
 
-/// m/s. Far beyond what moves, and no product of a few leaves the range of doubles.
+/// m/s: the smallest allowed max_speed. Products of a few such numbers do not underflow.
 inline constexpr double kLeastMaxSpeed = 0x1p-60;
-/// m/s: the largest.
+/// m/s: the largest allowed max_speed. Products of a few such numbers do not overflow.
 inline constexpr double kMostMaxSpeed = 0x1p60;
 /// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestRegionCoordinate.
 inline constexpr double kMostApex = 0x1p100;

@@ -5,7 +5,7 @@
 /// Many velocities against one velocity obstacle: what `VelocityObstacle::contains` answers, prepared once.
 ///
 /// Exact. Preparing takes about as long as `VelocityObstacle::legs`; then three products decide nearly every velocity,
-/// whatever the shape, without a jump that depends on it. With A and B points of S near its tangents and m across their
+/// whatever the shape, without data-dependent branches. With A and B points of S near its tangents and m across their
 /// chord:
 ///
 ///       \ A.-------.B /      beyond the chord and between the rays through A and B:  collides
@@ -43,7 +43,7 @@ class Membership {
     const double band = band_ * (std::fabs(v.x) + std::fabs(v.y)) + kUnderflow;
     const double beside = std::max(dot(left_, v), dot(right_, v));
     const double ahead = dot(across_, v);
-    // Bits, not jumps: nobody can guess which it will be. NaN and infinity make none of it true.
+    // Bits, not branches: no predictor can guess which it will be. NaN and infinity make none of it true.
     const int misses = static_cast<int>(beside > band) | static_cast<int>(ahead > before_ + band);
     const int meets = static_cast<int>(beside < -band) & static_cast<int>(ahead < beyond_ - band);
     if ((misses | meets) != 0) return meets != 0;

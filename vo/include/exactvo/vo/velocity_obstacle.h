@@ -22,7 +22,7 @@
 /// Exact: `overlaps`, `contains`, `exact_legs`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`,
 /// `nearest`.
 /// For a polygonal robot the last two kinds speak of `grown()`, a shape round S within `grown_error()` of it:
-/// half-planes and inner normals of legs are as safe, and that much less tight. Neighbours: family.h (RVO, HRVO, moving
+/// half-planes and inner normals of legs are as safe, and that much less tight. See also: family.h (RVO, HRVO, moving
 /// obstacles), algebraic_direction.h (the exact legs), free_velocities.h (what many of them leave), reciprocal.h (robot
 /// against robot), orca_obstacle.h (the baseline's polygon rule), lp/ (which velocity).
 ///
@@ -131,8 +131,8 @@ class VelocityObstacle {
   NearestBoundary nearest_boundary(Vec2 v) const;
 
   /// Equation (10): { v' : n.v' >= n.(v + alpha u) }. alpha = 1 is the full responsibility for a static obstacle and is
-  /// certified disjoint from the interior of VO; alpha < 1 leaves the rest of u to somebody else and is certified only
-  /// together with that half (reciprocal.h). Nothing where no half-plane could be certified: overlap, or a few ulps
+  /// certified disjoint from the interior of VO; alpha < 1 leaves the rest of u to somebody else, and its offset is
+  /// rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing where no half-plane could be certified: overlap, or a few ulps
   /// from it. REQUIRES: 0 < alpha <= 1, v finite.
   std::optional<HalfPlane> half_plane(Vec2 v, double alpha = 1.0) const;
 

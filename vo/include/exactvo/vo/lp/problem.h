@@ -4,7 +4,7 @@
 /// \file
 /// The problem of equations (12) and (13): the velocity nearest the preferred one inside half-planes and a speed bound.
 /// The field calls it a linear program (de Berg et al., chapter 4; van den Berg et al. 2011); it is a small convex QP.
-/// Neighbours: solve.h finds the answer, solution.h says what it is, certificate.h proves it.
+/// See also: solve.h finds the answer, solution.h says what it is, certificate.h proves it.
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 /// \file
 /// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are read a
-/// register at a time (Highway picks the target at run time). Neighbours: batch.h for many problems at once; solve.h
+/// register at a time (Highway picks the target at run time). See also: batch.h for many problems at once; solve.h
 /// for boxes, linear objectives and normals of any length.
 
 #include <cstddef>
