@@ -63,8 +63,8 @@ struct NamedRemedies {
   Remedies remedies;  ///< the whole set
 };
 
-/// From the corrected signs without margins to the default, adding one option per step. (The paper's controllers themselves
-/// keep the scenario's margins.)
+/// From the corrected signs without margins to the default, adding one option per step. (The paper's controllers
+/// themselves keep the scenario's margins.)
 std::vector<NamedRemedies> remedy_ladder();
 
 /// The default with one remedy taken away (or smoothing added) at a time.

@@ -61,8 +61,8 @@ struct FittedEllipse {
 
 /// The smallest trap-free ellipse that the search finds round `points`, for a robot of `robot_radius` going from
 /// `start` to `goal`; nothing if even `containing` can't hold (start or goal within the grown ellipse). `grade` is the
-/// best grade that the ellipse satisfies. Containment, start and goal outside, and the evolute condition are checked exactly on what
-/// is returned. REQUIRES: at least one point, all finite.
+/// best grade that the ellipse satisfies. Containment, start and goal outside, and the evolute condition are checked
+/// exactly on what is returned. REQUIRES: at least one point, all finite.
 std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
                                            const EnclosureOptions& options = {});
 

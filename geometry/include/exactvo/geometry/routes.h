@@ -61,8 +61,8 @@ struct ChainPoint {
 };
 
 /// No route: the closed chain separates start from goal. Each of its pieces lies on an obstacle's edge or bridges a gap
-/// narrower than two radii, so that no centre gets across it, and its winding numbers around start and goal differ by an
-/// odd number.
+/// narrower than two radii, so that no centre gets across it, and its winding numbers around start and goal differ by
+/// an odd number.
 struct Separated {
   std::vector<ChainPoint> chain;  ///< closed: the last point goes on to the first
 };

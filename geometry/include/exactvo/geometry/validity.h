@@ -45,9 +45,9 @@ struct NormalizedPolygon {
   bool ok() const;                    ///< every problem was repaired
 };
 
-/// Repairs the problems that have one correct repair (winding, closure, consecutive duplicates) and reports the rest. Exact: no
-/// tolerance, only comparisons and orientation tests. O(n log n) while rings keep apart; rings that touch cost a search
-/// over pairs of edges whose boxes meet.
+/// Repairs the problems that have one correct repair (winding, closure, consecutive duplicates) and reports the rest.
+/// Exact: no tolerance, only comparisons and orientation tests. O(n log n) while rings keep apart; rings that touch
+/// cost a search over pairs of edges whose boxes meet.
 ///
 /// `rings[0]` is the outer ring; each may or may not repeat its first point. Holes may touch each other or the outer
 /// ring in single points, as in OGC simple features; that the interior stays connected is not checked. A ring's own

@@ -7,12 +7,13 @@
 ///     F = { v : |v| <= max_speed } minus the union of the obstacles' cones, boundaries included.
 ///
 /// F has circular arcs, irrational lines and, where ellipses take part, curves of degree eight. Two polygonal regions
-/// with exact coordinates enclose it: `inner` is a subset of F, and F is a subset of `outer`. Every cone is convex, so a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies
-/// in it; the same construction for every shape, a disc or a polygon for a robot, finite or infinite horizon. What is
-/// between the two is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon), but for two
-/// exceptions: where doubles of the size of the coordinates over tau, or of the apex, are coarser than that, it is as
-/// wide as their rounding; and where the robot is a few ulps from contact, so that no legs certify, the cone is held
-/// from outside by the half-plane away from the nearest point, or if that cannot be proven either, not at all.
+/// with exact coordinates enclose it: `inner` is a subset of F, and F is a subset of `outer`. Every cone is convex, so
+/// a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies in it; the same
+/// construction for every shape, a disc or a polygon for a robot, finite or infinite horizon. What is between the two
+/// is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon), but for two exceptions: where
+/// doubles of the size of the coordinates over tau, or of the apex, are coarser than that, it is as wide as their
+/// rounding; and where the robot is a few ulps from contact, so that no legs certify, the cone is held from outside by
+/// the half-plane away from the nearest point, or if that cannot be proven either, not at all.
 ///
 /// Exact: `contains`. Certified: both regions, so every bracket, and the two answers `yes` and `no` of `compare`.
 /// "Within" is up to sets without area: `inner` is closed and may touch a cone, whose boundary is not free.

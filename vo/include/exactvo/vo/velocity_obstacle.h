@@ -132,8 +132,8 @@ class VelocityObstacle {
 
   /// Equation (10): { v' : n.v' >= n.(v + alpha u) }. alpha = 1 is the full responsibility for a static obstacle and is
   /// certified disjoint from the interior of VO; alpha < 1 leaves the rest of u to somebody else, and its offset is
-  /// rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing where no half-plane could be certified: overlap, or a few ulps
-  /// from it. REQUIRES: 0 < alpha <= 1, v finite.
+  /// rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing where
+  /// no half-plane could be certified: overlap, or a few ulps from it. REQUIRES: 0 < alpha <= 1, v finite.
   std::optional<HalfPlane> half_plane(Vec2 v, double alpha = 1.0) const;
 
   /// The half-plane { v' : n0.v' >= 0 } away from the nearest point: for a robot in bare contact. Certified; nothing
