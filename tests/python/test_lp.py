@@ -211,6 +211,15 @@ def test_a_wrong_array_of_a_batch_is_named(change, where):
     assert caught.value.where == where
 
 
+@pytest.mark.parametrize("count", [15, 16, 17])
+def test_lines_that_are_not_copied_are_looked_at_where_preferred_is(count):
+    normals, offsets, _ = lp.batch_arrays(count, 2)
+    normals[count - 1, 1] = (2.0, 0.0)
+    with pytest.raises(exactvo.ArgumentError) as caught:
+        lp.solve_batch(normals, offsets, [(0.0, 0.0)] * count, max_speed=1.0)
+    assert caught.value.where == "normals"
+
+
 def test_an_empty_batch_is_an_answer():
     assert len(lp.solve_batch(*lp.batch_arrays(0, 5), max_speed=1.0)) == 0
     free = lp.solve_batch(*lp.batch_arrays(3, 0), max_speed=1.0)
