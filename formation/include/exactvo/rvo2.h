@@ -20,18 +20,12 @@
 ///
 /// REQUIRES: processObstacles() after the last addObstacle(), as in RVO2; a time step before the first doStep().
 
-#include <array>
 #include <cstddef>
-#include <deque>
 #include <iosfwd>
-#include <map>
-#include <mutex>
-#include <optional>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "exactvo/formation/crowd.h"
-#include "exactvo/geometry/box_grid.h"
 
 #ifndef RVO_EXPORT
 /// Stands before declarations of RVO2; empty here.
@@ -122,10 +116,11 @@ class Line {
 class RVOSimulator {
  public:
   /// Without defaults for agents; time step 0, to be set before doStep().
-  RVOSimulator() = default;
+  RVOSimulator();
   /// With the defaults that addAgent(position) uses; the arguments as in setAgentDefaults.
   RVOSimulator(float timeStep, float neighborDist, std::size_t maxNeighbors, float timeHorizon, float timeHorizonObst,
                float radius, float maxSpeed, const Vector2& velocity = {});
+  ~RVOSimulator();
   RVOSimulator(const RVOSimulator&) = delete;
   RVOSimulator& operator=(const RVOSimulator&) = delete;
 
@@ -147,77 +142,64 @@ class RVOSimulator {
   /// Of the last step, whatever was set or added since. The first query after a step costs O(agents). Neighbours:
   /// nearest first; of obstacles those with a half-plane of their own, by the vertex that begins the edge. Lines: of
   /// obstacles, then of agents.
-  std::size_t getAgentNumAgentNeighbors(std::size_t agentNo) const { return explained(agentNo).agents.size(); }
-  std::size_t getAgentAgentNeighbor(std::size_t agentNo, std::size_t neighborNo) const {
-    return explained(agentNo).agents.at(neighborNo);
-  }
-  std::size_t getAgentNumObstacleNeighbors(std::size_t agentNo) const { return explained(agentNo).vertices.size(); }
-  std::size_t getAgentObstacleNeighbor(std::size_t agentNo, std::size_t neighborNo) const {
-    return explained(agentNo).vertices.at(neighborNo);
-  }
-  std::size_t getAgentNumORCALines(std::size_t agentNo) const { return explained(agentNo).lines.size(); }
-  const Line& getAgentORCALine(std::size_t agentNo, std::size_t lineNo) const {
-    return explained(agentNo).lines.at(lineNo);
-  }
+  std::size_t getAgentNumAgentNeighbors(std::size_t agentNo) const;
+  std::size_t getAgentAgentNeighbor(std::size_t agentNo, std::size_t neighborNo) const;
+  std::size_t getAgentNumObstacleNeighbors(std::size_t agentNo) const;
+  std::size_t getAgentObstacleNeighbor(std::size_t agentNo, std::size_t neighborNo) const;
+  std::size_t getAgentNumORCALines(std::size_t agentNo) const;
+  const Line& getAgentORCALine(std::size_t agentNo, std::size_t lineNo) const;
   ///@}
 
   ///@{
   /// Of an agent, as it was set or as the last step left it: m, s, m/s. Throws CrowdError for a number of no agent.
-  const Vector2& getAgentPosition(std::size_t agentNo) const { return agent(agentNo).position; }
-  const Vector2& getAgentVelocity(std::size_t agentNo) const { return agent(agentNo).velocity; }
-  const Vector2& getAgentPrefVelocity(std::size_t agentNo) const { return agent(agentNo).preferred; }
-  std::size_t getAgentMaxNeighbors(std::size_t agentNo) const { return agent(agentNo).parameters.neighbours; }
-  float getAgentMaxSpeed(std::size_t agentNo) const { return agent(agentNo).parameters.max_speed; }
-  float getAgentNeighborDist(std::size_t agentNo) const { return agent(agentNo).parameters.neighbour_distance; }
-  float getAgentRadius(std::size_t agentNo) const { return agent(agentNo).parameters.radius; }
-  float getAgentTimeHorizon(std::size_t agentNo) const { return agent(agentNo).parameters.time_horizon; }
-  float getAgentTimeHorizonObst(std::size_t agentNo) const { return agent(agentNo).parameters.time_horizon_obstacles; }
+  const Vector2& getAgentPosition(std::size_t agentNo) const;
+  const Vector2& getAgentVelocity(std::size_t agentNo) const;
+  const Vector2& getAgentPrefVelocity(std::size_t agentNo) const;
+  std::size_t getAgentMaxNeighbors(std::size_t agentNo) const;
+  float getAgentMaxSpeed(std::size_t agentNo) const;
+  float getAgentNeighborDist(std::size_t agentNo) const;
+  float getAgentRadius(std::size_t agentNo) const;
+  float getAgentTimeHorizon(std::size_t agentNo) const;
+  float getAgentTimeHorizonObst(std::size_t agentNo) const;
   ///@}
   /// s: how much time all steps took.
-  float getGlobalTime() const { return time_; }
+  float getGlobalTime() const;
   /// s.
-  float getTimeStep() const { return time_step_; }
+  float getTimeStep() const;
   /// How many agents there are.
-  std::size_t getNumAgents() const { return agents_.size(); }
+  std::size_t getNumAgents() const;
   ///@{
   /// Vertices of obstacles: their number, places in m, and the vertices before and after along the obstacle.
-  std::size_t getNumObstacleVertices() const { return vertices_.size(); }
-  const Vector2& getObstacleVertex(std::size_t vertexNo) const { return vertex(vertexNo).point; }
-  std::size_t getNextObstacleVertexNo(std::size_t vertexNo) const { return vertex(vertexNo).next; }
-  std::size_t getPrevObstacleVertexNo(std::size_t vertexNo) const { return vertex(vertexNo).previous; }
+  std::size_t getNumObstacleVertices() const;
+  const Vector2& getObstacleVertex(std::size_t vertexNo) const;
+  std::size_t getNextObstacleVertexNo(std::size_t vertexNo) const;
+  std::size_t getPrevObstacleVertexNo(std::size_t vertexNo) const;
   ///@}
 
+  ///@{
   /// Whether a disc gets straight from one point to the other without an edge of an obstacle in its interior, and no
   /// edge touches the way itself. The disc has the radius, or less where a point has less room. Exact, up to the last
   /// place of the radius or a rounding of the room.
-  bool queryVisibility(const Vector2& point1, const Vector2& point2, float radius = 0.0F) const;
+  bool queryVisibility(const Vector2& point1, const Vector2& point2) const;
+  bool queryVisibility(const Vector2& point1, const Vector2& point2, float radius) const;
+  ///@}
 
   /// What addAgent(position) gives an agent: distances in m, times in s, speeds in m/s.
   void setAgentDefaults(float neighborDist, std::size_t maxNeighbors, float timeHorizon, float timeHorizonObst,
                         float radius, float maxSpeed, const Vector2& velocity = {});
   /// Of different agents from different threads, if need be. The others: from one thread at a time. All but the
   /// preferred velocity cost O(agents) at the next step.
-  void setAgentPrefVelocity(std::size_t agentNo, const Vector2& prefVelocity) {
-    agent(agentNo).preferred = prefVelocity;
-  }
+  void setAgentPrefVelocity(std::size_t agentNo, const Vector2& prefVelocity);
   ///@{
   /// Of an agent, from the next step on: m, s, m/s. Throws CrowdError for a number of no agent.
   void setAgentPosition(std::size_t agentNo, const Vector2& position);
   void setAgentVelocity(std::size_t agentNo, const Vector2& velocity);
-  void setAgentMaxNeighbors(std::size_t agentNo, std::size_t maxNeighbors) {
-    changed(agentNo).parameters.neighbours = maxNeighbors;
-  }
-  void setAgentMaxSpeed(std::size_t agentNo, float maxSpeed) { changed(agentNo).parameters.max_speed = maxSpeed; }
-  void setAgentNeighborDist(std::size_t agentNo, float neighborDist) {
-    changed(agentNo).parameters.neighbour_distance = neighborDist;
-  }
-  void setAgentRadius(std::size_t agentNo, float radius) { changed(agentNo).parameters.radius = radius; }
-  void setAgentTimeHorizon(std::size_t agentNo, float timeHorizon) {
-    changed(agentNo).parameters.time_horizon = timeHorizon;
-  }
-  void setAgentTimeHorizonObst(std::size_t agentNo, float timeHorizonObst) {
-    changed(agentNo).parameters.time_horizon_obstacles = timeHorizonObst;
-  }
+  void setAgentMaxNeighbors(std::size_t agentNo, std::size_t maxNeighbors);
+  void setAgentMaxSpeed(std::size_t agentNo, float maxSpeed);
+  void setAgentNeighborDist(std::size_t agentNo, float neighborDist);
+  void setAgentRadius(std::size_t agentNo, float radius);
+  void setAgentTimeHorizon(std::size_t agentNo, float timeHorizon);
+  void setAgentTimeHorizonObst(std::size_t agentNo, float timeHorizonObst);
   ///@}
   /// s, > 0.
   void setTimeStep(float timeStep);
@@ -227,68 +209,11 @@ class RVOSimulator {
   /// As CrowdOptions::threads; 1 at first.
   void setThreads(int threads);
   /// What happened in the last step.
-  const exactvo::formation::StepReport& getStepReport() const { return report_; }
+  const exactvo::formation::StepReport& getStepReport() const;
 
  private:
-  struct Parameters {
-    float neighbour_distance = 0.0F;
-    std::size_t neighbours = 0;
-    float time_horizon = 0.0F, time_horizon_obstacles = 0.0F, radius = 0.0F, max_speed = 0.0F;
-
-    bool operator<(const Parameters& o) const;
-  };
-  struct Agent {
-    Parameters parameters;
-    Vector2 position, velocity, preferred;
-    exactvo::geometry::Vec2 at, moves;  ///< what the floats are rounded from
-  };
-  using Agents = std::deque<Agent>;  // callers hold references
-  struct Vertex {
-    Vector2 point;
-    std::size_t previous, next;
-  };
-  struct Explained {
-    std::vector<std::size_t> agents, vertices;
-    std::vector<Line> lines;
-  };
-
-  const Agent& agent(std::size_t number) const;
-  Agent& agent(std::size_t number) { return const_cast<Agent&>(std::as_const(*this).agent(number)); }
-  Agent& changed(std::size_t number);
-  const Vertex& vertex(std::size_t number) const;
-  std::size_t add(const Vector2& position, const Parameters& parameters, const Vector2& velocity);
-  double room_at(exactvo::geometry::Vec2 here, double enough) const;
-  double fastest() const;
-  double farthest() const;
-  static exactvo::formation::CrowdKind kind_of(const Parameters& p, const exactvo::formation::CrowdOptions& options);
-  static std::vector<exactvo::geometry::Vec2> preferred_of(const Agents& agents);
-  exactvo::formation::Crowd crowd_of(const Agents& agents, std::size_t processed,
-                                     const exactvo::formation::CrowdOptions& options) const;
-  void remake();
-  void read();
-  const Explained& explained(std::size_t number) const;
-
-  float time_step_ = 0.0F, time_ = 0.0F;
-  int threads_ = 1;
-  std::optional<Parameters> defaults_;
-  Vector2 default_velocity_;
-  Agents agents_;
-  std::deque<Vertex> vertices_;
-  std::size_t processed_ = 0;  ///< vertices that are in the way
-  bool is_changed_ = true;     ///< the crowd is made anew
-  std::optional<exactvo::formation::Crowd> crowd_;
-  exactvo::formation::StepReport report_;
-  std::vector<exactvo::geometry::Segment> edges_;  ///< by the vertex that begins them
-  std::map<std::array<double, 4>, std::size_t> vertex_of_;
-  exactvo::geometry::BoxGrid edges_by_place_;
-
-  // Before the last step: enough to explain it, whatever is set or added after it.
-  Agents before_;
-  std::size_t processed_before_ = 0;  ///< there are only more later
-  exactvo::formation::CrowdOptions options_before_;
-  mutable std::optional<exactvo::formation::Crowd> crowd_before_;
-  mutable std::map<std::size_t, Explained> explained_;
-  mutable std::mutex explaining_;
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace RVO
