@@ -27,7 +27,7 @@ std::vector<Vec2> recentred(std::vector<Vec2> offsets);
 
 /// Delta_i as the controller uses them: recentred where the scenario and the remedies both say so.
 std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies);
-/// Those of a run; empty without a formation.
+/// The offsets that a run uses; empty without a formation.
 std::vector<Vec2> offsets_in_use(const Scenario& scenario, const SimulationOptions& options);
 
 /// u_c of equation (14), m/s^2, with `position_sign` = -1, or +1 as (15) prints it.

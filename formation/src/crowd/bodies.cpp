@@ -255,9 +255,14 @@ Body& Bodies::add(ObstacleId id, const geometry::ConvexShape& shape, bool moves)
   body.id = id;
   body.shape = shape;
   body.moves = moves;
-  body.corners = geometry::corners_of(shape);
-  if (const auto* disc = std::get_if<geometry::Disc>(&shape)) body.corners = {disc->center}, body.round = disc->radius;
-  if (const auto* ellipse = std::get_if<geometry::Ellipse>(&shape)) body.corners = corners_round(*ellipse);
+  if (const auto* disc = std::get_if<geometry::Disc>(&shape)) {
+    body.corners = {disc->center};
+    body.round = disc->radius;
+  } else if (const auto* ellipse = std::get_if<geometry::Ellipse>(&shape)) {
+    body.corners = corners_round(*ellipse);
+  } else {
+    body.corners = geometry::corners_of(shape);
+  }
   const std::size_t count = body.corners.size();
   for (std::size_t k = 0; count > 1 && k < count; ++k)
     body.normals.push_back(-direction(geometry::perp(body.corners[(k + 1) % count] - body.corners[k])));

@@ -6,7 +6,8 @@
 ///
 /// A robot is decided in one of two ways that give the same bits: in a pack of sixteen that share their candidates, or
 /// alone, with any number of neighbours: where it stands too densely for a pack, where more can be met within the step
-/// than its kind has neighbours, where another stands in its very place, and for `explain`.
+/// than its kind has neighbours, where more half-planes against edges or bodies come up than a pack has room for, where
+/// another stands in its very place, and for `explain`.
 
 #include <chrono>
 #include <memory>

@@ -30,13 +30,13 @@ inline constexpr std::size_t kMostMoving = 4;
 inline constexpr std::size_t kPadding = 64;
 /// Coordinates stay below it, so that differences fit 32 bits.
 inline constexpr std::int32_t kLatticeEnd = 1 << 30;
-/// Lattice steps of a robot or a body in a time step.
+/// Lattice steps that a robot or a body makes in a time step at most.
 inline constexpr double kLongestMotion = 0x1p22;
 /// An offset that always holds.
 inline constexpr double kNever = -1e30;
 
-/// m: the finest lattice that reaches so far and whose steps are long enough for the longest way in a time step, both
-/// m.
+/// m: the finest lattice that reaches as far as `reach` (m), and on which `way` (m, the longest in a time step) is at
+/// most kLongestMotion steps.
 inline double lattice_for(double reach, double way) {
   double step = 0x1p-18;
   while (step < 1.0 && (reach >= kLatticeEnd * step || way > kLongestMotion * step)) step *= 2.0;

@@ -59,7 +59,7 @@ class Robots {
   Window bounds() const { return bounds_; }
 
   void reserve(std::size_t robots);
-  /// Whoever is new is to be written.
+  /// Fields of new robots are left to the caller.
   void resize(std::size_t robots);
   /// Gives back what is far more than robots need.
   void shrink();

@@ -34,7 +34,7 @@ void get_counted(SnapshotReader& from, List& list) {
   from.get_some(list, from.get<std::uint32_t>());
 }
 
-/// A writer's or a reader's.
+/// Writes or reads the fields: `Bytes` is a SnapshotWriter or a SnapshotReader.
 template <class Bytes, class Kind>
 void fields_of_kind(Bytes& bytes, Kind& k) {
   bytes.fields(k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.edge_horizon, k.neighbours);

@@ -55,7 +55,7 @@ class SnapshotWriter {
  public:
   explicit SnapshotWriter(std::ostream& to) : to_(to) {}
 
-  /// One after the other: what names fields to a writer can name them to a reader.
+  /// Puts them in this order. `SnapshotReader::fields` takes the same list.
   template <class... Fields>
   void fields(const Fields&... values) {
     (put(values), ...);

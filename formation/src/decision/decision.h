@@ -94,7 +94,7 @@ double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j);
 
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
 
-/// With what it takes to prove it again, as seen from there.
+/// The half-plane with the shape, place and radius that prove it again, as seen from `from`.
 RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies, const Viewpoint& from);
 
 struct DecisionInput {

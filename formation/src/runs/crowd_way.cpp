@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) crowd::refuse_snapshot("other bytes", kSnapshotOfRun);
 }
 
-/// A writer's or a reader's.
+/// Writes or reads the fields: `Bytes` is a SnapshotWriter or a SnapshotReader.
 template <class Bytes, class Way>
 void fields_of_way(Bytes& bytes, Way& way) {
   bool has_course = way.course.has_value();

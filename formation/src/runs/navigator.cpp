@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
@@ -147,6 +148,13 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
   return setup;
 }
 
+std::vector<SceneObstacle> solids_of(const std::vector<SceneObstacle>& obstacles) {
+  std::vector<SceneObstacle> solids;
+  std::copy_if(obstacles.begin(), obstacles.end(), std::back_inserter(solids),
+               [](const SceneObstacle& o) { return geometry::has_interior(o.shape); });
+  return solids;
+}
+
 class Navigator::Core {
  public:
   Core(const NavigatorSetup& setup, std::vector<Vec2> goals)
@@ -156,7 +164,7 @@ class Navigator::Core {
         scene_(scenario_, options_),
         own_(scenario_, options_, scene_.bodies()),
         rule_(pair_rule(scenario_, options_)),
-        space_(scenario_.obstacles) {
+        solids_(solids_of(scenario_.obstacles)) {
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
                                scene_.edges_by_place().size() + scenario_.obstacles.size();
     const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
@@ -236,9 +244,10 @@ class Navigator::Core {
 
   /// The obstacle that x is inside of, or null. Near to where nothing was, it looks no more.
   const SceneObstacle* obstacle_round(Vec2 x) {
-    constexpr double kLooksRound = 2.0, kRounding = 1e-6;  // m; of what distances are off by
+    constexpr double kLooksRound = 2.0;  // m
+    constexpr double kRounding = 1e-6;   // m: more than distances are off by
     if (norm(x - clear_place_) < clear_) return nullptr;
-    const double clear = space_.clearance(x, kLooksRound);
+    const double clear = solids_.clearance(x, kLooksRound);
     if (clear < 0.0)
       for (const SceneObstacle& o : scenario_.obstacles)
         if (geometry::signed_distance(o.shape, x) < 0.0) return &o;
@@ -315,7 +324,7 @@ class Navigator::Core {
   Scene scene_;
   OwnDecision own_;
   vo::ReciprocalOptions rule_;
-  ObstacleSpace space_;
+  ObstacleSpace solids_;  ///< what one can be inside of
   Vec2 clear_place_;
   double clear_ = -1.0;  ///< m: so far round `clear_place_` no point is inside an obstacle
   OwnWay way_;

@@ -47,7 +47,7 @@ double size_of(Vec2 v) {
 /// No point of the shape has a larger coordinate.
 double extent_of(const ConvexShape& shape) {
   const Box box = box_of(shape);
-  return std::max(size_of(box.low), size_of(box.high));
+  return std::max({std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x), std::fabs(box.high.y)});
 }
 
 /// A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.

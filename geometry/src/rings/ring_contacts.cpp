@@ -31,7 +31,7 @@ std::vector<Box> boxes_of(const std::vector<Chain>& chains) {
 }
 
 /// Ends the search: an exception is the only way out of CGAL's.
-struct TooMany {};
+struct Ended {};
 
 auto key(const Contact& c) {
   return std::make_tuple(c.first.chain, c.first.edge, c.second.chain, c.second.edge);
@@ -43,8 +43,10 @@ bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
                        const std::function<bool(EdgeId first, EdgeId second)>& take) {
   std::size_t pairs = 0;
   const auto report = [&](const Box& a, const Box& b) {
-    const bool ordered = a.info().chain <= b.info().chain;
-    if (++pairs > most || !(ordered ? take(a.info(), b.info()) : take(b.info(), a.info()))) throw TooMany{};
+    if (++pairs > most) throw Ended{};
+    const bool is_ordered = a.info().chain <= b.info().chain;
+    const bool goes_on = is_ordered ? take(a.info(), b.info()) : take(b.info(), a.info());
+    if (!goes_on) throw Ended{};
   };
   try {
     without_cgal_failures(
@@ -53,7 +55,7 @@ bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
           std::vector<Box> boxes = boxes_of(chains);
           CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), report);
         });
-  } catch (const TooMany&) {
+  } catch (const Ended&) {
     return false;
   }
   return true;

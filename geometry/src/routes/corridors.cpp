@@ -37,31 +37,42 @@ Corridor::Strip Corridor::strip_round(const std::vector<Vec2>& points) {
           0.5 * (left - right) * v};
 }
 
+Corridor::Block Corridor::lowest_block(int number) {
+  constexpr int kGates = 1 << kBlock;
+  Block made;
+  for (const bool is_left : {true, false}) {
+    scratch_.clear();
+    for (int i = number * kGates; i < (number + 1) * kGates; ++i)
+      scratch_.push_back(is_left ? (*this)[i].left : (*this)[i].right);
+    (is_left ? made.left : made.right) = strip_round(scratch_);
+  }
+  for (int i = number * kGates; i < (number + 1) * kGates; ++i) made.size = std::max(made.size, (*this)[i].size);
+  return made;
+}
+
+Corridor::Block Corridor::block_of_two(const std::vector<Block>& below, int number) {
+  const Block &first = below[2 * static_cast<std::size_t>(number)],
+              &second = below[2 * static_cast<std::size_t>(number) + 1];
+  Block made;
+  for (const bool is_left : {true, false}) {
+    scratch_.clear();
+    for (const Block* half : {&first, &second}) {
+      const Strip& s = is_left ? half->left : half->right;
+      for (const double u : {-1.0, 1.0})
+        for (const double v : {-1.0, 1.0}) scratch_.push_back(s.middle + u * s.along + v * s.across);
+    }
+    (is_left ? made.left : made.right) = strip_round(scratch_);
+  }
+  made.size = std::max(first.size, second.size);
+  return made;
+}
+
 const Corridor::Block& Corridor::block(int level, int number) {
   const std::size_t row = static_cast<std::size_t>(level - kBlock);
   if (blocks_.size() <= row) blocks_.resize(row + 1);
   for (int k = static_cast<int>(blocks_[row].size()); k <= number; ++k) {
-    Block made;
-    const bool is_lowest = level == kBlock;
-    if (!is_lowest) block(level - 1, 2 * k + 1);  // makes the one before it too
-    const int parts = is_lowest ? 1 << kBlock : 2;
-    for (const bool is_left : {true, false}) {
-      scratch_.clear();
-      for (int i = k * parts; i < (k + 1) * parts; ++i) {
-        if (is_lowest) {
-          scratch_.push_back(is_left ? (*this)[i].left : (*this)[i].right);
-          made.size = std::max(made.size, (*this)[i].size);
-          continue;
-        }
-        const Block& half = blocks_[row - 1][static_cast<std::size_t>(i)];
-        const Strip& s = is_left ? half.left : half.right;
-        for (const double u : {-1.0, 1.0})
-          for (const double v : {-1.0, 1.0}) scratch_.push_back(s.middle + u * s.along + v * s.across);
-        made.size = std::max(made.size, half.size);
-      }
-      (is_left ? made.left : made.right) = strip_round(scratch_);
-    }
-    blocks_[row].push_back(made);
+    if (level > kBlock) block(level - 1, 2 * k + 1);  // makes the one before it too
+    blocks_[row].push_back(level == kBlock ? lowest_block(k) : block_of_two(blocks_[row - 1], k));
   }
   return blocks_[row][static_cast<std::size_t>(number)];
 }

@@ -62,6 +62,8 @@ class Corridor {
 
   /// The block of crossings [number 2^level, (number + 1) 2^level). REQUIRES: the corridor is that long.
   const Block& block(int level, int number);
+  Block lowest_block(int number);
+  Block block_of_two(const std::vector<Block>& below, int number);
   static Strip strip_round(const std::vector<Vec2>& points);
   static bool passes(const Block& block, const View& view);
 

@@ -287,7 +287,7 @@ class LinkSearch {
     return x != y && meets_inside(x, y, disc);
   }
 
-  /// The inside of it, given that no end but v lies in the disc.
+  /// Whether the inside of the site xy meets the disc, given that none of its ends but v lies in it.
   bool meets_inside(int x, int y, const DiametralDisc& disc) const {
     return x == vertex_ || y == vertex_ ? disc.entered_from_v_towards(point(x == vertex_ ? y : x))
                                         : disc.meets_inside(point(x), point(y));

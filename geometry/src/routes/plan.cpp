@@ -185,21 +185,24 @@ void ClearancePlan::find_turns() {
   std::vector<std::size_t> first{0};  // of a Link's crossings
   for (const Link& link : map_->links) first.push_back(first.back() + link.exits.size());
   struct Crossing {
-    int ends[4];  // of portals, as `sector` numbers them
+    struct End {
+      std::size_t portal;
+      bool is_from;
+    };
+    End ends[4];
     int count = 0;
-    void add(int portal, bool is_from) {
-      if (count < 4) ends[count] = 2 * portal + (is_from ? 0 : 1);
+    void add(std::size_t portal, bool is_from) {
+      if (count < 4) ends[count] = {portal, is_from};
       ++count;
     }
   };
   std::vector<Crossing> meeting(first.back());
   for (std::size_t p = 0; p < map_->portals.size(); ++p) {
     const Portal& portal = map_->portals[p];
-    const int number = static_cast<int>(p);
     if (portal.link >= 0) {
       const std::size_t base = first[portal.link] + static_cast<std::size_t>(portal.piece);
-      if (portal.piece > 0) meeting[base - 1].add(number, portal.outward);
-      meeting[base].add(number, !portal.outward);
+      if (portal.piece > 0) meeting[base - 1].add(p, portal.outward);
+      meeting[base].add(p, !portal.outward);
       continue;
     }
     for (const bool is_from : {true, false}) {
@@ -208,18 +211,19 @@ void ClearancePlan::find_turns() {
       const std::vector<Link::Exit>& exits = map_->links[link].exits;
       std::size_t k = 0;
       while (map_->side_of[exits[k].triangle][exits[k].side] != portal.side) ++k;
-      meeting[first[link] + k].add(number, is_from);
+      meeting[first[link] + k].add(p, is_from);
     }
   }
   for (std::size_t l = 0; l < map_->links.size(); ++l) {
     for (std::size_t k = first[l]; k + 1 < first[l + 1]; ++k) {  // the last lies on the wall
       const Crossing& c = meeting[k];
-      const bool all_reach = c.count == 4 && std::all_of(c.ends, c.ends + 4, [&](int end) {
-                               const ShrunkPortal& q = shrunk_[end / 2];
-                               return q.open && !(end % 2 ? q.to_moved : q.from_moved);
+      const bool all_reach = c.count == 4 && std::all_of(c.ends, c.ends + 4, [&](const Crossing::End& end) {
+                               const ShrunkPortal& q = shrunk_[end.portal];
+                               return q.open && !(end.is_from ? q.from_moved : q.to_moved);
                              });
       if (!all_reach) continue;
-      for (const int end : c.ends) (end % 2 ? shrunk_[end / 2].to_turns : shrunk_[end / 2].from_turns) = false;
+      for (const Crossing::End& end : c.ends)
+        (end.is_from ? shrunk_[end.portal].from_turns : shrunk_[end.portal].to_turns) = false;
     }
   }
 }

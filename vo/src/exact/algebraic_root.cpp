@@ -33,7 +33,7 @@ Polynomial remainder(Polynomial a, const Polynomial& b) {
   return a;
 }
 
-/// REQUIRES: b divides a. Of coprime coefficients the quotient has whole ones (Gauss's lemma).
+/// REQUIRES: b divides a, and its coefficients are coprime: then the quotient has whole ones (Gauss's lemma).
 Polynomial quotient(Polynomial a, const Polynomial& b) {
   Polynomial out(a.size() - b.size() + 1);
   for (std::size_t k = out.size(); k-- > 0;) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 #include "lp/exact/exact_search.h"
@@ -77,6 +78,7 @@ void name_active(const std::vector<Binding>& bindings, Solution& s) {
 void take_from(const Certificate& certificate, const Problem& problem, const std::vector<Binding>& tight, Solution& s) {
   std::vector<Binding> bindings;
   Multipliers rounded;
+  EXACTVO_REQUIRE(certificate.bound.size() <= rounded.binding.size(), std::to_string(certificate.bound.size()));
   for (const Term& term : certificate.bound) {
     bindings.push_back(term.binding);
     rounded.add(term.binding, std::accumulate(term.multiplier.begin(), term.multiplier.end(), 0.0));

@@ -138,7 +138,7 @@ double exact_margin(const RootSum& excess) {
 
 // --- Digest and text ---
 
-/// The numbers behind the shape, each with its word, in the order of both.
+/// The numbers that follow the shape, each with its word, in the order that text and digest share.
 template <class Claim, class Visit>
 void for_each_number(Claim& c, Visit visit) {
   visit("position", c.position);

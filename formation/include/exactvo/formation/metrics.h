@@ -129,7 +129,8 @@ class Evaluator {
   ~Evaluator();
   /// REQUIRES: not null.
   void add(std::shared_ptr<const Step> row);
-  /// Once, after the last row. Reads from `run`: outcome, diverged, warnings, wall_time, offsets, time_step, bodies.
+  /// Once, after the last row. Reads from `run`: outcome, diverged, warnings, wall_time, offsets, time_step, bodies,
+  /// liveness, routes.
   /// `lyapunov` of the result is empty. REQUIRES: a row.
   Evaluation finish(const Recording& run);
 

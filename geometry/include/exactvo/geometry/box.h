@@ -15,7 +15,7 @@ namespace exactvo::geometry {
 /// { x : low <= x <= high }, both coordinates; empty as it begins.
 struct Box {
   Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};  ///< m, least coordinates
-  /// M, greatest coordinates.
+  /// m, greatest coordinates.
   Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
   /// Grows to hold p.

@@ -116,7 +116,7 @@ class RouteMap {
   /// The largest double for which a disc of that radius has a route, in metres; 0 if none has. Exact: `RoutePlan` finds
   /// a route for it, and for the next double a chain, or that an end is blocked. `largest_radius` where even that fits.
   /// O(n log n) for the first question, then O(log n) and the time to look up what is near. REQUIRES: `covers` both;
-  /// the map is not for chains only.
+  /// the map was not made with `RouteMapOptions::chains_only`.
   double widest_radius(Vec2 start, Vec2 goal) const;
 
   struct Parts;
@@ -135,7 +135,8 @@ class RoutePlan {
   /// m, as it was given.
   double radius() const;
 
-  /// REQUIRES: both within the map (`covers`); no route where the map is for chains only. Throws RouteNotProven.
+  /// REQUIRES: both within the map (`covers`); no route where the map was made with `RouteMapOptions::chains_only`.
+  /// Throws RouteNotProven.
   RouteAnswer query(Vec2 start, Vec2 goal) const;
 
   /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: both within the map.

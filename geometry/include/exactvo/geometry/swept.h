@@ -27,8 +27,9 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
 
 /// Whether a robot that is a convex polygon (vertices relative to its reference point, which starts at `position`)
 /// touches the obstacle at some time 0 <= t <= t_max, t finite, when it moves by t * direction. Exact: two convex sets
-/// are apart iff a line across one of finitely many directions separates them, or, against a disc or an ellipse, iff
-/// no edge of the swept robot comes within the radius. REQUIRES: valid shapes, finite numbers, t_max >= 0 or infinite.
+/// are apart iff a line across one of finitely many directions separates them or, against a disc or an ellipse, seen
+/// from the robot: iff the centre neither begins nor ends in the robot, and its way comes nowhere within the radius of
+/// an edge (the ellipse mapped to a disc). REQUIRES: valid shapes, finite numbers, t_max >= 0 or infinite.
 bool sweep_meets(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 position, const VectorSum& direction,
                  double t_max);
 

@@ -60,7 +60,7 @@ double multiplier_of_one(Binding binding, Vec2 column, Vec2 sum) {
   return binding == kDisc ? multiplier_of_disc(sum, column) : solve_one(column, sum);
 }
 
-/// Of so many lines; `on_disc` is asked of two.
+/// Weights of the first `count` lines. `on_disc` matters only where there are two.
 std::array<double, 3> weights_of(const Normals& n, std::size_t count, Vec2 v, bool on_disc) {
   if (count == 3) {
     const std::array<double, 3> w = {cross(n[1], n[2]), cross(n[2], n[0]), cross(n[0], n[1])};
@@ -227,7 +227,7 @@ bool has_multipliers_of(const Problem& problem, const Multipliers& proof, const 
 std::optional<Multipliers> in_doubles(const std::vector<Term>& terms) {
   Multipliers m;
   for (const Term& term : terms) {
-    if (term.multiplier.size() != 1) return std::nullopt;
+    if (m.count == m.binding.size() || term.multiplier.size() != 1) return std::nullopt;
     m.add(term.binding, term.multiplier.front());
   }
   return m;

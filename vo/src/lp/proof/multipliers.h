@@ -14,7 +14,7 @@
 
 namespace exactvo::lp {
 
-// Of the first two `m` only names what is meant.
+// In the next two functions `m` says which are meant; its values are not read.
 
 /// Of at most two that bind at the optimum v, the disc's nu among them. Each is 0 or more; not finite where the two are
 /// parallel.
@@ -41,7 +41,8 @@ void set_multipliers(const Problem& problem, Solution& solution);
 /// cannot be used.
 Multipliers own_multipliers(const Problem& problem, const Solution& solution);
 
-/// The terms of a certificate, at most three, where each is one double.
+/// The terms as multipliers in double; nothing where one is a sum of several doubles, or where there are more than
+/// three.
 std::optional<Multipliers> in_doubles(const std::vector<Term>& terms);
 
 /// Whether these are the solution's own multipliers, all of them.

@@ -53,9 +53,9 @@ class SolveMemory {
   std::unique_ptr<detail::ScalarRegions> regions_;
 };
 
-/// The same answer. Where `pricing.is_all`, a constraint with a normal of about unit length that at each of its
-/// velocities either holds with room to spare or is violated clearly less than some other could be added to the problem
-/// or left out: velocity, status and what binds stay the same bits. With room, clearly: beyond 1024 u V and the
+/// The same answer. Where `pricing.is_all`, a constraint with a normal of about unit length that at each of
+/// `pricing.at` either holds with room to spare or is violated clearly less than some other could be added to the
+/// problem or left out: velocity, status and what binds stay the same bits. With room, clearly: beyond 1024 u V and the
 /// rounding of the constraint's own excess. Allocates nothing in a problem with no more constraints than one before, or
 /// than were reserved, whose normals have lengths within 2^+-100; but signs that doubles do not decide are computed
 /// exactly, and such numbers allocate where they are long.
