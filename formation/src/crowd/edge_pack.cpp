@@ -174,11 +174,7 @@ template <class T>
 class EdgeLanes {
  public:
   HWY_INLINE EdgeLanes(const EdgePackQuery<T>& query, EdgePackTable& table, std::size_t lane)
-      : query_(query),
-        cells_(table.cells.data()),
-        row_at_(table.row_at.data()),
-        row_number_(table.row_number.data()),
-        lane_(lane) {
+      : query_(query), table_(table), lane_(lane) {
     const Doubles d;
     place_ = {hn::LoadU(d, query.x + lane), hn::LoadU(d, query.y + lane)};
     radius_ = hn::LoadU(d, query.radius + lane);
@@ -198,7 +194,7 @@ class EdgeLanes {
     V lines = set(0.0);
     M overflow = hn::MaskFromVec(hn::Zero(d));
     if (count_ > 0) {
-      gather();
+      while (!gather()) table_.double_rows();
       for (std::size_t k = 0;; ++k) {
         M at_work = hn::Lt(best_squared_, set(kInfinity));
         if (hn::AllFalse(d, at_work)) break;
@@ -236,8 +232,8 @@ class EdgeLanes {
     hn::Store(best_row_, Doubles(), row);
     hn::Store(threshold_, Doubles(), threshold);
     for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) {
-      edge[lane] =
-          number_of(lane, static_cast<std::size_t>(row[lane]) / (EdgePackTable::kFields * hn::Lanes(Doubles())));
+      const std::size_t nth = static_cast<std::size_t>(row[lane]) / (EdgePackTable::kFields * hn::Lanes(Doubles()));
+      edge[lane] = number_of(lane, table_.row_in_cell[nth]);
       touching[lane] = threshold[lane] == -kInfinity;
     }
   }
@@ -275,9 +271,16 @@ class EdgeLanes {
     b = Vec{hn::Load(d, ends[2]), hn::Load(d, ends[3])} - place_;
   }
 
-  /// The edges of the lanes' cells, as seen from the robots, by row; the nearest of each lane.
-  HWY_INLINE void gather() {
+  /// The edges of the lanes' cells that are within range, as seen from the robots, by row; the nearest of each lane.
+  /// False where the table has too few rows.
+  HWY_INLINE bool gather() {
     const Doubles d;
+    cells_ = table_.cells.data();
+    row_at_ = table_.row_at.data();
+    row_number_ = table_.row_number.data();
+    std::uint32_t* const row_in_cell = table_.row_in_cell.data();
+    const std::size_t room = table_.row_at.size();
+    used_ = 0;
     const V count = hn::PromoteTo(d, hn::LoadU(Words(), query_.count + lane_));
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {  // of a lane without edges, `first` may be past the end
       const auto edges = static_cast<std::size_t>(query_.count[lane_ + lane]);
@@ -297,20 +300,23 @@ class EdgeLanes {
       const M row_there = hn::Lt(set(static_cast<double>(row)), count);
       const M within = hn::And(row_there, hn::Le(squared, squared_range));
       if (hn::AllFalse(d, within)) continue;
+      if (HWY_UNLIKELY(used_ == room)) return false;
       squared = hn::IfThenElse(within, squared, set(kInfinity));
       const V error = hn::Mul(set(kSupportError), hn::Add(magnitude(a, b), radius_));
       cut(a, b, far);
-      const std::size_t to = row * EdgePackTable::kFields * hn::Lanes(d);
+      const std::size_t to = used_ * EdgePackTable::kFields * hn::Lanes(d);
       hn::Store(a.x, d, cell(kAx, to));
       hn::Store(a.y, d, cell(kAy, to));
       hn::Store(b.x, d, cell(kBx, to));
       hn::Store(b.y, d, cell(kBy, to));
       hn::Store(error, d, cell(kError, to));
       hn::Store(squared, d, cell(kSquared, to));
+      row_in_cell[used_] = static_cast<std::uint32_t>(row);
       row_at_[used_] = static_cast<std::uint32_t>(to);
       row_number_[used_++] = static_cast<double>(to);
       take_if_nearer(squared, set(static_cast<double>(to)));
     }
+    return true;
   }
 
   HWY_INLINE void take_if_nearer(V squared, V row) {
@@ -403,6 +409,7 @@ class EdgeLanes {
   }
 
   const EdgePackQuery<T>& query_;
+  EdgePackTable& table_;
   double* cells_;          ///< of the table, by row, field and lane
   std::uint32_t* row_at_;  ///< where rows begin that a lane still has an edge in
   double* row_number_;     ///< the same as numbers, to be broadcast
@@ -440,26 +447,20 @@ namespace exactvo::formation::crowd {
 HWY_EXPORT(float_edges);
 HWY_EXPORT(double_edges);
 
-namespace {
-
-void make_room(const std::int32_t (&counts)[kPack], EdgePackTable& table) {
-  const auto rows = static_cast<std::size_t>(*std::max_element(counts, counts + kPack));
-  if (table.row_at.size() >= rows) return;
-  table.cells.resize(rows * EdgePackTable::kFields * kPack);
-  table.row_at.resize(rows);
-  table.row_number.resize(rows);
+void EdgePackTable::double_rows() {
+  const std::size_t rows = std::max<std::size_t>(16, 2 * row_at.size());
+  cells.resize(rows * kFields * kPack);
+  row_number.resize(rows);
+  row_in_cell.resize(rows);
+  row_at.resize(rows);
 }
-
-}  // namespace
 
 std::uint32_t make_edge_lines(const EdgePackQuery<float>& query, EdgePackTable& table,
                               const EdgePackLines<float>& out) {
-  make_room(query.count, table);
   return HWY_DYNAMIC_DISPATCH(float_edges)(query, table, out);
 }
 std::uint32_t make_edge_lines(const EdgePackQuery<double>& query, EdgePackTable& table,
                               const EdgePackLines<double>& out) {
-  make_room(query.count, table);
   return HWY_DYNAMIC_DISPATCH(double_edges)(query, table, out);
 }
 

@@ -30,12 +30,16 @@ struct EdgePackQuery {
   T slack = 0;                            ///< m/s, added to every offset before it is rounded up
 };
 
-/// Memory of a thread: what is known of edges, by row and lane, and the rows that a lane still has an edge in.
+/// Memory of a thread: what is known of edges, by row and lane, and the rows that a lane still has an edge in. Only
+/// edges within range of a robot have rows, however many the cell has.
 struct EdgePackTable {
   static constexpr std::size_t kFields = 6;  ///< of an edge: its ends, the error of its support values, its distance
   Array<double> cells;
   std::vector<std::uint32_t> row_at;
   std::vector<double> row_number;
+  std::vector<std::uint32_t> row_in_cell;  ///< place of a row's edges in the lists of the lanes' cells
+
+  void double_rows();
 };
 
 /// Line k of lane l goes to [k * stride + l], k < lines[l]. The rows beyond a lane's lines are not written, or with

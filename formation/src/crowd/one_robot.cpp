@@ -155,15 +155,16 @@ std::size_t OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
   if (crowd_.edges.empty()) return 0;
   std::fill(b.edge_query.count, b.edge_query.count + kPack, 0);
   ask_edges(robot, 0, b.edge_query);
-  const auto most = static_cast<std::size_t>(b.edge_query.count[0]);
-  for (auto* row : {&b.edge_x, &b.edge_y, &b.edge_c}) row->resize(most * kPack);
-  b.edge.resize(most * kPack);
-  b.edge_touching.resize(most * kPack);
   std::int32_t lines[kPack];
-  make_edge_lines(b.edge_query, b.edge_table,
-                  EdgePackLines<T>{b.edge_x.data(), b.edge_y.data(), b.edge_c.data(), kPack, lines, most, b.edge.data(),
-                                   b.edge_touching.data()});
-  return static_cast<std::size_t>(lines[0]);
+  for (std::size_t room = std::max(kMostEdges, b.edge.size() / kPack);; room *= 2) {
+    for (auto* row : {&b.edge_x, &b.edge_y, &b.edge_c}) row->resize(room * kPack);
+    b.edge.resize(room * kPack);
+    b.edge_touching.resize(room * kPack);
+    EdgePackLines<T> out{b.edge_x.data(), b.edge_y.data(), b.edge_c.data(), kPack, lines, room};
+    out.edge = b.edge.data();
+    out.touching = b.edge_touching.data();
+    if (make_edge_lines(b.edge_query, b.edge_table, out) == 0) return static_cast<std::size_t>(lines[0]);
+  }
 }
 
 template <class T>

@@ -247,6 +247,25 @@ TEST(CrowdEdges, NobodyIsPushedThroughAWall) {
   for (RobotId id = 0; id < 200; ++id) EXPECT_LT(crowd.position(id).x, 15.5) << id;
 }
 
+TEST(CrowdEdges, ARobotHasAHalfPlaneAgainstEachOfThirtyEdgesRoundIt) {
+  for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
+    CrowdOptions options;
+    options.precision = precision;
+    Crowd crowd = with_one_kind(options);
+    crowd.add_robot({0.0, 0.0});
+    for (int k = 0; k < 30; ++k) {
+      const Vec2 out = {std::cos(0.209 * k), std::sin(0.209 * k)};
+      crowd.add_obstacle(geometry::Polyline{{2.5 * out, 2.7 * out}});
+    }
+    EXPECT_EQ(crowd.step().edges, 30U);
+    std::vector<double> ends;
+    for (const auto& line : crowd.explain(0).edges) ends.push_back(std::atan2(line.edge.a.y, line.edge.a.x));
+    std::sort(ends.begin(), ends.end());
+    EXPECT_EQ(ends.size(), 30U);
+    EXPECT_EQ(std::adjacent_find(ends.begin(), ends.end()), ends.end());
+  }
+}
+
 TEST(CrowdEdges, TheGridKnowsAllWithinReachByBruteForce) {
   SceneRandom random;
   std::vector<geometry::Segment> edges;

@@ -192,5 +192,33 @@ TEST(CrowdEdgePack, GivesTheBitsOfOneRobotOnEveryTarget) {
   lp::limit_batch_target("");
 }
 
+/// Two edges that the robots can meet, one of them behind all of the many in its cell's list.
+TEST(CrowdEdgePack, FarEdgesOfACellTakeNoRows) {
+  constexpr std::size_t kFar = 10000;
+  Setting s;
+  std::vector<Segment> edges(kFar, Segment{{3.5, 0.0}, {4.0, 0.0}});
+  edges.push_back({{1.6, -1.0}, {2.6, -1.0}});
+  edges.push_back({{0.0, 0.0}, {0.0, 0.0}});
+  s.grid.set_edges(edges);
+  s.grid.lay_out(6.0);
+  ObstacleQuery q;
+  q.position = {1.6, 0.0};
+  q.radius = 0.25;
+  q.still_horizon = 1.0;
+  q.max_speed = 1.5;
+  s.robots.resize(kPack, {q});
+  EdgePackTable table;
+  const auto pack = lines_of_pack<float>(s, 0, edges.size(), table);
+  ASSERT_EQ(static_cast<std::size_t>(pack->query.count[0]), edges.size());
+  ASSERT_EQ(s.grid.items()[static_cast<std::size_t>(pack->query.first[0]) + kFar + 1], kFar + 1);
+  EXPECT_EQ(pack->overflow, 0U);
+  for (std::size_t lane = 0; lane < kPack; ++lane) {
+    ASSERT_EQ(pack->lines[lane], 2);
+    EXPECT_EQ(pack->edge[lane], kFar);
+    EXPECT_EQ(pack->edge[kPack + lane], kFar + 1);
+  }
+  EXPECT_LT(table.row_at.size(), 100U);
+}
+
 }  // namespace
 }  // namespace exactvo::formation::crowd
