@@ -2,7 +2,9 @@
 // A run that keeps every half-plane is proven whole.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <string>
 
 #include "exactvo/datasets/audit.h"
 #include "paper_scenes.h"
@@ -43,6 +45,64 @@ TEST_P(RecordAll, TheAuditProvesTheWholeRun) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, RecordAll, testing::Values("A7", "A14", "B1", "B3"),
                          [](const auto& row) { return std::string(row.param); });
+
+Robot robot(const std::string& id, Vec2 position, Vec2 goal, double radius) {
+  Robot r;
+  r.id = id;
+  r.position = position;
+  r.goals = {goal};
+  r.radius = radius;
+  return r;
+}
+
+/// The margin of guided robots changes on their way: the half-planes of one decision are built for one margin.
+TEST(RecordAllKept, ChangesNothingOfARunBetweenWallsNearerThanTheMargin) {
+  for (const double beside : {0.36, 0.381, 0.4, 0.7}) {
+    Scenario s;
+    s.time_limit = 5.0;
+    s.robots = {robot("A", {0, 0}, {6, 0}, 0.3), robot("B", {6, 0}, {0, 0}, 0.3)};
+    s.obstacles = {{"n", geometry::Polyline{{{-6, beside}, {26, beside}}}},
+                   {"s", geometry::Polyline{{{-6, -beside}, {26, -beside}}}}};
+    SimulationOptions all;
+    all.record_all = true;
+    datasets::RecordingFile file;
+    file.scenario = s;
+    file.recording = simulate(s);
+    const Recording whole = simulate(s, all);
+    ASSERT_EQ(file.recording.steps.size(), whole.steps.size()) << beside;
+    for (std::size_t k = 0; k < whole.steps.size(); ++k)
+      for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(file.recording.steps[k].robots[i].chosen, whole.steps[k].robots[i].chosen) << beside << " row " << k;
+    EXPECT_TRUE(datasets::audit(file).clean()) << beside;
+  }
+}
+
+/// Where half-planes contradict each other, all that the choice violates are on the record.
+TEST(RecordAllKept, OfARelaxedDecisionAnOrdinaryRecordingHasWhatIsViolated) {
+  Scenario s;
+  s.time_limit = 6.0;
+  s.liveness = Liveness::off;
+  for (int i = 0; i < 9; ++i) {
+    const Vec2 place{1.1 * (i % 3) - 1.1, 1.15 * (i / 3) - 1.15};
+    s.robots.push_back(robot("R" + std::to_string(i), place, -3.0 * place, 0.5));
+  }
+  SimulationOptions all;
+  all.record_all = true;
+  const Recording ordinary = simulate(s), whole = simulate(s, all);
+  const auto violated = [](const RobotStep& r) {
+    return std::count_if(r.constraints.begin(), r.constraints.end(), [&](const RecordedConstraint& c) {
+      return geometry::violation(c.half_plane, r.chosen) > 1e-9;
+    });
+  };
+  long more_than_bind = 0;
+  for (std::size_t k = 0; k < whole.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      const RobotStep& r = ordinary.steps[k].robots[i];
+      EXPECT_EQ(violated(r), violated(whole.steps[k].robots[i])) << "row " << k << " robot " << i;
+      more_than_bind += violated(r) > 3;
+    }
+  EXPECT_GT(more_than_bind, 0) << "the crowd is no test";
+}
 
 TEST(RecordAllKept, HoldsEverythingThatAnOrdinaryRecordingHolds) {
   const Scenario s = test::paper_scene("B3");

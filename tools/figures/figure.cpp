@@ -225,6 +225,12 @@ void PlotCommand::item(const std::string& what, const std::string& title) {
   items_.push_back(what + (title.empty() ? " notitle" : " title " + quoted(title)));
 }
 
+std::string robot_in_legend(std::size_t i, std::size_t count, const std::string& name, std::size_t longest) {
+  constexpr std::size_t kMostNamed = 60;
+  if (count <= kMostNamed) return shortened(name, longest);
+  return i == 0 ? std::to_string(count) + " robots" : "";
+}
+
 std::string PlotCommand::text() const {
   return fmt::format("plot {}\n", fmt::join(items_, ", \\\n     "));
 }

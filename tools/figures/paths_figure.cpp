@@ -154,8 +154,8 @@ std::vector<Box> equal_views(const std::vector<Panel>& panels) {
   return views;
 }
 
-/// The name of the i-th robot in the legend: its own where it is the same in all runs that have one.
-std::string robot_in_legend(const std::vector<Panel>& panels, std::size_t i) {
+/// The name of the i-th robot: its own where it is the same in all runs that have one.
+std::string name_in_all(const std::vector<Panel>& panels, std::size_t i) {
   std::string name;
   for (const Panel& panel : panels) {
     const auto& robots = panel.run->scenario.robots;
@@ -163,7 +163,7 @@ std::string robot_in_legend(const std::vector<Panel>& panels, std::size_t i) {
     if (!name.empty() && name != robots[i].id) return fmt::format("robot {}", i + 1);
     name = robots[i].id;
   }
-  return shortened(name, kLegendName);
+  return name;
 }
 
 /// What any panel has, in the styles of PanelLayers without details.
@@ -185,8 +185,10 @@ std::vector<std::pair<std::string, std::string>> sheet_legend(const std::vector<
   if (polygons) add(fmt::format("boxes fs solid noborder fc rgb '{}'", kObstacleFill), "obstacle");
   if (walls) add(fmt::format("lines lw 2.5 lc rgb '{}'", kObstacleLine), "wall");
   if (moving) add(fmt::format("lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine), "moving obstacle");
-  for (std::size_t i = 0; i < robots; ++i)
-    add(fmt::format("lines lw 1.5{} lc rgb '{}'", series_dash(i), series_colour(i)), robot_in_legend(panels, i));
+  for (std::size_t i = 0; i < robots; ++i) {
+    const std::string entry = robot_in_legend(i, robots, name_in_all(panels, i), kLegendName);
+    if (!entry.empty()) add(fmt::format("lines lw 1.5{} lc rgb '{}'", series_dash(i), series_colour(i)), entry);
+  }
   if (leader) add("lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
   add("points pt 6 ps 1.3 lc rgb '#222222'", "start, end");
   if (goals) add("points pt 2 ps 0.8 lw 1.5 lc rgb '#222222'", "goal");

@@ -80,7 +80,7 @@ class RobotLayers {
     }
     to_.draw(way,
              fmt::format("with lines lw {}{} lc rgb '{}'", to_.detailed ? 2.5 : 1.5, series_dash(i), series_colour(i)),
-             to_.key(shortened(robot.id, kLegendName)));
+             to_.key(robot_in_legend(i, to_.run.scenario.robots.size(), robot.id, kLegendName)));
     add_places(i);
   }
 

@@ -59,7 +59,8 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFi
     const int index = data.begin(all[i].label, "t [s], value");
     const std::size_t rows = std::min(all[i].values.size(), run.recording.steps.size());
     for (std::size_t k = 0; k < rows; ++k) data.row({run.recording.steps[k].time, all[i].values[k]});
-    plot.data(index, "using 1:2 " + (rows == 1 ? point_style(i) : line_style(i)), shortened(all[i].label, kKeyLength));
+    plot.data(index, "using 1:2 " + (rows == 1 ? point_style(i) : line_style(i)),
+              robot_in_legend(i, all.size(), all[i].label, kKeyLength));
   }
 }
 

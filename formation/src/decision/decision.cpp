@@ -340,7 +340,8 @@ void Decider::decide(const DecisionInput& in, Decision& decision) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution_, number++);
       if (c.proof == vo::Proof::none) ++decision.uncertified;
-      if (keep_all || active || c.clearance <= reach_of(c, in.from)) kept_.emplace_back(&c, active);
+      const bool gave = solution_.status != lp::Status::optimal && violates(c.half_plane, solution_.velocity);
+      if (keep_all || active || gave || c.clearance <= reach_of(c, in.from)) kept_.emplace_back(&c, active);
     }
   }
 }

@@ -115,8 +115,8 @@ class Decider {
   void reserve(std::size_t constraints);
 
   /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound` and `uncertified`; the other
-  /// fields are the caller's. Keeps the constraints that bind and those against what can be met within a step: with
-  /// these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
+  /// fields are the caller's. Keeps the constraints that bind or are violated, and those against what can be met within
+  /// a step: with these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
   void decide(const DecisionInput& in, Decision& decision);
   /// What the last decision kept. REQUIRES: what it was made from is still there.
   void kept(std::vector<DecisionConstraint>& out) const;

@@ -35,6 +35,7 @@ struct KinematicRobot : OwnWay {
   std::string note = {};  ///< for the next row
   // With guidance.
   std::optional<Course> course = {};         ///< to its present goal
+  std::optional<double> next_margin = {};    ///< m, of its field from the next look on
   std::shared_ptr<Guide> detour = {};        ///< of a course round obstacles that move and stand for now
   bool has_new_course = false;               ///< nobody has looked whether something stands on it
   std::optional<std::size_t> cut_by = {};    ///< the moving obstacle that stands on it, without a way round
@@ -288,6 +289,7 @@ class KinematicRun {
   }
 
   void choose_by_plan(std::size_t i, RobotStep& step) {
+    robots_[i].next_margin.reset();
     robots_[i].field->set_margin(0.0);
     joint_.choose_by_plan(i, *groups_, *robots_[i].field, now_, step);
   }
@@ -321,7 +323,13 @@ class KinematicRun {
     return {robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
   }
 
-  void look(std::size_t i) { own_.look(*robots_[i].field, viewpoint(i)); }
+  /// A decision adds half-planes to those of its look as it needs them, so that the margin may change only here.
+  void look(std::size_t i) {
+    KinematicRobot& r = robots_[i];
+    if (r.next_margin) r.field->set_margin(*r.next_margin);
+    r.next_margin.reset();
+    own_.look(*r.field, viewpoint(i));
+  }
 
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
@@ -379,7 +387,7 @@ class KinematicRun {
     if (step.mode == Mode::direct) step.mode = goes_on ? Mode::guided : Mode::staying;
     if (!r.course || r.waits_for_good) return {};
     const Heading to = (r.detour ? *r.detour : *guide_).heading(*r.course, radius, r.position);
-    r.field->set_margin(to.margin);  // from the next step on
+    r.next_margin = to.margin;
     if (to.is_new) {
       ++routes_.pushed_off;
       r.has_new_course = true;

@@ -68,7 +68,8 @@ class StaticField {
   StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius, Vec2 start,
               Vec2 goal, HorizonRule rule, SeenAs seen_as = SeenAs::by_rule);
 
-  /// m: what a piece is kept away from beside the radius while there is room; the scenario's by default.
+  /// m: what a piece is kept away from beside the radius while there is room; the scenario's by default. Not between a
+  /// look and the decision that is made of it.
   void set_margin(double margin) { margin_ = margin; }
 
   /// Half-planes of every shape that could matter to a robot of that speed, nearest first; of those farther than
