@@ -112,8 +112,8 @@ std::string commented(const std::string& text);
 /// `text` in at most `most` characters (UTF-8), with an ellipsis in the middle where it was longer; `most` >= 3.
 std::string shortened(const std::string& text, std::size_t most);
 
-/// What a legend says of robot i of `count`: its name, up to 60 robots. Of more, which would fill the sheet, the first
-/// stands for all ("300 robots"), and the others have no entry.
+/// What a legend says of robot i of `count`: its name, up to 60 robots. Beyond that names would fill the sheet: the
+/// first entry stands for all ("300 robots"), and the others have none.
 std::string robot_in_legend(std::size_t i, std::size_t count, const std::string& name, std::size_t longest);
 
 /// How many characters of a title go into so many pixels of the SVG.

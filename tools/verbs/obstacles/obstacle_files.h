@@ -90,7 +90,7 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict = false);
 /// "expected" and "repaired". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired".
+/// One line per problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired".
 std::string lines_of(const FileAnswer& answer);
 
 /// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 skipped, 0 rejected".
