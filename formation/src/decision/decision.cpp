@@ -107,7 +107,7 @@ vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOption
   const bool baseline = options.method == Method::orca;
   rule.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
   rule.contact_time = contact_time(scenario);
-  rule.margin = baseline ? 0.0 : scenario.margins.robot;
+  rule.margin = std::max(kContactSkin, baseline ? 0.0 : scenario.margins.robot);
   return rule;
 }
 

@@ -33,7 +33,7 @@ void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::
   if (nearest.distance > sight_of(scenario, from.radius, from.max_speed + norm(u))) return;
   vo::ClearancePolicy policy;
   policy.time_horizon = scenario.horizons.robots;
-  policy.room = scenario.margins.robot;
+  policy.room = std::max(kContactSkin, scenario.margins.robot);
   policy.push_out_time = contact_time(scenario);
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
   Constraint& c = out.emplace_back();

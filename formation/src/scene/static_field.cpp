@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "decision/decision.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
@@ -185,6 +186,7 @@ void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Con
                               from.radius + kContactSkin, from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca))
       add_edge(chain, found, from, out);
   }
+  add_unguarded(near, from, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Constraint& a, const Constraint& b) { return a.clearance < b.clearance; });
 }
@@ -213,6 +215,40 @@ void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, co
   if (bare.proof == vo::Proof::none) return;
   c.half_plane = bare.half_plane;
   c.proof = bare.proof;
+}
+
+/// The baseline's rule leaves an edge to its neighbours where it is seen along one of them, and nearly collinear
+/// neighbours leave it to each other. An edge that can be met within a step gets a half-plane of its own where none of
+/// what can be met within a step, of which rows keep all, excludes it.
+void StaticField::add_unguarded(const std::vector<std::size_t>& near, const Viewpoint& from,
+                                std::vector<Constraint>& out) const {
+  const double tau = from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca;
+  const double reach = reach_of_step(*scenario_, from);
+  for (const std::size_t number : near) {
+    const BodyTable::Number body = scene_->edge(number);
+    const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);
+    if (geometry::distance(edge, from.position) - from.radius > reach) continue;
+    if (geometry::orientation(edge.a, edge.b, from.position) == geometry::Sign::positive) continue;  // faces away
+    geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
+    const auto excludes = [&](const Constraint& c) {
+      return c.clearance <= reach && geometry::half_plane_is_safe(seen, scenario_->time_step, c.half_plane);
+    };
+    if (std::any_of(out.begin(), out.end(), excludes)) continue;
+    const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
+    vo::ClearancePolicy policy;
+    policy.time_horizon = tau;
+    policy.room = kContactSkin;
+    const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);
+    if (found.proof == vo::Proof::none) continue;  // in overlap: the nearest edge pushes it out
+    Constraint& c = out.emplace_back();
+    c.half_plane = found.half_plane;
+    c.proof = found.proof;
+    c.body = body;
+    c.clearance = nearest.distance;
+    c.normal = nearest.normal;
+    c.time_horizon = tau;
+    c.index = number;
+  }
 }
 
 }  // namespace exactvo::formation::detail

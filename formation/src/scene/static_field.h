@@ -142,6 +142,7 @@ class StaticField {
   void add_edges(const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
   void add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
                 std::vector<Constraint>& out) const;
+  void add_unguarded(const std::vector<std::size_t>& near, const Viewpoint& from, std::vector<Constraint>& out) const;
 
   static constexpr std::uint32_t kEnclosed = static_cast<std::uint32_t>(-1);
 
