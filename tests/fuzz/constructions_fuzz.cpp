@@ -96,7 +96,7 @@ void examine_encounter(Bytes& bytes) {
   e.velocity = bytes.point();
   e.obstacle_velocity = bytes.point();
   e.time_horizon = bytes.length();
-  e.share = 1.0;
+  e.responsibility = 1.0;
   const int kind = bytes.byte();
   if (kind % 3 == 0) e.robot = geometry::convex_hull(bytes.points());
   if (kind % 5 == 0) e.time_horizon = INFINITY;

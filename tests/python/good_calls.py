@@ -71,7 +71,7 @@ def good_calls(folder):
         ("vo.VelocityObstacle.half_plane", cone.half_plane, dict(velocity=(1, 0), responsibility=1.0, certify=True)),
         ("vo.VelocityObstacle.contact_half_plane", cone.contact_half_plane, {}),
         ("vo.velocity_obstacles", vo.velocity_obstacles, dict(obstacle=DOOR, position=(-1, 0), radius=0.5, time_horizon=2, obstacle_velocity=(0, 0))),
-        ("vo.reciprocal_half_planes", vo.reciprocal_half_planes, dict(position_a=(0, 0), velocity_a=(1, 0), radius_a=0.5, position_b=(4, 0), velocity_b=(0, 0), radius_b=0.5, time_horizon=2, share_of_a=0.5)),
+        ("vo.reciprocal_half_planes", vo.reciprocal_half_planes, dict(position_a=(0, 0), velocity_a=(1, 0), radius_a=0.5, position_b=(4, 0), velocity_b=(0, 0), radius_b=0.5, time_horizon=2, responsibility_of_a=0.5)),
         ("vo.FreeVelocities", vo.FreeVelocities, dict(cones=[cone], max_speed=2, relative_tolerance=1e-4)),
         ("vo.free_velocities", vo.free_velocities, dict(cones=[cone], max_speed=2, relative_tolerance=1e-4)),
         ("vo.FreeVelocities.contains", free.contains, dict(velocity=(1, 0))),

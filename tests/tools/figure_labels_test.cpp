@@ -109,7 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Drawing{"Cone", "vo --obstacle " + kSquare + " --enclose ellipse" + kRobot + "--figure out/a.svg", 1},
         Drawing{"Shared",
-                "vo --obstacle " + kSquare + " --obstacle-velocity=-1,0 --alpha 0.5" + kRobot + "--figure out/a.svg",
+                "vo --obstacle " + kSquare + " --obstacle-velocity=-1,0 --responsibility 0.5" + kRobot +
+                    "--figure out/a.svg",
                 1},
         Drawing{"Pieces", "vo --obstacle 'POLYGON((2 -1, 4 -1, 4 1, 3 0, 2 1, 2 -1))'" + kRobot + "--figure out/a.svg",
                 1},

@@ -106,7 +106,7 @@ TEST(Reciprocal, Property1And2_NormalsMirrorAndHalvesAddUp) {
     const vo::MovingDisc b{random.in_box(3.0), moved(random), random.uniform(0.0, 0.8)};
     vo::ReciprocalOptions options;
     options.time_horizon = random.uniform(0.1, 5.0);
-    options.share_of_a = i % 3 == 0 ? random.uniform(0.0, 1.0) : 0.5;
+    options.responsibility_of_a = i % 3 == 0 ? random.uniform(0.0, 1.0) : 0.5;
     options.margin = i % 2 == 0 ? 0.0 : 0.05;
     const auto pair = vo::reciprocal_half_planes(a, b, options);
     ASSERT_EQ(pair.b.normal, -pair.a.normal);
@@ -126,8 +126,8 @@ TEST(Reciprocal, Property3_ExchangingTheRobotsExchangesTheHalves) {
     const vo::MovingDisc a{random.in_box(3.0), moved(random), random.uniform(0.0, 0.8)};
     const vo::MovingDisc b{i % 10 == 0 ? a.position : random.in_box(3.0), moved(random), random.uniform(0.0, 0.8)};
     vo::ReciprocalOptions ab, ba;
-    ab.share_of_a = i % 2 == 0 ? 0.5 : 0.25;
-    ba.share_of_a = 1.0 - ab.share_of_a;
+    ab.responsibility_of_a = i % 2 == 0 ? 0.5 : 0.25;
+    ba.responsibility_of_a = 1.0 - ab.responsibility_of_a;
     const auto one = vo::reciprocal_half_planes(a, b, ab);
     const auto other = vo::reciprocal_half_planes(b, a, ba);
     if (a.position == b.position) continue;  // nothing tells them apart

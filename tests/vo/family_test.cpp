@@ -96,12 +96,12 @@ TEST(Family, Property4_HrvoTakesTheLegOfItsOwnSideFromRvo) {
   }
 }
 
-TEST(Family, Property5_OrcaIsAffineInTheShare) {
+TEST(Family, Property5_OrcaIsAffineInTheResponsibility) {
   SeededRandom random(seed_of_run(604));
   for (int i = 0; i < 2000; ++i) {
     Encounter e = random_encounter(random, kKinds[i % 4]);
-    const auto offset = [&](double share) {
-      e.share = share;
+    const auto offset = [&](double responsibility) {
+      e.responsibility = responsibility;
       return family_member(Variant::orca, e).half_plane->offset;
     };
     ASSERT_TRUE(family_member(Variant::orca, e).half_plane);
@@ -170,7 +170,7 @@ TEST(Family, FullHalfPlanesAreProvenAgainstMovingObstacles) {
   SeededRandom random(seed_of_run(607));
   for (int i = 0; i < 3000; ++i) {
     Encounter e = random_encounter(random, kKinds[i % 4]);
-    e.share = 1.0;
+    e.responsibility = 1.0;
     const Member orca = family_member(Variant::orca, e);
     ASSERT_TRUE(orca.half_plane);
     EXPECT_TRUE(vo::is_true({e.obstacle, e.position, e.radius, e.time_horizon, e.obstacle_velocity, *orca.half_plane}));

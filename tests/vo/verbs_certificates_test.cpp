@@ -41,14 +41,14 @@ json judged(const json& certificates) {
 
 TEST(VerbVo, TheCertificateIsOfTheHalfPlaneBesideItWhateverTheShare) {
   const std::string scene =
-      "--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --alpha 0.5";
+      "--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --responsibility 0.5";
   const json out = json_of(scene);
   expect_proven(out);
   EXPECT_NEAR(out.at("half_plane").at("offset").get<double>(), -0.75, 1e-12);
   const json& shared = out.at("shared_half_plane");
   EXPECT_NEAR(shared.at("half_plane").at("offset").get<double>(), -0.875, 1e-12);
   EXPECT_TRUE(shared.at("certificate").is_null());
-  EXPECT_NE(words_of(scene).find("holds only if the other side takes its share"), std::string::npos);
+  EXPECT_NE(words_of(scene).find("holds only if the other side takes the rest"), std::string::npos);
 }
 
 TEST(VerbVo, AnEllipseRoundAnObstacleSaysThatItContainsIt) {

@@ -109,7 +109,7 @@ TEST(VerbVo, APaperHorizonOfNothingIsNamed) {
 TEST(VerbVo, TheFamilyOfOneEncounter) {
   const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
                                       "' --obstacle-velocity=-0.5,0 --position 0,0 --velocity 1,0.25 --radius 0.3 "
-                                      "--time-horizon infinite --alpha 0.5 --variant all --json");
+                                      "--time-horizon infinite --responsibility 0.5 --variant all --json");
   ASSERT_EQ(run.status, 0) << run.err;
   const json out = json::parse(run.out);
   ASSERT_EQ(out.at("variants").size(), 5u);
@@ -306,8 +306,9 @@ TEST(VerbVo, ObstaclesThatAreNoneAreNamed) {
 }
 
 TEST(VerbVo, EveryFieldIsSaidToBeExactCertifiedOrRounded) {
-  const json out = json_of("--obstacle '" + kSquare +
-                           "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --alpha 0.5 --variant all");
+  const json out =
+      json_of("--obstacle '" + kSquare +
+              "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --responsibility 0.5 --variant all");
   std::string all;
   for (const json& kind : out.at("kinds"))
     for (const json& field : kind) all += " " + field.get<std::string>() + " ";

@@ -179,8 +179,8 @@ TEST(VerbVo, AWrongLineIsNamed) {
 TEST(VerbVo, VelocitiesGoWithNothingThatWouldBeIgnored) {
   const Workplace here;
   here.write("v", "1,0\n");
-  for (const std::string other :
-       {"--velocity 1,0", "--free --max-speed 2", "--exact-legs", "--variant all", "--alpha 0.5", "--figure x.svg"}) {
+  for (const std::string other : {"--velocity 1,0", "--free --max-speed 2", "--exact-legs", "--variant all",
+                                  "--responsibility 0.5", "--figure x.svg"}) {
     const Outcome run = here.run(kSquareAhead + "--velocities v " + other);
     EXPECT_EQ(run.status, 2) << other;
     EXPECT_THAT(run.err, HasSubstr("--velocities beside " + other.substr(0, other.find(' '))));

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// One decision, two ways. The obstacles stand still, so each half-plane is the robot's own to keep (alpha = 1).
+/// One decision, two ways. The obstacles stand still, so each half-plane is the robot's own to keep (responsibility 1).
 
 #include "decision/scenes.h"
 

@@ -112,7 +112,7 @@ vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOption
 }
 
 PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule) {
-  rule.share_of_a = a.yields == b.yields ? 0.5 : (a.yields ? 1.0 : 0.0);
+  rule.responsibility_of_a = a.yields == b.yields ? 0.5 : (a.yields ? 1.0 : 0.0);
   const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a.disc, b.disc, rule);
   return {against_robot(pair.a, pair.certified, a, b, rule.time_horizon),
           against_robot(pair.b, pair.certified, b, a, rule.time_horizon)};

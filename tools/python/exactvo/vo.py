@@ -252,13 +252,13 @@ def reciprocal_half_planes(
     radius_b: float,
     *,
     time_horizon: float = 2.0,
-    share_of_a: float = 0.5,
+    responsibility_of_a: float = 0.5,
 ) -> tuple[HalfPlane, HalfPlane, bool]:
     """Robot against robot (ORCA, van den Berg et al. 2011): the half-planes of a and of b, and whether they are certified
-    as a pair: two velocities that each satisfy their half do not collide within the horizon (s). m, m/s. Raises
-    `ArgumentError`."""
+    as a pair: two velocities that each satisfy their half do not collide within the horizon (s).
+    `responsibility_of_a`: how much of the change a takes, 0 to 1; b takes the rest. m, m/s. Raises `ArgumentError`."""
     a, b, certified = _exactvo.reciprocal_half_planes(
-        position_a, velocity_a, radius_a, position_b, velocity_b, radius_b, time_horizon, share_of_a
+        position_a, velocity_a, radius_a, position_b, velocity_b, radius_b, time_horizon, responsibility_of_a
     )
     return HalfPlane(*a), HalfPlane(*b), certified
 

@@ -48,12 +48,12 @@ py::object as_object(const std::optional<HalfPlane>& h) {
 
 /// The half-plane of the obstacle at rest, moved by the obstacle's velocity and rounded up: still certified, by
 /// `is_true`.
-std::optional<HalfPlane> half_plane(const Cone& cone, Vec2 v, double alpha) {
-  std::optional<HalfPlane> h = cone.cone.half_plane(v - cone.apex, alpha);
+std::optional<HalfPlane> half_plane(const Cone& cone, Vec2 v, double responsibility) {
+  std::optional<HalfPlane> h = cone.cone.half_plane(v - cone.apex, responsibility);
   if (!h || cone.apex == Vec2{}) return h;
   const double moved = dot(h->normal, cone.apex);
   h->offset += moved;
-  for (double step = std::ldexp(std::fabs(h->offset) + std::fabs(moved), -52); alpha >= 1.0; step *= 2.0) {
+  for (double step = std::ldexp(std::fabs(h->offset) + std::fabs(moved), -52); responsibility >= 1.0; step *= 2.0) {
     if (vo::is_true(claim_of(cone, *h))) break;
     if (!(step < 1.0)) return std::nullopt;
     h->offset += std::fmax(step, 0x1p-1070);
@@ -179,10 +179,10 @@ void bind_vo(py::module_& module) {
            })
       .def("half_plane",
            [](const Cone& c, py::handle velocity, py::handle responsibility) {
-             const double alpha = finite(responsibility, "responsibility");
-             if (!(alpha > 0.0) || alpha > 1.0)
+             const double part = finite(responsibility, "responsibility");
+             if (!(part > 0.0) || part > 1.0)
                throw ArgumentError("responsibility", shown(responsibility), "a number above 0, at most 1");
-             return as_object(half_plane(c, vector(velocity, "velocity"), alpha));
+             return as_object(half_plane(c, vector(velocity, "velocity"), part));
            })
       .def("contact_half_plane",
            [](const Cone& c) {
@@ -203,16 +203,16 @@ void bind_vo(py::module_& module) {
   });
   module.def("reciprocal_half_planes",
              [](py::handle position_a, py::handle velocity_a, py::handle radius_a, py::handle position_b,
-                py::handle velocity_b, py::handle radius_b, py::handle time_horizon, py::handle share) {
+                py::handle velocity_b, py::handle radius_b, py::handle time_horizon, py::handle responsibility) {
                const vo::MovingDisc a{vector(position_a, "position_a"), vector(velocity_a, "velocity_a"),
                                       at_least_zero(radius_a, "radius_a")};
                const vo::MovingDisc b{vector(position_b, "position_b"), vector(velocity_b, "velocity_b"),
                                       at_least_zero(radius_b, "radius_b")};
                vo::ReciprocalOptions options;
                options.time_horizon = positive(time_horizon, "time_horizon");
-               options.share_of_a = finite(share, "share_of_a");
-               if (options.share_of_a < 0.0 || options.share_of_a > 1.0)
-                 throw ArgumentError("share_of_a", shown(share), "0 to 1");
+               options.responsibility_of_a = finite(responsibility, "responsibility_of_a");
+               if (options.responsibility_of_a < 0.0 || options.responsibility_of_a > 1.0)
+                 throw ArgumentError("responsibility_of_a", shown(responsibility), "0 to 1");
                const vo::ReciprocalHalfPlanes halves = reciprocal_half_planes(a, b, options);
                return py::make_tuple(as_tuple(halves.a), as_tuple(halves.b), halves.certified);
              });

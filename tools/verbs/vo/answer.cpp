@@ -82,11 +82,11 @@ void add_half_planes(const ConeAnswer& a, Json& json) {
 }
 
 void add_shared(const ConeAnswer& a, Json& json) {
-  if (a.encounter.share >= 1.0) return;
-  json["shared_half_plane"] = {{"alpha", a.encounter.share},
+  if (a.encounter.responsibility >= 1.0) return;
+  json["shared_half_plane"] = {{"responsibility", a.encounter.responsibility},
                                {"half_plane", json_of(a.shared)},
                                {"certificate", nullptr},
-                               {"holds", "only if the other side takes its share"}};
+                               {"holds", "only if the other side takes the rest"}};
 }
 
 Json member_json(const vo::Member& m, Vec2 velocity) {
@@ -278,19 +278,19 @@ std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
   return h;
 }
 
-ConeAnswer answer_of(const vo::Encounter& e, double alpha) {
+ConeAnswer answer_of(const vo::Encounter& e, double responsibility) {
   ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}, {}, {}};
   a.overlaps = a.cone.overlaps();
   if (!a.overlaps) {
     vo::Encounter shared = e;
-    const auto half_plane = [&](double share) {
-      shared.share = share;
+    const auto half_plane = [&](double taken) {
+      shared.responsibility = taken;
       return family_member(vo::Variant::orca, shared).half_plane;
     };
     a.contains = a.cone.contains_sum({{e.velocity, -e.obstacle_velocity}});
     a.nearest = a.cone.nearest_boundary(e.velocity - e.obstacle_velocity);
     a.half_plane = half_plane(1.0);
-    if (alpha < 1.0) a.shared = half_plane(alpha);
+    if (responsibility < 1.0) a.shared = half_plane(responsibility);
   }
   if (!a.half_plane) a.contact = contact_half_plane(a);
   if (const auto& proven = a.half_plane ? a.half_plane : a.contact) {
@@ -335,7 +335,7 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
 VoAnswer answer_of(const VoQuestion& question) {
   VoAnswer a{question, {}, {}, {}};
   for (const vo::Encounter& e : question.encounters) {
-    a.cones.push_back(answer_of(e, question.alpha));
+    a.cones.push_back(answer_of(e, question.responsibility));
     if (question.exact_legs) a.cones.back().exact_legs = a.cones.back().cone.exact_legs();
   }
   for (const vo::Variant v : question.variants) a.members.push_back(family_member(v, question.encounters.front()));

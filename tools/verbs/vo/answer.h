@@ -51,8 +51,9 @@ struct ConeAnswer {
   bool overlaps = false;
   bool contains = false;
   std::optional<vo::NearestBoundary> nearest;
-  std::optional<geometry::HalfPlane> half_plane;  ///< with alpha = 1: it holds whatever the obstacle's side does
-  std::optional<geometry::HalfPlane> shared;   ///< with the asked alpha < 1: holds only if the other side does its part
+  std::optional<geometry::HalfPlane> half_plane;  ///< with responsibility 1: it holds whatever the obstacle's side does
+  std::optional<geometry::HalfPlane>
+      shared;  ///< with the asked responsibility < 1: holds only if the other side does its part
   std::optional<geometry::HalfPlane> contact;  ///< away from the nearest point, where there is no other
   std::optional<vo::Certificate> certificate;  ///< of `half_plane`, or of `contact`
   std::optional<vo::ExactLegs> exact_legs;     ///< where they are asked for, and there is a cone

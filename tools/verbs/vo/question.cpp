@@ -134,9 +134,12 @@ void check_option_conflicts_of_velocities(const VoFlags& flags) {
   const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
   require(!by_rule, "--time-horizon", flags.time_horizon + " beside --velocities",
           "a time in s, or infinite: the rule gives each velocity its own");
-  const std::pair<bool, const char*> others[] = {
-      {!flags.velocity.empty(), "--velocity"}, {flags.free, "--free"},          {flags.exact_legs, "--exact-legs"},
-      {!flags.variants.empty(), "--variant"},  {flags.alpha != 1.0, "--alpha"}, {!flags.figure.empty(), "--figure"}};
+  const std::pair<bool, const char*> others[] = {{!flags.velocity.empty(), "--velocity"},
+                                                 {flags.free, "--free"},
+                                                 {flags.exact_legs, "--exact-legs"},
+                                                 {!flags.variants.empty(), "--variant"},
+                                                 {flags.responsibility != 1.0, "--responsibility"},
+                                                 {!flags.figure.empty(), "--figure"}};
   for (const auto& [is_there, option] : others)
     require(!is_there, "--velocities", fmt::format("--velocities beside {}", option), "one of the two");
 }
@@ -153,7 +156,8 @@ void check_option_conflicts(const VoFlags& flags) {
   require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
           "X,Y in m/s, or --velocities FILE for many");
   if (!flags.velocities.empty()) check_option_conflicts_of_velocities(flags);
-  require(flags.alpha == 1.0 || !flags.free, "--alpha", "--alpha beside --free", "one of the two");
+  require(flags.responsibility == 1.0 || !flags.free, "--responsibility", "--responsibility beside --free",
+          "one of the two");
   require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
 }
 
@@ -178,7 +182,8 @@ void check_words(const VoFlags& flags) {
 void check_numbers(const VoFlags& flags) {
   const double radius = flags.radius.value_or(0.0), speed = flags.max_speed.value_or(vo::kLeastMaxSpeed);
   require(is_radius(radius), "--radius", fmt::format("{}", radius), kRadii);
-  require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", fmt::format("{}", flags.alpha), "a number in (0, 1]");
+  require(flags.responsibility > 0.0 && flags.responsibility <= 1.0, "--responsibility",
+          fmt::format("{}", flags.responsibility), "a number in (0, 1]");
   require(speed >= vo::kLeastMaxSpeed && speed <= vo::kMostMaxSpeed, "--max-speed", fmt::format("{}", speed),
           "a speed from 2^-60 to 2^60 m/s, with --free");
 }
@@ -189,7 +194,7 @@ vo::Encounter robot_alone(const VoFlags& flags) {
   e.position = parse_point("--position", flags.position);
   if (flags.velocities.empty()) e.velocity = parse_point("--velocity", flags.velocity);
   e.radius = flags.radius.value_or(0.0);
-  e.share = flags.alpha;
+  e.responsibility = flags.responsibility;
   if (!flags.robot.empty()) e.robot = robot_of(flags.robot, flags.reading);
   return e;
 }
@@ -237,7 +242,7 @@ VoQuestion question_of(const VoFlags& flags) {
   check_numbers(flags);
   VoQuestion q;
   q.variants = variants_of(flags.variants);
-  q.alpha = flags.alpha;
+  q.responsibility = flags.responsibility;
   q.exact_legs = flags.exact_legs;
   q.free = flags.free;
   q.max_speed = flags.max_speed.value_or(0.0);
@@ -279,9 +284,9 @@ void declare_options(CLI::App& app, VoFlags& flags) {
          "--time-horizon", flags.time_horizon,
          "s, from 2^-100 to 2^100; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
       ->required();
-  app.add_option("--alpha", flags.alpha,
-                 "The share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is "
-                 "given, which holds only if the other side takes its share");
+  app.add_option("--responsibility", flags.responsibility,
+                 "How much of the change the robot takes, in (0, 1]. Below 1 a second half-plane is given, which "
+                 "holds only if the other side takes the rest");
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
   app.add_option("--variant", flags.variants, "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure")
       ->allow_extra_args(false);

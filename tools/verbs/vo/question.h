@@ -47,7 +47,7 @@ struct VoFlags {
   std::string velocities;  ///< a file, or "-"
   std::optional<double> radius;
   std::string time_horizon;
-  double alpha = 1.0;
+  double responsibility = 1.0;
   std::vector<std::string> variants;
   bool exact_legs = false;
   bool free = false;
@@ -81,7 +81,7 @@ struct VoQuestion {
   std::vector<AskedObstacle> obstacles;
   std::vector<vo::Encounter> encounters;
   std::vector<vo::Variant> variants;
-  double alpha = 1.0;
+  double responsibility = 1.0;
   bool exact_legs = false;
   bool free = false;
   double max_speed = 0.0;  ///< m/s, of --free

@@ -241,7 +241,7 @@ Verb vo_verb() {
           "  exactvo vo --obstacle 'POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))' --enclose ellipse --position 0,0 \\\n"
           "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --json --figure out/cone.svg\n"
           "  exactvo vo --obstacle 'POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))' --obstacle-velocity=-0.6,0.1 \\\n"
-          "      --position 0,0 --velocity 1,0.2 --radius 0.5 --time-horizon 2 --alpha 0.5 --variant all \\\n"
+          "      --position 0,0 --velocity 1,0.2 --radius 0.5 --time-horizon 2 --responsibility 0.5 --variant all \\\n"
           "      --figure out/family.svg\n"
           "  exactvo vo --obstacle 'POLYGON((2 -1, 3 -1, 3 1, 2 1, 2 -1))' --free \\\n"
           "      --obstacle 'LINESTRING(-1 2, 0 2)' --max-speed 1.5 --position 0,0 \\\n"

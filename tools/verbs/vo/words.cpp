@@ -52,9 +52,9 @@ std::string half_plane_words(const ConeAnswer& a) {
   text += fmt::format("certificate       {}{}\n", verdict, a.certificate ? ", of this half-plane" : "");
   if (a.shared)
     text += fmt::format(
-        "shared            {}: alpha {:g} of u, not certified,\n"
-        "                  holds only if the other side takes its share\n",
-        text_of(*a.shared), a.encounter.share);
+        "shared            {}: responsibility {:g}, not certified,\n"
+        "                  holds only if the other side takes the rest\n",
+        text_of(*a.shared), a.encounter.responsibility);
   return text;
 }
 

@@ -36,7 +36,7 @@ std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n);
 
 // Of any shape, and of a segment (seen_segment.h): the same bits, in about half the time.
 
-/// The certified half-plane of VO nearest to v (alpha = 1). Nothing where none could be certified.
+/// The certified half-plane of VO nearest to v (responsibility 1). Nothing where none could be certified.
 std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v);
 std::optional<HalfPlane> separating_half_plane(const SeenSegment& s, double tau, Vec2 v);
 

@@ -91,13 +91,13 @@ std::optional<HalfPlane> half_plane(const geometry::GrownShape& s, double time_h
   return detail::separating_half_plane(s, time_horizon, v);
 }
 
-std::optional<HalfPlane> VelocityObstacle::half_plane(Vec2 v, double alpha) const {
+std::optional<HalfPlane> VelocityObstacle::half_plane(Vec2 v, double responsibility) const {
   EXACTVO_REQUIRE(geometry::is_finite(v), "a velocity that is not finite");
-  EXACTVO_REQUIRE(alpha > 0.0 && alpha <= 1.0, std::to_string(alpha));
+  EXACTVO_REQUIRE(responsibility > 0.0 && responsibility <= 1.0, std::to_string(responsibility));
   const std::optional<HalfPlane> full = detail::separating_half_plane(grown_, tau_, v);
-  if (!full || alpha == 1.0) return full;
+  if (!full || responsibility == 1.0) return full;
   const double at_v = dot(full->normal, v);
-  return HalfPlane{full->normal, at_v + alpha * (full->offset - at_v)};
+  return HalfPlane{full->normal, at_v + responsibility * (full->offset - at_v)};
 }
 
 std::optional<HalfPlane> VelocityObstacle::contact_half_plane() const {

@@ -58,22 +58,22 @@ std::optional<ShiftedCone> cone_of_hrvo(const Encounter& e) {
   return cone;
 }
 
-/// n.v' >= n.v + share (c - n.(v - u)), rounded up: a term passes at most 8 roundings.
-HalfPlane shared(const HalfPlane& relative, const Encounter& e, double share) {
+/// n.v' >= n.v + responsibility (c - n.(v - u)), rounded up: a term passes at most 8 roundings.
+HalfPlane shared(const HalfPlane& relative, const Encounter& e, double responsibility) {
   const Vec2 n = relative.normal;
-  if (e.obstacle_velocity == Vec2{} && share == 1.0) return relative;
+  if (e.obstacle_velocity == Vec2{} && responsibility == 1.0) return relative;
   const double at_v = dot(n, e.velocity), at_u = dot(n, e.obstacle_velocity);
-  const double value = (1.0 - share) * at_v + share * (relative.offset + at_u);
+  const double value = (1.0 - responsibility) * at_v + responsibility * (relative.offset + at_u);
   const double magnitude = geometry::dot_magnitude(n, e.velocity) + geometry::dot_magnitude(n, e.obstacle_velocity) +
                            geometry::product_magnitude(1.0, relative.offset);
   return {n, geometry::rounded_up_sum(value, magnitude, 8.0)};
 }
 
-std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e, double share) {
+std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e, double responsibility) {
   if (obstacle.overlaps()) return std::nullopt;
   const std::optional<HalfPlane> relative = obstacle.half_plane(e.velocity - e.obstacle_velocity);
   if (!relative) return std::nullopt;
-  return shared(*relative, e, share);
+  return shared(*relative, e, responsibility);
 }
 
 ConvexShape enclosure_of(const Encounter& e) {
@@ -110,7 +110,7 @@ std::optional<bool> Member::allows(Vec2 v) const {
 Member family_member(Variant variant, const Encounter& e) {
   EXACTVO_REQUIRE(geometry::is_finite(e.velocity) && geometry::is_finite(e.obstacle_velocity),
                   "a velocity that is not finite");
-  EXACTVO_REQUIRE(e.share >= 0.0 && e.share <= 1.0, std::to_string(e.share));
+  EXACTVO_REQUIRE(e.responsibility >= 0.0 && e.responsibility <= 1.0, std::to_string(e.responsibility));
   Member member{variant, std::nullopt, std::nullopt};
   if (variant == Variant::ivo) {
     member.half_plane = half_plane_of(cone_round(enclosure_of(e), e, e.time_horizon), e, 1.0);
@@ -121,7 +121,7 @@ Member family_member(Variant variant, const Encounter& e) {
   if (variant == Variant::vo) member.cone = cone_of_vo(e);
   if (variant == Variant::rvo) member.cone = cone_of_rvo(e);
   if (variant == Variant::hrvo) member.cone = cone_of_hrvo(e);
-  if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e, e.share);
+  if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e, e.responsibility);
   return member;
 }
 

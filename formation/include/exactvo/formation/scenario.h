@@ -28,7 +28,7 @@ struct Robot {
   double radius = 0.5;      ///< m, > 0
   double max_speed = 3.0;   ///< m/s, > 0
   std::vector<Vec2> goals;  ///< m, visited in order; empty for a robot of a formation
-  bool cooperates = true;   ///< false: it ignores other robots, and they take the whole responsibility (alpha = 1)
+  bool cooperates = true;   ///< false: it ignores other robots, and they take the whole responsibility
 };
 
 /// An obstacle that stands still.
@@ -101,7 +101,7 @@ struct Leader {
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
-/// convex hull and take the whole responsibility (alpha = 1).
+/// convex hull and take the whole responsibility.
 struct MovingObstacle {
   std::string id;            ///< its name in results and messages
   geometry::Obstacle shape;  ///< m, at t = 0

@@ -7,7 +7,7 @@
 ///   VO    u + C(tau)              velocities that collide if the obstacle keeps u      Fiorini and Shiller 1998
 ///   RVO   (v + u)/2 + C(2 tau)    the obstacle does half: 2 v' - v lies in the VO      van den Berg, Lin, Manocha 2008
 ///   HRVO  apex + C(2 tau)         RVO's leg on the robot's own side, VO's on the other   Snape et al. 2011
-///   ORCA  one half-plane          v + share (least change), on the shape as it stands  van den Berg et al. 2011
+///   ORCA  one half-plane          v + a share (least change), on the shape as it stands  van den Berg et al. 2011
 ///   IVO   one half-plane          the whole change, on an ellipse round the shape      the paper, equation (10)
 ///
 /// u is the obstacle's velocity, v the robot's, v' the asked one; C(tau) is the velocity obstacle of a robot and an
@@ -16,16 +16,16 @@
 /// offset.
 ///
 /// Exact: `ShiftedCone::contains` for the apex that is stated; VO's and RVO's apices are exact sums, HRVO's is the
-/// intersection of two legs, rounded. Certified: IVO's half-plane, and ORCA's with share 1, against the obstacle that
-/// keeps its velocity; ORCA's with a smaller share only together with the obstacle's (see reciprocal.h, which gives
-/// both).
+/// intersection of two legs, rounded. Certified: IVO's half-plane, and ORCA's with responsibility 1, against the
+/// obstacle that keeps its velocity; ORCA's with a smaller one only together with the obstacle's (see reciprocal.h,
+/// which gives both).
 ///
 /// Properties (tests quote the numbers):
 ///  (1) VO, RVO and HRVO of an obstacle at rest as seen by a robot at rest have the apex 0;
 ///  (2) RVO's apex is the mean of the two velocities, exactly;
 ///  (3) v' lies in RVO iff 2 v' - v lies in VO, exactly;
 ///  (4) HRVO's apex lies on a leg of RVO and on the other leg of VO, to rounding;
-///  (5) ORCA's offset is affine in `share`: 0 leaves v allowed, 1 is VO's half-plane;
+///  (5) ORCA's offset is affine in `responsibility`: 0 leaves v allowed, 1 is VO's half-plane;
 ///  (6) moving everything by one velocity moves every member by it.
 
 #include <optional>
@@ -57,7 +57,7 @@ struct Encounter {
   double radius = 0.0;                           ///< m, >= 0; ignored where the robot is a polygon
   std::optional<geometry::ConvexPolygon> robot;  ///< vertices relative to `position`; nothing for a disc
   double time_horizon = 3.0;                     ///< s, > 0, may be infinite
-  double share = 0.5;                            ///< in [0, 1]: how much of the change ORCA's robot takes
+  double responsibility = 0.5;                   ///< in [0, 1]: how much of the change ORCA's robot takes
   /// IVO's ellipse; where it is missing: the smallest round a polygon, a segment or a disc as they are.
   std::optional<geometry::Ellipse> enclosure;
 };
@@ -87,7 +87,7 @@ struct Member {
 };
 
 /// Neither cone nor half-plane where the robot touches or overlaps the obstacle (IVO: its ellipse). REQUIRES: see
-/// `cone_of`; velocities finite; share in [0, 1].
+/// `cone_of`; velocities finite; responsibility in [0, 1].
 Member family_member(Variant variant, const Encounter& encounter);
 
 /// The paper's horizon (equation (9)): distance to S over speed; infinite at rest, 0 in contact. Rounded.

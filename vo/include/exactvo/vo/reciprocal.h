@@ -32,7 +32,8 @@ struct ReciprocalOptions {
   double time_horizon = 2.0;  ///< s, > 0
   double margin = 0.0;        ///< m, >= 0, kept between the rims; where it is already used up, discs only have to part
   double contact_time = 0.1;  ///< s, > 0: discs nearer than the margin are asked to restore it within this time
-  double share_of_a = 0.5;    ///< in [0, 1]: how much of the change a takes; b takes the rest
+  /// In [0, 1]: how much of the change a takes; b takes the rest. The paper's alpha.
+  double responsibility_of_a = 0.5;
 };
 
 /// Both halves.
@@ -42,7 +43,7 @@ struct ReciprocalHalfPlanes {
   bool certified = false;  ///< for the discs without the margin; false where they overlap: nothing can be promised
 };
 
-/// REQUIRES: finite numbers, horizons > 0, share in [0, 1].
+/// REQUIRES: finite numbers, horizons > 0, responsibility_of_a in [0, 1].
 ReciprocalHalfPlanes reciprocal_half_planes(const MovingDisc& a, const MovingDisc& b,
                                             const ReciprocalOptions& options = {});
 

@@ -130,11 +130,12 @@ class VelocityObstacle {
   /// REQUIRES: !overlaps().
   NearestBoundary nearest_boundary(Vec2 v) const;
 
-  /// Equation (10): { v' : n.v' >= n.(v + alpha u) }. alpha = 1 is the full responsibility for a static obstacle and is
-  /// certified disjoint from the interior of VO; alpha < 1 leaves the rest of u to somebody else, and its offset is
-  /// rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing where
-  /// no half-plane could be certified: overlap, or a few ulps from it. REQUIRES: 0 < alpha <= 1, v finite.
-  std::optional<HalfPlane> half_plane(Vec2 v, double alpha = 1.0) const;
+  /// Equation (10): { v' : n.v' >= n.(v + alpha u) }, alpha the responsibility. 1 is the full one, for a static
+  /// obstacle: certified disjoint from the interior of VO. Less leaves the rest of u to somebody else, and the offset
+  /// is rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing
+  /// where no half-plane could be certified: overlap, or a few ulps from it. REQUIRES: 0 < responsibility <= 1, v
+  /// finite.
+  std::optional<HalfPlane> half_plane(Vec2 v, double responsibility = 1.0) const;
 
   /// The half-plane { v' : n0.v' >= 0 } away from the nearest point: for a robot in bare contact. Certified; nothing
   /// where the robot overlaps beyond proof.
@@ -155,7 +156,7 @@ class VelocityObstacle {
   std::shared_ptr<const Polygonal> polygonal_;  ///< nothing for a disc
 };
 
-/// `VelocityObstacle::half_plane` with alpha = 1, for a shape that stands somewhere already: nothing is copied.
+/// `VelocityObstacle::half_plane` with responsibility 1, for a shape that stands somewhere already: nothing is copied.
 /// REQUIRES: `s` valid and finite, its radius >= 0, time_horizon > 0, v finite. Only the last two are checked.
 std::optional<HalfPlane> half_plane(const geometry::GrownShape& s, double time_horizon, Vec2 v);
 
