@@ -191,7 +191,7 @@ Json half_plane(SeededRandom& random, bool altered) {
             {"x", claim.position.x},
             {"y", claim.position.y},
             {"radius", claim.radius},
-            {"tau", claim.time_horizon},
+            {"timeHorizon", claim.time_horizon},
             {"ux", claim.shape_velocity.x},
             {"uy", claim.shape_velocity.y},
             {"nx", claim.half_plane.normal.x},

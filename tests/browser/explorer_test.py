@@ -178,9 +178,9 @@ class Runs(Page):
         for k in [0, 33, 66, len(rows) - 2]:
             for i, robot in enumerate(rows[k]["robots"]):
                 d = self.run_script("const d = exactvo.page.run.decision(arguments[0], arguments[1]); return [d.time, d.position, d.velocity, "
-                                    "d.preferred, d.chosen, d.status, d.halfPlanes.map((h) => [h.body, h.nx, h.ny, h.c, h.multiplier, h.tau])]", k, i)
+                                    "d.preferred, d.chosen, d.status, d.halfPlanes.map((h) => [h.body, h.nx, h.ny, h.c, h.multiplier, h.timeHorizon])]", k, i)
                 self.assertEqual(d[:6], [rows[k]["time"], robot["position"], robot["velocity"], robot["preferred"], robot["chosen"], robot["status"]])
-                expected = [[c["body"], *c["normal"], c["offset"], c.get("multiplier", 0), c["tau"]] for c in robot.get("constraints", [])]
+                expected = [[c["body"], *c["normal"], c["offset"], c.get("multiplier", 0), c["time_horizon"]] for c in robot.get("constraints", [])]
                 self.assertEqual(d[6], expected)
 
     def test_plays_scrubs_steps_and_selects(self):
@@ -654,7 +654,7 @@ class Live(Page):
         self.drag("world", "world", (6, -3), (3.5, -2))
         *_, scenario = self.explained()
         answer = self.vo_line(scenario)
-        seen = self.run_script("const h = exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge'); return [h.nx, h.ny, h.c, h.tau, h.clearance]")
+        seen = self.run_script("const h = exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge'); return [h.nx, h.ny, h.c, h.timeHorizon, h.clearance]")
         half_plane = answer["half_plane"]
         self.assertAlmostEqual(seen[0] * half_plane["normal"][0] + seen[1] * half_plane["normal"][1], 1, places=9)
         skin = 1e-6  # m: a simulation keeps this beside the radius
@@ -677,7 +677,7 @@ class Live(Page):
         self.fill("live-radius-number", "1.5")
         self.assertAlmostEqual(before - self.run_script(clearance), 1.0, places=6)
         self.fill("live-horizon-number", "7")
-        self.assertEqual(self.run_script("return exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge').tau"), 7)
+        self.assertEqual(self.run_script("return exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge').timeHorizon"), 7)
         self.run_script("const e = document.getElementById('live-method'); e.value = 'ivo'; e.dispatchEvent(new Event('change'))")
         self.answered()
         self.assertEqual(self.run_script("return exactvo.page.live.run.about.method"), "ivo")

@@ -69,7 +69,7 @@ RecordedConstraint constraint_number(int k, SeededRandom& random) {
   c.active = k % 5 == 0;
   c.multiplier = k % 5 == 0 ? random.uniform(0, 3) : 0.0;
   c.clearance = random.uniform(-1, 9);
-  c.tau = random.uniform(0, 3);
+  c.time_horizon = random.uniform(0, 3);
   return c;
 }
 
@@ -161,7 +161,7 @@ RecordingFile sample(bool with_formation) {
     file.scenario.formation = spec;
     file.recording.offsets = {random.in_box(2), random.in_box(2), random.in_box(2)};
     file.recording.remedies.emplace();
-    file.recording.remedies->tau_clamp = file.recording.remedies->margins = false;
+    file.recording.remedies->horizon_clamp = file.recording.remedies->margins = false;
     file.recording.remedies->acceleration_bound = 0.1;
     for (formation::Robot& robot : file.scenario.robots) robot.goals.clear();
   }
@@ -212,7 +212,7 @@ void expect_same_constraint(const RecordedConstraint& a, const RecordedConstrain
   EXPECT_TRUE(same_bits(a.shape, b.shape));
   EXPECT_TRUE(same_bits(a.position, b.position));
   EXPECT_TRUE(same_bits(a.radius, b.radius));
-  EXPECT_TRUE(same_bits(a.tau, b.tau));
+  EXPECT_TRUE(same_bits(a.time_horizon, b.time_horizon));
   EXPECT_TRUE(same_bits(a.shape_velocity, b.shape_velocity));
   EXPECT_EQ(a.body, b.body);
   EXPECT_TRUE(same_bits(a.clearance, b.clearance));

@@ -79,7 +79,7 @@ TEST(Lemmas, Lemma1_HalvesOfAPairAddUpAndNothingIsRelaxed) {
         EXPECT_TRUE(is_at_most(radii, n, -apart)) << step.time << " " << i << " " << j << " " << norm(d);
         EXPECT_TRUE(is_at_most(radii, n, offset * Rational(s.time_step) - apart)) << step.time << " " << i << " " << j;
         ++pairs;
-        if (mine->tau > at_rest) continue;
+        if (mine->time_horizon > at_rest) continue;
         ++fallen;
         EXPECT_LE(mine->half_plane.offset, 0.0);
         EXPECT_LE(theirs->second->half_plane.offset, 0.0);

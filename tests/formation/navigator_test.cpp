@@ -115,7 +115,8 @@ std::string difference(const RecordedConstraint& a, const RecordedConstraint& b)
     return "half-plane";
   if (a.source != b.source || a.index != b.index || a.piece != b.piece) return "name";
   if (a.certified != b.certified || a.hard != b.hard || a.active != b.active) return "flags";
-  if (!same(a.tau, b.tau) || !same(a.clearance, b.clearance) || !same(a.multiplier, b.multiplier)) return "numbers";
+  if (!same(a.time_horizon, b.time_horizon) || !same(a.clearance, b.clearance) || !same(a.multiplier, b.multiplier))
+    return "numbers";
   if (geometry::to_string(a.shape) != geometry::to_string(b.shape)) return "shape";
   if (!same(a.position, b.position) || !same(a.radius, b.radius) || !same(a.shape_velocity, b.shape_velocity))
     return "place";

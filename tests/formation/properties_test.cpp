@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PureTwelve, testing::ValuesIn(kStaticScenes),
 
 /// Exactly: the half-plane excludes the velocity obstacle that it was built on.
 bool proven(const RecordedConstraint& c) {
-  return geometry::half_plane_is_safe({c.shape, c.position, c.radius}, c.tau, c.half_plane);
+  return geometry::half_plane_is_safe({c.shape, c.position, c.radius}, c.time_horizon, c.half_plane);
 }
 
 struct Audit {

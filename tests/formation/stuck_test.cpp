@@ -138,7 +138,7 @@ RecordedConstraint constraint(ConstraintSource source, std::size_t index, geomet
   c.shape = std::move(shape);
   c.half_plane = {normal, 0.0};
   c.radius = kRadius;
-  c.tau = 2.0;
+  c.time_horizon = 2.0;
   c.hard = source == ConstraintSource::enclosure || source == ConstraintSource::obstacle_edge;
   c.active = true;
   return c;

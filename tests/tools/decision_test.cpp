@@ -39,7 +39,7 @@ Decision with_two_walls() {
     c.source = ConstraintSource::obstacle_edge;
     c.half_plane = h;
     c.radius = 0.5;
-    c.tau = 2.0;
+    c.time_horizon = 2.0;
     c.active = true;
     return c;
   };

@@ -134,7 +134,7 @@ std::string contact_words(const Decision& d, const RecordedConstraint& c) {
   if (!contact) return away + ", not touched at the preferred velocity";
   constexpr double kLong = 3600.0;  // s
   const std::string in = *contact > kLong ? "more than an hour" : number(*contact) + " s";
-  return fmt::format("{}, reached in {} at the preferred velocity, horizon {} s", away, in, number(c.tau));
+  return fmt::format("{}, reached in {} at the preferred velocity, horizon {} s", away, in, number(c.time_horizon));
 }
 
 std::string proof_words(const RecordedConstraint& c) {

@@ -242,7 +242,7 @@ std::vector<vo::ShiftedCone> cones_of(const RobotStep& step) {
   std::vector<vo::ShiftedCone> cones;
   for (const RecordedConstraint& c : step.constraints)
     cones.push_back(
-        {vo::VelocityObstacle(c.shape, c.position, c.radius, c.tau), {{-c.shape_velocity}}, c.shape_velocity});
+        {vo::VelocityObstacle(c.shape, c.position, c.radius, c.time_horizon), {{-c.shape_velocity}}, c.shape_velocity});
   return cones;
 }
 

@@ -195,7 +195,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("half_plane.piece", each<std::uint32_t>(half_planes, &RecordedConstraint::piece));
   columns.add("half_plane.flags", each<std::uint8_t>(half_planes, flags_of), 0);
   columns.add("half_plane.line", line, 0);
-  columns.add("half_plane.tau", each<double>(half_planes, &RecordedConstraint::tau), 0);
+  columns.add("half_plane.time_horizon", each<double>(half_planes, &RecordedConstraint::time_horizon), 0);
   columns.add("half_plane.clearance", each<double>(half_planes, &RecordedConstraint::clearance), 0);
   columns.add("half_plane.multiplier", each<double>(half_planes, &RecordedConstraint::multiplier), 0);
 }

@@ -103,7 +103,7 @@ class VelocitySpace {
     if (all.empty()) return;
     std::vector<Points> rings;
     for (const RecordedConstraint* c : all)
-      rings.push_back(velocity_obstacle_in(view_, grown_shape(*c), c->tau, c->shape_velocity));
+      rings.push_back(velocity_obstacle_in(view_, grown_shape(*c), c->time_horizon, c->shape_velocity));
     // Many on top of each other would hide what lies below.
     const double opacity = 0.3 * std::min(1.0, kFewCones / static_cast<double>(all.size()));
     add_curves(rings, title,
@@ -152,7 +152,7 @@ class VelocitySpace {
   }
 
   Vec2 tangent_point(const RecordedConstraint& c, Vec2 normal) const {
-    return support_point(grown_shape(c), normal) / c.tau + c.shape_velocity;
+    return support_point(grown_shape(c), normal) / c.time_horizon + c.shape_velocity;
   }
 
   void add_legs(const RecordedConstraint& c, std::vector<Points>& curves) const {
@@ -176,7 +176,7 @@ class VelocitySpace {
   }
 
   void add_shape(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    Points ring = scaled_outline(grown_shape(c), c.tau);
+    Points ring = scaled_outline(grown_shape(c), c.time_horizon);
     for (Vec2& p : ring) p += c.shape_velocity;
     if (!ring.empty()) ring.push_back(ring.front());
     curves.push_back(ring);

@@ -75,7 +75,7 @@ FieldResult from_csv_row(const std::string& row) {
           std::stoull(cells.at(6)), number_of(cells.at(7)), number_of(cells.at(8))};
 }
 
-/// A file name of a variant's name: "+ tau clamp" has none of its own.
+/// A file name of a variant's name: "+ horizon clamp" has none of its own.
 std::string file_word(const std::string& name) {
   std::string word;
   for (const char c : name) word += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';

@@ -43,7 +43,7 @@ double bound_of(const std::string& option, const std::string& text) {
   return bound;
 }
 
-/// "smoothing=on", "tau_clamp=off", "acceleration_bound=8".
+/// "smoothing=on", "horizon_clamp=off", "acceleration_bound=8".
 void apply_switch(const std::string& option, formation::Remedies& remedies) {
   const std::size_t equals = std::min(option.find('='), option.size());
   const std::string name = option.substr(0, equals), value = option.substr(std::min(equals + 1, option.size()));

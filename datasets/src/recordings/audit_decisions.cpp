@@ -100,7 +100,7 @@ constexpr const char* kBesideExact = " has multipliers, and says that none in do
 class DecisionAudit : public RowAudit {
  public:
   explicit DecisionAudit(const AuditedRun& run)
-      : run_(run), literal_horizons_(run.file.recording.remedies && !run.file.recording.remedies->tau_clamp) {}
+      : run_(run), literal_horizons_(run.file.recording.remedies && !run.file.recording.remedies->horizon_clamp) {}
 
   void check_step(const RowInRun& at) override {
     place_moving(at.row);
@@ -297,7 +297,8 @@ class DecisionAudit : public RowAudit {
         return " is against itself, or of a robot that ignores others";
       return c.source == BodyKind::moving_obstacle && c.index >= moved_.size() ? " is against what has no place" : "";
     }
-    if (!(c.tau >= run_.file.recording.time_step) && !literal_horizons_) return " looks less than a time step ahead";
+    if (!(c.time_horizon >= run_.file.recording.time_step) && !literal_horizons_)
+      return " looks less than a time step ahead";
     if (c.source == BodyKind::obstacle_edge) return "";
     const Outlook* outlook = nullptr;
     for (const Outlook& o : run_.file.recording.outlooks)
@@ -331,14 +332,14 @@ class DecisionAudit : public RowAudit {
     const double radius = run_.scenario.robots[s.robot].radius;
     const Vec2 at = s.state->anchor;
     if (c.source == BodyKind::moving_obstacle)
-      return vo::is_true({moved_[c.index], at, radius, c.tau, s.step->moving[c.index].velocity, c.half_plane});
+      return vo::is_true({moved_[c.index], at, radius, c.time_horizon, s.step->moving[c.index].velocity, c.half_plane});
     if (c.source != BodyKind::robot)
-      return vo::is_true({run_.file.recording.bodies[c.body].shape, at, radius, c.tau, {}, c.half_plane});
+      return vo::is_true({run_.file.recording.bodies[c.body].shape, at, radius, c.time_horizon, {}, c.half_plane});
     const formation::Robot& other = run_.scenario.robots[c.index];
     const RobotStep& them = s.step->robots[c.index];
     if (other.cooperates) return keeps_pair_apart(s, c);
     const geometry::Disc disc{them.anchor, other.radius};
-    return vo::is_true({disc, at, radius, c.tau, them.anchor_velocity, c.half_plane});
+    return vo::is_true({disc, at, radius, c.time_horizon, them.anchor_velocity, c.half_plane});
   }
 
   /// Against a robot that cooperates. Either this half-plane takes half of what the pair's relative velocity must
@@ -346,12 +347,12 @@ class DecisionAudit : public RowAudit {
   /// with the half-plane that the other robot has against this one, of the opposite normal: any two velocities that
   /// keep both do not collide within tau. So do pairs that fell back (liveness).
   bool keeps_pair_apart(const Seen& s, const RecordedConstraint& c) const {
-    if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
+    if (!has_numbers(c.half_plane) || !(c.time_horizon > 0.0) || !std::isfinite(c.time_horizon)) return false;
     const RobotStep& them = s.step->robots[c.index];
     const Point n = exactly(c.half_plane.normal), apart = exactly(them.anchor) - s.at;
     const Rational offset(c.half_plane.offset), reach = s.radius + Rational(run_.scenario.robots[c.index].radius);
     const auto excludes = [&](const Rational& relative) {
-      return exact::excludes_disc(apart, reach, n, relative, Rational(c.tau));
+      return exact::excludes_disc(apart, reach, n, relative, Rational(c.time_horizon));
     };
     if (excludes(2 * offset - exact::dot(n, exactly(s.state->anchor_velocity) + exactly(them.anchor_velocity))))
       return true;

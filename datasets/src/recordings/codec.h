@@ -60,7 +60,7 @@ void members(Way& json, For<Way, formation::RecordedConstraint>& c) {
   json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
   json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
   json.member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
-  json.member("clearance", c.clearance).member("tau", c.tau);
+  json.member("clearance", c.clearance).member("time_horizon", c.time_horizon);
 }
 
 /// The same double, -0 and 0 told apart.

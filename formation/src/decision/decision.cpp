@@ -264,7 +264,7 @@ DecisionConstraint Decider::named(const Kept& kept) const {
   r.hard = c.priority == lp::Priority::hard;
   r.active = kept.second != nullptr;
   r.multiplier = kept.second ? kept.second->multiplier : 0.0;
-  r.tau = c.time_horizon;
+  r.time_horizon = c.time_horizon;
   r.clearance = c.clearance;
   return r;
 }

@@ -43,7 +43,7 @@ bool is_static(const RecordedConstraint& c) {
 // --- What blocks ---
 
 BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
-  const vo::VelocityObstacle vo(c.shape, robot, c.radius, c.tau > 0.0 ? c.tau : 1.0);
+  const vo::VelocityObstacle vo(c.shape, robot, c.radius, c.time_horizon > 0.0 ? c.time_horizon : 1.0);
   const vo::VelocityObstacle::Nearest nearest = vo.nearest();
   const double rho = detail::Boundary(c.shape, c.radius).radius_of_curvature(nearest.normal);
   return {c, nearest.normal, nearest.distance, rho};

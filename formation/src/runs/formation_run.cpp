@@ -63,7 +63,7 @@ class FormationRun {
       plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
     }
-    const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
+    const HorizonRule rule = remedies_.horizon_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
       const Vec2 slot = spec_.leader.path.back() + offsets_[i];

@@ -39,7 +39,7 @@ struct RowsKept : RunSink {
 
 /// Whether the brake points of a formation move at exactly what the filter chooses, as plans need it.
 bool follows_choices(const Remedies& remedies) {
-  return remedies.brake_point && remedies.absolute_frame && remedies.filter_last && remedies.tau_clamp &&
+  return remedies.brake_point && remedies.absolute_frame && remedies.filter_last && remedies.horizon_clamp &&
          remedies.margins && !(remedies.acceleration_bound > 0.0);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 Remedies none() {
   Remedies r;
-  r.signs = r.recentred = r.absolute_frame = r.saturation = r.tau_clamp = false;
+  r.signs = r.recentred = r.absolute_frame = r.saturation = r.horizon_clamp = false;
   r.filter_last = r.brake_point = r.side_commitment = false;
   return r;
 }
@@ -49,7 +49,7 @@ std::vector<NamedRemedies> remedy_ladder() {
   add("absolute frame", &R::absolute_frame);
   add("recentred offsets", &R::recentred);
   add("saturation", &R::saturation);
-  add("tau clamp", &R::tau_clamp);
+  add("horizon clamp", &R::horizon_clamp);
   add("filter last", &R::filter_last);
   add("brake point", &R::brake_point);
   add("margins", &R::margins);
@@ -63,7 +63,7 @@ std::vector<NamedRemedies> remedy_ablations() {
   return {{"default", all},
           flipped("relative frame", all, &R::absolute_frame),
           flipped("constant |v_pref|", all, &R::saturation),
-          flipped("literal tau", all, &R::tau_clamp),
+          flipped("literal horizon", all, &R::horizon_clamp),
           flipped("filter first", all, &R::filter_last),
           flipped("no brake point", all, &R::brake_point),
           flipped("no margins", all, &R::margins),
@@ -78,7 +78,7 @@ const std::vector<RemedySwitch>& remedy_switches() {
                                              {"recentred", &R::recentred, &A::recentred},
                                              {"absolute_frame", &R::absolute_frame, &A::absolute_frame},
                                              {"saturation", &R::saturation, &A::saturation},
-                                             {"tau_clamp", &R::tau_clamp, &A::tau_clamp},
+                                             {"horizon_clamp", &R::horizon_clamp, &A::horizon_clamp},
                                              {"filter_last", &R::filter_last, &A::filter_last},
                                              {"brake_point", &R::brake_point, &A::brake_point},
                                              {"margins", &R::margins, &A::margins},

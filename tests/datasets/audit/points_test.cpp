@@ -250,7 +250,8 @@ TEST(AuditPoints, AnObstacleThatNobodySawIsMissing) {
 }
 
 TEST(AuditPoints, AHorizonBelowTheTimeStepIsRefused) {
-  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.tau = 0.049; });
+  const AuditReport report =
+      forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.time_horizon = 0.049; });
   EXPECT_EQ(report[AuditPoint::half_planes].refuted, 1u);
 }
 

@@ -323,8 +323,9 @@ State state_of(const json& j) {
     for (const json& b : j["bound"]) s.bound.emplace_back(b.at("part"), number(b.at("multiplier")));
   if (j.contains("constraints"))
     for (const json& c : j["constraints"])
-      s.lines.push_back({point(c.at("normal")), number(c.at("offset")), number(c.at("tau")), c.value("multiplier", 0.0),
-                         c.at("certified"), c.at("hard"), c.at("active"), c.at("body"), c.at("index")});
+      s.lines.push_back({point(c.at("normal")), number(c.at("offset")), number(c.at("time_horizon")),
+                         c.value("multiplier", 0.0), c.at("certified"), c.at("hard"), c.at("active"), c.at("body"),
+                         c.at("index")});
   return s;
 }
 
@@ -676,7 +677,7 @@ class Opinion {
   void completeness(std::size_t k, std::size_t i) {
     const Row& row = rows_[k];
     const State& s = row.robots[i];
-    if (is_formation() && !remedy("tau_clamp")) return;
+    if (is_formation() && !remedy("horizon_clamp")) return;
     const auto allowed = [](const State& r, Vec2 v, bool hard_only) {
       return std::all_of(r.lines.begin(), r.lines.end(),
                          [&](const Line& line) { return (hard_only && !line.hard) || line.slack(v) >= kClose; });

@@ -178,7 +178,7 @@ class Run {
     const h = {
       body: number, kind: body.kind, index: c['half_plane.index'][i], piece: c['half_plane.piece'][i],
       nx: line[3 * i], ny: line[3 * i + 1], c: line[3 * i + 2],
-      tau: c['half_plane.tau'][i], clearance: c['half_plane.clearance'][i], multiplier: c['half_plane.multiplier'][i],
+      timeHorizon: c['half_plane.time_horizon'][i], clearance: c['half_plane.clearance'][i], multiplier: c['half_plane.multiplier'][i],
       certified: (flags & 1) !== 0, hard: (flags & 2) !== 0, active: (flags & 4) !== 0,
       radius: this.robots[robot].radius,
     };
@@ -217,7 +217,7 @@ class Run {
 const COLUMNS = ['time', 'x', 'y', 'vx', 'vy', 'mode', 'status', 'side', 'leader', 'moving', 'decision.time', 'decision.state',
   'decision.violation', 'decision.status', 'decision.exact_multipliers', 'decision.half_planes', 'decision.parts', 'decision.moving', 'decision.waits',
   'part.kind', 'part.multiplier', 'half_plane.body', 'half_plane.index', 'half_plane.piece', 'half_plane.flags', 'half_plane.line',
-  'half_plane.tau', 'half_plane.clearance', 'half_plane.multiplier'];
+  'half_plane.time_horizon', 'half_plane.clearance', 'half_plane.multiplier'];
 const PART_KINDS = ['line', 'disc', 'right', 'left', 'top', 'bottom'];
 
 function startsOf(counts) {

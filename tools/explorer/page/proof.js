@@ -137,7 +137,7 @@ function checkLeastViolation(problem, sum, most) {
 // A half-plane: { v : n.v >= c } and the interior of the velocity obstacle { w + u : t w in S, 0 < t <= tau } have no
 // velocity in common, S the shape seen from the robot and grown by its radius. True iff h_S(n) <= 0 and
 // h_S(n) <= tau (c - n.u), with h_S the support function: a sum k + sqrt(b) + sqrt(d).
-// claim: {shape, x, y, radius, tau, ux, uy, nx, ny, c}; shape {disc|segment|polygon|ellipse: [numbers]}.
+// claim: {shape, x, y, radius, timeHorizon, ux, uy, nx, ny, c}; shape {disc|segment|polygon|ellipse: [numbers]}.
 function checkHalfPlane(claim) {
   if (!isWellFormed(claim)) return refuted('the claim is not well formed');
   const n = exactVector(claim.nx, claim.ny);
@@ -157,14 +157,14 @@ function checkHalfOfPair(claim, velocities, halves) {
   return halves.some(completes) ? PROVEN : refuted('it takes less than its half of the pair');
 }
 
-function isWellFormed({shape, x, y, radius, tau, ux, uy, nx, ny, c}) {
+function isWellFormed({shape, x, y, radius, timeHorizon, ux, uy, nx, ny, c}) {
   const numbers = shape.disc || shape.segment || shape.polygon || shape.ellipse || [];
-  return [x, y, radius, ux, uy, nx, ny, c, ...numbers].every(Number.isFinite) && radius >= 0 && tau > 0 &&
+  return [x, y, radius, ux, uy, nx, ny, c, ...numbers].every(Number.isFinite) && radius >= 0 && timeHorizon > 0 &&
     (nx !== 0 || ny !== 0) && (!shape.disc || shape.disc[2] >= 0) && numbers.length > 0;
 }
 
 // Whether the velocities with n.v >= beyond keep away from the shape for tau.
-function excludes({shape, x, y, radius, tau, nx, ny}, beyond) {
+function excludes({shape, x, y, radius, timeHorizon, nx, ny}, beyond) {
   const n = exactVector(nx, ny), position = exactVector(x, y);
   const along = (px, py) =>
     n.x.times(Exact.of(px).minus(position.x)).plus(n.y.times(Exact.of(py).minus(position.y)));
@@ -183,8 +183,8 @@ function excludes({shape, x, y, radius, tau, nx, ny}, beyond) {
     for (let i = 2; i < points.length; i += 2) k = larger(k, along(points[i], points[i + 1]));
   }
   if (beyond.sign() < 0) {
-    if (!Number.isFinite(tau)) return refuted('it cuts into the velocity obstacle');
-    k = k.minus(Exact.of(tau).times(beyond));
+    if (!Number.isFinite(timeHorizon)) return refuted('it cuts into the velocity obstacle');
+    k = k.minus(Exact.of(timeHorizon).times(beyond));
   }
   return sumOfRootsIsPositive(k, b, d) ? refuted('it cuts into the velocity obstacle') : PROVEN;
 }
@@ -243,7 +243,7 @@ function checkChoice(run, d) {
 
 function checkConstraint(run, d, h) {
   if (!h.certified) return {ok: null, why: 'not certified: nothing is claimed'};
-  const claim = {shape: h.shape, x: d.anchor[0], y: d.anchor[1], radius: h.radius, tau: h.tau, ux: h.ux, uy: h.uy,
+  const claim = {shape: h.shape, x: d.anchor[0], y: d.anchor[1], radius: h.radius, timeHorizon: h.timeHorizon, ux: h.ux, uy: h.uy,
     nx: h.nx, ny: h.ny, c: h.c};
   if (h.kind !== 'robot' || !run.robots[h.index].cooperates) return checkHalfPlane(claim);
   const other = run.decision(d.row, h.index);

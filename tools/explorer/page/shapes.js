@@ -77,7 +77,7 @@ function velocityObstacle(h, anchor) {
   const left = rootOfHeight(seen, away, away - Math.PI), right = rootOfHeight(seen, away, away + Math.PI);
   const at = (angle) => {
     support(seen, Math.cos(angle), Math.sin(angle), scratch);
-    return [scratch.x / h.tau + h.ux, scratch.y / h.tau + h.uy];
+    return [scratch.x / h.timeHorizon + h.ux, scratch.y / h.timeHorizon + h.uy];
   };
   const steps = 96, cutOff = [], outline = [];
   for (let i = 0; i <= steps; ++i) cutOff.push(at(left + (right - left) * i / steps));

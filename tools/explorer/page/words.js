@@ -49,7 +49,7 @@ function contactWords(d, h) {
   const away = `${number(distance)} m from the robot's rim`;
   if (contact === null) return `${away}, not touched at the preferred velocity`;
   const reached = contact > 3600 ? 'more than an hour' : `${number(contact)} s`;
-  return `${away}, reached in ${reached} at the preferred velocity, horizon ${number(h.tau)} s`;
+  return `${away}, reached in ${reached} at the preferred velocity, horizon ${number(h.timeHorizon)} s`;
 }
 
 function signed(x) {

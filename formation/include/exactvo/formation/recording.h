@@ -29,7 +29,7 @@ struct DecisionConstraint {
   bool certified = false;  ///< proven to exclude the velocity obstacle's interior
   bool hard = true;        ///< false: of a robot, and may give where half-planes contradict each other
   bool active = false;     ///< binds the chosen velocity
-  double tau = 0.0;        ///< s
+  double time_horizon = 0.0;  ///< s
   std::size_t body = 0;    ///< of `Recording::bodies`
   double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
   /// KKT multiplier: the weight of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 if inactive. Rounded.
@@ -37,8 +37,8 @@ struct DecisionConstraint {
 };
 
 /// The same with enough beside it to prove it again: the convex shape (grown by `radius`, seen from `position`, horizon
-/// `tau`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and place and velocity in
-/// the row.
+/// `time_horizon`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and place and
+/// velocity in the row.
 struct RecordedConstraint : DecisionConstraint {
   geometry::ConvexShape shape;  ///< m
   Vec2 position;                ///< m: the robot's anchor

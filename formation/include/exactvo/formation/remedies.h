@@ -18,7 +18,7 @@ struct Remedies {
   bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
   bool absolute_frame = true;       ///< V_IVO is an absolute velocity; the paper adds the leader's to it
   bool saturation = true;           ///< v_pref slows towards the slot; the paper's keeps its magnitude
-  bool tau_clamp = true;            ///< horizons within their bounds; the paper's tau = dist / |v|
+  bool horizon_clamp = true;        ///< horizons within their bounds; the paper's tau = dist / |v|
   bool filter_last = true;          ///< consensus goes into v_pref, what is tracked is safe; the paper adds it behind
   bool brake_point = true;          ///< velocity obstacles at x + v / k3, whose velocity is what is tracked
   bool margins = true;              ///< the scenario's margins; without it the robots' is 0
@@ -35,7 +35,7 @@ struct RemedySwitches {
   std::optional<bool> recentred;
   std::optional<bool> absolute_frame;
   std::optional<bool> saturation;
-  std::optional<bool> tau_clamp;
+  std::optional<bool> horizon_clamp;
   std::optional<bool> filter_last;
   std::optional<bool> brake_point;
   std::optional<bool> margins;
@@ -45,7 +45,7 @@ struct RemedySwitches {
   std::optional<double> acceleration_bound;  ///< m/s^2, >= 0; 0 for none
 };
 
-/// One of the switches by its name, which is that of the member: "tau_clamp".
+/// One of the switches by its name, which is that of the member: "horizon_clamp".
 struct RemedySwitch {
   const char* name;                            ///< the member's
   bool Remedies::*on;                          ///< the switch
@@ -59,7 +59,7 @@ Remedies switched(Remedies base, const RemedySwitches& asked);
 
 /// A set of remedies with the name under which it is reported.
 struct NamedRemedies {
-  std::string name;   ///< "tau_clamp" and so on
+  std::string name;   ///< "horizon_clamp" and so on
   Remedies remedies;  ///< the whole set
 };
 
