@@ -67,7 +67,7 @@ class Measuring : public RunSink {
     evaluator_.emplace(scenario_, run);
   }
   void add_body(const vo::Body&) override {}
-  void add_outlook(const Outlook&) override {}
+  void add_goal_bodies(const GoalBodies&) override {}
   void add_row(Step row) override {
     const double start = processor_seconds();
     for (std::size_t i = 0; i < places_.size(); ++i) {

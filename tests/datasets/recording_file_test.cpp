@@ -168,7 +168,7 @@ RecordingFile sample(bool with_formation) {
   file.scenario.obstacles = {{"wall", geometry::Polyline{{{-5, -5}, {-5, -9}}}}};
   file.scenario.moving_obstacles = {{"cart", geometry::Polygon{{{90, 90}, {91, 90}, {90, 91}}, {}}, {{{0, 0}}, 0.0}}};
   file.recording.bodies = bodies(random);
-  file.recording.outlooks = {{0.0, 0, 0, {0, 3}}, {0.0, 1, 0, {}}, {0.0, 2, 0, {2}}};
+  file.recording.goal_bodies = {{0.0, 0, 0, {0, 3}}, {0.0, 1, 0, {}}, {0.0, 2, 0, {2}}};
   file.recording.motion = with_formation ? formation::MotionLaw::exponential : formation::MotionLaw::straight;
   file.recording.time_step = 0.02;
   file.recording.tracking_gain = 37.5;
@@ -177,8 +177,8 @@ RecordingFile sample(bool with_formation) {
   file.recording.wall_time = 0.125;
   file.recording.all_half_planes = file.recording.relative_frame = with_formation;
   if (!with_formation) {
-    file.recording.outlooks.push_back({0.1, 2, 1, {4}});
-    file.recording.outlooks.push_back({0.2, 0, 1, {}});
+    file.recording.goal_bodies.push_back({0.1, 2, 1, {4}});
+    file.recording.goal_bodies.push_back({0.2, 0, 1, {}});
   }
   if (!with_formation)
     file.recording.plans = {{0, 0, {0, 2}, {random.in_box(9), random.in_box(9)}, {{2, random.in_box(9)}}},
@@ -261,12 +261,12 @@ void expect_same_reports(const formation::StuckReport& a, const formation::Stuck
 void expect_same_extras(const RecordingFile& a, const RecordingFile& b) {
   EXPECT_EQ(a.recording.all_half_planes, b.recording.all_half_planes);
   EXPECT_EQ(a.recording.relative_frame, b.recording.relative_frame);
-  ASSERT_EQ(a.recording.outlooks.size(), b.recording.outlooks.size());
-  for (std::size_t i = 0; i < a.recording.outlooks.size(); ++i) {
-    EXPECT_EQ(a.recording.outlooks[i].robot, b.recording.outlooks[i].robot);
-    EXPECT_EQ(a.recording.outlooks[i].goal, b.recording.outlooks[i].goal);
-    EXPECT_TRUE(same_bits(a.recording.outlooks[i].time, b.recording.outlooks[i].time));
-    EXPECT_EQ(a.recording.outlooks[i].bodies, b.recording.outlooks[i].bodies);
+  ASSERT_EQ(a.recording.goal_bodies.size(), b.recording.goal_bodies.size());
+  for (std::size_t i = 0; i < a.recording.goal_bodies.size(); ++i) {
+    EXPECT_EQ(a.recording.goal_bodies[i].robot, b.recording.goal_bodies[i].robot);
+    EXPECT_EQ(a.recording.goal_bodies[i].goal, b.recording.goal_bodies[i].goal);
+    EXPECT_TRUE(same_bits(a.recording.goal_bodies[i].time, b.recording.goal_bodies[i].time));
+    EXPECT_EQ(a.recording.goal_bodies[i].bodies, b.recording.goal_bodies[i].bodies);
   }
   ASSERT_EQ(a.recording.plans.size(), b.recording.plans.size());
   for (std::size_t i = 0; i < a.recording.plans.size(); ++i) {
@@ -354,7 +354,7 @@ TEST_F(RecordingFileTest, AHeaderThenBodiesOnceAndARowAStepThenTheEnd) {
   const std::string text = content_of(folder_ / "r.jsonl");
   EXPECT_EQ(text.substr(0, 58), "{\"header\":{\"kind\":\"exactvo-recording\",\"format_version\":2,\"");
   EXPECT_EQ(count_of(text, "\n{\"row\":"), 20u);
-  EXPECT_EQ(count_of(text, "\n{\"outlook\":"), 5u);
+  EXPECT_EQ(count_of(text, "\n{\"goal_bodies\":"), 5u);
   EXPECT_EQ(count_of(text, "\n{\"plan\":"), 2u);
   EXPECT_LT(text.find("{\"row\":{\"time\":0.12,"), text.find("{\"plan\":{\"row\":7,"));
   EXPECT_LT(text.find("{\"plan\":{\"row\":7,"), text.find("{\"row\":{\"time\":0.14"));
@@ -372,7 +372,7 @@ TEST_F(RecordingFileTest, WhatIsWrittenAsItIsMadeIsWhatIsWrittenAtOnce) {
   about.recording.outcome.clear();
   about.stuck.clear();
   RecordingWriter writer(folder_ / "as_made.jsonl", about);
-  for (const formation::Outlook& outlook : whole.recording.outlooks) writer.add(outlook, whole.recording.bodies);
+  for (const formation::GoalBodies& of_goal : whole.recording.goal_bodies) writer.add(of_goal, whole.recording.bodies);
   for (std::size_t k = 0; k < whole.recording.steps.size(); ++k)
     writer.add(whole.recording.steps[k], whole.recording.bodies, &whole.lyapunov[k]);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "as_made.jsonl")) << "whole or not at all";
@@ -397,7 +397,7 @@ TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
   expect_refusal(refused("\"chosen\"", "\"choosen\"", first_row), DataCode::key_missing, line + ", /row/robots/0");
   expect_refusal(refused("{\"time\":0,", "{\"time\":oops,", first_row), DataCode::json_syntax, line + ", column 16");
   expect_refusal(refused("\"bodies\":[0,3]", "\"bodies\":[0,8]", 0), DataCode::out_of_range,
-                 "line 4, /outlook/bodies/1");
+                 "line 4, /goal_bodies/bodies/1");
   expect_refusal(refused("\"owners\":[0]", "\"owners\":[7]", 0), DataCode::out_of_range, "line 2, /body/owners/0");
   expect_refusal(refused("\"rows\":20", "\"rows\":21", first_row), DataCode::wrong_count,
                  "line " + std::to_string(std::count(good.begin(), good.end(), '\n')) + ", /end/rows");
@@ -453,13 +453,13 @@ TEST_F(RecordingFileTest, WhatIsSaidTwiceOrTooLateIsRefused) {
   const auto refused_with = [&](std::size_t at, const std::string& more) {
     return refusal_of([&] { read_recording(put("bad.jsonl", std::string(good).insert(at, more))); });
   };
-  const std::size_t body = good.find("{\"body\":"), outlook = good.find("{\"outlook\":");
+  const std::size_t body = good.find("{\"body\":"), of_goal = good.find("{\"goal_bodies\":");
   const std::size_t end = good.find("{\"end\":");  // all rows have passed
   const std::string last = "line " + std::to_string(std::count(good.begin(), good.end(), '\n'));
   expect_refusal(refused_with(body + line_at(body).size(), line_at(body)), DataCode::out_of_range,
                  "line 3, /body/number");
   expect_refusal(refused_with(end, line_at(body)), DataCode::out_of_range, last + ", /body/number");
-  expect_refusal(refused_with(end, line_at(outlook)), DataCode::out_of_range, last + ", /outlook/time");
+  expect_refusal(refused_with(end, line_at(of_goal)), DataCode::out_of_range, last + ", /goal_bodies/time");
 }
 
 void write_table(const std::filesystem::path& path, const RecordingFile& file) {

@@ -191,7 +191,7 @@ TEST(Guidance, EveryGoalOnTheWayHasARouteOfItsOwn) {
   s.robots[0].goals = {{4, 3}, {-4, -3}, {4, -3}};
   const GuidedRun run = guided(s);
   EXPECT_TRUE(run.metrics.all_arrived);
-  EXPECT_EQ(run.recording.outlooks.size(), 3u);
+  EXPECT_EQ(run.recording.goal_bodies.size(), 3u);
 }
 
 TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {

@@ -107,7 +107,7 @@ class Backwards {
       fields.push_back(std::make_unique<detail::StaticField>(scene, scenario_, options_, r.radius, r.position,
                                                              r.goals[0], detail::HorizonRule::clamped));
       fields.back()->set_margin(0.0);
-      file_.recording.outlooks.push_back({0.0, i, 0, fields.back()->shapes()});
+      file_.recording.goal_bodies.push_back({0.0, i, 0, fields.back()->shapes()});
       at_.push_back({r.position, r.velocity});
     }
     detail::Decider decider(scenario_, scene.bodies());

@@ -72,13 +72,13 @@ class MeasuredRun : public RunSink {
   }
   void add_body(const vo::Body& body) override { bodies_.push_back(body); }
   // The row before has to stand before these in the file, and it is written when the next one comes.
-  void add_outlook(const Outlook& outlook) override { outlooks_.push_back(outlook); }
+  void add_goal_bodies(const GoalBodies& of_goal) override { goal_bodies_.push_back(of_goal); }
   void add_plan(const JointPlan& plan) override { plans_.push_back(plan); }
   void add_row(Step row) override {
     if (std::getenv("NOTES")) print_notes(row);
     evaluator_->add(std::make_shared<const Step>(std::move(row)));
-    for (const Outlook& outlook : std::exchange(outlooks_, {}))
-      if (file_) file_->add(outlook, bodies_);
+    for (const GoalBodies& of_goal : std::exchange(goal_bodies_, {}))
+      if (file_) file_->add(of_goal, bodies_);
     for (const JointPlan& plan : std::exchange(plans_, {}))
       if (file_) file_->add(plan);
   }
@@ -102,7 +102,7 @@ class MeasuredRun : public RunSink {
   std::optional<datasets::RecordingWriter> file_;
   std::optional<Evaluator> evaluator_;
   std::vector<vo::Body> bodies_;
-  std::vector<Outlook> outlooks_;
+  std::vector<GoalBodies> goal_bodies_;
   std::vector<JointPlan> plans_;
 };
 

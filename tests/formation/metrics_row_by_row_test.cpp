@@ -298,11 +298,11 @@ class Order : public RunSink {
     EXPECT_EQ(plan.row, rows_);
     ++plans_;
   }
-  void add_outlook(const Outlook& outlook) override {
+  void add_goal_bodies(const GoalBodies& of_goal) override {
     EXPECT_EQ(begun_, 1);
-    for (const std::size_t body : outlook.bodies) EXPECT_LT(body, bodies_);
-    EXPECT_GE(outlook.time, time_);
-    ++outlooks_;
+    for (const std::size_t body : of_goal.bodies) EXPECT_LT(body, bodies_);
+    EXPECT_GE(of_goal.time, time_);
+    ++goal_bodies_;
   }
   void add_row(Step row) override {
     EXPECT_GT(row.time, time_);
@@ -313,14 +313,14 @@ class Order : public RunSink {
   }
 
   std::size_t throws_at = 0;
-  std::size_t rows_ = 0, bodies_ = 0, outlooks_ = 0, plans_ = 0;
+  std::size_t rows_ = 0, bodies_ = 0, goal_bodies_ = 0, plans_ = 0;
 
  private:
   int begun_ = 0;
   double time_ = -1.0;
 };
 
-TEST(RunSink, GetsBodiesAndOutlooksBeforeTheRowsThatNameThem) {
+TEST(RunSink, GetsBodiesAndGoalBodiesBeforeTheRowsThatNameThem) {
   for (const char* name : {"A9", "A14", "B3"}) {
     Scenario s = paper_scenario(name);
     s.time_limit = std::min(s.time_limit, 10.0);
@@ -329,7 +329,7 @@ TEST(RunSink, GetsBodiesAndOutlooksBeforeTheRowsThatNameThem) {
     const Recording whole = simulate(s);
     EXPECT_EQ(order.rows_, whole.steps.size());
     EXPECT_EQ(order.bodies_, whole.bodies.size());
-    EXPECT_EQ(order.outlooks_, whole.outlooks.size());
+    EXPECT_EQ(order.goal_bodies_, whole.goal_bodies.size());
     EXPECT_TRUE(end.steps.empty());
     EXPECT_EQ(end.outcome, whole.outcome);
     EXPECT_EQ(end.diverged, whole.diverged);

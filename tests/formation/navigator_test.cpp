@@ -235,9 +235,9 @@ datasets::RecordingFile recording_by_navigator(const std::string& name) {
         [&](std::size_t, const Navigator& navigator) {
           row.robots = {navigator.recorded()};
           has_arrived = navigator.has_arrived();
-          const Outlook outlook = navigator.outlook();
-          std::vector<Outlook>& all = file.recording.outlooks;
-          if (all.empty() || all.back().goal != outlook.goal) all.push_back(outlook);
+          const GoalBodies of_goal = navigator.goal_bodies();
+          std::vector<GoalBodies>& all = file.recording.goal_bodies;
+          if (all.empty() || all.back().goal != of_goal.goal) all.push_back(of_goal);
           if (!has_arrived) return;
           for (std::size_t b = 0; b < navigator.bodies().size(); ++b)
             file.recording.bodies.push_back(navigator.bodies()[b]);

@@ -173,7 +173,7 @@ TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
   EXPECT_GT(balanced, 200u);
 }
 
-TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
+TEST(GoalBodies, EveryGoalsEnclosuresAreKept) {
   Scenario s;
   s.guidance = Guidance::none;
   s.liveness = Liveness::off;
@@ -183,14 +183,14 @@ TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
   s.robots = {r};
   s.obstacles = {{"first", geometry::Polyline{{{5, -2}, {5, 2}}}}, {"second", geometry::Polyline{{{15, -2}, {15, 2}}}}};
   const Recording rec = simulate(s);
-  ASSERT_EQ(rec.outlooks.size(), 2u);
-  EXPECT_EQ(rec.outlooks[0].goal, 0u);
-  EXPECT_EQ(rec.outlooks[0].time, 0.0);
-  EXPECT_EQ(rec.outlooks[1].goal, 1u);
-  EXPECT_GT(rec.outlooks[1].time, 3.0);
-  for (const Outlook& outlook : rec.outlooks) {
-    ASSERT_EQ(outlook.bodies.size(), 2u);
-    for (const std::size_t body : outlook.bodies) EXPECT_EQ(rec.bodies.at(body).owners.size(), 1u);
+  ASSERT_EQ(rec.goal_bodies.size(), 2u);
+  EXPECT_EQ(rec.goal_bodies[0].goal, 0u);
+  EXPECT_EQ(rec.goal_bodies[0].time, 0.0);
+  EXPECT_EQ(rec.goal_bodies[1].goal, 1u);
+  EXPECT_GT(rec.goal_bodies[1].time, 3.0);
+  for (const GoalBodies& of_goal : rec.goal_bodies) {
+    ASSERT_EQ(of_goal.bodies.size(), 2u);
+    for (const std::size_t body : of_goal.bodies) EXPECT_EQ(rec.bodies.at(body).owners.size(), 1u);
   }
   std::set<std::string> notes;
   for (const Step& row : rec.steps) notes.insert(row.robots[0].note);

@@ -133,11 +133,11 @@ Json bodies_json(const formation::Recording& run) {
   return bodies;
 }
 
-Json outlooks_json(const formation::Recording& run) {
-  Json outlooks = Json::array();
-  for (const formation::Outlook& o : run.outlooks)
-    outlooks.push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
-  return outlooks;
+Json goal_bodies_json(const formation::Recording& run) {
+  Json goal_bodies = Json::array();
+  for (const formation::GoalBodies& o : run.goal_bodies)
+    goal_bodies.push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
+  return goal_bodies;
 }
 
 /// Places of all moves one after the other, as are those who make them.
@@ -191,7 +191,7 @@ Json packed_head(const datasets::RecordingFile& about, const PackedRunLimits& li
   Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
   if (limits.has_scenario) head["scenario"] = scenario_json(about.scenario);
   head["bodies"] = bodies_json(about.recording);
-  head["outlooks"] = outlooks_json(about.recording);
+  head["goal_bodies"] = goal_bodies_json(about.recording);
   head["plans"] = plans_json(about.recording);
   head["routes"] = routes_json(about, limits);
   return head;

@@ -53,6 +53,6 @@ std::vector<const formation::Step*> time_marks(const datasets::RecordingFile& ru
 Points vertices_at(const formation::MovingObstacle& obstacle, double time);
 Vec2 middle_at(const formation::MovingObstacle& obstacle, double time);
 /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
-void add_ellipses(const datasets::RecordingFile& run, const formation::Outlook& outlook, std::vector<Points>& rings);
+void add_ellipses(const datasets::RecordingFile& run, const formation::GoalBodies& of_goal, std::vector<Points>& rings);
 
 }  // namespace exactvo::tools

@@ -140,8 +140,8 @@ class RobotLayers {
     for (const auto& obstacle : to_.run.scenario.obstacles)
       for (const geometry::Segment& edge : edges_of(obstacle.shape)) times_.keep_off({edge.a, edge.b}, false);
     std::vector<Points> rings;
-    for (const formation::Outlook& outlook : to_.run.recording.outlooks)
-      if (outlook.goal == 0) add_ellipses(to_.run, outlook, rings);
+    for (const formation::GoalBodies& of_goal : to_.run.recording.goal_bodies)
+      if (of_goal.goal == 0) add_ellipses(to_.run, of_goal, rings);
     for (const Points& ring : rings) times_.keep_off(ring, true);
     for (std::size_t i = 0; i < to_.run.scenario.robots.size(); ++i) {
       Points way;

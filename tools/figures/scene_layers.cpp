@@ -83,8 +83,8 @@ void add_moving_obstacles(PanelLayers& to) {
 
 bool add_enclosures_of(PanelLayers& to, std::size_t i) {
   std::vector<Points> rings;
-  for (const formation::Outlook& outlook : to.run.recording.outlooks)
-    if (outlook.robot == i) add_ellipses(to.run, outlook, rings);
+  for (const formation::GoalBodies& of_goal : to.run.recording.goal_bodies)
+    if (of_goal.robot == i) add_ellipses(to.run, of_goal, rings);
   if (rings.empty()) return false;
   const int index = to.data.begin("enclosures seen by " + to.run.scenario.robots[i].id, "x [m], y [m]");
   for (const Points& ring : rings) to.data.ring(ring);
@@ -226,8 +226,8 @@ Vec2 middle_at(const formation::MovingObstacle& obstacle, double time) {
   return middle;
 }
 
-void add_ellipses(const RecordingFile& run, const formation::Outlook& outlook, std::vector<Points>& rings) {
-  for (const std::size_t body : outlook.bodies) {
+void add_ellipses(const RecordingFile& run, const formation::GoalBodies& of_goal, std::vector<Points>& rings) {
+  for (const std::size_t body : of_goal.bodies) {
     const geometry::ConvexShape& shape = run.recording.bodies[body].shape;
     if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
   }

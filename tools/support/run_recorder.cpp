@@ -88,7 +88,7 @@ void RunRecorder::begin(const formation::Recording& run) {
 
 void RunRecorder::add_row(Step row) {
   evaluator_->add(std::make_shared<const Step>(std::move(row)));
-  outlooks_of_last_ = std::exchange(outlooks_of_next_, {});
+  goal_bodies_of_last_ = std::exchange(goal_bodies_of_next_, {});
   plans_of_last_ = std::exchange(plans_of_next_, {});
 }
 
@@ -96,7 +96,7 @@ void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
   if (output_.figures) shown_.add(row, lyapunov);
   if (packer_) packer_->add(row);
   if (!files_) return;
-  for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);
+  for (const formation::GoalBodies& of_goal : goal_bodies_of_last_) files_->recording.add(of_goal, bodies_);
   for (const formation::JointPlan& plan : plans_of_last_) files_->recording.add(plan);
   files_->recording.add(row, bodies_, lyapunov);
   if (files_->trajectory) files_->trajectory->add(row);

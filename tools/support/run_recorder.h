@@ -61,7 +61,7 @@ class RunRecorder : public formation::RunSink {
 
   void begin(const formation::Recording& run) override;
   void add_body(const vo::Body& body) override { bodies_.push_back(body); }
-  void add_outlook(const formation::Outlook& outlook) override { outlooks_of_next_.push_back(outlook); }
+  void add_goal_bodies(const formation::GoalBodies& of_goal) override { goal_bodies_of_next_.push_back(of_goal); }
   void add_plan(const formation::JointPlan& plan) override { plans_of_next_.push_back(plan); }
   void add_row(formation::Step row) override;
 
@@ -84,7 +84,7 @@ class RunRecorder : public formation::RunSink {
   std::optional<RunPacker> packer_;
   std::vector<vo::Body> bodies_;
   /// A row is written when the next one comes, and what came before it stands before it in the file.
-  std::vector<formation::Outlook> outlooks_of_last_, outlooks_of_next_;
+  std::vector<formation::GoalBodies> goal_bodies_of_last_, goal_bodies_of_next_;
   std::vector<formation::JointPlan> plans_of_last_, plans_of_next_;
 };
 

@@ -145,7 +145,7 @@ class RunAudit {
   }
 
   /// Of a run that ends early, whose last row nobody knows to be one: what is said of it beforehand holds for the rows
-  /// there are. REQUIRES: `file` has no outlook and no plan of a row that did not come.
+  /// there are. REQUIRES: `file` has no goal's bodies and no plan of a row that did not come.
   AuditTally finish_early() {
     tally_.report.rows = rows_;
     look_at_plans();
@@ -262,8 +262,8 @@ void add(PointCount& sum, const PointCount& other) {
 
 /// What is said of rows that did not come goes.
 void drop_what_follows(std::size_t rows, const Step* last, formation::Recording& run) {
-  const auto follows = [&](const formation::Outlook& o) { return !last || o.time > last->time; };
-  run.outlooks.erase(std::remove_if(run.outlooks.begin(), run.outlooks.end(), follows), run.outlooks.end());
+  const auto follows = [&](const formation::GoalBodies& o) { return !last || o.time > last->time; };
+  run.goal_bodies.erase(std::remove_if(run.goal_bodies.begin(), run.goal_bodies.end(), follows), run.goal_bodies.end());
   while (!run.plans.empty() && run.plans.back().row >= rows) run.plans.pop_back();
 }
 

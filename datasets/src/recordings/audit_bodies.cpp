@@ -10,7 +10,7 @@
 namespace exactvo::datasets {
 namespace {
 
-using formation::Outlook;
+using formation::GoalBodies;
 using geometry::Vec2;
 using vo::Body;
 using vo::BodyKind;
@@ -28,7 +28,7 @@ class BodyAudit {
 
   void check() {
     for (std::size_t number = 0; number < run_.file.recording.bodies.size(); ++number) check_body(number);
-    check_outlooks();
+    check_goal_bodies();
   }
 
  private:
@@ -67,27 +67,27 @@ class BodyAudit {
                        [&](Vec2 v) { return std::find(all.begin(), all.end(), v) != all.end(); });
   }
 
-  void check_outlooks() {
-    const std::vector<Outlook>& outlooks = run_.file.recording.outlooks;
-    std::vector<const Outlook*> last(run_.scenario.robots.size(), nullptr);
+  void check_goal_bodies() {
+    const std::vector<GoalBodies>& goal_bodies = run_.file.recording.goal_bodies;
+    std::vector<const GoalBodies*> last(run_.scenario.robots.size(), nullptr);
     const bool has_enclosures =
         std::any_of(run_.file.recording.bodies.begin(), run_.file.recording.bodies.end(),
                     [](const Body& body) { return body.kind == BodyKind::enclosure && !body.owners.empty(); });
     const bool has_edges = std::any_of(run_.file.recording.bodies.begin(), run_.file.recording.bodies.end(),
                                        [](const Body& body) { return body.kind == BodyKind::obstacle_edge; });
     // A run among edges names only those that it met, if any: completeness is asked of its rows.
-    const bool names_none = !has_enclosures && std::all_of(outlooks.begin(), outlooks.end(),
-                                                           [](const Outlook& o) { return o.bodies.empty(); });
+    const bool names_none = !has_enclosures && std::all_of(goal_bodies.begin(), goal_bodies.end(),
+                                                           [](const GoalBodies& o) { return o.bodies.empty(); });
     if (has_enclosures && has_edges)
       run_.tally.refuted(AuditPoint::bodies, "the bodies are enclosures and edges: no method has both");
-    for (const Outlook& outlook : outlooks) {
+    for (const GoalBodies& of_goal : goal_bodies) {
       const std::string name =
-          "the enclosures of " + run_.scenario.robots[outlook.robot].id + " for goal " + std::to_string(outlook.goal);
-      if (!is_in_order(outlook, last[outlook.robot]))
+          "the enclosures of " + run_.scenario.robots[of_goal.robot].id + " for goal " + std::to_string(of_goal.goal);
+      if (!is_in_order(of_goal, last[of_goal.robot]))
         run_.tally.refuted(AuditPoint::bodies, name + " come out of turn");
-      last[outlook.robot] = &outlook;
+      last[of_goal.robot] = &of_goal;
       if (has_edges || names_none) continue;
-      const std::vector<bool> covered = covered_by(outlook);
+      const std::vector<bool> covered = covered_by(of_goal);
       for (std::size_t k = 0; k < run_.obstacles.size(); ++k)
         if (covered[k])
           run_.tally.proven(AuditPoint::bodies);
@@ -101,24 +101,24 @@ class BodyAudit {
 
   /// The first at t = 0 for the first goal, then goal after goal, each from a row at which the last goal was reached.
   /// Robots of a formation have no goals and see otherwise when they begin and end to go by a plan.
-  bool is_in_order(const Outlook& outlook, const Outlook* before) const {
-    if (!before) return outlook.time == 0.0 && outlook.goal == 0;
+  bool is_in_order(const GoalBodies& of_goal, const GoalBodies* before) const {
+    if (!before) return of_goal.time == 0.0 && of_goal.goal == 0;
     if (run_.scenario.formation) {
-      return outlook.goal == 0 && outlook.time > before->time && run_.places.at_begin(outlook);
+      return of_goal.goal == 0 && of_goal.time > before->time && run_.places.at_begin(of_goal);
     }
-    const formation::Robot& robot = run_.scenario.robots[outlook.robot];
-    if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
+    const formation::Robot& robot = run_.scenario.robots[of_goal.robot];
+    if (of_goal.goal != before->goal + 1 || of_goal.goal >= robot.goals.size() || of_goal.time < before->time)
       return false;
-    const Vec2* place = run_.places.at_begin(outlook);
+    const Vec2* place = run_.places.at_begin(of_goal);
     return place &&
            has_reached(robot.goals[before->goal], *place, std::max(robot.radius, run_.scenario.arrival_tolerance));
   }
 
-  /// Of each obstacle, whether each of its edges lies in a body of the outlook that stands for it.
-  std::vector<bool> covered_by(const Outlook& outlook) const {
+  /// Of each obstacle, whether each of its edges lies in a body that stands for it on the way to that goal.
+  std::vector<bool> covered_by(const GoalBodies& of_goal) const {
     std::vector<std::vector<bool>> edges;
     for (const RationalObstacle& o : run_.obstacles) edges.emplace_back(o.edges.size(), false);
-    for (const std::size_t body : outlook.bodies)
+    for (const std::size_t body : of_goal.bodies)
       for (const Covered& covered : covered_[body])
         for (std::size_t e = 0; e < covered.edges.size(); ++e)
           if (covered.edges[e]) edges[covered.owner][e] = true;

@@ -25,7 +25,7 @@ using exact::exactly;
 using exact::Point;
 using exact::Rational;
 using exact::Verdict;
-using formation::Outlook;
+using formation::GoalBodies;
 using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
@@ -300,12 +300,12 @@ class DecisionAudit : public RowAudit {
     if (!(c.time_horizon >= run_.file.recording.time_step) && !literal_horizons_)
       return " looks less than a time step ahead";
     if (c.source == BodyKind::obstacle_edge) return "";
-    const Outlook* outlook = nullptr;
-    for (const Outlook& o : run_.file.recording.outlooks)
-      if (o.robot == s.robot && o.time <= s.step->time) outlook = &o;
-    if (!outlook) return run_.file.recording.outlooks.empty() ? "" : " is none of its enclosures";
-    if (c.index >= outlook->bodies.size()) return " is none of its enclosures";
-    const std::size_t enclosure = outlook->bodies[c.index];
+    const GoalBodies* of_goal = nullptr;
+    for (const GoalBodies& o : run_.file.recording.goal_bodies)
+      if (o.robot == s.robot && o.time <= s.step->time) of_goal = &o;
+    if (!of_goal) return run_.file.recording.goal_bodies.empty() ? "" : " is none of its enclosures";
+    if (c.index >= of_goal->bodies.size()) return " is none of its enclosures";
+    const std::size_t enclosure = of_goal->bodies[c.index];
     if (c.piece == 0) return enclosure == c.body ? "" : " is none of its enclosures";
     const std::vector<std::size_t>& owners = bodies[enclosure].owners;
     const bool is_piece = std::all_of(body.owners.begin(), body.owners.end(), [&](std::size_t owner) {

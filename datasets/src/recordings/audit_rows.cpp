@@ -56,9 +56,9 @@ void PlacesInRows::take(const Step& row) {
     known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(robots));
   for (const RobotStep& robot : row.robots) known_.push_back(robot.anchor);
   const formation::Recording& recording = run_.recording;
-  for (; outlooks_ < recording.outlooks.size(); ++outlooks_)
-    if (const auto begin = row_of(recording.outlooks[outlooks_]))
-      ask_for({*begin, recording.outlooks[outlooks_].robot});
+  for (; goal_bodies_ < recording.goal_bodies.size(); ++goal_bodies_)
+    if (const auto begin = row_of(recording.goal_bodies[goal_bodies_]))
+      ask_for({*begin, recording.goal_bodies[goal_bodies_].robot});
   for (; plans_ < recording.plans.size(); ++plans_)
     for (const std::size_t robot : recording.plans[plans_].robots) ask_for({recording.plans[plans_].from_row, robot});
   for (auto at = asked_.lower_bound({number, 0}); at != asked_.end() && at->first.first == number; ++at)
@@ -71,9 +71,9 @@ void PlacesInRows::ask_for(const Key& key) {
   if (key.first < rows_) place = known_[(key.first - first_) * run_.scenario.robots.size() + key.second];
 }
 
-std::optional<std::size_t> PlacesInRows::row_of(const formation::Outlook& outlook) const {
-  const double row = std::round(outlook.time / run_.recording.time_step);
-  if (!(row >= 0.0) || !(row < 0x1p53) || row * run_.recording.time_step != outlook.time) return std::nullopt;
+std::optional<std::size_t> PlacesInRows::row_of(const formation::GoalBodies& of_goal) const {
+  const double row = std::round(of_goal.time / run_.recording.time_step);
+  if (!(row >= 0.0) || !(row < 0x1p53) || row * run_.recording.time_step != of_goal.time) return std::nullopt;
   return static_cast<std::size_t>(row);
 }
 
@@ -82,9 +82,9 @@ const Vec2* PlacesInRows::at(const Key& key) const {
   return found != asked_.end() && found->second ? &*found->second : nullptr;
 }
 
-const Vec2* PlacesInRows::at_begin(const formation::Outlook& outlook) const {
-  const auto row = row_of(outlook);
-  return row ? at({*row, outlook.robot}) : nullptr;
+const Vec2* PlacesInRows::at_begin(const formation::GoalBodies& of_goal) const {
+  const auto row = row_of(of_goal);
+  return row ? at({*row, of_goal.robot}) : nullptr;
 }
 
 const Vec2* PlacesInRows::at_begin(const formation::JointPlan& plan, std::size_t robot) const {

@@ -42,7 +42,8 @@ std::string obstruction_in(const formation::Step& row);
 /// Of a run of so many rows.
 std::string obstruction_in(const formation::JointPlan& plan, std::size_t rows);
 
-/// Where robots were when outlooks and plans begin. Plans begin in rows that have passed: of these the last are known.
+/// Where robots were when goals' bodies and plans begin. Plans begin in rows that have passed: of these the last are
+/// known.
 class PlacesInRows {
  public:
   /// 2^23 positions are 128 MiB: as many as a run has memory for (formation's `History`).
@@ -51,11 +52,11 @@ class PlacesInRows {
   /// `run` must outlive it, and grows while rows are taken.
   explicit PlacesInRows(const RecordingFile& run, std::size_t most = kMostPositions) : run_(run), most_(most) {}
 
-  /// The next row, before which `run` has the outlooks and plans that begin with it.
+  /// The next row, before which `run` has the goals' bodies and plans that begin with it.
   void take(const formation::Step& row);
 
   /// m, where half-planes of the robot were built. Null where there is no row of that time.
-  const geometry::Vec2* at_begin(const formation::Outlook& outlook) const;
+  const geometry::Vec2* at_begin(const formation::GoalBodies& of_goal) const;
   /// Of a robot of the plan.
   const geometry::Vec2* at_begin(const formation::JointPlan& plan, std::size_t robot) const;
   /// Whether the row in which it begins had been forgotten when the plan came up.
@@ -63,7 +64,7 @@ class PlacesInRows {
 
  private:
   using Key = std::pair<std::size_t, std::size_t>;  ///< row and robot
-  std::optional<std::size_t> row_of(const formation::Outlook& outlook) const;
+  std::optional<std::size_t> row_of(const formation::GoalBodies& of_goal) const;
   void ask_for(const Key& key);
   const geometry::Vec2* at(const Key& key) const;
 
@@ -71,7 +72,7 @@ class PlacesInRows {
   std::size_t most_;
   std::size_t rows_ = 0, first_ = 0;                    ///< so far; of these the first that is known
   std::deque<geometry::Vec2> known_;                    ///< m, anchors of all robots, row after row
-  std::size_t outlooks_ = 0, plans_ = 0;                ///< of the run, so far
+  std::size_t goal_bodies_ = 0, plans_ = 0;             ///< of the run, so far
   std::map<Key, std::optional<geometry::Vec2>> asked_;  ///< m; nothing as long as its row has not come
 };
 

@@ -58,7 +58,7 @@ class RecordReader {
   void read(const JsonCursor& at) {
     if (at_end_) at.refuse("nothing after the end", DataCode::wrong_count);
     if (at.has("body")) return read_body(at.at("body"));
-    if (at.has("outlook")) return read_outlook(at.at("outlook"));
+    if (at.has("goal_bodies")) return read_goal_bodies(at.at("goal_bodies"));
     if (at.has("plan")) return read_plan(at.at("plan"));
     if (at.has("row")) return read_row(at.at("row"));
     read_end(at.at("end"), rows_, file_);
@@ -104,13 +104,13 @@ class RecordReader {
     return number;
   }
 
-  void read_outlook(const JsonCursor& at) {
-    formation::Outlook outlook{at.at("time").number(), robot_of_scenario(at.at("robot")), at.at("goal").count(), {}};
-    if (rows_ > 0 && !(outlook.time > last_time_))
+  void read_goal_bodies(const JsonCursor& at) {
+    formation::GoalBodies of_goal{at.at("time").number(), robot_of_scenario(at.at("robot")), at.at("goal").count(), {}};
+    if (rows_ > 0 && !(of_goal.time > last_time_))
       at.at("time").refuse("a time after that of the rows above", DataCode::out_of_range);
     const JsonCursor list = at.at("bodies");
-    for (std::size_t k = 0; k < list.size(); ++k) outlook.bodies.push_back(known_body(list.at(k)));
-    file_.recording.outlooks.push_back(std::move(outlook));
+    for (std::size_t k = 0; k < list.size(); ++k) of_goal.bodies.push_back(known_body(list.at(k)));
+    file_.recording.goal_bodies.push_back(std::move(of_goal));
   }
 
   std::size_t robot_of_scenario(const JsonCursor& at) const {

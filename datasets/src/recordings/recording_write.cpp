@@ -14,7 +14,7 @@ namespace exactvo::datasets {
 
 namespace {
 
-using formation::Outlook;
+using formation::GoalBodies;
 using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
@@ -31,9 +31,9 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.end_object();
 }
 
-void append_outlook(JsonWriter& json, const Outlook& outlook) {
-  json.begin_object().member("time", outlook.time).member("robot", outlook.robot).member("goal", outlook.goal);
-  json.member("bodies", outlook.bodies).end_object();
+void append_goal_bodies(JsonWriter& json, const GoalBodies& of_goal) {
+  json.begin_object().member("time", of_goal.time).member("robot", of_goal.robot).member("goal", of_goal.goal);
+  json.member("bodies", of_goal.bodies).end_object();
 }
 
 void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
@@ -151,9 +151,9 @@ RecordingWriter::RecordingWriter(std::shared_ptr<AtomicFile> out, const Recordin
 
 RecordingWriter::~RecordingWriter() = default;
 
-void RecordingWriter::add(const Outlook& outlook, const std::vector<vo::Body>& bodies) {
-  for (const std::size_t body : outlook.bodies) state_->name_body(body, bodies);
-  state_->line("outlook", [&] { append_outlook(state_->json, outlook); });
+void RecordingWriter::add(const GoalBodies& of_goal, const std::vector<vo::Body>& bodies) {
+  for (const std::size_t body : of_goal.bodies) state_->name_body(body, bodies);
+  state_->line("goal_bodies", [&] { append_goal_bodies(state_->json, of_goal); });
 }
 
 void RecordingWriter::add(const formation::JointPlan& plan) {
@@ -182,13 +182,13 @@ void RecordingWriter::finish(const RecordingFile& about) {
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {
   RecordingWriter writer(path, file);
   const formation::Recording& recording = file.recording;
-  std::size_t outlooks = 0, plans = 0;
+  std::size_t goal_bodies = 0, plans = 0;
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
     const bool last = k + 1 == recording.steps.size();
-    for (;
-         outlooks < recording.outlooks.size() && (last || recording.outlooks[outlooks].time <= recording.steps[k].time);
-         ++outlooks)
-      writer.add(recording.outlooks[outlooks], recording.bodies);
+    for (; goal_bodies < recording.goal_bodies.size() &&
+           (last || recording.goal_bodies[goal_bodies].time <= recording.steps[k].time);
+         ++goal_bodies)
+      writer.add(recording.goal_bodies[goal_bodies], recording.bodies);
     for (; plans < recording.plans.size() && recording.plans[plans].row == k; ++plans)
       writer.add(recording.plans[plans]);
     writer.add(recording.steps[k], recording.bodies, k < file.lyapunov.size() ? &file.lyapunov[k] : nullptr);

@@ -82,8 +82,8 @@ class FormationRun {
     recording.relative_frame = !remedies_.absolute_frame;
     recording.remedies = remedies_;
     recording.offsets = offsets_;
-    for (std::size_t i = 0; i < robots_.size(); ++i) outlooks_.push_back({0.0, i, 0, robots_[i].field.shapes()});
-    RowFeed rows(recording, scene_.bodies(), outlooks_, plans_ ? &plans_->groups().plans() : nullptr, sink);
+    for (std::size_t i = 0; i < robots_.size(); ++i) goal_bodies_.push_back({0.0, i, 0, robots_[i].field.shapes()});
+    RowFeed rows(recording, scene_.bodies(), goal_bodies_, plans_ ? &plans_->groups().plans() : nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
     for (; !schedule_.ends_at(k) && !out_of_bounds(); ++k) {
@@ -158,7 +158,7 @@ class FormationRun {
     r.field =
         StaticField(scene_, scenario_, options_, scenario_.robots[i].radius, anchor(i), place.at, HorizonRule::clamped);
     r.side = {};
-    note_outlook(i, time, r.field.shapes());
+    note_goal_bodies(i, time, r.field.shapes());
     if (!place.why_not.empty())
       r.note = "cannot take its slot: " + place.why_not + "; goes to a place " + metres(distance) + " from it";
   }
@@ -207,17 +207,17 @@ class FormationRun {
     if (r.sees_pieces && !r.pieces) r.pieces = field_of_pieces(i);
     r.side = {};
     r.bypass = {};
-    note_outlook(i, time, (r.sees_pieces ? *r.pieces : r.field).shapes());
+    note_goal_bodies(i, time, (r.sees_pieces ? *r.pieces : r.field).shapes());
   }
 
   /// One for each robot and row: the last that it has before it decides.
-  void note_outlook(std::size_t i, double time, std::vector<vo::BodyTable::Number> bodies) {
-    const auto same = std::find_if(outlooks_.rbegin(), outlooks_.rend(),
-                                   [&](const Outlook& o) { return o.time != time || o.robot == i; });
-    if (same != outlooks_.rend() && same->time == time)
+  void note_goal_bodies(std::size_t i, double time, std::vector<vo::BodyTable::Number> bodies) {
+    const auto same = std::find_if(goal_bodies_.rbegin(), goal_bodies_.rend(),
+                                   [&](const GoalBodies& o) { return o.time != time || o.robot == i; });
+    if (same != goal_bodies_.rend() && same->time == time)
       same->bodies = std::move(bodies);
     else
-      outlooks_.push_back({time, i, 0, std::move(bodies)});
+      goal_bodies_.push_back({time, i, 0, std::move(bodies)});
   }
 
   void choose_by_plan(std::size_t i, RobotStep& step) {
@@ -346,7 +346,7 @@ class FormationRun {
   std::vector<FormationRobot> robots_;
   double now_ = 0.0;                ///< s, of the present row
   std::optional<SlotPlans> plans_;  ///< with Liveness::plan
-  std::vector<Outlook> outlooks_;
+  std::vector<GoalBodies> goal_bodies_;
   // Memory that a step leaves to the next.
   RelativeState relative_;  ///< of the row that is decided
   JointDecisions joint_;

@@ -89,7 +89,7 @@ class KinematicRun {
   void run(Recording& recording, RunSink& sink) {
     recording.motion = MotionLaw::straight;
     recording.time_step = scenario_.time_step;
-    RowFeed rows(recording, scene_.bodies(), outlooks_, groups_ ? &groups_->plans() : nullptr, sink);
+    RowFeed rows(recording, scene_.bodies(), goal_bodies_, groups_ ? &groups_->plans() : nullptr, sink);
     std::size_t k = 0;
     for (; !schedule_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
       Step row = decide_all(schedule_.time(k));
@@ -113,7 +113,7 @@ class KinematicRun {
     const Robot& spec = scenario_.robots[i];
     robots_[i].head_for(aim_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
     if (guide_) plan_course(i);
-    outlooks_.push_back({now_, i, robots_[i].goal, robots_[i].field->shapes()});
+    goal_bodies_.push_back({now_, i, robots_[i].goal, robots_[i].field->shapes()});
   }
 
   void plan_course(std::size_t i) {
@@ -499,7 +499,7 @@ class KinematicRun {
   std::optional<GoalClaims> claims_;  ///< where these are too near to each other, but with Liveness::off
   std::optional<Groups> groups_;      ///< of several robots, but with Liveness::off
   JointDecisions joint_;
-  std::vector<Outlook> outlooks_;
+  std::vector<GoalBodies> goal_bodies_;
 };
 
 }  // namespace

@@ -220,7 +220,7 @@ class Navigator::Core {
     return step;
   }
 
-  Outlook outlook() const {
+  GoalBodies goal_bodies() const {
     return {heads_since_, id_, goal_, way_.field ? way_.field->shapes() : std::vector<std::size_t>{}};
   }
 
@@ -375,8 +375,8 @@ RobotStep Navigator::recorded() const {
   return core_->recorded();
 }
 
-Outlook Navigator::outlook() const {
-  return core_->outlook();
+GoalBodies Navigator::goal_bodies() const {
+  return core_->goal_bodies();
 }
 
 }  // namespace exactvo::formation

@@ -214,10 +214,10 @@ TEST(AuditPoints, ABodyThatIsSmallerThanItsObstacleIsRefused) {
   EXPECT_GT(forged, 0u);
 }
 
-TEST(AuditPoints, AnOutlookThatLeavesABodyOutIsRefused) {
-  for (std::size_t k = 0; k < clean().recording.outlooks[0].bodies.size(); ++k) {
+TEST(AuditPoints, GoalBodiesThatLeaveABodyOutAreRefused) {
+  for (std::size_t k = 0; k < clean().recording.goal_bodies[0].bodies.size(); ++k) {
     RecordingFile file = clean();
-    std::vector<std::size_t>& bodies = file.recording.outlooks[0].bodies;
+    std::vector<std::size_t>& bodies = file.recording.goal_bodies[0].bodies;
     bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(k));
     EXPECT_GT(audit(file)[AuditPoint::bodies].refuted, 0u);
   }

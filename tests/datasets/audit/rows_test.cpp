@@ -79,17 +79,17 @@ std::size_t line_of(const Lines& lines, const char* kind, std::size_t after = 0)
   return after;
 }
 
-TEST_F(AuditRowByRow, AnOutlookBeforeItsTimeCountsFromItsTimeOnAndALateOneIsRefused) {
+TEST_F(AuditRowByRow, GoalBodiesBeforeTheirTimeCountFromItOnAndLateOnesAreRefused) {
   std::size_t moved = 0;
   for (const ShortRun& run : short_runs()) {
     write(sealed(run.lines));
     const std::string whole = to_json(audit_recording(path_, &run.scenario));
     const std::size_t first_row = line_of(run.lines, "row");
-    for (std::size_t at = line_of(run.lines, "outlook", first_row); at < run.lines.size();
-         at = line_of(run.lines, "outlook", at + 1)) {
+    for (std::size_t at = line_of(run.lines, "goal_bodies", first_row); at < run.lines.size();
+         at = line_of(run.lines, "goal_bodies", at + 1)) {
       Lines early = run.lines, late = run.lines;
       const std::size_t own_row = line_of(run.lines, "row", at);
-      // Bodies that are named first there have to come along: only outlooks of known ones move.
+      // Bodies that are named first there have to come along: only lines with known ones move.
       if (line_of(run.lines, "body", first_row) < at) continue;
       const auto begin = [](Lines& lines, std::size_t k) { return lines.begin() + static_cast<std::ptrdiff_t>(k); };
       std::rotate(begin(early, first_row), begin(early, at), begin(early, at + 1));
@@ -184,7 +184,7 @@ TEST(PlacesInRows, KnowsTheLastOfTheRowsThatHavePassed) {
   RecordingFile run;
   run.recording.time_step = 0.5;
   run.scenario.robots.resize(2);
-  run.recording.outlooks = {{1.0, 0, 0, {}}, {1.25, 0, 0, {}}};  // of row 2, and of none
+  run.recording.goal_bodies = {{1.0, 0, 0, {}}, {1.25, 0, 0, {}}};  // of row 2, and of none
   PlacesInRows places(run, 6);                                   // three rows of two robots
   const auto plan = [&](std::size_t from_row) { run.recording.plans.push_back({5, from_row, {0, 1}, {}, {}}); };
   for (std::size_t k = 0; k < 8; ++k) {
@@ -200,9 +200,9 @@ TEST(PlacesInRows, KnowsTheLastOfTheRowsThatHavePassed) {
     ASSERT_NE(places.at_begin(plans[k], 1), nullptr) << plans[k].from_row;
     EXPECT_EQ(*places.at_begin(plans[k], 1), (geometry::Vec2{static_cast<double>(plans[k].from_row), 5.0}));
   }
-  ASSERT_NE(places.at_begin(run.recording.outlooks[0]), nullptr);
-  EXPECT_EQ(*places.at_begin(run.recording.outlooks[0]), (geometry::Vec2{2.0, 0.0}));
-  EXPECT_EQ(places.at_begin(run.recording.outlooks[1]), nullptr);
+  ASSERT_NE(places.at_begin(run.recording.goal_bodies[0]), nullptr);
+  EXPECT_EQ(*places.at_begin(run.recording.goal_bodies[0]), (geometry::Vec2{2.0, 0.0}));
+  EXPECT_EQ(places.at_begin(run.recording.goal_bodies[1]), nullptr);
 }
 
 }  // namespace

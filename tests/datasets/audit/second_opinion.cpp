@@ -385,8 +385,8 @@ class Opinion {
       BodyOf body{b.at("kind"), {}, b.at("owners")};
       if (b.contains("shape")) body.shape = shape_of(b["shape"]);
       bodies_[b.at("number")] = body;
-    } else if (line.contains("outlook")) {
-      outlooks_.push_back(line["outlook"]);
+    } else if (line.contains("goal_bodies")) {
+      goal_bodies_.push_back(line["goal_bodies"]);
     } else if (line.contains("plan")) {
       plans_.push_back(line["plan"]);
       if (plans_.back().at("row") != rows_.size()) wrong("a plan of another row");
@@ -742,7 +742,7 @@ class Opinion {
     }
   }
 
-  /// Every edge lies in some body of every outlook; edges are edges.
+  /// Every edge lies in some body of every goal; edges are edges.
   void bodies() {
     for (const auto& [number, body] : bodies_) {
       if (body.kind != "obstacle-edge") continue;
@@ -753,8 +753,8 @@ class Opinion {
       });
       if (!is_edge) wrong("body " + std::to_string(number) + " is no edge");
     }
-    for (const json& outlook : outlooks_) {
-      const json& list = outlook.at("bodies");
+    for (const json& of_goal : goal_bodies_) {
+      const json& list = of_goal.at("bodies");
       if (is_baseline_ && list.empty()) continue;
       for (std::size_t k = 0; k < obstacles_.size(); ++k)
         for (const auto& edge : obstacles_[k].edges) {
@@ -763,7 +763,7 @@ class Opinion {
             return std::find(body.owners.begin(), body.owners.end(), k) != body.owners.end() &&
                    body.shape.contains(edge.first) && body.shape.contains(edge.second);
           });
-          if (!covered) wrong("an outlook leaves out an edge");
+          if (!covered) wrong("goal_bodies leave out an edge");
         }
     }
   }
@@ -778,7 +778,7 @@ class Opinion {
   std::vector<bool> cooperates_;
   std::vector<Row> rows_;
   std::map<std::size_t, BodyOf> bodies_;
-  std::vector<json> outlooks_, plans_;
+  std::vector<json> goal_bodies_, plans_;
   std::string why_;
 };
 

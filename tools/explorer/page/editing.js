@@ -14,7 +14,7 @@ function momentOf(run, t) {
 // Which of its goals a robot heads for.
 function goalAt(run, robot, time) {
   let goal = 0;
-  for (const o of run.head.outlooks) if (o.robot === robot && o.time <= time + 1e-9) goal = o.goal;
+  for (const o of run.head.goal_bodies) if (o.robot === robot && o.time <= time + 1e-9) goal = o.goal;
   return goal;
 }
 

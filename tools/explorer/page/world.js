@@ -93,24 +93,24 @@ function outlineOf(shape) {
 }
 
 // The shapes that the chosen robot sees at a time: enclosures, or facades and convex pieces.
-function outlookAt(run, robot, t) {
+function goalBodiesAt(run, robot, t) {
   let found = null;
-  for (const o of run.head.outlooks) if (o.robot === robot && o.time <= t + 1e-9) found = o;
+  for (const o of run.head.goal_bodies) if (o.robot === robot && o.time <= t + 1e-9) found = o;
   return found;
 }
 
 function drawEnclosures(ctx, view, colours, run, ui) {
-  const outlook = outlookAt(run, ui.robot, ui.t);
-  if (!outlook) return;
+  const ofGoal = goalBodiesAt(run, ui.robot, ui.t);
+  if (!ofGoal) return;
   ctx.strokeStyle = ctx.fillStyle = colours.enclosure;
   ctx.lineWidth = 1.2;
-  for (const number of outlook.bodies) {
+  for (const number of ofGoal.bodies) {
     const shape = run.bodies[number].shape;
     if (!shape) continue;
     ctx.setLineDash(shape.ellipse ? [5, 4] : []);
     tracePoints(ctx, view, outlineOf(shape), !shape.segment);
     ctx.stroke();
-    if (!shape.segment || outlook.bodies.length > MOST_ENDS) continue;
+    if (!shape.segment || ofGoal.bodies.length > MOST_ENDS) continue;
     for (const [x, y] of outlineOf(shape)) {
       ctx.beginPath();
       ctx.arc(view.px(x), view.py(y), 2.2, 0, 2 * Math.PI);

@@ -80,8 +80,8 @@ struct Explained {
 /// The goal that a robot is after.
 std::size_t goal_at(const formation::Recording& recording, std::size_t robot, double time) {
   std::size_t goal = 0;
-  for (const formation::Outlook& outlook : recording.outlooks)
-    if (outlook.robot == robot && outlook.time <= time) goal = outlook.goal;
+  for (const formation::GoalBodies& of_goal : recording.goal_bodies)
+    if (of_goal.robot == robot && of_goal.time <= time) goal = of_goal.goal;
   return goal;
 }
 

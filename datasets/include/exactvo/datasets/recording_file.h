@@ -4,11 +4,11 @@
 /// \file
 /// Recordings as JSON Lines (format 2): each line an object with one member that says what it is. First the `header`
 /// (what was run, the whole scenario, provenance); then, in the order in which they came up, every `body` (a convex
-/// shape with a number and the obstacles that it stands for) before the first line that names it, every `outlook` (the
-/// enclosures of a robot for a goal), every joint `plan` and one `row` per step; last the `end` (how the run went, and
-/// the digest of all before it). Each fact is stored once, before the first line that needs it: a run of any length can
-/// be written in constant memory while it is computed. A file without an end was cut off and is refused; so is one of
-/// format 1.
+/// shape with a number and the obstacles that it stands for) before the first line that names it, every `goal_bodies`
+/// (the enclosures of a robot for a goal), every joint `plan` and one `row` per step; last the `end` (how the run went,
+/// and the digest of all before it). Each fact is stored once, before the first line that needs it: a run of any length
+/// can be written in constant memory while it is computed. A file without an end was cut off and is refused; so is one
+/// of format 1.
 ///
 /// Enough stands there to prove half-planes again without the program that wrote them: beside each its body, clearance
 /// and horizon, and in its row where robots and moving obstacles were. The end's `sha256` shows what was altered since.
@@ -60,7 +60,7 @@ class RecordingWriter {
   RecordingWriter(std::shared_ptr<AtomicFile> out, const RecordingFile& about);
   ~RecordingWriter();
   /// `bodies` are the run's so far.
-  void add(const formation::Outlook& outlook, const std::vector<vo::Body>& bodies);
+  void add(const formation::GoalBodies& of_goal, const std::vector<vo::Body>& bodies);
   /// Adds a joint plan. REQUIRES: before the row in which it was made, after the rows before that.
   void add(const formation::JointPlan& plan);
   /// Adds a row. `lyapunov`: its row of the functions, null without a formation.

@@ -143,7 +143,7 @@ class Navigator {
   /// The whole as recordings have it (recording.h). Copies, and allocates.
   RobotStep recorded() const;
   /// What it sees on its way to the present goal, as recordings have it. Copies, and allocates.
-  Outlook outlook() const;
+  GoalBodies goal_bodies() const;
 
  private:
   class Core;

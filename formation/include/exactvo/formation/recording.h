@@ -114,8 +114,8 @@ enum class MotionLaw {
 /// The convex hull of a moving obstacle that was carried so far: the shape that robots keep clear of.
 geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement);
 
-/// The shapes that one robot saw on its way to one of its goals.
-struct Outlook {
+/// The bodies that stand for the obstacles on one robot's way to one of its goals: enclosures, or edges and pieces.
+struct GoalBodies {
   double time = 0.0;                ///< s, from then on
   std::size_t robot = 0;            ///< in the order of the scenario
   std::size_t goal = 0;             ///< which of its goals, from 0
@@ -170,7 +170,8 @@ struct Recording {
   std::vector<std::string> warnings;
   /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.
   std::vector<vo::Body> bodies;
-  std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
+  std::vector<GoalBodies>
+      goal_bodies;                ///< in order of time: of every robot's first goal, then of others as they came up
   std::vector<JointPlan> plans;   ///< in order of time
   std::optional<LivenessCourse> liveness;  ///< where robots may go by plan
   std::optional<RoutesCourse> routes;      ///< where robots go along routes

@@ -155,7 +155,7 @@ class RunSink {
   /// Bodies come in the order of their numbers, each before what names it.
   virtual void add_body(const vo::Body& /*body*/) {}
   /// What a robot sees on its way to a goal, before the first row that goes there.
-  virtual void add_outlook(const Outlook& /*outlook*/) {}
+  virtual void add_goal_bodies(const GoalBodies& /*of_goal*/) {}
   /// A joint plan, before the row in which it was made.
   virtual void add_plan(const JointPlan& /*plan*/) {}
   /// Rows come in the order of time; the last one is the final state.
