@@ -160,9 +160,9 @@ RecordingFile sample(bool with_formation) {
     spec.leader = {{{0, 0}, {25, 25}}, 4.0};
     file.scenario.formation = spec;
     file.recording.offsets = {random.in_box(2), random.in_box(2), random.in_box(2)};
-    file.recording.remedies.emplace();
-    file.recording.remedies->horizon_clamp = file.recording.remedies->margins = false;
-    file.recording.remedies->acceleration_bound = 0.1;
+    file.recording.controller_options.emplace();
+    file.recording.controller_options->horizon_clamp = file.recording.controller_options->margins = false;
+    file.recording.controller_options->acceleration_bound = 0.1;
     for (formation::Robot& robot : file.scenario.robots) robot.goals.clear();
   }
   file.scenario.obstacles = {{"wall", geometry::Polyline{{{-5, -5}, {-5, -9}}}}};

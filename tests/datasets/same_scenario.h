@@ -75,9 +75,9 @@ inline void expect_same(const formation::FormationSpec& a, const formation::Form
     EXPECT_TRUE(same_bits(a.leader.profile[k].time, b.leader.profile[k].time));
     EXPECT_TRUE(same_bits(a.leader.profile[k].speed, b.leader.profile[k].speed));
   }
-  for (const formation::RemedySwitch& s : formation::remedy_switches())
-    EXPECT_EQ(a.remedies.*s.asked, b.remedies.*s.asked) << s.name;
-  EXPECT_EQ(a.remedies.acceleration_bound, b.remedies.acceleration_bound);
+  for (const formation::ControllerSwitch& s : formation::controller_switches())
+    EXPECT_EQ(a.controller_options.*s.asked, b.controller_options.*s.asked) << s.name;
+  EXPECT_EQ(a.controller_options.acceleration_bound, b.controller_options.acceleration_bound);
   EXPECT_TRUE(same_bits(std::vector<double>{a.gains.k1, a.gains.k2, a.gains.k3, a.gains.kappa},
                         std::vector<double>{b.gains.k1, b.gains.k2, b.gains.k3, b.gains.kappa}));
   EXPECT_TRUE(same_bits(a.catch_up_speed, b.catch_up_speed));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Remedies, stability, Lyapunov functions, patterns, moving obstacles.
+// Controller options, stability, Lyapunov functions, patterns, moving obstacles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,44 +16,44 @@ namespace {
 using test::paper_scene;
 using test::run;
 
-SimulationOptions with(const Remedies& remedies) {
+SimulationOptions with(const ControllerOptions& wanted) {
   SimulationOptions options;
-  options.remedies = remedies;
+  options.controller_options = wanted;
   return options;
 }
 
-TEST(Remedies, TheLadderEndsAtTheDefault) {
-  const std::vector<NamedRemedies> rungs = remedy_ladder();
-  const Recording top = simulate(paper_scene("B1"), with(rungs.back().remedies));
+TEST(ControllerOptions, AddedOneByOneTheyEndAtTheDefault) {
+  const std::vector<NamedControllerOptions> sets = incremental_options();
+  const Recording top = simulate(paper_scene("B1"), with(sets.back().options));
   const Recording standard = simulate(paper_scene("B1"));
   EXPECT_EQ(top.steps.back().robots[0].position, standard.steps.back().robots[0].position);
   EXPECT_EQ(top.outcome, standard.outcome);
 }
 
-TEST(Remedies, EverySwitchChangesTheRun) {
+TEST(ControllerOptions, EverySwitchChangesTheRun) {
   const Vec2 standard = simulate(paper_scene("B3")).steps[200].robots[1].position;
-  for (const NamedRemedies& n : remedy_ablations()) {
+  for (const NamedControllerOptions& n : ablated_options()) {
     if (n.name == "default") continue;
-    const Recording r = simulate(paper_scene("B3"), with(n.remedies));
+    const Recording r = simulate(paper_scene("B3"), with(n.options));
     EXPECT_NE(r.steps[200].robots[1].position, standard) << n.name;
   }
 }
 
-TEST(Remedies, CorrectedFormsInFreeSpace) {
+TEST(ControllerOptions, CorrectedFormsInFreeSpace) {
   const Metrics m = run(paper_scene("B0"), test::with_controller(Controller::corrected)).metrics;
   EXPECT_LT(m.formation_position_error.value(), 1e-9);
 }
 
-TEST(Remedies, SaturationAloneTakesMostOfTheJitter) {
-  Remedies constant;
+TEST(ControllerOptions, SaturationAloneTakesMostOfTheJitter) {
+  ControllerOptions constant;
   constant.saturation = false;
   const double with_it = run(paper_scene("B0"), {}).metrics.jitter;
   const double without = run(paper_scene("B0"), with(constant)).metrics.jitter;
   EXPECT_GT(without, 50.0 * with_it);
 }
 
-TEST(Remedies, SmoothingLowersJitterAndStillForms) {
-  Remedies smooth;
+TEST(ControllerOptions, SmoothingLowersJitterAndStillForms) {
+  ControllerOptions smooth;
   smooth.smoothing = true;
   for (const char* scene : {"B1", "B2", "B3"}) {
     const Metrics m = run(paper_scene(scene), with(smooth)).metrics;
@@ -64,8 +64,8 @@ TEST(Remedies, SmoothingLowersJitterAndStillForms) {
   }
 }
 
-TEST(Remedies, TheAccelerationBoundHolds) {
-  Remedies bounded;
+TEST(ControllerOptions, TheAccelerationBoundHolds) {
+  ControllerOptions bounded;
   bounded.acceleration_bound = 8.0;
   const Recording r = simulate(paper_scene("B0"), with(bounded));
   for (std::size_t k = 0; k + 1 < r.steps.size(); ++k)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counts random fields: formation_field_campaign KIND METHOD [FIRST [COUNT [SEED]]], KIND of random_fields.h, METHOD of
-// simulation.h (formations: a controller, or a set of remedies by its name, "+ saturation" or "no margins"). A line for
-// each field that is not reached and safe, then the counts.
+// simulation.h (formations: a controller, or a set of controller options by its name, "+ saturation" or "no margins").
+// A line for each field that is not reached and safe, then the counts.
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -15,12 +15,12 @@ namespace {
 
 using namespace exactvo;
 
-/// A rung of the ladder or an ablation, by name.
-bool parse_remedies(const std::string& text, formation::SimulationOptions& options) {
-  for (const auto& list : {formation::remedy_ladder(), formation::remedy_ablations()})
-    for (const formation::NamedRemedies& n : list)
-      if (n.name == text) options.remedies = n.remedies;
-  return options.remedies.has_value();
+/// A set of controller options, by name.
+bool parse_controller_options(const std::string& text, formation::SimulationOptions& options) {
+  for (const auto& list : {formation::incremental_options(), formation::ablated_options()})
+    for (const formation::NamedControllerOptions& n : list)
+      if (n.name == text) options.controller_options = n.options;
+  return options.controller_options.has_value();
 }
 
 struct Fields {
@@ -33,8 +33,8 @@ int count_fields(const Fields& fields) {
   formation::SimulationOptions options;
   if (!datasets::parse(fields.kind, kind)) throw tools::UsageError("KIND", fields.kind, "a kind of random field");
   if (!parse(fields.method, options.method) && !parse(fields.method, options.controller) &&
-      !parse_remedies(fields.method, options))
-    throw tools::UsageError("METHOD", fields.method, "a method, a controller or a set of remedies");
+      !parse_controller_options(fields.method, options))
+    throw tools::UsageError("METHOD", fields.method, "a method, a controller or a set of controller options");
   const auto [first, count, seed] = std::tuple(fields.first, fields.count, fields.seed);
   std::uint64_t good = 0, reached = 0;
   double latest = 0.0, wall = 0.0;
@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
     tools::ProgramOptions options("formation_field_campaign", "Counts random fields that are reached and safe.",
                                   "Prints a line per field that is not. Exit status 1: there was one.");
     options.text("KIND", fields.kind, "Of random_fields.h", true);
-    options.text("METHOD", fields.method, "Of simulation.h; of formations a controller, or a set of remedies", true);
+    options.text("METHOD", fields.method, "Of simulation.h; of formations a controller, or a set of controller options",
+                 true);
     options.whole_number("FIRST", fields.first, 0, "The first field");
     options.whole_number("COUNT", fields.count, 1, "Fields");
     options.whole_number("SEED", fields.seed, 0, "Of the fields");

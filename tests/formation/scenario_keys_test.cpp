@@ -99,9 +99,9 @@ formation::FormationSpec spec_of(const std::string& extra) {
 const char* const kWedge = R"("pattern": { "name": "wedge", "spacing": 2, "heading": [0, 1] },
     "topology": { "neighbours_within": 2.5, "pinned": ["a"] },
     "leader": { "path": [[0, 0], [0, 30]], "profile": { "trapezoid": { "speed": 2, "acceleration": 0.5 } } },
-    "remedies": { "smoothing": true, "side_commitment": false, "acceleration_bound": 12 })";
+    "controller_options": { "smoothing": true, "side_commitment": false, "acceleration_bound": 12 })";
 
-TEST(ScenarioKeys, PatternsTopologiesProfilesAndRemediesAreRead) {
+TEST(ScenarioKeys, PatternsTopologiesProfilesAndControllerOptionsAreRead) {
   const formation::FormationSpec f = spec_of(kWedge);
   ASSERT_EQ(f.offsets.size(), 5u);
   EXPECT_GT(f.offsets[0].y, f.offsets[4].y);  // the point leads along the heading
@@ -109,10 +109,10 @@ TEST(ScenarioKeys, PatternsTopologiesProfilesAndRemediesAreRead) {
   EXPECT_EQ(f.topology.adjacency[0], (std::vector<double>{0, 1, 1, 0, 0}));
   ASSERT_EQ(f.leader.profile.size(), 4u);
   EXPECT_EQ(f.leader.profile[1].time, 4.0);
-  EXPECT_EQ(f.remedies.smoothing, true);
-  EXPECT_EQ(f.remedies.side_commitment, false);
-  EXPECT_EQ(f.remedies.brake_point, std::nullopt);
-  EXPECT_EQ(f.remedies.acceleration_bound, 12.0);
+  EXPECT_EQ(f.controller_options.smoothing, true);
+  EXPECT_EQ(f.controller_options.side_commitment, false);
+  EXPECT_EQ(f.controller_options.brake_point, std::nullopt);
+  EXPECT_EQ(f.controller_options.acceleration_bound, 12.0);
 }
 
 TEST(ScenarioKeys, EveryPatternAndTopologyRuns) {
@@ -128,13 +128,13 @@ TEST(ScenarioKeys, EveryPatternAndTopologyRuns) {
 TEST(ScenarioKeys, TheSwitchesChangeTheRun) {
   const std::string rest = R"("topology": { "complete": true }, "offsets": [[0,0],[2,0],[4,0],[2,2],[0,2]],
     "leader": { "path": [[0, 0], [9, 0]], "profile": { "legs": [2] } })";
-  const auto chosen = [&](const std::string& remedies) {
-    const formation::Scenario s = datasets::parse_scenario(five(rest + remedies), "five.json", ".");
+  const auto chosen = [&](const std::string& controller_options) {
+    const formation::Scenario s = datasets::parse_scenario(five(rest + controller_options), "five.json", ".");
     return formation::simulate(s).steps[40].robots[3].chosen;
   };
-  EXPECT_EQ(chosen(""), chosen(R"(, "remedies": {})"));
+  EXPECT_EQ(chosen(""), chosen(R"(, "controller_options": {})"));
   for (const char* off : {"saturation", "filter_last", "brake_point", "absolute_frame", "signs", "recentred"})
-    EXPECT_FALSE(chosen("") == chosen(std::string(", \"remedies\": { \"") + off + "\": false }")) << off;
+    EXPECT_FALSE(chosen("") == chosen(std::string(", \"controller_options\": { \"") + off + "\": false }")) << off;
 }
 
 TEST(ScenarioKeys, FormationsWrittenAndReadAgain) {
@@ -158,7 +158,7 @@ TEST(ScenarioKeys, WhatDoesNotFitIsRefused) {
         "leader": { "path": [[0, 0], [9, 0]], "profile": { "legs": [1, 2] } })",
       std::string(kGrid) + R"(, "topology": { "complete": true },
         "leader": { "path": [[0, 0], [9, 0]], "speed": 1, "profile": { "legs": [1] } })",
-      std::string(kGrid) + R"(, "topology": { "complete": true }, "remedies": { "smothing": true })" + rest};
+      std::string(kGrid) + R"(, "topology": { "complete": true }, "controller_options": { "smothing": true })" + rest};
   for (const std::string& text : bad) EXPECT_THROW(spec_of(text), datasets::DataError) << text;
 }
 

@@ -138,13 +138,13 @@ TEST(SlotPlans, AreMadeOnlyWhereBrakePointsDoAsChosen) {
     paper.controller = controller;
     EXPECT_EQ(liveness_of(s, paper), Liveness::off);
   }
-  const std::vector<std::function<void(Remedies&)>> switches = {
-      [](Remedies& r) { r.brake_point = false; }, [](Remedies& r) { r.absolute_frame = false; },
-      [](Remedies& r) { r.filter_last = false; }, [](Remedies& r) { r.acceleration_bound = 8.0; }};
+  const std::vector<std::function<void(ControllerOptions&)>> switches = {
+      [](ControllerOptions& r) { r.brake_point = false; }, [](ControllerOptions& r) { r.absolute_frame = false; },
+      [](ControllerOptions& r) { r.filter_last = false; }, [](ControllerOptions& r) { r.acceleration_bound = 8.0; }};
   for (std::size_t k = 0; k < switches.size(); ++k) {
     SimulationOptions one;
-    one.remedies = remedies_of(one.controller);
-    switches[k](*one.remedies);
+    one.controller_options = controller_options_of(one.controller);
+    switches[k](*one.controller_options);
     EXPECT_EQ(liveness_of(s, one), Liveness::off) << k;
   }
 }

@@ -545,20 +545,21 @@ TEST(Simulate, ALeaderThatNeverArrivesIsToldBeforeAndAfter) {
   EXPECT_THAT(outcome.out, HasSubstr("; the leader did not reach its end"));
 }
 
-TEST(Simulate, RemediesByNameAndOnSwitches) {
+TEST(Simulate, ControllerOptionsByNameAndOnSwitches) {
   const Workplace here;
   const std::string scene = "simulate " + data_file("paper/B1.json") + " --json ";
   const auto jitter = [&](const std::string& flags) {
     return json::parse(here.run(scene + flags).out)["jitter"].get<double>();
   };
-  EXPECT_EQ(jitter("--remedies default"), jitter(""));
-  EXPECT_LT(jitter("--remedy smoothing=on"), jitter(""));
-  EXPECT_EQ(jitter("--remedy smoothing=on"), jitter("--remedies 'with smoothing'"));
-  EXPECT_EQ(jitter("--remedies 'no margins'"), jitter("--remedy margins=off"));
-  const std::pair<const char*, const char*> bad[] = {{"--remedies 'no margin'", "'no margins'"},
-                                                     {"--remedy smothing=on", "'smoothing'"},
-                                                     {"--remedy smoothing=yes", "smoothing=on or smoothing=off"},
-                                                     {"--remedy acceleration_bound=-1", "at least 0"}};
+  EXPECT_EQ(jitter("--ablation default"), jitter(""));
+  EXPECT_LT(jitter("--controller-option smoothing=on"), jitter(""));
+  EXPECT_EQ(jitter("--controller-option smoothing=on"), jitter("--ablation 'with smoothing'"));
+  EXPECT_EQ(jitter("--ablation 'no margins'"), jitter("--controller-option margins=off"));
+  const std::pair<const char*, const char*> bad[] = {
+      {"--ablation 'no margin'", "'no margins'"},
+      {"--controller-option smothing=on", "'smoothing'"},
+      {"--controller-option smoothing=yes", "smoothing=on or smoothing=off"},
+      {"--controller-option acceleration_bound=-1", "at least 0"}};
   for (const auto& [flags, expected] : bad) {
     const Outcome outcome = here.run(scene + flags);
     EXPECT_EQ(outcome.status, 2) << flags;

@@ -14,7 +14,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "exactvo/formation/remedies.h"
+#include "exactvo/formation/controller_options.h"
 #include "figures/outlines.h"
 #include "paper/parts.h"
 #include "paper/report_data.h"
@@ -130,7 +130,7 @@ std::string random_table(const std::vector<VariantResult>& results, const Campai
   return text + "Formations: controller default; ivo-cluster is the same as ivo there.\n";
 }
 
-/// One set of remedies in the formation scenes: a JSON list with one entry per run.
+/// One set of controller options in the formation scenes: a JSON list with one entry per run.
 std::string scenes_of(const Variant& variant, const fs::path& scenarios) {
   Json list = Json::array();
   for (const char* scene : kFormationScenes) {
@@ -175,13 +175,13 @@ bool formed_untouched(const Json& run) {
 std::string ablation_table(const std::vector<VariantResult>& results, const std::vector<Json>& scenes,
                            const CampaignOptions& options) {
   std::string text = fmt::format(
-      "Remedies over random formations 0-{}, seed {}, and jitter J [m/s^2] in B0-B3\n"
+      "Controller options over random formations 0-{}, seed {}, and jitter J [m/s^2] in B0-B3\n"
       "{:<22}{:>16}{:>9}{:>9}{:>10}{:>10}{:>10}{:>10}{:>14}\n",
       options.fields - 1, options.seed, "", "reached, safe", "reached", "safe", "J in B0", "B1", "B2", "B3",
       "median J");
   for (std::size_t i = 0; i < results.size(); ++i) {
     const VariantResult& v = results[i];
-    if (i == formation::remedy_ladder().size()) text += "\n";
+    if (i == formation::incremental_options().size()) text += "\n";
     text += fmt::format("{:<22}{:>16}{:>9}{:>9}", v.name, v.good(), v.reached(), v.safe());
     for (const Json& run : scenes[i])
       text += fmt::format("{:>9}{}", shown(value_of(run, "jitter"), "{:.0f}"), formed_untouched(run) ? ' ' : '!');
@@ -195,13 +195,13 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
   return text;
 }
 
-/// The name of a set of options as a label: mathematics set, all else as users write it after --remedies.
+/// The name of a set of options as a label: mathematics set, all else as users write it after --ablation.
 std::string drawn(const std::string& name) {
   static const std::regex horizon(R"(\btau\b)"), index("_([a-z]+)");
   return std::regex_replace(std::regex_replace(name, horizon, "τ"), index, "_{$1}");
 }
 
-/// Bars from the top down: the ladder, then the ablations.
+/// Bars from the top down: options added one by one, then the ablations.
 Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOptions& options) {
   DataFile data;
   const int index = data.begin("reached and safe of " + std::to_string(options.fields), "place, count, name");
@@ -215,13 +215,14 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
   plot.data(index, "using 2:1:2 with labels left offset 1.2,0 font ',10'");
   const std::string title =
       fmt::format("Reached and safe, of {} random formations (seed {})", options.fields, options.seed);
-  const std::string body = filled(
-      "remedies", {{"title", quoted(title)},
-                   {"end", fmt::format("{}", 1.12 * static_cast<double>(options.fields))},
-                   {"top", fmt::format("{}", n + 0.7)},
-                   {"between", fmt::format("{}", n - static_cast<double>(formation::remedy_ladder().size()) + 0.5)},
-                   {"plot", plot.text()}});
-  return {"remedies", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body};
+  const std::string body =
+      filled("options",
+             {{"title", quoted(title)},
+              {"end", fmt::format("{}", 1.12 * static_cast<double>(options.fields))},
+              {"top", fmt::format("{}", n + 0.7)},
+              {"between", fmt::format("{}", n - static_cast<double>(formation::incremental_options().size()) + 0.5)},
+              {"plot", plot.text()}});
+  return {"options", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body};
 }
 
 /// J in B1 and B3 for every set, logarithmic.
@@ -242,12 +243,12 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
         kFormationScenes[s]);
   }
   const std::string body = filled(
-      "remedies_jitter",
+      "options_jitter",
       {{"title",
         markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| with each set of controller options")},
        {"top", fmt::format("{}", n + 0.7)},
        {"plot", plot.text()}});
-  return {"remedies_jitter", data.text(), "Jitter J with each set of controller options.", {960, 620}, body};
+  return {"options_jitter", data.text(), "Jitter J with each set of controller options.", {960, 620}, body};
 }
 
 }  // namespace
@@ -265,12 +266,12 @@ std::vector<Variant> random_field_variants() {
   return variants;
 }
 
-std::vector<Variant> remedy_variants() {
+std::vector<Variant> option_variants() {
   std::vector<Variant> variants;
-  for (const auto& list : {formation::remedy_ladder(), formation::remedy_ablations()}) {
-    for (const formation::NamedRemedies& n : list) {
+  for (const auto& list : {formation::incremental_options(), formation::ablated_options()}) {
+    for (const formation::NamedControllerOptions& n : list) {
       formation::SimulationOptions options;
-      options.remedies = n.remedies;
+      options.controller_options = n.options;
       variants.push_back({FieldKind::formation, n.name, options});
     }
   }
@@ -367,12 +368,12 @@ CampaignFiles random_fields(const CampaignOptions& options) {
 }
 
 CampaignFiles ablations(const CampaignOptions& options, const fs::path& scenarios) {
-  const std::vector<Variant> variants = remedy_variants();
+  const std::vector<Variant> variants = option_variants();
   const std::vector<Json> scenes = run_scenes(variants, options, scenarios);
   const std::vector<VariantResult> results = run_campaign(variants, options);
   Json tree = Json::parse(campaign_json("exactvo-ablations", results, options));
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    tree["rows"][i]["set"] = i < formation::remedy_ladder().size() ? "ladder" : "ablation";
+    tree["rows"][i]["set"] = i < formation::incremental_options().size() ? "incremental" : "ablation";
     tree["rows"][i]["scenes"] = scenes[i];
   }
   return {ablation_table(results, scenes, options),

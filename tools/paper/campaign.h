@@ -3,8 +3,8 @@
 
 /// \file
 /// Counts over random fields (datasets/random_fields.h): how many are reached and safe, by method or by set of
-/// remedies. Resumable (parts.h), and the same bytes for any number of threads. As people read them: a table, JSON,
-/// CSV, and a figure of the remedies.
+/// controller options. Resumable (parts.h), and the same bytes for any number of threads. As people read them: a table,
+/// JSON, CSV, and a figure of the controller options.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace exactvo::tools {
 /// One way of running one kind of field.
 struct Variant {
   datasets::FieldKind kind = datasets::FieldKind::convex;
-  std::string name;  ///< of the method, controller or set of remedies
+  std::string name;  ///< of the method, controller or set of controller options
   formation::SimulationOptions options;
 };
 
@@ -29,8 +29,8 @@ struct Variant {
 /// formations ivo and ivo-cluster are the same).
 std::vector<Variant> random_field_variants();
 
-/// Formations by every rung of the ladder and every ablation.
-std::vector<Variant> remedy_variants();
+/// Formations by every set of controller options.
+std::vector<Variant> option_variants();
 
 struct FieldResult {
   std::uint64_t field = 0;
@@ -84,7 +84,7 @@ struct CampaignFiles {
 /// Every kind of field by every method.
 CampaignFiles random_fields(const CampaignOptions& options);
 
-/// Every set of remedies over random formations, and over B0-B3 in `scenarios`.
+/// Every set of controller options over random formations, and over B0-B3 in `scenarios`.
 CampaignFiles ablations(const CampaignOptions& options, const std::filesystem::path& scenarios);
 
 /// `stem`.json, `stem`.csv and `stem`.txt in `folder`, each whole or not at all.

@@ -239,7 +239,7 @@ Claim velocities_converge(const ReportData& data) {
           "paper-signs"};
 }
 
-/// J of a set of remedies in B0, by the ablations.
+/// J of a set of controller options in B0, by the ablations.
 std::optional<double> ablated_jitter(const ReportData& data, const std::string& variant) {
   if (data.ablations().is_null()) return std::nullopt;
   for (const Json& row : data.ablations()["rows"]) {

@@ -338,9 +338,9 @@ void add_ablations(const ReportData& data, Document& d) {
   }
   d.table({"controller options", "reached and safe", "reached", "jitter J in B0 [m/s²]", "B1", "B2", "B3", "median J"},
           rows);
-  d.picture("ablations/remedies.png",
+  d.picture("ablations/options.png",
             "How many random formations reach their goal without a collision, for each set of controller options.");
-  d.picture("ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options.");
+  d.picture("ablations/options_jitter.png", "Jitter in B0 to B3 for each set of controller options.");
 }
 
 /// Which program made each file that this is made of, whoever puts the report together.

@@ -24,7 +24,7 @@ std::string help(const char* what, const std::vector<std::string>& names) {
 
 std::vector<std::string> switch_names() {
   std::vector<std::string> names;
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) names.emplace_back(s.name);
+  for (const formation::ControllerSwitch& s : formation::controller_switches()) names.emplace_back(s.name);
   return names;
 }
 
@@ -39,42 +39,44 @@ double bound_of(const std::string& option, const std::string& text) {
     read = 0;
   }
   if (read == 0 || read != text.size() || !(bound >= 0.0) || !std::isfinite(bound))
-    throw UsageError("--remedy", option, "a number of m/s^2, at least 0");
+    throw UsageError("--controller-option", option, "a number of m/s^2, at least 0");
   return bound;
 }
 
 /// "smoothing=on", "horizon_clamp=off", "acceleration_bound=8".
-void apply_switch(const std::string& option, formation::Remedies& remedies) {
+void apply_switch(const std::string& option, formation::ControllerOptions& options) {
   const std::size_t equals = std::min(option.find('='), option.size());
   const std::string name = option.substr(0, equals), value = option.substr(std::min(equals + 1, option.size()));
   if (name == kBound) {
-    remedies.acceleration_bound = bound_of(option, value);
+    options.acceleration_bound = bound_of(option, value);
     return;
   }
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) {
+  for (const formation::ControllerSwitch& s : formation::controller_switches()) {
     if (name != s.name) continue;
-    if (value != "on" && value != "off") throw UsageError("--remedy", option, name + "=on or " + name + "=off");
-    remedies.*s.on = value == "on";
+    if (value != "on" && value != "off")
+      throw UsageError("--controller-option", option, name + "=on or " + name + "=off");
+    options.*s.on = value == "on";
     return;
   }
-  throw UsageError("--remedy", option,
+  throw UsageError("--controller-option", option,
                    fmt::format("one of {}{}", fmt::join(switch_names(), " "), suggestion(name, switch_names())));
 }
 
 /// Nothing where the command line does not speak of them: then the scenario does.
-std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, formation::Controller controller) {
-  if (flags.remedies.empty() && flags.switches.empty()) return std::nullopt;
-  formation::Remedies remedies = formation::remedies_of(controller);
-  if (!flags.remedies.empty()) {
-    const auto named = formation::remedies_named(flags.remedies);
-    const std::vector<std::string> names = formation::remedy_set_names();
+std::optional<formation::ControllerOptions> controller_options_of(const SimulationFlags& flags,
+                                                                  formation::Controller controller) {
+  if (flags.ablation.empty() && flags.switches.empty()) return std::nullopt;
+  formation::ControllerOptions options = formation::controller_options_of(controller);
+  if (!flags.ablation.empty()) {
+    const auto named = formation::options_named(flags.ablation);
+    const std::vector<std::string> names = formation::option_set_names();
     if (!named)
-      throw UsageError("--remedies", flags.remedies,
-                       fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(flags.remedies, names)));
-    remedies = *named;
+      throw UsageError("--ablation", flags.ablation,
+                       fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(flags.ablation, names)));
+    options = *named;
   }
-  for (const std::string& option : flags.switches) apply_switch(option, remedies);
-  return remedies;
+  for (const std::string& option : flags.switches) apply_switch(option, options);
+  return options;
 }
 
 }  // namespace
@@ -94,9 +96,9 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
       app.add_option("--integrator", flags.integrator, help("Formation integrator", formation::integrator_names()))
           ->capture_default_str(),
       app.add_option(
-          "--remedies", flags.remedies,
-          help("Instead of the controller, a named set of controller options", formation::remedy_set_names())),
-      app.add_option("--remedy", flags.switches,
+          "--ablation", flags.ablation,
+          help("Instead of the controller, a named set of controller options", formation::option_set_names())),
+      app.add_option("--controller-option", flags.switches,
                      fmt::format("Switch a controller option: NAME=on or NAME=off, repeatable: {}; "
                                  "acceleration_bound=8 (m/s^2)",
                                  fmt::join(switch_names(), ", ")))};
@@ -176,7 +178,7 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
       parse_choice<formation::Controller>("--controller", flags.controller, formation::controller_names());
   options.integrator =
       parse_choice<formation::Integrator>("--integrator", flags.integrator, formation::integrator_names());
-  options.remedies = remedies_of(flags, options.controller);
+  options.controller_options = controller_options_of(flags, options.controller);
   return options;
 }
 

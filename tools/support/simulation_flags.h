@@ -19,12 +19,12 @@ struct SimulationFlags {
   std::string liveness;  ///< the same
   std::string controller = "default";
   std::string integrator = "exact";
-  std::string remedies;               ///< a set by its name, instead of the controller's
+  std::string ablation;               ///< a set by its name, instead of the controller's
   std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
   std::vector<const CLI::Option*> of_runs;        ///< all
   std::vector<const CLI::Option*> of_goals;       ///< --guidance, --liveness
-  std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --remedies, --remedy
+  std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --ablation, --controller-option
 };
 
 /// Declares --out: neither empty nor with control characters.
@@ -42,7 +42,8 @@ void note_liveness(const SimulationFlags& flags, const formation::Scenario& scen
 /// A message for each option given where the run is a recorded one.
 void note_recorded(const SimulationFlags& flags);
 
-/// Declares --method, --controller, --integrator, --remedies, --remedy and --seed. `flags` must outlive the parsing.
+/// Declares --method, --controller, --integrator, --ablation, --controller-option and --seed. `flags` must outlive the
+/// parsing.
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags);
 
 /// Throws UsageError for a word that names nothing.

@@ -35,7 +35,8 @@ bool has_its_offsets(const RecordingFile& file) {
   const formation::FormationSpec& spec = *file.scenario.formation;
   const std::vector<Vec2>& used = file.recording.offsets;
   if (used.size() != spec.offsets.size()) return false;
-  const bool recentred = spec.recentre && file.recording.remedies && file.recording.remedies->recentred;
+  const bool recentred =
+      spec.recentre && file.recording.controller_options && file.recording.controller_options->recentred;
   Vec2 mean{};
   if (recentred) {
     for (const Vec2 d : spec.offsets) mean += d;
@@ -55,9 +56,9 @@ void check_header(const RecordingFile& file, const Step& first, const formation:
             "the header's motion is not that of its scenario and integrator");
   tally.ask(scenario, recording.tracking_gain == (formation ? formation->gains.k3 : 0.0),
             "the header's tracking gain is not the scenario's k3");
-  if (formation && recording.remedies) {
+  if (formation && recording.controller_options) {
     tally.ask(scenario, has_its_offsets(file), "the header's offsets are not the scenario's");
-    tally.ask(scenario, recording.relative_frame == !recording.remedies->absolute_frame,
+    tally.ask(scenario, recording.relative_frame == !recording.controller_options->absolute_frame,
               "the header's frame is not that of its controller");
   }
   if (!formation)

@@ -100,7 +100,9 @@ constexpr const char* kBesideExact = " has multipliers, and says that none in do
 class DecisionAudit : public RowAudit {
  public:
   explicit DecisionAudit(const AuditedRun& run)
-      : run_(run), literal_horizons_(run.file.recording.remedies && !run.file.recording.remedies->horizon_clamp) {}
+      : run_(run),
+        literal_horizons_(run.file.recording.controller_options &&
+                          !run.file.recording.controller_options->horizon_clamp) {}
 
   void check_step(const RowInRun& at) override {
     place_moving(at.row);

@@ -131,18 +131,17 @@ class SequenceAudit : public RowAudit {
   /// x + v / k3, round what was tracked before.
   bool has_its_anchor(const RowInRun& at, std::size_t i) const {
     const RobotStep& r = at.row.robots[i];
-    const std::optional<formation::Remedies>& remedies = run_.file.recording.remedies;
-    if (run_.scenario.formation && !remedies) return true;  // nothing is known of its controller
-    if (!at.next || !remedies || !remedies->brake_point)
-      return r.anchor == r.position && r.anchor_velocity == r.velocity;
+    const std::optional<formation::ControllerOptions>& options = run_.file.recording.controller_options;
+    if (run_.scenario.formation && !options) return true;  // nothing is known of its controller
+    if (!at.next || !options || !options->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
     if (r.anchor != r.position + r.velocity / run_.scenario.formation->gains.k3) return false;
     if (!at.before) return r.anchor_velocity == r.velocity;
     return !tracks_its_choice() || r.anchor_velocity == (*at.before)[i].chosen;
   }
 
   bool tracks_its_choice() const {
-    const std::optional<formation::Remedies>& remedies = run_.file.recording.remedies;
-    return remedies && remedies->filter_last && remedies->absolute_frame && !(remedies->acceleration_bound > 0.0);
+    const std::optional<formation::ControllerOptions>& options = run_.file.recording.controller_options;
+    return options && options->filter_last && options->absolute_frame && !(options->acceleration_bound > 0.0);
   }
 
   void check_step(const RowInRun& at) override {

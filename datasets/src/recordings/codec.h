@@ -141,18 +141,18 @@ void members(Way& json, For<Way, RunInfo>& info) {
 }
 
 template <class Way>
-void members(Way& json, For<Way, formation::Remedies>& remedies) {
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.member(s.name, remedies.*s.on);
-  json.member("acceleration_bound", remedies.acceleration_bound);
+void members(Way& json, For<Way, formation::ControllerOptions>& options) {
+  for (const formation::ControllerSwitch& s : formation::controller_switches()) json.member(s.name, options.*s.on);
+  json.member("acceleration_bound", options.acceleration_bound);
 }
 
-/// What is known before a run. REQUIRES: `run.remedies` has a value already where there are any, which the scenario
-/// says.
+/// What is known before a run. REQUIRES: `run.controller_options` has a value already where there are any, which the
+/// scenario says.
 template <class Way>
 void members(Way& json, For<Way, formation::Recording>& run) {
   json.member("time_step", run.time_step).member("motion", run.motion);
   json.member("tracking_gain", run.tracking_gain).member("relative_frame", run.relative_frame);
-  if (run.remedies) json.member("remedies", *run.remedies);
+  if (run.controller_options) json.member("controller_options", *run.controller_options);
   json.member("offsets", run.offsets).member("all_half_planes", run.all_half_planes);
 }
 

@@ -31,7 +31,7 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   members(at, file.info);
   file.info.provenance = parse_provenance(at.at("provenance").json().dump(), name);
   formation::Recording& recording = file.recording;
-  if (file.scenario.formation) recording.remedies.emplace();
+  if (file.scenario.formation) recording.controller_options.emplace();
   members(at, recording);
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)

@@ -32,10 +32,10 @@ void members(Way& json, For<Way, formation::Gains>& gains) {
 }
 
 template <>
-inline constexpr bool kOnOneLine<formation::RemedySwitches> = true;
+inline constexpr bool kOnOneLine<formation::AskedControllerOptions> = true;
 template <class Way>
-void members(Way& json, For<Way, formation::RemedySwitches>& asked) {
-  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.optional(s.name, asked.*s.asked);
+void members(Way& json, For<Way, formation::AskedControllerOptions>& asked) {
+  for (const formation::ControllerSwitch& s : formation::controller_switches()) json.optional(s.name, asked.*s.asked);
   json.optional("acceleration_bound", asked.acceleration_bound);
 }
 
@@ -43,7 +43,7 @@ void members(Way& json, For<Way, formation::RemedySwitches>& asked) {
 template <class Way>
 void members(Way& json, For<Way, formation::FormationSpec>& spec) {
   json.optional("gains", spec.gains).optional("catch_up_speed", spec.catch_up_speed);
-  json.optional("remedies", spec.remedies);
+  json.optional("controller_options", spec.controller_options);
 }
 
 template <>

@@ -13,13 +13,13 @@ std::vector<Vec2> recentred(std::vector<Vec2> offsets) {
   return offsets;
 }
 
-std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies) {
-  return spec.recentre && remedies.recentred ? recentred(spec.offsets) : spec.offsets;
+std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const ControllerOptions& options) {
+  return spec.recentre && options.recentred ? recentred(spec.offsets) : spec.offsets;
 }
 
 std::vector<Vec2> offsets_in_use(const Scenario& scenario, const SimulationOptions& options) {
   if (!scenario.formation) return {};
-  return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
+  return offsets_in_use(*scenario.formation, controller_options_in_use(scenario, options));
 }
 
 Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std::size_t i, double position_sign) {
@@ -34,13 +34,13 @@ Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std:
   return (position_sign * spec.gains.k1) * position_term - spec.gains.k2 * velocity_term;
 }
 
-Vec2 preference(const FormationSpec& spec, const Remedies& remedies, Vec2 relative_position, Vec2 leader_velocity,
-                double max_speed) {
+Vec2 preference(const FormationSpec& spec, const ControllerOptions& options, Vec2 relative_position,
+                Vec2 leader_velocity, double max_speed) {
   const double saturated = std::min(spec.gains.kappa * norm(relative_position), spec.catch_up_speed);
-  const double speed = remedies.saturation ? saturated : max_speed;
+  const double speed = options.saturation ? saturated : max_speed;
   const Vec2 outward = speed * geometry::normalized(relative_position);
-  const Vec2 relative = remedies.signs ? -outward : outward;
-  return remedies.absolute_frame ? leader_velocity + relative : relative;
+  const Vec2 relative = options.signs ? -outward : outward;
+  return options.absolute_frame ? leader_velocity + relative : relative;
 }
 
 }  // namespace exactvo::formation::detail

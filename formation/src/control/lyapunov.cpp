@@ -132,7 +132,7 @@ PaperTerms paper_rates(const FormationSpec& f, const RowPair& p, const RelativeS
 /// to, consensus term and all: what obstacles, robots and steering ask for.
 Vec2 intervention(const FormationSpec& f, const RowPair& p, const RelativeState& s, std::size_t i) {
   const Vec2 tracked = p.row.robots[i].velocity + acceleration(p, i) / f.gains.k3;
-  const Vec2 slotwards = detail::preference(f, Remedies{}, s.position[i], p.row.leader_velocity, 0.0);
+  const Vec2 slotwards = detail::preference(f, ControllerOptions{}, s.position[i], p.row.leader_velocity, 0.0);
   return tracked - slotwards - detail::consensus_input(f, s, i, -1.0) / f.gains.k3;
 }
 

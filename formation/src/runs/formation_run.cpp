@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formations: Sections IV and V.B, with the remedies of remedies.h. The loop over time and when it ends, and how the
-// controller is put together from the terms of control/consensus.h: `wanted_velocity`, `tracked_velocity`.
+// Formations: Sections IV and V.B, with the options of controller_options.h. The loop over time and when it ends, and
+// how the controller is put together from the terms of control/consensus.h: `wanted_velocity`, `tracked_velocity`.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -40,22 +40,22 @@ struct FormationRobot {
   bool sees_pieces = false;                ///< it went by plan when it decided last
 };
 
-Scenario with_margins(Scenario scenario, const Remedies& remedies) {
-  if (!remedies.margins) scenario.margins.robot = 0.0;
+Scenario with_margins(Scenario scenario, const ControllerOptions& options) {
+  if (!options.margins) scenario.margins.robot = 0.0;
   return scenario;
 }
 
 class FormationRun {
  public:
   FormationRun(const Scenario& scenario, const SimulationOptions& options)
-      : remedies_(remedies_in_use(scenario, options)),
-        scenario_(with_margins(scenario, remedies_)),
+      : switches_(controller_options_in_use(scenario, options)),
+        scenario_(with_margins(scenario, switches_)),
         spec_(*scenario_.formation),
         options_(options),
         scene_(scenario_, options),
         schedule_(scenario_, options),
         decider_(scenario_, scene_.bodies()),
-        offsets_(offsets_in_use(spec_, remedies_)),
+        offsets_(offsets_in_use(spec_, switches_)),
         joint_(
             scenario_, options_, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
@@ -63,7 +63,7 @@ class FormationRun {
       plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
     }
-    const HorizonRule rule = remedies_.horizon_clamp ? HorizonRule::clamped : HorizonRule::literal;
+    const HorizonRule rule = switches_.horizon_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
       const Vec2 slot = spec_.leader.path.back() + offsets_[i];
@@ -79,8 +79,8 @@ class FormationRun {
     recording.motion = motion_of(options_.integrator);
     recording.time_step = scenario_.time_step;
     recording.tracking_gain = spec_.gains.k3;
-    recording.relative_frame = !remedies_.absolute_frame;
-    recording.remedies = remedies_;
+    recording.relative_frame = !switches_.absolute_frame;
+    recording.controller_options = switches_;
     recording.offsets = offsets_;
     for (std::size_t i = 0; i < robots_.size(); ++i) goal_bodies_.push_back({0.0, i, 0, robots_[i].field.shapes()});
     RowFeed rows(recording, scene_.bodies(), goal_bodies_, plans_ ? &plans_->groups().plans() : nullptr, sink);
@@ -102,10 +102,10 @@ class FormationRun {
   /// Where half-planes are built: the brake point x + v / k3, whose velocity is exactly w; the paper builds them at x.
   Vec2 anchor(std::size_t i) const {
     const BodyState& b = robots_[i].body;
-    return remedies_.brake_point ? b.position + b.velocity / spec_.gains.k3 : b.position;
+    return switches_.brake_point ? b.position + b.velocity / spec_.gains.k3 : b.position;
   }
   Vec2 anchor_velocity(std::size_t i) const {
-    return remedies_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
+    return switches_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
   }
 
   /// m: from its slot, or from where it goes as that cannot be filled, to the robot.
@@ -189,7 +189,7 @@ class FormationRun {
                      schedule_.keeps_all(time)};
     if (misses_slot(i) && norm(relative_.position[i]) <= scenario_.arrival_tolerance) step.mode = Mode::staying;
     decider_.decide(in, step);
-    if (!remedies_.smoothing) return;
+    if (!switches_.smoothing) return;
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
     in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
     decider_.decide(in, step);
@@ -241,15 +241,15 @@ class FormationRun {
   /// The preference, with the consensus term in it where the filter comes last.
   Vec2 wanted_velocity(std::size_t i, const LeaderState& leader) const {
     const Vec2 slotwards =
-        preference(spec_, remedies_, relative_.position[i], leader.velocity, scenario_.robots[i].max_speed);
-    if (!remedies_.filter_last) return slotwards;
-    return slotwards + consensus_input(spec_, relative_, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+        preference(spec_, switches_, relative_.position[i], leader.velocity, scenario_.robots[i].max_speed);
+    if (!switches_.filter_last) return slotwards;
+    return slotwards + consensus_input(spec_, relative_, i, switches_.signs ? -1.0 : 1.0) / spec_.gains.k3;
   }
 
   Vec2 steered(std::size_t i, RobotBypass::Situation situation, const std::vector<Constraint>& statics,
                const std::vector<Constraint>& others, RobotStep& step) {
     const Vec2 wanted = situation.preferred;
-    if (!remedies_.side_commitment) return wanted;
+    if (!switches_.side_commitment) return wanted;
     const double speed = std::min(norm(wanted), scenario_.robots[i].max_speed);
     const SideCommitment::Answer answer = robots_[i].side.steer(wanted, speed, statics);
     step.side = answer.side;
@@ -268,18 +268,18 @@ class FormationRun {
   /// What v follows: the filter's answer itself, or, in the paper's order, the sum in which it is one term.
   Vec2 tracked_velocity(std::size_t i, const Step& row) const {
     Vec2 w = row.robots[i].chosen;
-    if (!remedies_.filter_last)
-      w += consensus_input(spec_, relative_, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
-    if (!remedies_.absolute_frame) w += row.leader_velocity;
+    if (!switches_.filter_last)
+      w += consensus_input(spec_, relative_, i, switches_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+    if (!switches_.absolute_frame) w += row.leader_velocity;
     return bounded_change(i, w);
   }
 
   /// w drawn towards v so that |k3 (v - w)| keeps the bound. Between two allowed velocities all are allowed; from a
   /// velocity that is not, this may stay outside a half-plane for as long as the bound needs.
   Vec2 bounded_change(std::size_t i, Vec2 w) const {
-    if (!(remedies_.acceleration_bound > 0.0)) return w;
+    if (!(switches_.acceleration_bound > 0.0)) return w;
     const Vec2 v = robots_[i].body.velocity;
-    const double most = remedies_.acceleration_bound / spec_.gains.k3;
+    const double most = switches_.acceleration_bound / spec_.gains.k3;
     const double asked = norm(w - v);
     return asked <= most ? w : v + (most / asked) * (w - v);
   }
@@ -335,7 +335,7 @@ class FormationRun {
     add_note(recording.outcome, plans_->groups().no_plan_words(not_there));
   }
 
-  Remedies remedies_;
+  ControllerOptions switches_;
   Scenario scenario_;
   const FormationSpec& spec_;
   const SimulationOptions& options_;

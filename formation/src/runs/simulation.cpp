@@ -38,9 +38,9 @@ struct RowsKept : RunSink {
 };
 
 /// Whether the brake points of a formation move at exactly what the filter chooses, as plans need it.
-bool follows_choices(const Remedies& remedies) {
-  return remedies.brake_point && remedies.absolute_frame && remedies.filter_last && remedies.horizon_clamp &&
-         remedies.margins && !(remedies.acceleration_bound > 0.0);
+bool follows_choices(const ControllerOptions& options) {
+  return options.brake_point && options.absolute_frame && options.filter_last && options.horizon_clamp &&
+         options.margins && !(options.acceleration_bound > 0.0);
 }
 
 }  // namespace
@@ -54,8 +54,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
   const Liveness wanted = options.liveness.value_or(scenario.liveness);
   if (scenario.formation) {
     const bool has_margins = options.method == Method::ivo || options.method == Method::ivo_cluster;
-    const bool can_plan =
-        has_margins && scenario.moving_obstacles.empty() && follows_choices(remedies_in_use(scenario, options));
+    const bool can_plan = has_margins && scenario.moving_obstacles.empty() &&
+                          follows_choices(controller_options_in_use(scenario, options));
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();

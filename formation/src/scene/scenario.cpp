@@ -227,7 +227,8 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   for (Vec2 p : f.leader.path) c.finite(p, "/formation/leader/path");
   c.not_negative(f.leader.speed, "/formation/leader/speed", "m/s");
   check_profile(f.leader, "/formation/leader", c);
-  c.not_negative(f.remedies.acceleration_bound.value_or(0.0), "/formation/remedies/acceleration_bound", "m/s^2");
+  c.not_negative(f.controller_options.acceleration_bound.value_or(0.0),
+                 "/formation/controller_options/acceleration_bound", "m/s^2");
   c.positive(f.gains.k1, "/formation/gains/k1", "gain");
   c.positive(f.gains.k2, "/formation/gains/k2", "gain");
   c.positive(f.gains.k3, "/formation/gains/k3", "1/s");

@@ -36,7 +36,8 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
   EXACTVO_REQUIRE(
       scenario.formation && !scenario.robots.empty() && scenario.formation->offsets.size() == scenario.robots.size(),
       "a formation with an offset for each robot");
-  const std::vector<Vec2> offsets = detail::offsets_in_use(*scenario.formation, remedies_of(Controller::standard));
+  const std::vector<Vec2> offsets =
+      detail::offsets_in_use(*scenario.formation, controller_options_of(Controller::standard));
   const Vec2 from = goal.from.value_or(middle_of(scenario, offsets));
   Leader& leader = scenario.formation->leader;
   leader.path = {from, goal.to};  // the map covers both

@@ -373,10 +373,10 @@ class Opinion {
     wrong("row " + std::to_string(row) + " robot " + std::to_string(robot) + ": " + what);
   }
   bool is_formation() const { return scenario_.contains("formation"); }
-  bool remedy(const char* name) const { return header_.at("remedies").at(name); }
+  bool option(const char* name) const { return header_.at("controller_options").at(name); }
   bool tracks_choice() const {
-    return remedy("filter_last") && remedy("absolute_frame") &&
-           number(header_["remedies"]["acceleration_bound"]) <= 0.0;
+    return option("filter_last") && option("absolute_frame") &&
+           number(header_["controller_options"]["acceleration_bound"]) <= 0.0;
   }
 
   void read(const json& line) {
@@ -432,7 +432,7 @@ class Opinion {
     }
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
       const State& s = row.robots[i];
-      const bool brakes = is_formation() && remedy("brake_point") && k + 1 < rows_.size();
+      const bool brakes = is_formation() && option("brake_point") && k + 1 < rows_.size();
       const Vec2 at = brakes ? s.position + s.velocity / k3() : s.position;
       if (norm(s.anchor - at) > kClose) wrong(k, i, "the anchor");
     }
@@ -677,7 +677,7 @@ class Opinion {
   void completeness(std::size_t k, std::size_t i) {
     const Row& row = rows_[k];
     const State& s = row.robots[i];
-    if (is_formation() && !remedy("horizon_clamp")) return;
+    if (is_formation() && !option("horizon_clamp")) return;
     const auto allowed = [](const State& r, Vec2 v, bool hard_only) {
       return std::all_of(r.lines.begin(), r.lines.end(),
                          [&](const Line& line) { return (hard_only && !line.hard) || line.slack(v) >= kClose; });

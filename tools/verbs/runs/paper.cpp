@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo paper: Section V of the paper from one command; on request the random fields and the ladder of remedies.
+// exactvo paper: Section V of the paper from one command; on request the random fields and the ablations.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void note_unused(const PaperFlags& flags) {
 /// The pictures of an earlier --ablations, put where the report in the making looks for them.
 bool copy_pictures(const fs::path& from, const fs::path& to) {
   bool any = false;
-  for (const char* name : {"ablations/remedies.png", "ablations/remedies_jitter.png"}) {
+  for (const char* name : {"ablations/options.png", "ablations/options_jitter.png"}) {
     if (!fs::exists(from / name)) continue;
     make_folder((to / name).parent_path());
     fs::copy_file(from / name, to / name);

@@ -267,7 +267,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
           "  exactvo simulate datasets/data/office/office.json --out out/office\n"
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
-          "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
+          "  exactvo simulate datasets/data/paper/B3.json --ablation 'no margins' --controller-option smoothing=on\n"
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
           "  exactvo simulate large.json --record - | exactvo audit -\n"
           "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"

@@ -106,7 +106,7 @@ formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
   if (info.guidance) parse(*info.guidance, *options.guidance);
   options.liveness = formation::Liveness::off;
   if (info.liveness) parse(*info.liveness, *options.liveness);
-  options.remedies = file.recording.remedies;
+  options.controller_options = file.recording.controller_options;
   return options;
 }
 

@@ -54,7 +54,7 @@ struct RecordingFile {
 class RecordingWriter {
  public:
   /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
-  /// `tracking_gain`, `relative_frame`, `remedies`, `offsets` and `all_half_planes`.
+  /// `tracking_gain`, `relative_frame`, `controller_options`, `offsets` and `all_half_planes`.
   RecordingWriter(const std::filesystem::path& path, const RecordingFile& about);
   /// Into a pipe that was opened before, for instance.
   RecordingWriter(std::shared_ptr<AtomicFile> out, const RecordingFile& about);

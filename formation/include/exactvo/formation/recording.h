@@ -162,7 +162,7 @@ struct Recording {
   double tracking_gain = 0.0;              ///< k3, 1/s, where motion is exponential
   /// `chosen` is relative to the leader, as the paper's controllers have it (V_IVO of (15)); else absolute.
   bool relative_frame = false;
-  std::optional<Remedies> remedies;  ///< of a formation's controller, as they were in force
+  std::optional<ControllerOptions> controller_options;  ///< of a formation's controller, as they were in force
   std::vector<Vec2> offsets;  ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
   bool diverged = false;  ///< the formation's error grew to the end, where robots move, or the state left every bound
   std::string outcome;    ///< in words, for people

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/formation/remedies.h"
+#include "exactvo/formation/controller_options.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::formation {
@@ -130,7 +130,7 @@ struct FormationSpec {
   Leader leader;                 ///< whom they follow
   Gains gains;                   ///< of the controller
   double catch_up_speed = 1.5;   ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
-  RemedySwitches remedies = {};  ///< switched on or off beside what the controller has
+  AskedControllerOptions controller_options = {};  ///< switched on or off beside what the controller has
 };
 
 /// All that a run depends on beside its SimulationOptions.

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/controller_options.h"
 #include "exactvo/formation/recording.h"
-#include "exactvo/formation/remedies.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/names.h"
 
@@ -43,8 +43,8 @@ enum class Integrator {
   rosenbrock4  ///< Boost.Odeint's Rosenbrock method, adaptive within the step
 };
 
-/// The remedies that a controller consists of.
-Remedies remedies_of(Controller controller);
+/// The options that a controller consists of.
+ControllerOptions controller_options_of(Controller controller);
 
 ///@{
 /// The words of the command line for the values of an enumeration, in their order.
@@ -117,7 +117,7 @@ struct SimulationOptions {
   std::optional<Liveness> liveness;              ///< instead of the scenario's
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
-  std::optional<Remedies> remedies;              ///< formations: these instead of the controller's
+  std::optional<ControllerOptions> controller_options;  ///< formations: these instead of the controller's
   double facade_minor_to_major = 0.5;            ///< ivo_edge: b = this * a
   double facade_fixed_minor = 0.0;               ///< m, ivo_edge: > 0 fixes b
   bool record_all = false;                       ///< keep every half-plane, not only the active ones
@@ -150,7 +150,7 @@ class RunSink {
  public:
   virtual ~RunSink() = default;
   /// First of all. `run` has what is known before the first row: warnings, motion, time_step, tracking_gain,
-  /// relative_frame, remedies, offsets, all_half_planes.
+  /// relative_frame, controller_options, offsets, all_half_planes.
   virtual void begin(const Recording& /*run*/) {}
   /// Bodies come in the order of their numbers, each before what names it.
   virtual void add_body(const vo::Body& /*body*/) {}

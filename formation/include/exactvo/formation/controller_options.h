@@ -13,7 +13,7 @@ namespace exactvo::formation {
 
 /// The options of a formation's controller. The initial values are those of the default controller: all on, except
 /// `smoothing`, and no acceleration bound.
-struct Remedies {
+struct ControllerOptions {
   bool signs = true;                ///< (15) and (17) with their signs corrected; without it they are as printed
   bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
   bool absolute_frame = true;       ///< V_IVO is an absolute velocity; the paper adds the leader's to it
@@ -28,9 +28,9 @@ struct Remedies {
 };
 
 /// Some of them, set one way or the other: what a scenario asks for beside its controller.
-struct RemedySwitches {
+struct AskedControllerOptions {
   ///@{
-  /// The member of Remedies of that name; none: as the controller has it.
+  /// The member of ControllerOptions of that name; none: as the controller has it.
   std::optional<bool> signs;
   std::optional<bool> recentred;
   std::optional<bool> absolute_frame;
@@ -46,33 +46,33 @@ struct RemedySwitches {
 };
 
 /// One of the switches by its name, which is that of the member: "horizon_clamp".
-struct RemedySwitch {
-  const char* name;                            ///< the member's
-  bool Remedies::*on;                          ///< the switch
-  std::optional<bool> RemedySwitches::*asked;  ///< the same in what was asked for
+struct ControllerSwitch {
+  const char* name;                                    ///< the member's
+  bool ControllerOptions::*on;                         ///< the switch
+  std::optional<bool> AskedControllerOptions::*asked;  ///< the same in what was asked for
 };
 /// All of them but the bound, in the order of the struct.
-const std::vector<RemedySwitch>& remedy_switches();
+const std::vector<ControllerSwitch>& controller_switches();
 
 /// `base` with what is asked for.
-Remedies switched(Remedies base, const RemedySwitches& asked);
+ControllerOptions switched(ControllerOptions base, const AskedControllerOptions& asked);
 
-/// A set of remedies with the name under which it is reported.
-struct NamedRemedies {
-  std::string name;   ///< "horizon_clamp" and so on
-  Remedies remedies;  ///< the whole set
+/// A set of controller options with the name under which it is reported.
+struct NamedControllerOptions {
+  std::string name;           ///< "horizon_clamp" and so on
+  ControllerOptions options;  ///< the whole set
 };
 
 /// From the corrected signs without margins to the default, adding one option per step. (The paper's controllers
 /// themselves keep the scenario's margins.)
-std::vector<NamedRemedies> remedy_ladder();
+std::vector<NamedControllerOptions> incremental_options();
 
-/// The default with one remedy taken away (or smoothing added) at a time.
-std::vector<NamedRemedies> remedy_ablations();
+/// The default with one option taken away (or smoothing added) at a time.
+std::vector<NamedControllerOptions> ablated_options();
 
-/// The step or ablation of that name; nothing where there is none.
-std::optional<Remedies> remedies_named(const std::string& name);
-/// The names that `remedies_named` knows.
-std::vector<std::string> remedy_set_names();
+/// The set of that name; nothing where there is none.
+std::optional<ControllerOptions> options_named(const std::string& name);
+/// The names that `options_named` knows.
+std::vector<std::string> option_set_names();
 
 }  // namespace exactvo::formation
