@@ -273,7 +273,7 @@ void show_batches(const fs::path& input, const fs::path& folder, std::size_t obs
   }
 }
 
-/// Seconds of the stages of a batch with one worker: reading alone, reading and taking apart, everything.
+/// Seconds of the stages of a batch with one worker: reading alone, reading and decomposing, everything.
 void show_shares(const fs::path& input, const fs::path& folder) {
   datasets::ReadOptions options;
   options.keep_going = true;
@@ -291,7 +291,7 @@ void show_shares(const fs::path& input, const fs::path& folder) {
   }();
   const geometry::ShapeOptions shape_options = batch_options();
   std::vector<ObstacleShapes> shapes;
-  const double taking_apart = cpu_of([&] {
+  const double decomposing = cpu_of([&] {
     for (const Polygon& p : polygons) need(shapes_of(p, shape_options).certified(), "no certificate");
   });
   const double hulls = cpu_of([&] {
@@ -306,8 +306,8 @@ void show_shares(const fs::path& input, const fs::path& folder) {
   std::printf(
       "  shares of %.2f s with figures alone: reading and validity %.0f %%, shapes %.0f %% (of it CGAL %.0f %%, "
       "certifying %.0f %%), writing %.0f %%\n",
-      all, share * reading, share * taking_apart, share * hulls, share * certifying,
-      share * (all - reading - taking_apart));
+      all, share * reading, share * decomposing, share * hulls, share * certifying,
+      share * (all - reading - decomposing));
 }
 
 // --- Memory ---

@@ -217,7 +217,7 @@ TEST(EvenOdd, Property4_OrderWindingAndStartDoNotMatter) {
 
 // --- The public files ---
 
-TEST(RepairShared, EveryInvalidPolygonIsMendedOrNamed) {
+TEST(RepairShared, EveryInvalidPolygonIsRepairedOrNamed) {
   EXACTVO_NEEDS_SHARED_DATA();
   std::vector<std::string> folders{"wkt-georust", "wkt-jts", "wkt-osm", "wkt-rvo2",
                                    "earcut-json", "jts-xml", "geos-xml"};

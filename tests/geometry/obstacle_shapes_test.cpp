@@ -131,7 +131,7 @@ TEST(ObstacleShapes, AClockwiseShellIsTurnedAndSaidSo) {
 TEST(ObstacleShapes, AWayGivesAnEllipseMadeToMeasureOrTheReasonWhyNot) {
   ShapeOptions options;
   options.robot_radius = 0.5;
-  options.way = Way{{-5, 0.1}, {9, 0.1}};
+  options.way = StartAndGoal{{-5, 0.1}, {9, 0.1}};
   const Polyline wall{{{2, -2}, {2, 2}}};
   const ObstacleShapes round = shapes_of(wall, options);
   EXPECT_EQ(round.trap_free.grade, EnclosureGrade::trap_free);
@@ -158,7 +158,7 @@ TEST(ObstacleShapes, AnEllipseThatIsMissingIsExcusedByAWayAlone) {
 TEST(ObstacleShapes, NoRoomAndTooLargeAreToldApart) {
   ShapeOptions options;
   options.robot_radius = 0.1;
-  options.way = Way{{-5.0, 0.1}, {0.1, 0.0}};
+  options.way = StartAndGoal{{-5.0, 0.1}, {0.1, 0.0}};
   const Polyline wall{{{0, -2}, {0, 2}}};
   const ObstacleShapes near = shapes_of(wall, options);
   EXPECT_EQ(near.trap_free.answer, TrapFreeAnswer::no_room);

@@ -2,8 +2,8 @@
 // Certificates of routes by the hundred thousand, run by hand:
 //
 //     routes_campaign verdicts 100000 1     answers at critical radii: each the right one, and accepted by the checker
-//     routes_campaign mutations 100000 1    certificates with one thing changed: refused, or still true by another
-//     judge
+//     routes_campaign mutations 100000 1    certificates with one thing changed: refused, or still true by the verdict
+//                                           of route_verdict.h
 #include "routes_campaign.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 #include <string>
 
 #include "options/program_options.h"
-#include "route_judge.h"
 #include "route_mutations.h"
+#include "route_verdict.h"
 
 namespace {
 
@@ -93,25 +93,25 @@ class Mutations {
     }
     ++certificates;
     const std::string wrong = check(f.obstacles, original.question, original.answer);
-    if (!wrong.empty() || judged(f.obstacles, original.question, original.answer) == Judgement::wrong)
+    if (!wrong.empty() || verdict_on(f.obstacles, original.question, original.answer) == RouteVerdict::wrong)
       failures.push_back("an answer refused: " + wrong + "\n" + corpus_line({f, radius}));
     for (std::size_t k = 0; k < kOfEach[original.answer.index()] && left_ > 0; ++k, --left_) {
       const Mutant mutant = mutated(f.obstacles, original, random_);
       const std::string kind = kKinds[original.answer.index()];
-      judge_mutant(f, map, mutant, by_change[kind + ", " + mutant.change]);
+      check_mutant(f, map, mutant, by_change[kind + ", " + mutant.change]);
     }
   }
 
-  void judge_mutant(const RouteField& f, const RouteMap& map, const Mutant& mutant, Tally& tally) {
+  void check_mutant(const RouteField& f, const RouteMap& map, const Mutant& mutant, Tally& tally) {
     const auto& [question, answer] = mutant.certificate;
     const std::string wrong = check(f.obstacles, question, answer);
-    const Judgement judgement = judged(f.obstacles, question, answer);
+    const RouteVerdict verdict = verdict_on(f.obstacles, question, answer);
     const auto fail = [&](const std::string& why) {
       failures.push_back(why + " (" + mutant.change + "): " + to_string(mutant.certificate) + "\n" +
                          corpus_line({f, question.radius}));
     };
-    if (wrong.empty() && judgement == Judgement::wrong) fail("accepted, and wrong");
-    if (!wrong.empty() && judgement == Judgement::proven) fail("refused as '" + wrong + "', and true");
+    if (wrong.empty() && verdict == RouteVerdict::wrong) fail("accepted, and wrong");
+    if (!wrong.empty() && verdict == RouteVerdict::proven) fail("refused as '" + wrong + "', and true");
     ++(wrong.empty() ? tally.still_true : tally.refused);
     // What is accepted must be the answer that the map gives too.
     if (!wrong.empty() || !map.covers(question.start) || !map.covers(question.goal)) return;
@@ -147,8 +147,8 @@ int main(int argc, char** argv) {
   using exactvo::tools::ProgramOptions;
   return exactvo::tools::run_program("routes_campaign", [&] {
     Flags flags;
-    ProgramOptions options("routes_campaign", "Are answers about routes right, and certificates judged rightly?",
-                           "Exit status 1: an answer or a judgement was wrong; it is printed as a line of the corpus.");
+    ProgramOptions options("routes_campaign", "Are answers about routes right, and certificates checked rightly?",
+                           "Exit status 1: an answer or a verdict was wrong; it is printed as a line of the corpus.");
     options.word("KIND", flags.kind, {"verdicts", "mutations"},
                  "Answers at critical radii, or certificates with one thing changed", true);
     options.whole_number("COUNT", flags.count, 1, "Answers or changed certificates, at least");

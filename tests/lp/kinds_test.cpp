@@ -271,7 +271,7 @@ TEST(EveryKind, WithoutAFiniteBoundIsRefusedForALinearObjective) {
   for (const ProblemKind& kind : refused_kinds()) EXPECT_THROW(solve(random_problem(kind, random)), std::logic_error);
 }
 
-// The centre of the box was called optimal: a walk to an infinite end of a line, which no disc cut off.
+// The centre of the box was called optimal: a search to an infinite end of a line, which no disc cut off.
 TEST(Farthest, ReachesTheCornerOfABoxWithoutADisc) {
   Problem p;
   p.objective = Objective::farthest;

@@ -88,7 +88,7 @@ TEST(ObstacleVerbs, MistypedWordsAreAnsweredWithTheNearest) {
   EXPECT_FALSE(here.has("b.wkt"));
 }
 
-TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
+TEST(Repair, WritesWhatIsRepairedAndNamesWhatIsNot) {
   const Workplace here;
   here.write("bad.wkt", std::string(kGood) + kBowTie + kHopeless);
   const Outcome outcome = here.run("repair bad.wkt --out repaired.wkt --figure repaired.svg --json");
@@ -430,7 +430,7 @@ TEST(Convert, ADashIsStandardOutput) {
   EXPECT_FALSE(here.has("-"));
 }
 
-TEST(Convert, BadObstaclesStopItUnlessMendedOrSkipped) {
+TEST(Convert, BadObstaclesStopItUnlessRepairedOrSkipped) {
   const Workplace here;
   here.write("bad.wkt", std::string(kGood) + kBowTie + kHopeless);
   const Outcome plain = here.run("convert bad.wkt out.wkt");

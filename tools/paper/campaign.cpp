@@ -36,7 +36,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Fields a part: seconds of work, so that little is lost by a kill.
 constexpr std::uint64_t kFieldsAPart = 10;
 
-FieldResult judged(const formation::Scenario& scenario, formation::SimulationOptions options, std::uint64_t field) {
+FieldResult result_of(const formation::Scenario& scenario, formation::SimulationOptions options, std::uint64_t field) {
   options.progress = [](double) { return !interrupted(); };
   const formation::Recording recording = formation::simulate(scenario, options);
   if (interrupted()) return {};
@@ -88,7 +88,7 @@ PartTask part_of(const Variant& variant, std::uint64_t first, std::uint64_t end,
   return {name, [&variant, first, end, seed] {
             std::string text;
             for (std::uint64_t k = first; k < end && !interrupted(); ++k)
-              text += csv_row(judged(datasets::random_field(variant.kind, k, seed), variant.options, k));
+              text += csv_row(result_of(datasets::random_field(variant.kind, k, seed), variant.options, k));
             return text;
           }};
 }

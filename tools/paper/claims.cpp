@@ -47,7 +47,7 @@ std::size_t count(const Runs& runs, const Holds& holds) {
 
 /// All of them, none of them, or some.
 template <typename Holds>
-Verdict judged(const Runs& runs, const Holds& holds) {
+Verdict verdict_on(const Runs& runs, const Holds& holds) {
   if (!complete(runs)) return Verdict::not_run;
   const std::size_t held = count(runs, holds);
   if (held == runs.size()) return Verdict::holds;
@@ -119,7 +119,7 @@ Claim orca_stops(const ReportData& data) {
   const auto as_claimed = [](const Json& r) { return !arrived(r) && untouched(r); };
   return {"Fig. 5, Section V.A",
           "ORCA can only ensure that the robot will not collide with a polyhedral obstacle, but cannot move around it.",
-          judged(runs, as_claimed),
+          verdict_on(runs, as_claimed),
           fmt::format("Stopped without touching anything in {}; got by in {}; touched something in {}.",
                       tally(runs, as_claimed), names(runs, arrived), names(runs, no(untouched))),
           "figures/fig5-orca/A2/paths.png",
@@ -131,7 +131,7 @@ Claim ivo_bypasses(const ReportData& data) {
   const Runs cluster = avoidance_runs(data, "ivo-cluster");
   return {"Fig. 6, Section V.A",
           "With the improved velocity obstacle the robot successfully reaches the target by bypassing the obstacles.",
-          judged(paper, bypassed),
+          verdict_on(paper, bypassed),
           fmt::format("The paper's ellipse for each facade (ivo-edge, b = a/2): {}, not {}. Enclosures fitted free "
                       "of traps, equation (12) alone (ivo-cluster): {}, not {}. Default (ivo): {}.",
                       tally(paper, bypassed), names(paper, no(bypassed)), tally(cluster, bypassed),
@@ -144,7 +144,7 @@ Claim distances_stay_positive(const ReportData& data) {
   const Runs paper = avoidance_runs(data, "ivo-edge"), ours = avoidance_runs(data, "ivo");
   return {"Fig. 6(b), (c)",
           "The minimum distances from obstacles and between robots are both greater than 0.",
-          judged(paper, untouched),
+          verdict_on(paper, untouched),
           fmt::format("Minimum clearance over A1-A15, swept over the motion: {} m with ivo-edge, {} m with ivo.",
                       shown(least(paper, least_clearance), "{:.4f}"), shown(least(ours, least_clearance), "{:.4f}")),
           "figures/fig6-ivo-edge/A2/obstacle_distance.png",
@@ -156,7 +156,7 @@ Claim dynamic_obstacles(const ReportData& data) {
   const Json& ours = data.run("A7", "ivo");
   return {"Section V.A",
           "It can avoid dynamic obstacles while avoiding polyhedral obstacles.",
-          judged({&paper}, bypassed),
+          verdict_on({&paper}, bypassed),
           fmt::format("A7, four robots and a wall: minimum distance between robots {} m with ivo-edge, {} m with ivo.",
                       shown(value_of(paper, "min_robot_clearance"), "{:.4f}"),
                       shown(value_of(ours, "min_robot_clearance"), "{:.4f}")),
@@ -170,7 +170,7 @@ Claim always_feasible(const ReportData& data) {
   return {
       "Section III.B, (11)-(13)",
       "The feasible velocity half-planes form a convex region from which linear programming chooses the velocity.",
-      judged(paper, [&](const Json& r) { return below(relaxed(r), 1.0); }),
+      verdict_on(paper, [&](const Json& r) { return below(relaxed(r), 1.0); }),
       fmt::format("A1-A15: at most {} decisions a run in which half-planes contradicted each other with ivo-edge, {} "
                   "with ivo; half-planes not certified {} and {}. It is the closest point of a convex set, not a "
                   "linear program.",
@@ -186,7 +186,7 @@ Claim theorem_one(const ReportData& data) {
   const auto error = number("formation_position_error");
   return {"Theorem 1, Section IV.B",
           "The cooperative formation with obstacle avoidance can be achieved with the control protocol in (15).",
-          judged(signs, [](const Json& r) { return in_formation(r) && untouched(r); }),
+          verdict_on(signs, [](const Json& r) { return in_formation(r) && untouched(r); }),
           fmt::format("Position error at the end, B0-B3: as printed {} m at least; signs corrected {} to {} m, "
                       "something touched in {}; default {} m at most, nothing touched in {}.",
                       shown(least(literal, error), "{:.3g}"), shown(least(signs, error), "{:.2g}"),
@@ -231,7 +231,7 @@ Claim velocities_converge(const ReportData& data) {
   const auto error = number("formation_velocity_error");
   return {"Fig. 8(c)",
           "The velocity components converge to the desired velocity.",
-          judged(signs, [&](const Json& r) { return below(error(r), formation::kFormed); }),
+          verdict_on(signs, [&](const Json& r) { return below(error(r), formation::kFormed); }),
           fmt::format("Velocity error at the end: signs corrected {} to {} m/s; default {} m/s at most.",
                       shown(least(signs, error), "{:.2g}"), shown(most(signs, error), "{:.2g}"),
                       shown(most(ours, error), "{:.1e}")),
@@ -281,7 +281,7 @@ Claim spacing_stays_positive(const ReportData& data) {
   const auto apart = [&](const Json& r) { return spacing(r) && !formation::touched(spacing(r)); };
   return {"Fig. 8(d)",
           "The spacing between robots is always greater than 0.",
-          judged(signs, apart),
+          verdict_on(signs, apart),
           fmt::format("Minimum distance between rims, B0-B3: signs corrected {} m, default {} m.",
                       shown(least(signs, spacing), "{:.3f}"), shown(least(ours, spacing), "{:.3f}")),
           "figures/fig8-paper-signs/B3/robot_distance.png",
@@ -293,7 +293,7 @@ Claim converges_quickly(const ReportData& data) {
   return {
       "Fig. 8(e), Section VI",
       "The robots pass the obstacle zone safely, quickly converge to the desired formation and reach the target.",
-      judged(signs, bypassed),
+      verdict_on(signs, bypassed),
       fmt::format(
           "Every robot within the scene's arrival tolerance of its slot once the leader rests, and nothing touched: "
           "signs corrected {}; default {}, the last at {} s, the leader at {} s.",

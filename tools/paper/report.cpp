@@ -72,11 +72,11 @@ void add_claims(const ReportData& data, Document& d) {
   d.heading(2, "Claims");
   d.paragraph(
       "Verdicts are on the paper's own method, and on what it leaves open by the default, computed from the "
-      "runs below: a claim about many runs holds in part where it holds for some of them, and is not judged "
+      "runs below: a claim about many runs holds in part where it holds for some of them, and has no verdict "
       "where one is missing.");
   Rows rows;
   for (const Claim& c : claims(data))
-    rows.push_back({c.where, c.text, name(c.verdict), "`" + c.judged + "`", c.evidence, "`" + c.figure + "`"});
+    rows.push_back({c.where, c.text, name(c.verdict), "`" + c.subject + "`", c.evidence, "`" + c.figure + "`"});
   d.table({"where", "the paper says", "verdict", "on", "seen", "figure"}, rows);
 }
 

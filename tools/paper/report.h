@@ -45,7 +45,7 @@ struct Claim {
   Verdict verdict;       ///< of the paper's own method (of the default, for what the paper leaves open), computed
   std::string evidence;  ///< the numbers behind it, and what the default does
   std::string figure;    ///< the picture that shows it, relative to the output folder
-  std::string judged;    ///< the method or controller whose runs the verdict is on
+  std::string subject;   ///< the method or controller whose runs the verdict is on
 };
 
 std::vector<Claim> claims(const ReportData& data);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One answer and one exact look at it. The look is the proof, so the walk need not be analysed: few lines are walked in
-// the textbook's order (de Berg et al., chapter 4), with the slack of the other solvers.
+// One answer and one exact look at it. The look is the proof, so the search need not be analysed: few lines are
+// searched in the textbook's order (de Berg et al., chapter 4), with the slack of the other solvers.
 #include "decision/feasible.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using lp::SingleProblem;
 using geometry::perp;
 using geometry::squared_norm;
 
-/// Up to here the walk below was faster than looking at a register of lines at a time.
+/// Up to here the search below was faster than looking at a register of lines at a time.
 constexpr std::size_t kFewLines = 16;
 
 class FewLines {
@@ -91,7 +91,7 @@ bool squares_are_in_range(const SingleProblem& p) {
   return limit >= lp::kLeastSquare<double> && std::max(squared_norm(p.preferred), limit) <= lp::kMostSquare<double>;
 }
 
-bool walk(const SingleProblem& problem, Vec2& v) {
+bool search(const SingleProblem& problem, Vec2& v) {
   if (problem.count <= kFewLines && squares_are_in_range(problem)) return FewLines(problem).run(v);
   lp::Solution answer;
   solve_single(problem, answer);
@@ -106,7 +106,7 @@ bool keeps(const SingleProblem& p, Vec2 v) {
 }
 
 bool solve_feasible(const SingleProblem& problem, Vec2& velocity) {
-  return walk(problem, velocity) && is_finite(velocity) && keeps(problem, velocity);
+  return search(problem, velocity) && is_finite(velocity) && keeps(problem, velocity);
 }
 
 }  // namespace exactvo::bench

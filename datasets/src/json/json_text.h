@@ -8,8 +8,9 @@
 ///
 /// What goes both ways has its members listed once, in the order of the text, for a JsonWriter and a JsonCursor alike:
 ///
-///     template <class Way>
-///     void members(Way& json, For<Way, PlanMove>& move) { json.member("robot", move.robot).member("to", move.to); }
+///     template <class Codec>
+///     void members(Codec& json, For<Codec, PlanMove>& move) { json.member("robot", move.robot).member("to", move.to);
+///     }
 
 #include <cstdint>
 #include <functional>
@@ -80,8 +81,8 @@ std::string described(const Json& value);
 std::string pointer_to(const Json& value, const Json& all);
 
 /// The type by which `members` takes a T: const for a writer.
-template <class Way, class T>
-using For = std::conditional_t<Way::kReads, T, const T>;
+template <class Codec, class T>
+using For = std::conditional_t<Codec::kReads, T, const T>;
 
 /// Of lists and of what has `members`: written on one line, even in an indented text.
 template <class T>

@@ -71,7 +71,7 @@ class WktScanner {
     return at_ < text_.size() && text_[at_] != ',' && text_[at_] != ')' && text_[at_] != '(';
   }
 
-  /// Any C number; "nan" and "inf" are let through for the ring to be judged.
+  /// Any C number; "nan" and "inf" are let through for the ring to be validated.
   double number() {
     skip_space();
     const std::size_t sign = at_ < text_.size() && text_[at_] == '+' ? 1 : 0;

@@ -113,7 +113,7 @@ bool is_whole(const formation::Scenario& s, const End& end, bool& somebody_stays
   return s.robots.size() == last.size() && has_ended(s, end, somebody_stays);
 }
 
-/// Judges rows as they come, each when the next one is there.
+/// Checks rows as they come, each when the next one is there.
 class RunAudit {
  public:
   /// `file` grows while rows are taken; `meant` as in `audit`, may be null. Both must outlive it.
@@ -122,7 +122,7 @@ class RunAudit {
   void take(SharedRow row) {
     if (rows_ == 0) begin(*row);
     if (why_.empty()) why_ = obstruction_in(*row);
-    if (run_ && row_) judge(row.get());
+    if (run_ && row_) check(row.get());
     if (row_) {
       before_.emplace();
       for (const RobotStep& robot : row_->robots) before_->push_back({robot.chosen, robot.mode});
@@ -137,8 +137,8 @@ class RunAudit {
     look_at_plans();
     if (rows_ == 0) why_ = "there are no rows";
     if (!why_.empty()) return unauditable();
-    judge(nullptr);
-    judge_whole();
+    check(nullptr);
+    check_whole();
     const bool is_whole_run = is_whole(file_.scenario, {rows_, *row_, before()}, tally_.report.has_staying);
     tally_.ask(AuditPoint::sequence, is_whole_run,
                "the last row is before the time limit, and not every robot has arrived");
@@ -153,7 +153,7 @@ class RunAudit {
     if (!why_.empty()) return unauditable();
     if (!run_) return std::move(tally_);
     run_->places.take(*row_);
-    judge_whole();
+    check_whole();
     return std::move(tally_);
   }
 
@@ -186,7 +186,7 @@ class RunAudit {
   }
 
   /// The row that was taken last. `next`: null after the last.
-  void judge(const Step* next) {
+  void check(const Step* next) {
     if (!why_.empty()) return;
     call_wait_hook();  // a long audit ends where its caller wants to
     const RowInRun at{rows_ - 1, *row_, before(), next};
@@ -197,7 +197,7 @@ class RunAudit {
   }
 
   /// Points (2) and (8), whose findings come before those of rows.
-  void judge_whole() {
+  void check_whole() {
     std::vector<std::string>& findings = tally_.report.findings;
     const auto of_rows = static_cast<std::ptrdiff_t>(findings.size());
     audit_bodies(*run_);

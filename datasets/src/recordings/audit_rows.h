@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The rows of an audited run, which come one after the other and only once: of those that have been judged it is known
-/// where robots were.
+/// The rows of an audited run, which come one after the other and only once: of those that have been checked it is
+/// known where robots were.
 
 #include <deque>
 #include <map>
@@ -19,7 +19,7 @@ namespace exactvo::datasets {
 
 using SharedRow = std::shared_ptr<const formation::Step>;
 
-/// What is asked of a row when the next one is judged, robot by robot: its half-planes would be most of the memory.
+/// What is asked of a row when the next one is checked, robot by robot: its half-planes would be most of the memory.
 struct RobotBefore {
   geometry::Vec2 chosen;  ///< m/s
   formation::Mode mode;

@@ -15,13 +15,13 @@ namespace exactvo::datasets {
 
 // --- Bodies ---
 
-template <class Way>
-void members(Way& json, For<Way, geometry::Disc>& disc) {
+template <class Codec>
+void members(Codec& json, For<Codec, geometry::Disc>& disc) {
   json.member("center", disc.center).member("radius", disc.radius);
 }
 
-template <class Way>
-void members(Way& json, For<Way, geometry::Ellipse>& e) {
+template <class Codec>
+void members(Codec& json, For<Codec, geometry::Ellipse>& e) {
   json.member("center", e.center).member("l11", e.l11).member("l21", e.l21).member("l22", e.l22);
 }
 
@@ -34,8 +34,8 @@ inline bool moves(vo::BodyKind kind) {
 }
 
 /// Of a robot or moving obstacle the shape is left out: its place changes, and rows have it.
-template <class Way>
-void members(Way& json, For<Way, vo::Body>& body) {
+template <class Codec>
+void members(Codec& json, For<Codec, vo::Body>& body) {
   json.member("kind", body.kind);
   if (!moves(body.kind)) json.member("shape", body.shape);
   json.member("owners", body.owners);
@@ -43,19 +43,19 @@ void members(Way& json, For<Way, vo::Body>& body) {
 
 // --- Rows ---
 
-template <class Way>
-void members(Way& json, For<Way, formation::MovedObstacle>& moved) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::MovedObstacle>& moved) {
   json.member("displacement", moved.displacement).member("velocity", moved.velocity);
 }
 
-template <class Way>
-void members(Way& json, For<Way, lp::ActiveConstraint>& part) {
+template <class Codec>
+void members(Codec& json, For<Codec, lp::ActiveConstraint>& part) {
   json.member("part", part.binding.kind).member("multiplier", part.multiplier);
 }
 
 /// Source, shape, position, radius and velocity are not here: the reader takes them from the body and the row.
-template <class Way>
-void members(Way& json, For<Way, formation::RecordedConstraint>& c) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::RecordedConstraint>& c) {
   json.member("body", c.body).member("index", c.index).member_if(c.piece != 0, "piece", c.piece);
   json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
   json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
@@ -78,10 +78,10 @@ inline void exact_multipliers(const JsonCursor& json, bool& are_exact) {
 }
 
 /// One robot's part of a row. What is empty or as usual is left out.
-template <class Way>
-void members(Way& json, For<Way, formation::RobotStep>& robot) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   json.member("position", robot.position).member("velocity", robot.velocity);
-  if constexpr (Way::kReads) {  // as usual, where they are left out
+  if constexpr (Codec::kReads) {  // as usual, where they are left out
     robot.anchor = robot.position;
     robot.anchor_velocity = robot.velocity;
   }
@@ -97,23 +97,23 @@ void members(Way& json, For<Way, formation::RobotStep>& robot) {
   json.member_if(!robot.constraints.empty(), "constraints", robot.constraints);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::PlanMove>& move) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::PlanMove>& move) {
   json.member("robot", move.robot).member("to", move.to);
 }
 
 // --- Lyapunov functions ---
 
-template <class Way>
-void members(Way& json, For<Way, formation::PaperTerms>& terms) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::PaperTerms>& terms) {
   json.member("kinetic", terms.kinetic).member("consensus", terms.consensus);
   json.member("pinning", terms.pinning).member("integral", terms.integral);
 }
 
 /// The last row of a run has no decision, so no derivatives.
-template <class Way>
-void members(Way& json, For<Way, formation::LyapunovRow>& row) {
-  if constexpr (Way::kReads) row.has_rates = json.has("paper_rates");
+template <class Codec>
+void members(Codec& json, For<Codec, formation::LyapunovRow>& row) {
+  if constexpr (Codec::kReads) row.has_rates = json.has("paper_rates");
   json.member("paper", row.paper);
   if (row.has_rates)
     json.object("paper_rates", [&](auto& rates) {
@@ -134,22 +134,22 @@ void members(Way& json, For<Way, formation::LyapunovRow>& row) {
 // --- The header and the end ---
 
 /// What was run.
-template <class Way>
-void members(Way& json, For<Way, RunInfo>& info) {
+template <class Codec>
+void members(Codec& json, For<Codec, RunInfo>& info) {
   json.member("method", info.method).member("controller", info.controller).member("integrator", info.integrator);
   json.optional("guidance", info.guidance).optional("liveness", info.liveness);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::ControllerOptions>& options) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::ControllerOptions>& options) {
   for (const formation::ControllerSwitch& s : formation::controller_switches()) json.member(s.name, options.*s.on);
   json.member("acceleration_bound", options.acceleration_bound);
 }
 
 /// What is known before a run. REQUIRES: `run.controller_options` has a value already where there are any, which the
 /// scenario says.
-template <class Way>
-void members(Way& json, For<Way, formation::Recording>& run) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Recording>& run) {
   json.member("time_step", run.time_step).member("motion", run.motion);
   json.member("tracking_gain", run.tracking_gain).member("relative_frame", run.relative_frame);
   if (run.controller_options) json.member("controller_options", *run.controller_options);
@@ -158,38 +158,38 @@ void members(Way& json, For<Way, formation::Recording>& run) {
 
 template <>
 inline constexpr bool kOnOneLine<formation::Collision> = true;
-template <class Way>
-void members(Way& json, For<Way, formation::Collision>& c) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Collision>& c) {
   json.member("robot", c.robot).member("kind", c.kind).member("with", c.with);
   json.member("from", c.from).member("until", c.until).member("deepest_at", c.deepest_at).member("depth", c.depth);
   json.member("place", c.place).member("relaxed", c.relaxed);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::BindingConstraint>& b) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::BindingConstraint>& b) {
   json.member("source", b.constraint.source).member("index", b.constraint.index).member("piece", b.constraint.piece);
   json.member("normal", b.normal).member("clearance", b.clearance);
   json.member("radius_of_curvature", b.radius_of_curvature).optional("pressing", b.pressing);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::Equilibrium>& e) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Equilibrium>& e) {
   json.member("position", e.position).member("normal", e.normal).member("radius_of_curvature", e.radius_of_curvature);
   json.member("distance", e.distance).member("stable", e.stable);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::StuckReport>& r) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::StuckReport>& r) {
   json.member("robot", r.robot).member("position", r.position).member("goal_distance", r.goal_distance);
   json.member("speed", r.speed).member("binding", r.binding).member("equilibrium", r.equilibrium);
   json.member("text", r.text).optional("rest_time", r.rest_time);
 }
 
 /// How the run went.
-template <class Way>
-void members(Way& json, For<Way, RecordingFile>& file) {
+template <class Codec>
+void members(Codec& json, For<Codec, RecordingFile>& file) {
   auto& run = file.recording;
-  auto& outcome = Way::kReads || !file.outcome.empty() ? file.outcome : run.outcome;  // what is read is the file's
+  auto& outcome = Codec::kReads || !file.outcome.empty() ? file.outcome : run.outcome;  // what is read is the file's
   json.member("diverged", run.diverged).member("outcome", outcome);
   json.member("ended", run.outcome).member("warnings", run.warnings).member("stuck", file.stuck);
   json.optional("collisions", file.collisions).member("wall_time", run.wall_time);

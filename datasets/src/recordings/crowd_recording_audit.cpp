@@ -51,7 +51,7 @@ class CrowdAuditor {
     report.robots = head.kind_of.size();
   }
 
-  void judge(const CrowdRow& from, const CrowdRow& to) {
+  void check(const CrowdRow& from, const CrowdRow& to) {
     from_ = &from;
     to_ = &to;
     steps_ = to.step - from.step;
@@ -61,10 +61,10 @@ class CrowdAuditor {
     for (std::size_t i = 0; i < from.x.size(); ++i) {
       if (one_of_ > 1 && mixed(to.step * kRandomStride + i) % one_of_ != 0) continue;
       ++report.motions;
-      judge_speed(i);
-      judge_edges(i);
-      judge_bodies(i);
-      judge_pairs(i);
+      check_speed(i);
+      check_edges(i);
+      check_bodies(i);
+      check_pairs(i);
     }
   }
 
@@ -109,7 +109,7 @@ class CrowdAuditor {
   }
 
   /// As the body sees the robot: where bodies are is exact.
-  void judge_bodies(std::size_t i) {
+  void check_bodies(std::size_t i) {
     if (head_.bodies.empty()) return;
     const Vec2 here = place(*from_, i);
     const double far = (kind(i).radius + norm(place(*to_, i) - here) + fastest_body_) * (1.0 + kTouches);
@@ -119,7 +119,7 @@ class CrowdAuditor {
       const geometry::Box box = geometry::box_of(body.shape);
       const double radius = kind(i).radius;
       const double lengths = one_norm(box.low - at) + one_norm(box.high - at) + radius, rounding = kTouches * lengths;
-      if (is_within(body.shape, at, radius + rounding)) return judge_touching_body(i, k, at, motion, lengths);
+      if (is_within(body.shape, at, radius + rounding)) return check_touching_body(i, k, at, motion, lengths);
       ++report.near_bodies;
       if (body.moves && !to_->kept[i]) return void(++report.bodies_open);
       if (!meets(body.shape, at, motion, radius)) return;
@@ -130,7 +130,7 @@ class CrowdAuditor {
 
   /// A kept robot is apart from a moving body at the end; none comes nearer to one at rest. What is nearer is asked
   /// with the robot's radius at which it touches now, found by halving.
-  void judge_touching_body(std::size_t i, std::size_t k, Vec2 at, Vec2 motion, double lengths) {
+  void check_touching_body(std::size_t i, std::size_t k, Vec2 at, Vec2 motion, double lengths) {
     const geometry::ConvexShape& shape = head_.bodies[k].shape;
     double radius = kind(i).radius;
     if (head_.bodies[k].moves) {
@@ -161,14 +161,14 @@ class CrowdAuditor {
     return geometry::locate(GrownShape{shape, at, radius}, Vec2{}) == geometry::Place::inside;
   }
 
-  void judge_speed(std::size_t i) {
+  void check_speed(std::size_t i) {
     const double way = norm(place(*to_, i) - place(*from_, i));
     if (way <= time_ * kind(i).max_speed * (1.0 + kSpeedRounding)) return;
     ++report.too_fast;
     find(i, ": moves " + std::to_string(way) + " m, farther than its speed allows");
   }
 
-  void judge_edges(std::size_t i) {
+  void check_edges(std::size_t i) {
     const Vec2 at = place(*from_, i), motion = place(*to_, i) - at;
     const double radius = kind(i).radius, reach = radius + norm(motion) * (1.0 + kTouches);
     edges_by_place_.for_each_within(at, reach, [&](std::size_t k) {
@@ -176,7 +176,7 @@ class CrowdAuditor {
       const double lengths = one_norm(edge.a - at) + one_norm(edge.b - at) + radius, rounding = kTouches * lengths;
       const double distance = geometry::distance(edge, at);
       if (distance > reach + rounding) return;
-      if (distance < radius + rounding) return judge_touching_edge(i, k, distance, lengths);
+      if (distance < radius + rounding) return check_touching_edge(i, k, distance, lengths);
       ++report.near_edges;
       if (!meets(edge, at, motion, radius)) return;
       ++report.edges_met;
@@ -186,7 +186,7 @@ class CrowdAuditor {
 
   /// No step leads nearer to an edge that is touched, kept or not: the half-plane is that of the nearest point, the
   /// edge lies behind it, and standing still satisfies it.
-  void judge_touching_edge(std::size_t i, std::size_t k, double distance, double lengths) {
+  void check_touching_edge(std::size_t i, std::size_t k, double distance, double lengths) {
     const double radius = kind(i).radius;
     const double rounding = kTouches * steps_ * (lengths + 4.0 * time_ * kind(i).max_speed);
     const double nearest = std::min(distance, radius) - rounding;
@@ -201,7 +201,7 @@ class CrowdAuditor {
     find(i, ": comes nearer to edge " + std::to_string(k) + ", which it touched");
   }
 
-  void judge_pairs(std::size_t i) {
+  void check_pairs(std::size_t i) {
     const Vec2 at = place(*from_, i), motion = place(*to_, i) - at;
     robots_by_place_.for_each_within(at, cell_, [&](std::size_t j) {
       if (j == i || (one_of_ == 1 && j < i)) return;
@@ -212,7 +212,7 @@ class CrowdAuditor {
       const bool touches = distance < sum + rounding, both_kept = to_->kept[i] && to_->kept[j];
       if (!both_kept) return void(++(touches ? report.touching_pairs_open : report.pairs_open));
       const Disc other{d, kind(j).radius};
-      if (touches) return judge_touching_pair(i, j, is_within(other, relative, kind(i).radius));
+      if (touches) return check_touching_pair(i, j, is_within(other, relative, kind(i).radius));
       ++report.pairs;
       if (!meets(other, {}, relative, kind(i).radius)) return;
       ++report.pairs_met;
@@ -221,7 +221,7 @@ class CrowdAuditor {
   }
 
   /// Half-planes of a pair that touches lead apart within the step: both kept, it does not overlap at the end.
-  void judge_touching_pair(std::size_t i, std::size_t j, bool overlap_at_end) {
+  void check_touching_pair(std::size_t i, std::size_t j, bool overlap_at_end) {
     ++report.touching_pairs;
     if (!overlap_at_end) return;
     ++report.pairs_not_parted;
@@ -264,7 +264,7 @@ CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::s
     if (count > 0 && now.step <= before.step)
       throw DataError(DataCode::format_syntax, path.string(), "step " + std::to_string(now.step),
                       "a row after that of step " + std::to_string(before.step), "rows in the order of time");
-    if (count++ > 0) auditor.judge(before, now);
+    if (count++ > 0) auditor.check(before, now);
   }
   auditor.report.rows = count;
   auditor.report.cut_off = reader.is_cut_off();

@@ -17,8 +17,8 @@ inline void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& p
   append_value(json, points);
 }
 
-template <class Way>
-void members(Way& json, For<Way, formation::Robot>& robot) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Robot>& robot) {
   json.member("id", robot.id).member("position", robot.position).optional("velocity", robot.velocity);
   json.optional("radius", robot.radius).optional("max_speed", robot.max_speed).optional("goals", robot.goals);
   json.optional("cooperates", robot.cooperates);
@@ -26,30 +26,30 @@ void members(Way& json, For<Way, formation::Robot>& robot) {
 
 template <>
 inline constexpr bool kOnOneLine<formation::Gains> = true;
-template <class Way>
-void members(Way& json, For<Way, formation::Gains>& gains) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Gains>& gains) {
   json.optional("k1", gains.k1).optional("k2", gains.k2).optional("k3", gains.k3).optional("kappa", gains.kappa);
 }
 
 template <>
 inline constexpr bool kOnOneLine<formation::AskedControllerOptions> = true;
-template <class Way>
-void members(Way& json, For<Way, formation::AskedControllerOptions>& asked) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::AskedControllerOptions>& asked) {
   for (const formation::ControllerSwitch& s : formation::controller_switches()) json.optional(s.name, asked.*s.asked);
   json.optional("acceleration_bound", asked.acceleration_bound);
 }
 
 /// All but the topology, the offsets, `recentre` and the leader.
-template <class Way>
-void members(Way& json, For<Way, formation::FormationSpec>& spec) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::FormationSpec>& spec) {
   json.optional("gains", spec.gains).optional("catch_up_speed", spec.catch_up_speed);
   json.optional("controller_options", spec.controller_options);
 }
 
 template <>
 inline constexpr bool kOnOneLine<formation::Horizons> = true;
-template <class Way>
-void members(Way& json, For<Way, formation::Horizons>& horizons) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Horizons>& horizons) {
   json.optional("least", horizons.least).optional("most", horizons.most);
   json.optional("speed_floor", horizons.speed_floor).optional("orca", horizons.orca);
   json.optional("robots", horizons.robots);
@@ -57,14 +57,14 @@ void members(Way& json, For<Way, formation::Horizons>& horizons) {
 
 template <>
 inline constexpr bool kOnOneLine<formation::Margins> = true;
-template <class Way>
-void members(Way& json, For<Way, formation::Margins>& margins) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Margins>& margins) {
   json.optional("obstacle", margins.obstacle).optional("robot", margins.robot);
 }
 
 /// Its numbers: horizons, margins, times, distances.
-template <class Way>
-void members(Way& json, For<Way, formation::Scenario>& scenario) {
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Scenario>& scenario) {
   json.optional("horizons", scenario.horizons).optional("margins", scenario.margins);
   json.optional("time_step", scenario.time_step).optional("time_limit", scenario.time_limit);
   json.optional("arrival_tolerance", scenario.arrival_tolerance);

@@ -95,7 +95,7 @@ class FormationRun {
     rows.add(last);
     rows.finish();
     if (plans_) recording.liveness = plans_->groups().course();
-    judge(first_error, last, recording);
+    note_divergence(first_error, last, recording);
   }
 
  private:
@@ -310,7 +310,7 @@ class FormationRun {
     return false;
   }
 
-  void judge(double first, const Step& end, Recording& recording) const {
+  void note_divergence(double first, const Step& end, Recording& recording) const {
     const double last = formation_error(end, offsets_);
     recording.diverged = out_of_bounds() || has_diverged(first, error_of_moving(end, offsets_));
     recording.outcome = recording.diverged

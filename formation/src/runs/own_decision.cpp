@@ -41,7 +41,7 @@ Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   if (in_contact) decision.mode = Mode::pushing_out;
   if (is_orca()) return preferred;
   if (options_.method != Method::ivo) return ties_broken(way, preferred, decision);
-  const Follower::Answer answer =
+  const BoundaryFollower::Answer answer =
       way.follower.steer({errand.time, scenario_.time_step, here, errand.goal,
                           here.max_speed * scenario_.horizons.least, preferred, &*way.field},
                          following_);

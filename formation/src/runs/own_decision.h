@@ -20,7 +20,7 @@ namespace exactvo::formation::detail {
 /// What a robot keeps from one decision to the next.
 struct OwnWay {
   std::optional<StaticField> field;  ///< for its present goal
-  Follower follower;
+  BoundaryFollower follower;
   bool tied = false;  ///< the last preference was turned to break a tie
 
   /// Another goal: the obstacles are seen anew, and whatever was followed is forgotten.
@@ -88,7 +88,7 @@ class OwnDecision {
   Decider decider_;
   NeededConstraints needed_;     ///< of the methods that have static fields of shapes
   std::vector<Constraint> all_;  ///< of Method::orca
-  Follower::Memory following_;
+  BoundaryFollower::Memory following_;
 };
 
 }  // namespace exactvo::formation::detail

@@ -131,11 +131,11 @@ constexpr double kLeastFollowing = 0.05;
 
 }  // namespace
 
-void Follower::reset() {
-  *this = Follower{};
+void BoundaryFollower::reset() {
+  *this = BoundaryFollower{};
 }
 
-bool Follower::stalled(const Situation& s) {
+bool BoundaryFollower::stalled(const Situation& s) {
   const double goal_distance = norm(s.goal - s.robot.position);
   const double step = kStallProgress * kStallTime * s.robot.max_speed;
   if (best_distance_ < 0.0 || goal_distance < best_distance_ - step) {
@@ -145,11 +145,11 @@ bool Follower::stalled(const Situation& s) {
   return s.time - best_time_ > kStallTime;
 }
 
-bool Follower::may_leave(const Situation& s, NearConstraints& near) const {
+bool BoundaryFollower::may_leave(const Situation& s, NearConstraints& near) const {
   return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !near.any_violated(s.preferred);
 }
 
-Follower::Answer Follower::steer(const Situation& s, Memory& memory) {
+BoundaryFollower::Answer BoundaryFollower::steer(const Situation& s, Memory& memory) {
   if (!following_ && !stalled(s)) return {s.preferred};
   NearConstraints& near = memory.near;
   near.forget();
@@ -164,7 +164,7 @@ Follower::Answer Follower::steer(const Situation& s, Memory& memory) {
   return {s.preferred, Mode::direct, 0, {Note::What::left}};
 }
 
-void Follower::commit(const Situation& s, int side, std::size_t followed) {
+void BoundaryFollower::commit(const Situation& s, int side, std::size_t followed) {
   following_ = true;
   side_ = side;
   hit_distance_ = norm(s.goal - s.robot.position);
@@ -174,15 +174,15 @@ void Follower::commit(const Situation& s, int side, std::size_t followed) {
   followed_ = followed;
 }
 
-constexpr double kRehearsalHorizon = 60.0;  ///< s: a boundary longer than that ranks by how far the goal is then
+constexpr double kTrialRunHorizon = 60.0;  ///< s: a boundary longer than that ranks by how far the goal is then
 
 /// One side of a boundary in the static scene alone: the time until it can be left plus the straight way from there.
 ///
-/// Nothing is faster than max_speed. Therefore `time` never falls by more than rounding: while the rehearsal runs, it
+/// Nothing is faster than max_speed. Therefore `time` never falls by more than rounding: while the trial run runs, it
 /// is a lower bound of what it will be at the end.
-class Follower::Rehearsal {
+class BoundaryFollower::TrialRun {
  public:
-  Rehearsal(const Follower& actor, const Situation& s, NearConstraints& near)
+  TrialRun(const BoundaryFollower& actor, const Situation& s, NearConstraints& near)
       : actor_(actor), s_(s), near_(near), start_(s.time) {
     near_.forget();
   }
@@ -192,7 +192,7 @@ class Follower::Rehearsal {
   double time() const { return time_; }
 
   void step() {
-    if (!(s_.time - start_ < kRehearsalHorizon)) return end();
+    if (!(s_.time - start_ < kTrialRunHorizon)) return end();
     const Vec2 to_goal = s_.goal - s_.robot.position;
     s_.preferred = s_.robot.max_speed * geometry::normalized(to_goal);
     near_.look(*s_.field, s_.robot, s_.reach);
@@ -215,7 +215,7 @@ class Follower::Rehearsal {
   }
   double time_from_here() const { return s_.time - start_ + norm(s_.goal - s_.robot.position) / s_.robot.max_speed; }
 
-  Follower actor_;
+  BoundaryFollower actor_;
   Situation s_;
   NearConstraints& near_;
   double start_, time_ = 0.0;  ///< s
@@ -235,24 +235,24 @@ struct Seconds {
   }
 };
 
-/// s: by how much the time of a rehearsal can fall by rounding.
+/// s: by how much the time of a trial run can fall by rounding.
 ///
 /// A step rounds a velocity and its length (8 u of max_speed), a position and the distance to the goal (8 u of the
 /// largest coordinate) and a time (4 u). The bound leaves a factor of two, and is never less than a microsecond.
-double rehearsal_rounding(const Follower::Situation& s) {
+double trial_run_rounding(const BoundaryFollower::Situation& s) {
   constexpr double kUnit = 0x1p-53, kLeast = 1e-6;
   const auto largest = [](Vec2 p) { return std::max(std::fabs(p.x), std::fabs(p.y)); };
   const double fastest = s.robot.max_speed;
-  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * kRehearsalHorizon;
-  const double steps = kRehearsalHorizon / s.time_step + 2.0;
-  const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + kRehearsalHorizon));
+  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * kTrialRunHorizon;
+  const double steps = kTrialRunHorizon / s.time_step + 2.0;
+  const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + kTrialRunHorizon));
   return std::max(kLeast, 2.0 * steps * a_step);
 }
 
 /// Whether the left is taken: within a time step of the right or faster. Steps the side that may be faster. Stops when
 /// one side has ended and the other is later by more than rounding: the end of the other would not change the answer.
-template <class Rehearsal>
-bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step, double rounding) {
+template <class TrialRun>
+bool left_is_better(TrialRun& left, TrialRun& right, double time_step, double rounding) {
   for (;;) {
     if (left.has_ended() && right.has_ended()) return left.time() <= right.time() + time_step;
     if (left.has_ended() && right.time() + time_step > left.time() + rounding) return true;
@@ -264,9 +264,9 @@ bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step, double 
 
 }  // namespace
 
-/// "... turning left (12.3 s to go that way, 15.1 s the other)"; of one that was not rehearsed to its end "at least
+/// "... turning left (12.3 s to go that way, 15.1 s the other)"; of one that was not run to its end "at least
 /// 12.4 s".
-void Follower::Note::add_to(std::string& note) const {
+void BoundaryFollower::Note::add_to(std::string& note) const {
   char text[240];
   switch (what) {
     case What::nothing:
@@ -283,27 +283,27 @@ void Follower::Note::add_to(std::string& note) const {
   }
 }
 
-Follower::Answer Follower::begin(const Situation& s, Memory& memory) {
+BoundaryFollower::Answer BoundaryFollower::begin(const Situation& s, Memory& memory) {
   NearConstraints& near = memory.near;
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
   // At full speed nothing may stand in the way of what a slower preference violates: then there is no boundary.
   const bool met = left && right && left->last != Sweep::kNone && right->last != Sweep::kNone;
   if (!met) return {s.preferred};
-  Follower to_left, to_right;
+  BoundaryFollower to_left, to_right;
   to_left.commit(s, 1, left->last);
   to_right.commit(s, -1, right->last);
-  Rehearsal on_left(to_left, s, memory.on_left), on_right(to_right, s, memory.on_right);
-  const bool go_left = left_is_better(on_left, on_right, s.time_step, rehearsal_rounding(s));
+  TrialRun on_left(to_left, s, memory.on_left), on_right(to_right, s, memory.on_right);
+  const bool go_left = left_is_better(on_left, on_right, s.time_step, trial_run_rounding(s));
   *this = go_left ? to_left : to_right;
-  const Rehearsal &taken = go_left ? on_left : on_right, &other = go_left ? on_right : on_left;
+  const TrialRun &taken = go_left ? on_left : on_right, &other = go_left ? on_right : on_left;
   return {(go_left ? left : right)->velocity,
           Mode::following,
           side_,
           {Note::What::follows, go_left, taken.time(), other.time(), !other.has_ended()}};
 }
 
-Follower::Answer Follower::follow(const Situation& s, NearConstraints& near) {
+BoundaryFollower::Answer BoundaryFollower::follow(const Situation& s, NearConstraints& near) {
   walked_ += norm(s.robot.position - last_position_);
   last_position_ = s.robot.position;
   Answer answer{s.preferred, Mode::following, side_};

@@ -48,9 +48,9 @@ Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v);
 /// The same for one half-plane, given by its normal of any length. REQUIRES: v violates it.
 Vec2 with_tie_broken(Vec2 normal, Vec2 v);
 
-/// Follows a boundary after a stall: state of one robot. The side is the one on which a rehearsal of the static scene
+/// Follows a boundary after a stall: state of one robot. The side is the one on which a trial run of the static scene
 /// leaves the boundary with the shorter way to go; ties go left.
-class Follower {
+class BoundaryFollower {
  public:
   /// What began or ended, for the row's note.
   struct Note {
@@ -100,7 +100,7 @@ class Follower {
   bool circled() const { return circled_; }
 
  private:
-  class Rehearsal;
+  class TrialRun;
 
   bool stalled(const Situation& s);
   Answer begin(const Situation& s, Memory& memory);

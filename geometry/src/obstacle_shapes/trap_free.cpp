@@ -73,7 +73,7 @@ bool leaves_no_room(const ShapeOptions& options, const ConvexPolygon& hull) {
 /// Why the fit found none.
 TrapFreeAnswer answer_without(const ShapeOptions& options, const ConvexPolygon& hull) {
   if (leaves_no_room(options, hull)) return TrapFreeAnswer::no_room;
-  const Way& way = *options.way;
+  const StartAndGoal& way = *options.way;
   EnclosureOptions any_size = options.enclosure;
   any_size.most_inflation = std::numeric_limits<double>::max();
   const bool exists = fit_trap_free(hull.vertices, options.robot_radius, way.start, way.goal, any_size).has_value();
@@ -81,7 +81,7 @@ TrapFreeAnswer answer_without(const ShapeOptions& options, const ConvexPolygon& 
 }
 
 void free_along_way(const ShapeOptions& options, ObstacleShapes& out) {
-  const Way& way = *options.way;
+  const StartAndGoal& way = *options.way;
   const auto fitted = fit_trap_free(out.hull.vertices, options.robot_radius, way.start, way.goal, options.enclosure);
   if (!fitted) {
     out.trap_free.answer = answer_without(options, out.hull);

@@ -102,7 +102,7 @@ void turn_if_needed(CleanRing& clean, std::size_t ring, Problems& problems) {
   std::reverse(std::next(clean.source.begin()), clean.source.end());
 }
 
-// The ring put right as far as it goes; false if it can't be part of a polygon.
+// The ring, repaired as far as it goes; false if it can't be part of a polygon.
 bool check_ring(const Ring& given, std::size_t ring, CleanRing& clean, Problems& problems) {
   if (report_not_finite(given, ring, problems)) return false;
   clean = without_closure(given, ring, problems);

@@ -328,7 +328,7 @@ def _is_list_of_points(shapes: Any) -> bool:
 
 def obstacles(shapes: Obstacles | ShapeLike | Sequence[Any], *, ids: Sequence[str] | None = None) -> Obstacles:
     """`Obstacles` of one shape or a sequence of shapes (module docstring). Several polygons of one Multi... become several
-    obstacles. Winding, closing points and repeated vertices are put right, exactly; what crosses itself is refused
+    obstacles. Winding, closing points and repeated vertices are repaired, exactly; what crosses itself is refused
     (`exactvo.datasets.repair` cuts it). Raises `ArgumentError` naming the obstacle."""
     if isinstance(shapes, Obstacles):
         return shapes if ids is None else Obstacles(

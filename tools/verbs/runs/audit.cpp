@@ -105,7 +105,7 @@ std::string summary(const datasets::AuditReport& report) {
 
 std::string summary(const datasets::CrowdAuditReport& r) {
   std::string text = fmt::format(
-      "{} of {}, {} judged: {} too fast\n"
+      "{} of {}, {} checked: {} too fast\n"
       "pairs near each other, apart at the row before, that satisfied their half-planes: {}, {} overlapped; {} more "
       "did "
       "not (no guarantee)\n"

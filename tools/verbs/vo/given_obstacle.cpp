@@ -91,7 +91,7 @@ std::optional<ConvexShape> shape_of(const Call& call) {
   return std::nullopt;
 }
 
-/// What begins WKT; EMPTY and Z, M are the reader's to judge.
+/// What begins WKT; EMPTY and Z, M are the reader's to validate.
 bool begins_wkt(const std::string& word) {
   for (const char* known :
        {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION", "TRIANGLE", "LINEARRING", "SRID"})

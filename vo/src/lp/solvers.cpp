@@ -26,7 +26,7 @@ constexpr double kMostOffset = 1e29;
 /// batch.h: | |normal| - 1 | <= 2^-10.
 constexpr double kUnitLength = 0x1p-10;
 
-/// A register's worth of problems, transposed; those that the lockstep walk takes.
+/// A register's worth of problems, transposed; those that the lockstep search takes.
 class Batch {
  public:
   explicit Batch(const std::vector<Problem>& problems) {

@@ -4,7 +4,7 @@
 /// \file
 /// Obstacles from files. Whatever the format, what comes out is in metres, outer rings counter-clockwise, holes
 /// clockwise, first point not repeated, every ring simple (geometry/validity.h, `normalize`). What has one right answer
-/// is put right and noted; what has not is refused with a code, the feature, the ring, the vertex and its coordinates.
+/// is repaired and noted; what has not is refused with a code, the feature, the ring, the vertex and its coordinates.
 ///
 /// Coordinates. A file in a projected reference system is scaled to metres and otherwise left where it is. One in
 /// degrees (a geographic reference system; GeoJSON unless told otherwise, RFC 7946) is brought to local metres by the

@@ -112,11 +112,11 @@ Place place_for(const Chunk& chunk, const BatchConfiguration& configuration) {
 
 geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
   geometry::ShapeOptions options = configuration.shapes;
-  options.check_validity = false;  // the reader has judged them
+  options.check_validity = false;  // the reader has validated them
   if (configuration.robot) {
     options.robot_radius = configuration.robot->radius;
     const std::optional<geometry::Vec2>& goal = configuration.robot->goal;
-    if (goal) options.way = geometry::Way{configuration.robot->positions.front(), *goal};
+    if (goal) options.way = geometry::StartAndGoal{configuration.robot->positions.front(), *goal};
   }
   return options;
 }

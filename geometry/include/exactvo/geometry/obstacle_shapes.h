@@ -26,7 +26,7 @@
 namespace exactvo::geometry {
 
 /// From where to where a robot wants to go, for a trap-free ellipse made to measure.
-struct Way {
+struct StartAndGoal {
   Vec2 start;  ///< m
   Vec2 goal;   ///< m
 };
@@ -37,7 +37,7 @@ struct ShapeOptions {
   PartitionMethod partition = PartitionMethod::automatic;  ///< of polygons without holes
   FacadeEllipseOptions facade_ellipses;                    ///< equation (8)
   double robot_radius = 0.0;                               ///< m, >= 0; in clearances, and in the fit along `way`
-  std::optional<Way> way;                                  ///< none: the ellipse is trap-free for every goal
+  std::optional<StartAndGoal> way;                         ///< none: the ellipse is trap-free for every goal
   EnclosureOptions enclosure;                              ///< of the fit along `way`
   bool exact_smallest_ellipse = false;                     ///< by CGAL's exact search, some hundred times slower
   bool check_validity = true;                              ///< false: the caller knows the obstacle to be valid

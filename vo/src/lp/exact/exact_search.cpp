@@ -268,7 +268,7 @@ class WallSearch {
   std::size_t highest_ = 0;
 };
 
-// --- The walk ---
+// --- The search ---
 
 struct Scan {
   const ExactRegion& region;
@@ -346,7 +346,7 @@ ExactOptimum step(const Scan& from, const Aim& aim, std::size_t enters) {
   return next;
 }
 
-ExactOptimum walk(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing) {
+ExactOptimum search(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing) {
   while (o.feasible) {
     const Scan scan{region, o, relaxing};
     const std::size_t enters = entering(scan);
@@ -361,7 +361,7 @@ ExactOptimum least_violation_in_disc(const ExactRegion& region, const Aim& aim) 
   while (!region.lines[top].soft) ++top;
   ExactOptimum o = lowest_on_plane(region, aim, {}, top);
   o.tight = {top};
-  return walk(region, aim, std::move(o), true);
+  return search(region, aim, std::move(o), true);
 }
 
 /// Radii of discs that stand for no bound at all. Vertices of lines of doubles lie within 2^4300 (quotients of sums of
@@ -395,9 +395,9 @@ ExactOptimum without_disc(ExactOptimum o) {
 }  // namespace
 
 ExactOptimum exact_best(const ExactRegion& region, const Aim& aim) {
-  if (region.has_disc || aim.directions.empty()) return walk(region, aim, start_of(region, aim), false);
+  if (region.has_disc || aim.directions.empty()) return search(region, aim, start_of(region, aim), false);
   const ExactRegion bounded = bounded_by(region, around_box(region) + Exact(1));
-  return without_disc(walk(bounded, aim, start_of(bounded, aim), false));
+  return without_disc(search(bounded, aim, start_of(bounded, aim), false));
 }
 
 ExactOptimum exact_least_violation(const ExactRegion& region, const Aim& aim) {

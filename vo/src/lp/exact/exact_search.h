@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// The active-set searches in exact arithmetic. The same walk as active_set.h: a violated line enters, and the optimum
-/// of the working set of a few lines is found on its boundary. Here every sign is exact, so the objective grows
-/// strictly with each round and no basis comes twice: the walk ends on any input. Doubles only choose which line is
+/// The active-set searches in exact arithmetic. The same search as active_set.h: a violated line enters, and the
+/// optimum of the working set of a few lines is found on its boundary. Here every sign is exact, so the objective grows
+/// strictly with each round and no basis comes twice: the search ends on any input. Doubles only choose which line is
 /// looked at first.
 ///
 /// The objective is lexicographic, so that the optimum is one point: (least violation, then) the problem's own

@@ -19,7 +19,7 @@ std::size_t first_line_of(const BatchProblems<T>& in, std::size_t i) {
   return i / in.block * in.block * in.lines + i % in.block;
 }
 
-/// What the walks allow for rounding, in units of u V: lines are moved inward by the slack, 16 u V for any vertex of
+/// What the searches allow for rounding, in units of u V: lines are moved inward by the slack, 16 u V for any vertex of
 /// unit normals (region.h) and half of that again for normals that are not quite of unit length; what is left over of a
 /// violation after a step is noise up to 8 u V, which leaves 16 u V of the slack; the disc shrinks by as much.
 inline constexpr double kSlackUnits = 24.0, kNoiseUnits = 8.0, kDiscUnits = 8.0;

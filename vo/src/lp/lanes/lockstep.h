@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How packs of problems travel. A round is a chain of divisions and comparisons that a processor cannot look past, so
-// some packs make each round together: the gaps of one are filled by the others. Both walks go on side by side in a
+// some packs make each round together: the gaps of one are filled by the others. Both phases go on side by side in a
 // pack, each lane on its own; what it computes does not depend on its company. Compiled once per SIMD target, hence the
 // toggling guard.
 #if defined(EXACTVO_BATCH_CONVEYOR_H) == defined(HWY_TARGET_TOGGLE)
@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-/// Called for problem i that the walk could not settle or prove; true where exact arithmetic was needed.
+/// Called for problem i that the search could not settle or prove; true where exact arithmetic was needed.
 template <class T>
 using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
 
@@ -107,7 +107,7 @@ class Lockstep {
     for_all(states, packs, [this](PackState& w) { price_all<2>(w); });
   }
 
-  /// Two rounds, with no line and with one in hand, then as many as it takes.
+  /// Two rounds, with no line and with one in the working set, then as many as it takes.
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
     for_all(states, packs, [](PackState& w) {
       w.pack.derive();

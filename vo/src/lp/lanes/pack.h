@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A register full of problems and the feasibility phase. Compiled once per SIMD target, hence the toggling guard.
-#if defined(EXACTVO_BATCH_WALK_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef EXACTVO_BATCH_WALK_H
-#undef EXACTVO_BATCH_WALK_H
+#if defined(EXACTVO_BATCH_PACK_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef EXACTVO_BATCH_PACK_H
+#undef EXACTVO_BATCH_PACK_H
 #else
-#define EXACTVO_BATCH_WALK_H
+#define EXACTVO_BATCH_PACK_H
 #endif
 
 #include <hwy/cache_control.h>
@@ -106,7 +106,7 @@ struct Pack {
     return hn::And(hn::Ge(limit, hn::Set(d, kLeastSquare<T>)), hn::Le(most, hn::Set(d, kMostSquare<T>)));
   }
 
-  /// The optimum of the disc alone. The first step sets what is in hand.
+  /// The optimum of the disc alone. The first step sets the working set.
   HWY_INLINE void start() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
     const V squared = dot(px, py, px, py);
@@ -257,11 +257,12 @@ HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other
 }
 
 /// A round of the feasibility phase for the lanes in `moving`: the optimum on the boundary of `entering`, of the kKept
-/// lines in hand those that bind. Gives the lanes where nothing is left: entering, first and second contradict.
+/// lines of the working set those that bind. Gives the lanes where nothing is left: entering, first and second
+/// contradict.
 ///
-/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left, and each line in hand cuts it off at an s of its
-/// own. Masks cost more than numbers, so what binds is found by comparing with that s. The disc is asked only where the
-/// s found lies beyond it.
+/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left, and each line of the working set cuts it off at an
+/// s of its own. Masks cost more than numbers, so what binds is found by comparing with that s. The disc is asked only
+/// where the s found lies beyond it.
 template <int kKept, bool kIndex, class D>
 HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   using T = hn::TFromD<D>;

@@ -84,7 +84,7 @@ HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   return hn::AndNot(good, moving);
 }
 
-/// What cuts a stretch of a line q + s (-y, x) off: one of two lines in hand, or the disc.
+/// What cuts a stretch of a line q + s (-y, x) off: one of two lines of the working set, or the disc.
 template <class D>
 struct Stretch {
   using V = hn::Vec<D>;
@@ -137,7 +137,7 @@ class Descent {
  public:
   explicit HWY_INLINE Descent(Pack<D>& pack) : p_(pack), unsettled(pack.none()) {}
 
-  /// Walks to the end the lanes in `moving`. Lanes that end `unsettled` are for the scalar solver.
+  /// Searches to the end in the lanes in `moving`. Lanes that end `unsettled` are for the scalar solver.
   template <bool kHard, bool kIndex>
   HWY_INLINE void run(const Rows<T>& rows, M moving) {
     const M fresh = hn::And(same(p_.entering, p_.first), moving);
@@ -192,7 +192,7 @@ class Descent {
             pick(soft, hn::Sub(line.c, top.c), line.c), line.index};
   }
 
-  /// Which of the lines before bind where the walk stands.
+  /// Which of the lines before bind where the search stands.
   struct Binding {
     M line, before0, before1;
   };

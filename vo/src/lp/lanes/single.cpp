@@ -45,7 +45,7 @@ HWY_INLINE Line given(const SingleProblem& p, std::ptrdiff_t line) {
   return {p.normal_x[line], p.normal_y[line], p.offset[line], line};
 }
 
-/// What the walks allow for rounding (layout.h).
+/// What the searches allow for rounding (layout.h).
 struct Allowance {
   explicit HWY_INLINE Allowance(double speed)
       : slack(kSlackUnits * 0x1p-53 * speed),
@@ -123,28 +123,28 @@ HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
   pack.derive();
 }
 
-/// The walk of pack.h and relaxation.h for one problem: a register of one lane. Its lines are priced a register
+/// The search of pack.h and relaxation.h for one problem: a register of one lane. Its lines are priced a register
 /// at a time, except where hard lines stand beside soft ones that give.
 template <class D, bool kHard>
-class LoneWalk {
+class LoneSearch {
  public:
-  explicit HWY_INLINE LoneWalk(const SingleProblem& problem) : p_(problem) {
+  explicit HWY_INLINE LoneSearch(const SingleProblem& problem) : p_(problem) {
     ask(problem, pack_);
     pack_.start();
     pack_.first = pack_.second = no_line(One());
     every_ = hn::Not(pack_.none());
   }
 
-  /// False where the walk cannot tell: for `solve`.
+  /// False where the search cannot tell: for `solve`.
   bool run(Solution& s) {
     for (int round = 0; round < kMostLockstepRounds; ++round) {
-      if (!look()) return answer(s);
-      if (relaxing_ ? !pivot_on() : !step_on(round)) return descend(s);
+      if (!price_next()) return answer(s);
+      if (relaxing_ ? !pivot_on() : !step_on(round)) return relax_any_basis(s);
     }
     return false;
   }
 
-  /// On the disc, the walk from three lines may end before the least violation.
+  /// On the disc, the search from three lines may end before the least violation.
   bool is_on_disc() const {
     const double x = hn::GetLane(pack_.vx), y = hn::GetLane(pack_.vy);
     return x * x + y * y > p_.disc * p_.disc * (1.0 - kOnDisc);
@@ -155,7 +155,7 @@ class LoneWalk {
     pack_.first = in_lane(a);
     pack_.second = in_lane(b);
     pack_.third = in_lane(c);
-    if (!start_of_relaxation()) return descend(s);
+    if (!start_of_relaxation()) return relax_any_basis(s);
     return run(s);
   }
 
@@ -169,7 +169,7 @@ class LoneWalk {
   static HWY_INLINE bool any(hn::Mask<One> m) { return !hn::AllFalse(One(), m); }
 
   /// Pricing: the line that enters; false where none is violated.
-  HWY_INLINE bool look() {
+  HWY_INLINE bool price_next() {
     if (kHard && relaxing_) {
       price<kHard, true, false>(rows_of(p_), pack_);
       return any(pack_.violated);
@@ -206,7 +206,7 @@ class LoneWalk {
   HWY_INLINE bool pivot_on() { return !any(pivot<kHard, true>(pack_, every_)); }
 
   /// Any basis: soft planes, walls, the disc.
-  HWY_NOINLINE bool descend(Solution& s) {
+  HWY_NOINLINE bool relax_any_basis(Solution& s) {
     const One d;
     pack_.vx = pack_.vy = pack_.level = hn::Zero(d);
     pack_.violated = pack_.none();
@@ -217,7 +217,7 @@ class LoneWalk {
     return !any(descent.unsettled) && answer(s);
   }
 
-  /// The walk does not keep the disc in its basis; it may bind wherever a slot is free.
+  /// The search does not keep the disc in its basis; it may bind wherever a slot is free.
   HWY_INLINE bool answer(Solution& s) const {
     const double x = hn::GetLane(pack_.vx), y = hn::GetLane(pack_.vy);
     s.velocity = {x, y};
@@ -244,8 +244,8 @@ class LoneWalk {
 };
 
 /// One problem, its lines a register at a time. A problem alone is bound by latency, so chains are kept short: where
-/// the walk goes to a vertex line by line, here all lines cut the boundary of one at once, and multipliers tell whether
-/// the optimum is found. What that does not settle is left to LoneWalk.
+/// the search goes to a vertex line by line, here all lines cut the boundary of one at once, and multipliers tell
+/// whether the optimum is found. What that does not settle is left to LoneSearch.
 template <class D, bool kProve>
 class Slide : private Allowance {
   using V = hn::Vec<D>;
@@ -254,7 +254,7 @@ class Slide : private Allowance {
  public:
   explicit HWY_INLINE Slide(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
 
-  /// False where the walk has to tell, or the answer is not proven.
+  /// False where the search has to tell, or the answer is not proven.
   HWY_INLINE bool run(Solution& s) const {
     const double px = p_.preferred.x, py = p_.preferred.y;
     const std::ptrdiff_t line = most_violated(D(), p_, px, py, noise - slack);
@@ -269,7 +269,7 @@ class Slide : private Allowance {
   }
 
  private:
-  /// Boundaries followed before the walk is tried: one in 4 of 5 recorded problems, more than three in 1 of 10^4.
+  /// Boundaries followed before the search is tried: one in 4 of 5 recorded problems, more than three in 1 of 10^4.
   static constexpr int kMostSlides = 4;
 
   /// A bit a line, the last of which says that there is none.
@@ -397,8 +397,8 @@ class Slide : private Allowance {
 
   template <bool kHard>
   HWY_INLINE bool relax(const Line& line, const Line& low, const Line& high, Solution& s) const {
-    LoneWalk<D, kHard> walk(p_);
-    return walk.relax(line, low, high, s) && ((!kProve && !walk.is_on_disc()) || walk.is_proven());
+    LoneSearch<D, kHard> search(p_);
+    return search.relax(line, low, high, s) && ((!kProve && !search.is_on_disc()) || search.is_proven());
   }
 
   /// Whether every line holds by more than the rounding of its sum (exact_sign.h).
@@ -463,13 +463,13 @@ class Slide : private Allowance {
 };
 
 template <class D, bool kProve, bool kHard>
-HWY_INLINE bool walk_alone(const SingleProblem& p, Solution& s) {
-  LoneWalk<D, kHard> walk(p);
-  return walk.run(s) && (!kProve || walk.is_proven());
+HWY_INLINE bool search_alone(const SingleProblem& p, Solution& s) {
+  LoneSearch<D, kHard> search(p);
+  return search.run(s) && (!kProve || search.is_proven());
 }
 
 /// Of the square of the disc: where it is preferred to go faster than that, the disc mostly binds alone or with a line,
-/// which the walk finds sooner. Robots that prefer their full speed, up to rounding, are the common case.
+/// which the search finds sooner. Robots that prefer their full speed, up to rounding, are the common case.
 constexpr double kFarthestSlid = 1.0625;
 
 /// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way.
@@ -479,7 +479,7 @@ HWY_INLINE bool run_in(const SingleProblem& p, Solution& s) {
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
   if (squared <= limit * kFarthestSlid && Slide<D, kProve>(p).run(s)) return true;
-  return p.hard > 0 ? walk_alone<D, kProve, true>(p, s) : walk_alone<D, kProve, false>(p, s);
+  return p.hard > 0 ? search_alone<D, kProve, true>(p, s) : search_alone<D, kProve, false>(p, s);
 }
 
 template <bool kProve>
@@ -517,7 +517,7 @@ Problem problem_of(const SingleProblem& p) {
   return problem;
 }
 
-/// Out of line: what the walk settles need not save registers for it.
+/// Out of line: what the search settles need not save registers for it.
 HWY_NOINLINE void solve_copied(const SingleProblem& problem, Solution& answer) {
   answer = solve(problem_of(problem));
 }

@@ -158,7 +158,7 @@ Region within_disc(const Region& region, double radius) {
   return bounded;
 }
 
-Found walk_to_best(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced) {
+Found search_best(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced) {
   Found found = start_of(region, objective, preferred);
   for (int round = 0; round < kMostRounds; ++round) {
     if (priced) priced->push_back(found.velocity);
@@ -175,9 +175,9 @@ Found walk_to_best(const Region& region, Objective objective, Vec2 preferred, st
 
 Found best_velocity(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced) {
   if (objective == Objective::nearest || std::isfinite(region.disc))
-    return walk_to_best(region, objective, preferred, priced);
+    return search_best(region, objective, preferred, priced);
   // On a line alone a linear objective has no optimum: a disc beyond the corners of the box stands for what bounds it.
-  return walk_to_best(within_disc(region, 2.0 * region.speed), objective, preferred, priced);
+  return search_best(within_disc(region, 2.0 * region.speed), objective, preferred, priced);
 }
 
 // The least violation: lines of the space (v_x, v_y, t), where a soft line is the plane t = offset - normal . v. The

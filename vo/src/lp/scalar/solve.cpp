@@ -52,7 +52,7 @@ void set_lowered(const Region& region, double level, Region& lowered) {
 /// How far from its bound a velocity may be that the bound holds: the widest slack, put on by the solver, and rounding.
 constexpr double kAtBound = 2.0 * kSlacks[std::size(kSlacks) - 1] * kInwardSlack;
 
-/// False of a bound of the speed that the velocity is clearly away from: a walk may have leant on it on its way.
+/// False of a bound of the speed that the velocity is clearly away from: a search may have leant on it on its way.
 bool may_bind(const SpeedBound& bound, double speed, Binding binding, Vec2 v) {
   if (!is_speed_bound(binding)) return true;
   const double near = kAtBound * speed;

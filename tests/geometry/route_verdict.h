@@ -12,13 +12,13 @@
 
 namespace exactvo::test {
 
-enum class Judgement {
+enum class RouteVerdict {
   wrong,
   proven,
   either  ///< an end on a polygon's border is not free, whether one says that it is inside or not
 };
 
-Judgement judged(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question,
-                 const geometry::RouteAnswer& answer);
+RouteVerdict verdict_on(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question,
+                        const geometry::RouteAnswer& answer);
 
 }  // namespace exactvo::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "route_judge.h"
+#include "route_verdict.h"
 
 #include <gmpxx.h>
 
@@ -130,9 +130,9 @@ bool rises_through(const Spot& p, Spot a, Spot b) {
   return a.x <= p.x && p.x < b.x && cross(b - a, p - a) < 0;
 }
 
-class Judge {
+class Checker {
  public:
-  Judge(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question)
+  Checker(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question)
       : start_(spot(question.start)), goal_(spot(question.goal)), radius2_(question.radius) {
     radius2_ *= radius2_;
     reach_ = question.radius;
@@ -142,62 +142,65 @@ class Judge {
     }
   }
 
-  Judgement operator()(const geometry::Route& route) const {
+  RouteVerdict operator()(const geometry::Route& route) const {
     std::vector<Spot> points;
     for (const geometry::ExactPoint& p : route.points) {
       const std::optional<Spot> exact = spot(p);
-      if (!exact) return Judgement::wrong;
+      if (!exact) return RouteVerdict::wrong;
       points.push_back(*exact);
     }
-    if (points.empty() || !is_same(points.front(), start_) || !is_same(points.back(), goal_)) return Judgement::wrong;
-    if (is_inside_any(start_)) return Judgement::wrong;
-    if (points.size() == 1 && !is_clear({start_, start_})) return Judgement::wrong;
+    if (points.empty() || !is_same(points.front(), start_) || !is_same(points.back(), goal_))
+      return RouteVerdict::wrong;
+    if (is_inside_any(start_)) return RouteVerdict::wrong;
+    if (points.size() == 1 && !is_clear({start_, start_})) return RouteVerdict::wrong;
     mpf_class length(0, 256);
     for (std::size_t k = 1; k < points.size(); ++k) {
-      if (!is_clear({points[k - 1], points[k]})) return Judgement::wrong;
+      if (!is_clear({points[k - 1], points[k]})) return RouteVerdict::wrong;
       length += sqrt(mpf_class(norm2(points[k] - points[k - 1]), 256));
     }
     constexpr double kSame = 0x1p-40, kSearch = 0x1p-30;  // as the checker's header has it
-    if (!std::isfinite(route.length) || !std::isfinite(route.lower_bound)) return Judgement::wrong;
+    if (!std::isfinite(route.length) || !std::isfinite(route.lower_bound)) return RouteVerdict::wrong;
     const bool is_length = abs(mpf_class(route.length, 256) - length) <= kSame * length;
     const bool is_bound = route.lower_bound >= 0.0 && route.lower_bound <= length * (1.0 + kSearch);
-    return is_length && is_bound ? Judgement::proven : Judgement::wrong;
+    return is_length && is_bound ? RouteVerdict::proven : RouteVerdict::wrong;
   }
 
-  Judgement operator()(const geometry::Separated& separated) const {
+  RouteVerdict operator()(const geometry::Separated& separated) const {
     const std::size_t n = separated.chain.size();
-    if (n < 2) return Judgement::wrong;
+    if (n < 2) return RouteVerdict::wrong;
     std::vector<Spot> points;
     for (const geometry::ChainPoint& c : separated.chain) {
       const std::optional<Spot> exact = spot(c.point);
-      if (!exact || !is_on(*exact, c.on)) return Judgement::wrong;
+      if (!exact || !is_on(*exact, c.on)) return RouteVerdict::wrong;
       points.push_back(*exact);
     }
     bool about_start = false, about_goal = false;
     for (std::size_t k = 0; k < n; ++k) {
       const Spot &p = points[k], &q = points[(k + 1) % n];
       const bool holds = separated.chain[k].gap_follows ? norm2(q - p) < 4 * radius2_ : is_on(q, separated.chain[k].on);
-      if (!holds) return Judgement::wrong;
+      if (!holds) return RouteVerdict::wrong;
       about_start ^= rises_through(start_, p, q);
       about_goal ^= rises_through(goal_, p, q);
     }
     const bool is_free =
         !is_inside_any(start_) && !is_inside_any(goal_) && is_clear({start_, start_}) && is_clear({goal_, goal_});
-    return about_start != about_goal && is_free ? Judgement::proven : Judgement::wrong;
+    return about_start != about_goal && is_free ? RouteVerdict::proven : RouteVerdict::wrong;
   }
 
-  Judgement operator()(const geometry::Blocked& blocked) const {
+  RouteVerdict operator()(const geometry::Blocked& blocked) const {
     const Spot& end = blocked.end == geometry::Blocked::End::start ? start_ : goal_;
-    if (blocked.by.obstacle >= edges_.size()) return Judgement::wrong;
+    if (blocked.by.obstacle >= edges_.size()) return RouteVerdict::wrong;
     const std::vector<geometry::Segment>& edges = edges_[blocked.by.obstacle];
     if (blocked.inside) {
-      if (!solid_[blocked.by.obstacle]) return Judgement::wrong;
+      if (!solid_[blocked.by.obstacle]) return RouteVerdict::wrong;
       const Place place = place_in(edges, end);
-      return place == Place::border ? Judgement::either : place == Place::inside ? Judgement::proven : Judgement::wrong;
+      return place == Place::border   ? RouteVerdict::either
+             : place == Place::inside ? RouteVerdict::proven
+                                      : RouteVerdict::wrong;
     }
-    if (blocked.by.edge >= edges.size()) return Judgement::wrong;
+    if (blocked.by.edge >= edges.size()) return RouteVerdict::wrong;
     const geometry::Segment& s = edges[blocked.by.edge];
-    return meets({end, end}, {spot(s.a), spot(s.b)}, radius2_) ? Judgement::proven : Judgement::wrong;
+    return meets({end, end}, {spot(s.a), spot(s.b)}, radius2_) ? RouteVerdict::proven : RouteVerdict::wrong;
   }
 
  private:
@@ -242,9 +245,9 @@ class Judge {
 
 }  // namespace
 
-Judgement judged(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question,
-                 const geometry::RouteAnswer& answer) {
-  return std::visit(Judge(obstacles, question), answer);
+RouteVerdict verdict_on(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question,
+                        const geometry::RouteAnswer& answer) {
+  return std::visit(Checker(obstacles, question), answer);
 }
 
 }  // namespace exactvo::test
