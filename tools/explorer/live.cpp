@@ -60,23 +60,12 @@ formation::Leader advanced(const formation::Leader& leader, double time) {
   return rest;
 }
 
-void shift(geometry::Obstacle& shape, Vec2 by) {
-  if (auto* line = std::get_if<geometry::Polyline>(&shape)) {
-    for (Vec2& p : line->points) p += by;
-    return;
-  }
-  auto& polygon = std::get<geometry::Polygon>(shape);
-  for (Vec2& p : polygon.outer) p += by;
-  for (geometry::Ring& hole : polygon.holes)
-    for (Vec2& p : hole) p += by;
-}
-
 void advance(formation::Scenario& scenario, double time) {
   if (time == 0.0) return;
   for (formation::MovingObstacle& obstacle : scenario.moving_obstacles) {
     const Vec2 before = obstacle.motion.path.front();
     obstacle.motion = advanced(obstacle.motion, time);
-    shift(obstacle.shape, obstacle.motion.path.front() - before);
+    geometry::shift(obstacle.shape, obstacle.motion.path.front() - before);
   }
   if (scenario.formation) scenario.formation->leader = advanced(scenario.formation->leader, time);
 }

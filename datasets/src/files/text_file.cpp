@@ -223,6 +223,15 @@ void refuse_entities(std::string_view xml, const std::string& file) {
                   "XML without entities of its own: they are not expanded");
 }
 
+std::string csv_quoted(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length) {
   if (text.empty()) return "nothing";
   if (byte >= text.size()) return "the end of the file";

@@ -26,6 +26,9 @@ std::string line_and_column(std::string_view text, std::size_t byte);
 /// files.
 void refuse_entities(std::string_view xml, const std::string& file);
 
+/// A field of CSV in quotes, those in it doubled: RFC 4180.
+std::string csv_quoted(std::string_view text);
+
 /// At most `length` printable characters from `byte` on, in quotes, for messages; in words if there are none.
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length = 20);
 

@@ -105,17 +105,6 @@ Vec2 corner_of_item(const Kind& kind, std::uint64_t k) {
           kind.side * static_cast<double>(every_other_bit(k >> 1))};
 }
 
-void shift(Ring& ring, Vec2 by) {
-  for (Vec2& p : ring) p += by;
-}
-
-void shift(Obstacle& obstacle, Vec2 by) {
-  if (auto* line = std::get_if<Polyline>(&obstacle)) return shift(line->points, by);
-  auto& polygon = std::get<Polygon>(obstacle);
-  shift(polygon.outer, by);
-  for (Ring& hole : polygon.holes) shift(hole, by);
-}
-
 // --- Fields of campaigns ---
 
 using formation::Scenario;

@@ -7,6 +7,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/require.h"
 #include "files/sha256.h"
+#include "files/text_file.h"
 #include "recordings/codec.h"
 #include "scenarios/scenario_json.h"
 
@@ -64,15 +65,9 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
 
 // --- The trajectory as CSV ---
 
-/// RFC 4180: quoted where it must be.
+/// Quoted where it must be.
 std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : csv_quoted(text);
 }
 
 void append_pair(std::string& row, geometry::Vec2 v) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/require.h"
 #include "files/file_names.h"
+#include "files/text_file.h"
 #include "gdal/vector_library.h"
 #include "json/json_text.h"
 #include "obstacles/courses.h"
@@ -106,11 +106,6 @@ const FeatureProperties& properties_of(const WriteOptions& options, std::size_t 
   return obstacle < options.properties.size() ? options.properties[obstacle] : kNone;
 }
 
-/// RFC 4180: quoted, quotes doubled.
-std::string csv_field(const std::string& text) {
-  return "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
-}
-
 Written wkt(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
   Written written{to_wkt(obstacles), {}};
   add_losses(options, "WKT", written.losses);
@@ -145,17 +140,17 @@ Written csv(const Obstacles& obstacles, const WriteOptions& options, const std::
   const auto& all = options.properties;
   const bool has_ids = std::any_of(all.begin(), all.end(), [](const FeatureProperties& p) { return !p.id.empty(); });
   std::string text = has_ids ? "id,WKT,feature_id" : "id,WKT";
-  for (const PropertyTable::Column& column : table.columns()) text += "," + csv_field(column.name);
+  for (const PropertyTable::Column& column : table.columns()) text += "," + csv_quoted(column.name);
   text += "\r\n";
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const formation::SceneObstacle& o = obstacles[k];
     const Json row = table.row(k);
-    text += csv_field(PropertyTable::id_of(row, o.id)) + "," + csv_field(wkt_of(o.shape));
+    text += csv_quoted(PropertyTable::id_of(row, o.id)) + "," + csv_quoted(wkt_of(o.shape));
     const std::string& id = properties_of(options, k).id;
-    if (has_ids) text += "," + (id.empty() ? id : csv_field(PropertyTable::text_of(Json::parse(id))));
+    if (has_ids) text += "," + (id.empty() ? id : csv_quoted(PropertyTable::text_of(Json::parse(id))));
     for (const PropertyTable::Column& column : table.columns()) {
       const Json* value = PropertyTable::value_in(row, column);
-      text += "," + (value == nullptr ? std::string() : csv_field(PropertyTable::text_of(*value)));
+      text += "," + (value == nullptr ? std::string() : csv_quoted(PropertyTable::text_of(*value)));
     }
     text += "\r\n";
   }

@@ -53,7 +53,7 @@ std::vector<Vec2> corners_round(const geometry::Ellipse& e) {
 /// A body as a robot sees it.
 class Sight {
  public:
-  Sight(const Body& body, Vec2 from, Vec2 velocity, double time_step, const ObstacleQuery& query)
+  Sight(const Body& body, Vec2 from, Vec2 velocity, double time_step, const BodyQuery& query)
       : body_(body),
         from_(from),
         query_(query),
@@ -72,14 +72,14 @@ class Sight {
 
   bool is_beyond(double range) const { return geometry::norm(nearest({})) - body_.round - error_ > range; }
 
-  ObstacleLine best_line() {
+  BodyLine best_line() {
     const Vec2 way = horizon_ * (query_.velocity - velocity_);
     try_normal(refined(direction(way - nearest(way)), way), 0.0);
     if (is_inside(way))
       for (std::size_t k = 0; k < body_.normals.size(); ++k) try_face(k);
     try_leg(1.0);
     try_leg(-1.0);
-    ObstacleLine line = line_with(found_);
+    BodyLine line = line_with(found_);
     const double support = least_ < kInfinity ? support_above(line.normal) : 1.0;
     if (!(support <= 0.0)) return facing();
     set_offset(line, std::min(0.0, support / horizon_ * kTowardsZero));
@@ -183,14 +183,14 @@ class Sight {
   }
 
   /// With a normal of the precision asked for, and no offset yet.
-  ObstacleLine line_with(Vec2 normal) const {
-    ObstacleLine line;
+  BodyLine line_with(Vec2 normal) const {
+    BodyLine line;
     line.normal = query_.float_normals ? Vec2{rounded_to_float(normal.x), rounded_to_float(normal.y)} : normal;
     return line;
   }
 
   /// n.(v - w) >= relative, as a bound of n.v.
-  void set_offset(ObstacleLine& line, double relative) const {
+  void set_offset(BodyLine& line, double relative) const {
     line.offset = relative;
     if (!body_.moves) return;
     const double x = line.normal.x * velocity_.x, y = line.normal.y * velocity_.y;
@@ -198,7 +198,7 @@ class Sight {
   }
 
   /// Too near for anything else: not nearer to a body at rest; from one that moves away within the step.
-  ObstacleLine facing() const {
+  BodyLine facing() const {
     const Vec2 near = nearest({});
     Vec2 n = refined(direction(-near), {});
     double least = kInfinity;
@@ -209,7 +209,7 @@ class Sight {
         n = refined(body_.normals[k], {});
       }
     if (n == Vec2{}) n = {1.0, 0.0};
-    ObstacleLine line = line_with(n);
+    BodyLine line = line_with(n);
     const double support = support_above(line.normal);
     line.touching = !(support <= 0.0);
     set_offset(line, body_.moves ? std::max(0.0, support) / time_step_ * kAwayFromZero : 0.0);
@@ -218,7 +218,7 @@ class Sight {
 
   const Body& body_;
   Vec2 from_;
-  const ObstacleQuery& query_;
+  const BodyQuery& query_;
   const geometry::Ellipse* ellipse_;
   Vec2 velocity_;
   double time_step_, horizon_;
@@ -321,7 +321,7 @@ std::size_t Bodies::bytes() const {
   return sum + 4 * (still_number_.capacity() + moving_number_.capacity());
 }
 
-void Bodies::add_line(std::uint32_t number, const ObstacleQuery& query, std::vector<ObstacleLine>& out) const {
+void Bodies::add_line(std::uint32_t number, const BodyQuery& query, std::vector<BodyLine>& out) const {
   const Body& body = bodies_[number];
   // Exact: whole steps of the lattice, and a power of two.
   const Vec2 from = position_step_ * Vec2{static_cast<double>(query.x - body.x), static_cast<double>(query.y - body.y)};
@@ -334,8 +334,7 @@ void Bodies::add_line(std::uint32_t number, const ObstacleQuery& query, std::vec
   out.back().obstacle = number;
 }
 
-std::size_t Bodies::lines(const ObstacleQuery& query, std::vector<std::uint32_t>& near,
-                          std::vector<ObstacleLine>& out) const {
+std::size_t Bodies::lines(const BodyQuery& query, std::vector<std::uint32_t>& near, std::vector<BodyLine>& out) const {
   out.clear();
   const auto add = [&](const geometry::BoxGrid& grid, const std::vector<std::uint32_t>& numbers, double reach) {
     if (numbers.empty()) return;

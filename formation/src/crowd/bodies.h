@@ -37,7 +37,7 @@ struct Body {
 };
 
 /// The robot that asks for half-planes.
-struct ObstacleQuery {
+struct BodyQuery {
   std::int32_t x = 0, y = 0;   ///< lattice, of `position`
   Vec2 position, velocity;     ///< m, m/s
   double radius = 0.0;         ///< m
@@ -48,7 +48,7 @@ struct ObstacleQuery {
 };
 
 /// A half-plane against a body.
-struct ObstacleLine {
+struct BodyLine {
   Vec2 normal;                 ///< of the precision asked for
   double offset = 0.0;         ///< m/s, rounded up; <= 0 against what stands still
   std::uint32_t obstacle = 0;  ///< number of the body
@@ -80,10 +80,10 @@ class Bodies {
   /// many are at rest. Certified: a velocity that satisfies one meets the body not within the horizon if they do not
   /// touch. One that touches: not nearer to a body at rest; apart from one that moves at the end of the step.
   /// `near` is scratch.
-  std::size_t lines(const ObstacleQuery& query, std::vector<std::uint32_t>& near, std::vector<ObstacleLine>& out) const;
+  std::size_t lines(const BodyQuery& query, std::vector<std::uint32_t>& near, std::vector<BodyLine>& out) const;
 
  private:
-  void add_line(std::uint32_t number, const ObstacleQuery& query, std::vector<ObstacleLine>& out) const;
+  void add_line(std::uint32_t number, const BodyQuery& query, std::vector<BodyLine>& out) const;
 
   double position_step_, time_step_;
   std::vector<Body> bodies_;  ///< by id

@@ -133,10 +133,10 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
 }
 
 template <class T>
-ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
+BodyQuery OneRobot<T>::query_of(std::size_t robot) const {
   const CrowdKind& kind = kind_of(robot);
   const Robots& robots = crowd_.robots;
-  ObstacleQuery query;
+  BodyQuery query;
   query.x = robots.x[robot];
   query.y = robots.y[robot];
   query.position = crowd_.position_of(robot);
@@ -190,7 +190,7 @@ void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b
     if (words) words->edges.push_back({crowd_.edges.edges()[b.edge[at]], half_plane(k, b), b.edge_touching[at] != 0});
   }
   for (std::size_t k = 0; k < b.body_lines.size(); ++k) {
-    const ObstacleLine& line = b.body_lines[k];
+    const BodyLine& line = b.body_lines[k];
     const std::size_t row = edges + k + (k < b.still ? 0 : b.near.size()), at = row * kPack;
     put(line, robot, b.row_x[at], b.row_y[at], b.row_c[at]);
     if (words) words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});

@@ -40,7 +40,7 @@ struct OneRobotBuffers {
   std::vector<std::uint32_t> edge;         ///< their numbers
   std::vector<std::uint8_t> edge_touching;
   std::vector<std::uint32_t> near_bodies;
-  std::vector<crowd::ObstacleLine> body_lines;
+  std::vector<crowd::BodyLine> body_lines;
   std::size_t still = 0;                ///< of body_lines, the first: against bodies at rest
   crowd::Array<T> row_x, row_y, row_c;  ///< half-planes of edges and bodies at rest, of robots, of bodies that move
 };
@@ -87,7 +87,7 @@ class OneRobot {
                       CrowdMotion m) const;
 
   /// As a row.
-  void put(const crowd::ObstacleLine& line, std::size_t robot, T& x, T& y, T& c) const {
+  void put(const crowd::BodyLine& line, std::size_t robot, T& x, T& y, T& c) const {
     x = static_cast<T>(line.normal.x);
     y = static_cast<T>(line.normal.y);
     c = std::max(table_.least_offset[crowd_.robots.kind(robot)],
@@ -96,7 +96,7 @@ class OneRobot {
 
  private:
   const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
-  crowd::ObstacleQuery query_of(std::size_t robot) const;
+  crowd::BodyQuery query_of(std::size_t robot) const;
   std::size_t lines_of_edges(std::size_t robot, Buffers& b) const;
   void put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const;
   geometry::HalfPlane half_plane(std::size_t row, const Buffers& b) const;

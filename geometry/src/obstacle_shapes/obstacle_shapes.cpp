@@ -8,7 +8,7 @@
 
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "obstacle_shapes/subject.h"
+#include "obstacle_shapes/steps.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry {
@@ -19,11 +19,11 @@ Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
   return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
 }
 
-std::vector<std::vector<Vec2>> courses_of(const Obstacle& obstacle) {
-  if (const auto* wall = std::get_if<Polyline>(&obstacle)) return {wall->points};
+std::vector<const std::vector<Vec2>*> courses_of(const Obstacle& obstacle) {
+  if (const auto* wall = std::get_if<Polyline>(&obstacle)) return {&wall->points};
   const auto& polygon = std::get<Polygon>(obstacle);
-  std::vector<Ring> rings{polygon.outer};
-  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  std::vector<const Ring*> rings{&polygon.outer};
+  for (const Ring& hole : polygon.holes) rings.push_back(&hole);
   return rings;
 }
 
@@ -98,12 +98,12 @@ double length_of(const std::vector<Vec2>& course, bool closed) {
 void measure(ObstacleShapes& out) {
   ShapeFigures& f = out.figures;
   const bool closed = has_interior(out.obstacle);
-  const std::vector<std::vector<Vec2>> courses = courses_of(out.obstacle);
+  const std::vector<const std::vector<Vec2>*> courses = courses_of(out.obstacle);
   f.holes = courses.size() - 1;
-  for (const std::vector<Vec2>& course : courses) {
-    f.vertices += course.size();
-    if (closed) f.area += 0.5 * doubled_area(course);
-    f.perimeter += length_of(course, closed);
+  for (const std::vector<Vec2>* course : courses) {
+    f.vertices += course->size();
+    if (closed) f.area += 0.5 * doubled_area(*course);
+    f.perimeter += length_of(*course, closed);
   }
   f.hull_area = 0.5 * doubled_area(out.hull.vertices);
   f.ellipse_area = area(out.smallest_ellipse);
@@ -114,7 +114,7 @@ void measure(ObstacleShapes& out) {
 }
 
 /// False where something can't be repaired: then there is no obstacle.
-bool put_right(const Obstacle& given, ObstacleShapes& out) {
+bool repair(const Obstacle& given, ObstacleShapes& out) {
   if (const auto* polyline = std::get_if<Polyline>(&given)) {
     NormalizedPolyline normal = normalize_polyline(polyline->points);
     out.valid = normal.ok();
@@ -122,7 +122,9 @@ bool put_right(const Obstacle& given, ObstacleShapes& out) {
     out.obstacle = std::move(normal.polyline);
     return out.valid;
   }
-  NormalizedPolygon normal = normalize(courses_of(given));
+  std::vector<Ring> rings;
+  for (const Ring* ring : courses_of(given)) rings.push_back(*ring);
+  NormalizedPolygon normal = normalize(rings);
   out.valid = normal.ok();
   out.problems = std::move(normal.problems);
   // A ring of an obstacle never repeats its first point, so that it does not is no finding.
@@ -153,7 +155,7 @@ ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) 
   require_sensible(options);
   ObstacleShapes out;
   if (options.check_validity) {
-    if (!put_right(obstacle, out)) return out;
+    if (!repair(obstacle, out)) return out;
   } else {
     out.obstacle = obstacle;
     out.valid = true;

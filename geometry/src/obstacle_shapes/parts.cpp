@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "division/chain_fit.h"
-#include "obstacle_shapes/subject.h"
+#include "obstacle_shapes/steps.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {
@@ -58,8 +58,8 @@ class CourseWalk {
 
 bool facades_follow(const FacadeSet& set, const Obstacle& obstacle) {
   std::size_t next = 0;
-  for (const std::vector<Vec2>& course : courses_of(obstacle)) {
-    if (!CourseWalk(course, has_interior(obstacle), set).keeps(next)) return false;
+  for (const std::vector<Vec2>* course : courses_of(obstacle)) {
+    if (!CourseWalk(*course, has_interior(obstacle), set).keeps(next)) return false;
   }
   return next == set.facades.size();
 }

@@ -8,7 +8,7 @@
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "obstacle_shapes/subject.h"
+#include "obstacle_shapes/steps.h"
 
 namespace exactvo::geometry {
 namespace detail {

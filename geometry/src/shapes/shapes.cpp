@@ -122,6 +122,16 @@ std::vector<Vec2> vertices_of(const Obstacle& obstacle) {
   return vertices;
 }
 
+void shift(Obstacle& obstacle, Vec2 by) {
+  const auto shift_all = [by](std::vector<Vec2>& points) {
+    for (Vec2& p : points) p += by;
+  };
+  if (auto* polyline = std::get_if<Polyline>(&obstacle)) return shift_all(polyline->points);
+  auto& polygon = std::get<Polygon>(obstacle);
+  shift_all(polygon.outer);
+  for (Ring& hole : polygon.holes) shift_all(hole);
+}
+
 std::string hex_text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%a", value);

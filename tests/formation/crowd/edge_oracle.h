@@ -59,7 +59,7 @@ inline Segment cut(const Segment& s, double far) {
 /// The edge from the robot, and what is asked.
 class Cone {
  public:
-  Cone(const Segment& seen, double range, const ObstacleQuery& query)
+  Cone(const Segment& seen, double range, const BodyQuery& query)
       : seen_(cut(seen, kCutRanges * range)),
         query_(query),
         size_(magnitude(seen) + query.radius),
@@ -74,7 +74,7 @@ class Cone {
     return std::max(dot(n, seen_.a), dot(n, seen_.b)) + query_.radius * length + error_;
   }
 
-  ObstacleLine best_line() {
+  BodyLine best_line() {
     // The cut-offs at the ends of the edge.
     try_normal(direction(query_.still_horizon * query_.velocity - seen_.a));
     try_normal(direction(query_.still_horizon * query_.velocity - seen_.b));
@@ -83,7 +83,7 @@ class Cone {
     try_normal(-across);
     try_legs(seen_.a);
     try_legs(seen_.b);
-    ObstacleLine line = line_with(found_);
+    BodyLine line = line_with(found_);
     if (least_ < std::numeric_limits<double>::infinity() && set_offset(line)) return line;
     return facing();
   }
@@ -111,14 +111,14 @@ class Cone {
   }
 
   /// With a normal of the precision asked for, and no offset yet.
-  ObstacleLine line_with(Vec2 normal) const {
-    ObstacleLine line;
+  BodyLine line_with(Vec2 normal) const {
+    BodyLine line;
     line.normal = query_.float_normals ? Vec2{rounded_to_float(normal.x), rounded_to_float(normal.y)} : normal;
     return line;
   }
 
   /// False where the normal as rounded does not separate robot and edge.
-  bool set_offset(ObstacleLine& line) const {
+  bool set_offset(BodyLine& line) const {
     const double support = support_above(line.normal);
     if (!(support <= 0.0)) return false;
     line.offset = std::min(0.0, (support + kSharedVertex * error_) / query_.still_horizon * kTowardsZero);
@@ -126,33 +126,33 @@ class Cone {
   }
 
   /// Not nearer to the edge: where it is too near for anything else.
-  ObstacleLine facing() const {
+  BodyLine facing() const {
     Vec2 n = direction(-nearest_point(seen_));
     if (n == Vec2{}) n = direction(geometry::perp(seen_.b - seen_.a));
     if (n == Vec2{}) n = {1.0, 0.0};
-    ObstacleLine line = line_with(n);
+    BodyLine line = line_with(n);
     line.touching = !(support_above(line.normal) <= 0.0);
     return line;
   }
 
   Segment seen_;
-  const ObstacleQuery& query_;
+  const BodyQuery& query_;
   double size_, error_, grown_ = 0.0;
   double least_ = std::numeric_limits<double>::infinity();
   Vec2 found_;
 };
 
 /// Whether an earlier half-plane excludes all that meets this edge.
-inline bool is_covered(const Cone& cone, const std::vector<ObstacleLine>& lines, double horizon) {
-  return std::any_of(lines.begin(), lines.end(), [&](const ObstacleLine& line) {
+inline bool is_covered(const Cone& cone, const std::vector<BodyLine>& lines, double horizon) {
+  return std::any_of(lines.begin(), lines.end(), [&](const BodyLine& line) {
     const double support = cone.support_above(line.normal);
     return !line.touching && support <= horizon * line.offset * kAwayFromZero;
   });
 }
 
 /// Half-planes against all edges that can be met within the horizon, nearest first; `obstacle` is an edge's number.
-inline std::vector<ObstacleLine> edge_lines(const EdgeGrid& grid, const ObstacleQuery& query) {
-  std::vector<ObstacleLine> out;
+inline std::vector<BodyLine> edge_lines(const EdgeGrid& grid, const BodyQuery& query) {
+  std::vector<BodyLine> out;
   std::vector<std::pair<double, std::uint32_t>> near;  // by squared distance, m^2, and place in the grid's items
   const double range = (query.still_horizon * query.max_speed + query.radius) * kWiden;
   const auto seen = [&](std::uint32_t edge) {

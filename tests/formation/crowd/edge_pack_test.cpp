@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kRobots = 4000, kRings = 12;
 
 struct Robot {
-  ObstacleQuery query;
+  BodyQuery query;
 };
 
 struct Setting {
@@ -37,7 +37,7 @@ Setting setting() {
   std::vector<Segment> edges;
   double reach = 0.0;
   for (std::size_t k = 0; k < kRobots; ++k) {
-    ObstacleQuery q;
+    BodyQuery q;
     q.position = {0x1p-18 * std::floor(0x1p18 * 200.0 * random()), 0x1p-18 * std::floor(0x1p18 * 200.0 * random())};
     const double kind = std::floor(3.0 * random());
     q.radius = 0.25 + 0.25 * kind;
@@ -84,7 +84,7 @@ Setting setting() {
       const Vec2 out = {std::cos(0.26 * j), std::sin(0.26 * j)};
       edges.push_back({centre + 1.5 * out, centre + 1.7 * out});
     }
-    ObstacleQuery& q = s.robots[10 * k].query;
+    BodyQuery& q = s.robots[10 * k].query;
     q.position = centre + Vec2{0.125 * random(), 0.125 * random()};
     q.velocity = {};
   }
@@ -116,7 +116,7 @@ std::unique_ptr<Pack<T>> lines_of_pack(const Setting& s, std::size_t first, std:
   query.slack = static_cast<T>(kSlack);
   std::size_t most = 0;
   for (std::size_t lane = 0; lane < kPack; ++lane) {
-    const ObstacleQuery& q = s.robots[first + lane].query;
+    const BodyQuery& q = s.robots[first + lane].query;
     query.x[lane] = q.position.x;
     query.y[lane] = q.position.y;
     query.vx[lane] = q.velocity.x;
@@ -151,9 +151,9 @@ void expect_the_same(const std::string& target) {
     const auto whole = lines_of_pack<T>(s, first, s.grid.edges().size(), table);
     ASSERT_EQ(whole->overflow, 0U) << target << ' ' << first;
     for (std::size_t lane = 0; lane < kPack; ++lane) {
-      ObstacleQuery query = s.robots[first + lane].query;
+      BodyQuery query = s.robots[first + lane].query;
       query.float_normals = sizeof(T) == 4;
-      const std::vector<ObstacleLine> alone = edge_lines(s.grid, query);
+      const std::vector<BodyLine> alone = edge_lines(s.grid, query);
       const bool overflow = (pack->overflow >> lane & 1U) != 0;
       ASSERT_EQ(overflow, alone.size() > kMostEdges) << target << ' ' << first + lane;
       ASSERT_EQ(static_cast<std::size_t>(pack->lines[lane]), overflow ? 0 : alone.size())
@@ -201,7 +201,7 @@ TEST(CrowdEdgePack, FarEdgesOfACellTakeNoRows) {
   edges.push_back({{0.0, 0.0}, {0.0, 0.0}});
   s.grid.set_edges(edges);
   s.grid.lay_out(6.0);
-  ObstacleQuery q;
+  BodyQuery q;
   q.position = {1.6, 0.0};
   q.radius = 0.25;
   q.still_horizon = 1.0;

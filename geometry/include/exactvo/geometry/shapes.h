@@ -93,6 +93,9 @@ std::vector<Segment> edges_of(const Obstacle& obstacle);
 /// Every vertex of the obstacle, in the order of `edges_of`.
 std::vector<Vec2> vertices_of(const Obstacle& obstacle);
 
+/// Adds `by` to every vertex. Rounded.
+void shift(Obstacle& obstacle, Vec2 by);
+
 /// Whether the obstacle has an inside (a polygon) or is a bare wall.
 inline bool has_interior(const Obstacle& obstacle) {
   return std::holds_alternative<Polygon>(obstacle);

@@ -15,7 +15,7 @@ namespace exactvo::geometry::detail {
 inline constexpr const char* kNotInside = "a point lies outside";
 
 /// What the facades must keep to: a polygon's rings, or a wall's one chain.
-std::vector<std::vector<Vec2>> courses_of(const Obstacle& obstacle);
+std::vector<const std::vector<Vec2>*> courses_of(const Obstacle& obstacle);
 
 /// Runs `action`; a failure inside becomes the verdict's reason.
 template <class Action>
