@@ -21,6 +21,17 @@ double wrapped(double angle) {
   return angle;
 }
 
+/// The ends of what lies within `reach` of the segment; some come several times.
+template <typename F>
+void for_each_vertex_near(const ClearancePlan& plan, Vec2 from, Vec2 to, double reach, const F& f) {
+  plan.grid().for_each_near(from, to, reach, [&](int k) {
+    const auto [a, b] = plan.map().ends_of(k);
+    f(a);
+    f(b);
+    return true;
+  });
+}
+
 }  // namespace
 
 TautString::TautString(const ClearancePlan& plan, Vec2 from, Vec2 to, std::vector<Circle> circles)
@@ -127,12 +138,7 @@ std::optional<Circle> TautString::cut_by_arc(std::size_t i) const {
     found = Circle{plan_.map().vertex(v).rounded(), circle.sense, v};
   };
   if (!(turn * circle.sense > 0.0)) return found;
-  plan_.grid().for_each_near(circle.centre, circle.centre, kLump * radius_, [&](int k) {
-    const auto [a, b] = plan_.map().ends_of(k);
-    consider(a);
-    consider(b);
-    return true;
-  });
+  for_each_vertex_near(plan_, circle.centre, circle.centre, kLump * radius_, consider);
   return found;
 }
 
@@ -152,12 +158,7 @@ std::optional<Circle> TautString::deepest_cut(std::size_t i) const {
     deepest = radius_ - std::fabs(left);
     found = Circle{map.vertex(v).rounded(), left > 0.0 ? 1 : -1, v};
   };
-  plan_.grid().for_each_near(piece.a, piece.b, radius_, [&](int k) {
-    const auto [a, b] = plan_.map().ends_of(k);
-    consider(a);
-    consider(b);
-    return true;
-  });
+  for_each_vertex_near(plan_, piece.a, piece.b, radius_, consider);
   return found;
 }
 
