@@ -140,7 +140,7 @@ void compare_answers(const Polygon& polygon) {
   const NaiveShapes theirs = naive_shapes(polygon);
   need(ours.hull.vertices == theirs.hull, "hulls differ");
   constexpr double kApart = 1e-8;  // ours is within 1e-10 of the least, theirs is rounded from numbers of many digits
-  need(std::fabs(ours.figures.ellipse_area / theirs.ellipse_area - 1.0) < kApart, "smallest ellipses differ");
+  need(std::fabs(ours.measurements.ellipse_area / theirs.ellipse_area - 1.0) < kApart, "smallest ellipses differ");
   need(theirs.facade_ellipses_contain && ours.certified(), "a facade ellipse that does not contain");
   need(theirs.pieces >= 1, "no piece");
 }
@@ -263,8 +263,8 @@ void show_batches(const fs::path& input, const fs::path& folder, std::size_t obs
     const auto show = [&](const char* who, double seconds, double of_it, double times) {
       std::printf("    %-44s %7.2f s  %8.0f obstacles/s  x%.2f\n", who, seconds, of_it / seconds, times);
     };
-    std::printf("  %s, the quickest of %d:\n", everything ? "GeoPackage, GeoJSON, pictures, figures" : "figures alone",
-                rounds);
+    std::printf("  %s, the quickest of %d:\n",
+                everything ? "GeoPackage, GeoJSON, pictures, measurements" : "measurements alone", rounds);
     show("one worker", s.one_worker, count, 1.0);
     show("two workers", s.two_workers, count, gain);
     show("two batches at once, nothing shared", s.two_apart, 2.0 * count, ceiling);
@@ -304,7 +304,7 @@ void show_shares(const fs::path& input, const fs::path& folder) {
   const double all = cpu_of([&] { batch(input, folder / "out", 1, false); });
   const double share = 100.0 / all;
   std::printf(
-      "  shares of %.2f s with figures alone: reading and validity %.0f %%, shapes %.0f %% (of it CGAL %.0f %%, "
+      "  shares of %.2f s with measurements alone: reading and validity %.0f %%, shapes %.0f %% (of it CGAL %.0f %%, "
       "certifying %.0f %%), writing %.0f %%\n",
       all, share * reading, share * decomposing, share * hulls, share * certifying,
       share * (all - reading - decomposing));
@@ -318,7 +318,7 @@ long peak_memory(const fs::path& input, const fs::path& out) {
 }
 
 void show_memory(const fs::path& folder, std::size_t largest) {
-  std::printf("peak memory of a batch from WKT, one worker, figures:\n");
+  std::printf("peak memory of a batch from WKT, one worker, measurements:\n");
   for (std::size_t count = 10000; count <= largest; count *= 10) {
     const fs::path input = folder / "many.wkt";
     write_stars(input, count);

@@ -83,7 +83,7 @@ inline void expect_same(const formation::FormationSpec& a, const formation::Form
   EXPECT_TRUE(same_bits(a.catch_up_speed, b.catch_up_speed));
 }
 
-inline std::vector<double> figures_of(const formation::Scenario& s) {
+inline std::vector<double> numbers_of(const formation::Scenario& s) {
   return {s.horizons.least,  s.horizons.most,     s.horizons.speed_floor, s.horizons.orca,
           s.horizons.robots, s.margins.obstacle,  s.margins.robot,        s.time_step,
           s.time_limit,      s.arrival_tolerance, s.neighbour_distance};
@@ -105,7 +105,7 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   EXPECT_TRUE(a.formation || a.unreachable == b.unreachable);
   EXPECT_TRUE(a.formation || a.liveness == b.liveness);
   EXPECT_EQ(a.speed_bound, b.speed_bound);
-  EXPECT_TRUE(same_bits(figures_of(a), figures_of(b)));
+  EXPECT_TRUE(same_bits(numbers_of(a), numbers_of(b)));
 }
 
 }  // namespace exactvo::datasets::test

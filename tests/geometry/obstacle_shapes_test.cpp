@@ -39,11 +39,11 @@ TEST(ObstacleShapes, ARoomWithPillarsHasEverythingCertified) {
   EXPECT_TRUE(shapes.certified());
   EXPECT_EQ(shapes.facades.facades.size(), 12u);
   EXPECT_EQ(shapes.facade_ellipses.size(), 12u);
-  EXPECT_EQ(shapes.figures.area, 48.0 - 1.0 - 4.0);
+  EXPECT_EQ(shapes.measurements.area, 48.0 - 1.0 - 4.0);
   EXPECT_EQ(area_of(shapes.pieces), 43.0);
   EXPECT_EQ(shapes.hull.vertices.size(), 4u);
-  EXPECT_EQ(shapes.figures.holes, 2u);
-  EXPECT_NEAR(shapes.figures.ellipse_area, 0.5 * kPi * 48.0, 1e-9) << "pi/2 times the rectangle's area";
+  EXPECT_EQ(shapes.measurements.holes, 2u);
+  EXPECT_NEAR(shapes.measurements.ellipse_area, 0.5 * kPi * 48.0, 1e-9) << "pi/2 times the rectangle's area";
 }
 
 TEST(ObstacleShapes, HolesThatTouchAreSplitWhereTheyDo) {
@@ -61,7 +61,7 @@ TEST(ObstacleShapes, AWallIsItsOwnPieces) {
   EXPECT_TRUE(shapes.certified());
   EXPECT_EQ(shapes.facades.facades.size(), 2u) << "straight runs are one facade";
   EXPECT_EQ(shapes.pieces.size(), 2u);
-  EXPECT_EQ(shapes.figures.area, 0.0);
+  EXPECT_EQ(shapes.measurements.area, 0.0);
 }
 
 /// Whether x lies on the piece. Exact.
@@ -102,10 +102,10 @@ TEST(ObstacleShapes, PiecesOfAWallKeepEveryEdgeWhateverTheTolerance) {
 TEST(ObstacleShapes, AStraightWallIsFlatAndStillFreeOfTraps) {
   const ObstacleShapes shapes = shapes_of(Polyline{{{0, 0}, {4, 0}}});
   EXPECT_TRUE(shapes.certified());
-  EXPECT_EQ(shapes.figures.ellipse_area, 0.0);
-  EXPECT_TRUE(std::isinf(shapes.figures.trap_free_beyond));
+  EXPECT_EQ(shapes.measurements.ellipse_area, 0.0);
+  EXPECT_TRUE(std::isinf(shapes.measurements.trap_free_beyond));
   ASSERT_TRUE(shapes.trap_free.ellipse && shapes.trap_free.for_every_goal);
-  EXPECT_NEAR(shapes.figures.trap_free_area, kPi * 4.0 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(shapes.measurements.trap_free_area, kPi * 4.0 / std::sqrt(2.0), 1e-6);
 }
 
 TEST(ObstacleShapes, InvalidOnesGiveCodesAndNothingElse) {
@@ -213,8 +213,8 @@ TEST(ObstacleShapes, RandomStarsFarAwayAndFlatAreCertified) {
       EXPECT_TRUE(contains(*shapes.trap_free.ellipse, p));
       EXPECT_TRUE(contains(shapes.hull, p));
     }
-    EXPECT_NEAR(area_of(shapes.pieces), shapes.figures.area, 1e-6 * shapes.figures.hull_area);
-    EXPECT_GE(shapes.figures.trap_free_area, shapes.figures.least_ellipse_area * (1.0 - 1e-9));
+    EXPECT_NEAR(area_of(shapes.pieces), shapes.measurements.area, 1e-6 * shapes.measurements.hull_area);
+    EXPECT_GE(shapes.measurements.trap_free_area, shapes.measurements.least_ellipse_area * (1.0 - 1e-9));
   }
 }
 

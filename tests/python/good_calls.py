@@ -137,7 +137,7 @@ def good_calls(folder):
         ("datasets.write", datasets.write, dict(path=str(folder / "out.wkt"), obstacles_=DOOR, format=None, metres=False)),
         ("datasets.convert", datasets.convert, dict(source=str(folder / "map.wkt"), target=str(folder / "out.csv"), format=None, units="automatic", target_format=None, skip_invalid=False, repair=False, metres=False)),
         ("datasets.repair", datasets.repair, dict(polygon=[(0, 0), (1, 0), (0, 1)])),
-        ("datasets.batch", datasets.batch, dict(paths=str(folder / "map.wkt"), out=str(folder / "batch"), write=["figures"], jobs=1, resume=True, repair=False, metres=False, progress=None)),
+        ("datasets.batch", datasets.batch, dict(paths=str(folder / "map.wkt"), out=str(folder / "batch"), write=["measurements"], jobs=1, resume=True, repair=False, metres=False, progress=None)),
         ("datasets.generate", datasets.generate, dict(kind="star", count=1, seed=0)),
         ("datasets.readable_formats", datasets.readable_formats, {}),
         ("datasets.writable_formats", datasets.writable_formats, {}),

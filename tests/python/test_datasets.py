@@ -81,7 +81,7 @@ def test_a_batch_is_the_program_s(program, tmp_path):
     (tmp_path / "maps" / "b.wkt").write_text("nonsense")
     shares = []
     summary = datasets.batch(tmp_path / "maps", tmp_path / "ours", write=["geojson"], jobs=1, progress=lambda s: shares.append(s))
-    program("batch", tmp_path / "maps", "--out", tmp_path / "theirs", "--jobs", 1, "--write", "figures,geojson")
+    program("batch", tmp_path / "maps", "--out", tmp_path / "theirs", "--jobs", 1, "--write", "measurements,geojson")
     theirs = json.loads((tmp_path / "theirs" / "summary.json").read_text())
     assert summary.complete and summary.files.read == 2 and summary.obstacles.rejected == {"E_SELF_INTERSECTION": 1}
     assert summary.obstacles_out == 1 and theirs["done"] == summary.obstacles.done

@@ -108,16 +108,16 @@ TEST(Batch, FoldersOfEarlierBatchesAreNotedAndNotRead) {
   const Workplace here;
   std::filesystem::create_directories(here.path() / "maps");
   here.write("maps/good.wkt", "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\n");
-  EXPECT_EQ(here.run("batch maps --out maps/one --write figures").status, 0);
-  const Outcome outcome = here.run("batch maps --out two --write figures");
+  EXPECT_EQ(here.run("batch maps --out maps/one --write measurements").status, 0);
+  const Outcome outcome = here.run("batch maps --out two --write measurements");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("note: not read: maps/one holds an earlier batch (2 files)"));
   EXPECT_THAT(outcome.out, HasSubstr("1 file: 1 done"));
-  const Outcome nothing = here.run("batch maps/one --out two --write figures");
+  const Outcome nothing = here.run("batch maps/one --out two --write measurements");
   EXPECT_EQ(nothing.status, 2);
   EXPECT_THAT(nothing.err, HasSubstr("no file to read; maps/one holds an earlier batch"));
-  EXPECT_THAT(here.run("batch two --out two --write figures").err, HasSubstr("two is where the results go"));
-  EXPECT_THAT(here.run("batch maps --out two --write figures --resume").err, HasSubstr("nothing left to do"));
+  EXPECT_THAT(here.run("batch two --out two --write measurements").err, HasSubstr("two is where the results go"));
+  EXPECT_THAT(here.run("batch maps --out two --write measurements --resume").err, HasSubstr("nothing left to do"));
 }
 
 }  // namespace

@@ -205,9 +205,9 @@ TEST(ObstacleVerbs, DegreesThatBecameMetresAreSaid) {
 TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
   const Workplace here;
   here.write("a.wkt", kGood);
-  EXPECT_EQ(here.run("batch a.wkt --write figures -oone").status, 0);
-  EXPECT_EQ(here.run("batch a.wkt --write figures --out two -j1").status, 0);
-  EXPECT_EQ(here.read("one/figures.jsonl"), here.read("two/figures.jsonl"));
+  EXPECT_EQ(here.run("batch a.wkt --write measurements -oone").status, 0);
+  EXPECT_EQ(here.run("batch a.wkt --write measurements --out two -j1").status, 0);
+  EXPECT_EQ(here.read("one/measurements.jsonl"), here.read("two/measurements.jsonl"));
 }
 
 TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
@@ -215,18 +215,19 @@ TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
   std::filesystem::create_directory(here.path() / "maps");
   here.write("maps/good.wkt", kGood);
   for (int k = 10; k < 35; ++k) here.write("maps/bad" + std::to_string(k) + ".wkt", "POLYGON ((0 0");
-  const Outcome some = here.run("batch maps --out out --write figures");
+  const Outcome some = here.run("batch maps --out out --write measurements");
   EXPECT_EQ(some.status, 0) << some.err;
   EXPECT_THAT(some.err, AllOf(HasSubstr("rejected: maps/bad10.wkt: E_"), HasSubstr("rejected: maps/bad29.wkt"),
                               testing::Not(HasSubstr("bad30.wkt")), HasSubstr("and 5 more, see out/summary.json")));
-  const Outcome again = here.run("batch maps --out out --write figures");
+  const Outcome again = here.run("batch maps --out out --write measurements");
   EXPECT_THAT(again.err, HasSubstr("note: replaced the earlier batch in out"));
   EXPECT_THAT(here.run("batch nowhere --out out").err,
               AllOf(HasSubstr("E_FILE_MISSING"), testing::Not(HasSubstr("replace"))));
-  EXPECT_THAT(here.run("batch maps --out out --write figures --resume").err, HasSubstr("rejected: maps/bad10.wkt"));
-  EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write figures").status, 1);
+  EXPECT_THAT(here.run("batch maps --out out --write measurements --resume").err,
+              HasSubstr("rejected: maps/bad10.wkt"));
+  EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write measurements").status, 1);
   std::filesystem::create_directory(here.path() / "empty");
-  const Outcome nothing = here.run("batch empty --out zero --write figures");
+  const Outcome nothing = here.run("batch empty --out zero --write measurements");
   EXPECT_EQ(nothing.status, 2);
   EXPECT_THAT(nothing.err, AllOf(HasSubstr("no file to read"), HasSubstr("E_FILE_MISSING")));
   EXPECT_FALSE(std::filesystem::exists(here.path() / "zero"));
@@ -237,12 +238,13 @@ TEST(Batch, AnotherProcessJoinsWithResume) {
   here.write("a.wkt", kGood);
   std::filesystem::create_directories(here.path() / "out/.parts");
   here.write("out/.parts/run.json", "{}");  // as a process at work has it
-  const Outcome refused = here.run("batch a.wkt --out out --write figures");
+  const Outcome refused = here.run("batch a.wkt --out out --write measurements");
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("E_OTHER_RUN"), HasSubstr("--resume"), HasSubstr("join")));
   const auto joining = [&] {
     return std::system(("cd '" + here.path().string() +
-                        "' && " EXACTVO_PROGRAM " batch a.wkt --out both --write figures --resume > /dev/null 2>&1")
+                        "' && " EXACTVO_PROGRAM
+                        " batch a.wkt --out both --write measurements --resume > /dev/null 2>&1")
                            .c_str());
   };
   std::future<int> other = std::async(std::launch::async, joining);
@@ -267,14 +269,14 @@ TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
 TEST(Batch, HalfPlanesThatAreNullAreCountedAndSaid) {
   const Workplace here;
   here.write("a.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))\n");
-  const std::string robot = " --write figures --out out --time-horizon 2 --radius 1 --position ";
+  const std::string robot = " --write measurements --out out --time-horizon 2 --radius 1 --position ";
   const std::pair<const char*, int> cases[] = {
       {"5,5", 0}, {"2,0.5", 0}, {"1.5,0.5", 1}, {"0.5,0.5 --position 1.5,0.5 --position 5,5", 2}};
   for (const auto& [positions, nulls] : cases) {
     const Outcome outcome = here.run("batch a.wkt" + robot + positions);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(json::parse(here.read("out/summary.json")).at("no_half_plane"), nulls) << positions;
-    std::istringstream figures(here.read("out/figures.jsonl"));
+    std::istringstream figures(here.read("out/measurements.jsonl"));
     std::string line;
     std::getline(figures, line);  // provenance
     std::getline(figures, line);
@@ -283,7 +285,7 @@ TEST(Batch, HalfPlanesThatAreNullAreCountedAndSaid) {
     for (const json& at : record.at("half_planes"))
       for (const json& half_plane : at.at("half_planes")) found += half_plane.is_null() ? 1 : 0;
     EXPECT_EQ(found, nulls) << line;
-    const std::string note = "note: " + std::to_string(nulls) + " of the half-planes in out/figures.jsonl";
+    const std::string note = "note: " + std::to_string(nulls) + " of the half-planes in out/measurements.jsonl";
     if (nulls > 0) {
       EXPECT_THAT(outcome.err, HasSubstr(note));
     } else {
@@ -298,11 +300,11 @@ TEST(Batch, AShardThatIsThroughFirstSaysSo) {
   const Workplace here;
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);
-  const Outcome first = here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2");
+  const Outcome first = here.run("batch a.wkt b.wkt --write measurements --out out --shard 1/2");
   EXPECT_EQ(first.status, 0);
   EXPECT_THAT(first.err, HasSubstr("shard 1/2 is through"));
   EXPECT_FALSE(here.has("out/summary.json"));
-  EXPECT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 2/2").status, 0);
+  EXPECT_EQ(here.run("batch a.wkt b.wkt --write measurements --out out --shard 2/2").status, 0);
   EXPECT_TRUE(here.has("out/summary.json"));
 }
 
@@ -365,13 +367,14 @@ TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
   const Workplace here;
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);
-  ASSERT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2").status, 0);
+  ASSERT_EQ(here.run("batch a.wkt b.wkt --write measurements --out out --shard 1/2").status, 0);
   std::optional<HeldLock> lock(std::filesystem::canonical(here.path()) / "out/.parts/lock");
   // In folders of their own, as each leaves its output where it starts.
   const auto resumed = [&here](const std::string& folder) {
     std::filesystem::create_directory(here.path() / folder);
     const std::string command = "cd '" + here.path().string() +
-                                "' && '" EXACTVO_PROGRAM "' batch a.wkt b.wkt --write figures --out out --resume >" +
+                                "' && '" EXACTVO_PROGRAM
+                                "' batch a.wkt b.wkt --write measurements --out out --resume >" +
                                 folder + "/out 2>" + folder + "/err";
     return std::async(std::launch::async, [command] { return std::system(command.c_str()); });
   };
@@ -395,10 +398,10 @@ TEST(Batch, WhoWaitsForAnotherToPutPartsTogetherCanBeStopped) {
   const Workplace here;
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);
-  ASSERT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2").status, 0);
+  ASSERT_EQ(here.run("batch a.wkt b.wkt --write measurements --out out --shard 1/2").status, 0);
   const HeldLock lock(std::filesystem::canonical(here.path()) / "out/.parts/lock");
   std::future<Outcome> run = std::async(
-      std::launch::async, [&here] { return here.run("batch a.wkt b.wkt --write figures --out out --resume"); });
+      std::launch::async, [&here] { return here.run("batch a.wkt b.wkt --write measurements --out out --resume"); });
   const std::vector<pid_t> waiting = lock.awaited_by(1);
   EXPECT_EQ(waiting.size(), 1u);
   for (const pid_t pid : waiting) EXPECT_EQ(::kill(pid, SIGTERM), 0);

@@ -318,7 +318,7 @@ TEST(BatchSizes, AreSaidBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 file, 67 B: about 87.1 B in out"), HasSubstr("--write geopackage adds"),
                                  HasSubstr("--write geojson adds")));
-  EXPECT_TRUE(here.has("out/figures.jsonl"));
+  EXPECT_TRUE(here.has("out/measurements.jsonl"));
   EXPECT_TRUE(here.has("out/index.html"));
   EXPECT_FALSE(here.has("out/obstacles.gpkg"));
   EXPECT_FALSE(here.has("out/obstacles.geojson"));

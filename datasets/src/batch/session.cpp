@@ -99,7 +99,7 @@ std::vector<InputFacts> all_facts(const Journal& journal, std::size_t inputs) {
 
 /// Whatever a batch may write to OUT, of this configuration or another.
 bool is_output(const std::string& name) {
-  if (name == "figures.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
+  if (name == "measurements.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
   for (const Layer& layer : layers()) {
     if (name == std::string(layer.name) + ".geojson") return true;
   }

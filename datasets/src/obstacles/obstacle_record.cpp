@@ -72,8 +72,8 @@ void append_shapes(JsonWriter& json, const ObstacleShapes& shapes) {
 
 }  // namespace
 
-void append_figures(JsonWriter& json, const ObstacleShapes& shapes) {
-  const geometry::ShapeFigures& f = shapes.figures;
+void append_measurements(JsonWriter& json, const ObstacleShapes& shapes) {
+  const geometry::ShapeMeasurements& f = shapes.measurements;
   json.member("vertices", std::uint64_t{f.vertices}).member("holes", std::uint64_t{f.holes});
   json.member("facades_count", std::uint64_t{shapes.facades.facades.size()});
   json.member("pieces_count", std::uint64_t{shapes.pieces.size()});
@@ -104,7 +104,7 @@ std::string to_json(const RecordHead& head, const ObstacleShapes& shapes, bool g
   json.member("valid", shapes.valid);
   append_problems(json, shapes);
   if (shapes.valid) {
-    append_figures(json, shapes);
+    append_measurements(json, shapes);
     append_verdicts(json, shapes);
     if (geometry) append_shapes(json, shapes);
   }

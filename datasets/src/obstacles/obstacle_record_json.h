@@ -10,7 +10,7 @@
 
 namespace exactvo::datasets {
 
-void append_figures(JsonWriter& json, const geometry::ObstacleShapes& shapes);
+void append_measurements(JsonWriter& json, const geometry::ObstacleShapes& shapes);
 void append_verdicts(JsonWriter& json, const geometry::ObstacleShapes& shapes);
 
 }  // namespace exactvo::datasets

@@ -58,11 +58,11 @@ void enclose_all(const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.ellipse_contains, [&] {
     if (options.exact_smallest_ellipse) {
       out.smallest_ellipse = smallest_ellipse(out.hull.vertices);
-      out.figures.least_ellipse_area = area(out.smallest_ellipse);
+      out.measurements.least_ellipse_area = area(out.smallest_ellipse);
     } else {
       const FastEllipse fast = fast_smallest_ellipse(out.hull.vertices);
       out.smallest_ellipse = fast.ellipse;
-      out.figures.least_ellipse_area = fast.least_area;
+      out.measurements.least_ellipse_area = fast.least_area;
     }
     out.ellipse_contains = verdict_of(out.smallest_ellipse, out);
   });
@@ -81,7 +81,7 @@ void enclose_facades(const ShapeOptions& options, ObstacleShapes& out) {
   });
 }
 
-// --- Figures ---
+// --- Measurements ---
 
 double doubled_area(const std::vector<Vec2>& ring) {
   double sum = 0.0;
@@ -96,7 +96,7 @@ double length_of(const std::vector<Vec2>& course, bool closed) {
 }
 
 void measure(ObstacleShapes& out) {
-  ShapeFigures& f = out.figures;
+  ShapeMeasurements& f = out.measurements;
   const bool closed = has_interior(out.obstacle);
   const std::vector<const std::vector<Vec2>*> courses = courses_of(out.obstacle);
   f.holes = courses.size() - 1;

@@ -34,9 +34,9 @@ class Batches : public BatchFolder {
   fs::path out(const std::string& name) const { return folder_ / name; }
   Json summary_of(const std::string& name) const { return Json::parse(text_of(out(name) / "summary.json")); }
 
-  /// The lines of figures.jsonl below the first, which is provenance.
+  /// The lines of measurements.jsonl below the first, which is provenance.
   std::vector<Json> records_of(const std::string& name) const {
-    std::istringstream lines(text_of(out(name) / "figures.jsonl"));
+    std::istringstream lines(text_of(out(name) / "measurements.jsonl"));
     std::string line;
     std::getline(lines, line);
     std::vector<Json> records;
@@ -94,7 +94,7 @@ TEST_F(Batches, OutputsAgreeWithEachOther) {
   robot.positions = {{2000.0, 0.0}, {0.5, 0.5}};
   configuration.robot = robot;
   const BatchResult result = run_batch(configuration, run_to("out"));
-  std::istringstream figures(text_of(out("out") / "figures.jsonl"));
+  std::istringstream figures(text_of(out("out") / "measurements.jsonl"));
   std::string line;
   std::getline(figures, line);
   const Json provenance = Json::parse(line).at("provenance");
@@ -423,7 +423,7 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   EXPECT_EQ(status_with_files_up_to(20000, configuration, run), 42) << "a part doesn't fit";
   run.resume = true;
   EXPECT_EQ(status_with_files_up_to(5000000, configuration, run), 42) << "the parts fit, an output doesn't";
-  EXPECT_FALSE(fs::exists(run.out / "figures.jsonl")) << "nothing is published before all is there";
+  EXPECT_FALSE(fs::exists(run.out / "measurements.jsonl")) << "nothing is published before all is there";
   run_batch(configuration, run);
   run_batch(configuration, run_to("whole"));
   EXPECT_EQ(difference(out("whole"), out("out")), "");

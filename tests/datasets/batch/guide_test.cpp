@@ -53,7 +53,7 @@ TEST_F(GuidePage, EveryHalfPlaneOfItsBatchIsCertified) {
   fs::create_symlink(EXACTVO_SOURCE_DIR "/datasets", folder_ / "datasets");
   const std::string words = batch->substr(std::string("exactvo").size());
   ASSERT_EQ(std::system(("cd '" + folder_.string() + "' && '" EXACTVO_PROGRAM "'" + words + " >log 2>&1").c_str()), 0);
-  std::istringstream figures(text_of(folder_ / "out" / "room" / "figures.jsonl"));
+  std::istringstream figures(text_of(folder_ / "out" / "room" / "measurements.jsonl"));
   std::string line;
   std::getline(figures, line);
   std::size_t half_planes = 0;

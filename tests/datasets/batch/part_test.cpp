@@ -17,7 +17,7 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   part.counts.certified = 2;
   part.counts.vertices = 17;
   part.counts.no_half_plane = 5;
-  part.figures = std::string(1000, 'f');
+  part.measurements = std::string(1000, 'f');
   for (std::size_t k = 0; k < batch::layers().size(); ++k) part.features.emplace_back(100 + k, 'l');
   part.rows = std::string(500, 'r');
   part.pictures = "<svg/>";
@@ -29,7 +29,7 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   EXPECT_EQ(again.counts.vertices, part.counts.vertices);
   EXPECT_EQ(again.counts.no_half_plane, part.counts.no_half_plane);
   EXPECT_EQ(again.pictures, part.pictures);
-  EXPECT_EQ(again.figures, part.figures);
+  EXPECT_EQ(again.measurements, part.measurements);
   EXPECT_TRUE(std::equal(again.features.begin(), again.features.end(), part.features.begin(), part.features.end()));
   EXPECT_EQ(again.rows, part.rows);
   std::istringstream stream(bytes);
@@ -40,7 +40,7 @@ TEST(BatchPart, ItsBytesCutShortAnywhereAreRefused) {
   batch::Part part;
   part.features.resize(batch::layers().size());
   part.pictures = "<svg/>";
-  part.figures = "{}\n";
+  part.measurements = "{}\n";
   part.rows = "r";
   const std::string bytes = batch::to_bytes(part);
   const std::size_t end_of_pictures = bytes.find("<svg/>") + part.pictures.size();

@@ -135,7 +135,7 @@ TEST_F(WithoutLocks, WhoComesLastTakesNothingAway) {
   first.begin({});
   for (const batch::Journal* journal : {&first, &last}) {
     journal->start_final();
-    AtomicFile file(journal->final_folder() / "figures.jsonl", MissingFolder::is_refused);
+    AtomicFile file(journal->final_folder() / "measurements.jsonl", MissingFolder::is_refused);
     file.commit();
   }
   write_file_atomically(first.final_folder() / "summary.json", "{}");
@@ -144,7 +144,7 @@ TEST_F(WithoutLocks, WhoComesLastTakesNothingAway) {
   EXPECT_THROW(AtomicFile(last.final_folder() / "summary.json", MissingFolder::is_refused), DataError);
   EXPECT_THROW(last.publish("summary.json", any_output), DataError);
   EXPECT_FALSE(last.is_open());
-  EXPECT_TRUE(fs::exists(out / "figures.jsonl"));
+  EXPECT_TRUE(fs::exists(out / "measurements.jsonl"));
   EXPECT_TRUE(fs::exists(out / "summary.json"));
 }
 

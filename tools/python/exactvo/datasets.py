@@ -249,7 +249,7 @@ def batch(
     paths: PathLike | Sequence[PathLike],
     out: PathLike,
     *,
-    write: Sequence[str] = ("figures", "pictures"),
+    write: Sequence[str] = ("measurements", "pictures"),
     jobs: int = 0,
     resume: bool = False,
     repair: bool = False,
@@ -258,7 +258,7 @@ def batch(
 ) -> BatchSummary:
     """Every obstacle of every file decomposed and certified into the folder `out`, as `exactvo batch` (docs/guide/batch.md).
 
-    write      outputs: "figures" (always), "pictures", "geopackage", "geojson"
+    write      outputs: "measurements" (always), "pictures", "geopackage", "geojson"
     jobs       worker threads; 0: as many as there are processors
     resume     go on with what is in `out`
     repair     repair what is invalid

@@ -132,9 +132,9 @@ py::tuple batch(const std::vector<fs::path>& paths, const fs::path& out, const s
       configuration.geojson = true;
     else if (name == "pictures")
       configuration.pictures = true;
-    else if (name != "figures")
+    else if (name != "measurements")
       throw ArgumentError("write", "\"" + name + "\"",
-                          "some of \"figures\", \"pictures\", \"geopackage\", \"geojson\"");
+                          "some of \"measurements\", \"pictures\", \"geopackage\", \"geojson\"");
   }
   datasets::BatchRun run;
   run.paths = paths;

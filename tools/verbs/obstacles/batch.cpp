@@ -46,7 +46,7 @@ struct BatchFlags {
   double cell_size = 0.0;
   double tolerance = 0.0;
   std::string partition = "triangles";
-  std::string write = "figures,pictures";
+  std::string write = "measurements,pictures";
   bool metres = false;
   std::optional<double> time_horizon;
   double radius = 0.0;
@@ -56,11 +56,11 @@ struct BatchFlags {
 };
 
 void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
-  const std::vector<std::string> known{"geopackage", "geojson", "pictures", "figures"};
+  const std::vector<std::string> known{"geopackage", "geojson", "pictures", "measurements"};
   std::vector<std::string> words;
   for (const std::string& word : boost::split(words, text, boost::is_any_of(",")))
     require(std::count(known.begin(), known.end(), word) > 0, "--write", word,
-            "geopackage, geojson, pictures, figures" + suggestion(word, known));
+            "geopackage, geojson, pictures, measurements" + suggestion(word, known));
   const auto has = [&](const char* word) { return std::count(words.begin(), words.end(), word) > 0; };
   configuration.geopackage = has("geopackage");
   configuration.geojson = has("geojson");
@@ -160,7 +160,7 @@ std::string size_text(double bytes) {
 
 /// What is written, times the input: measured on 20,000 polygons of 14 corners as WKT. Grids and compressed files may
 /// give much more.
-constexpr double kFiguresOfInput = 1.3;
+constexpr double kMeasurementsOfInput = 1.3;
 constexpr double kGeoPackageOfInput = 31.0;
 constexpr double kGeoJsonOfInput = 41.0;
 
@@ -168,7 +168,7 @@ constexpr double kGeoJsonOfInput = 41.0;
 void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const std::string& out) {
   const auto input = static_cast<double>(progress.input_bytes);
   const double factor =
-      kFiguresOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
+      kMeasurementsOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
   std::string text = fmt::format("{}, {}: about {} in {}", counted(progress.inputs, "file"), size_text(input),
                                  size_text(factor * input), out);
   if (!c.geopackage) text += fmt::format("; --write geopackage adds about {}", size_text(kGeoPackageOfInput * input));
@@ -245,13 +245,13 @@ void say_incomplete(const BatchFlags& flags, const BatchRun& run) {
     message("another process took the parts of this batch from " + flags.out + " and left no summary");
 }
 
-/// Nothing of them is wrong, and yet whoever takes half-planes from figures.jsonl must know.
+/// Nothing of them is wrong, and yet whoever takes half-planes from measurements.jsonl must know.
 void note_missing_half_planes(const BatchSummary& summary, const std::string& out) {
   if (summary.no_half_plane == 0) return;
-  message(
-      fmt::format("note: {} of the half-planes in {}/figures.jsonl {} null: the robot overlaps the obstacle at that "
-                  "position, or is too near to prove one",
-                  summary.no_half_plane, out, summary.no_half_plane == 1 ? "is" : "are"));
+  message(fmt::format(
+      "note: {} of the half-planes in {}/measurements.jsonl {} null: the robot overlaps the obstacle at that "
+      "position, or is too near to prove one",
+      summary.no_half_plane, out, summary.no_half_plane == 1 ? "is" : "are"));
 }
 
 ExitCode verdict(const BatchSummary& s) {
@@ -304,9 +304,10 @@ void declare_run(CLI::App& app, BatchFlags& flags) {
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--shard", flags.shard,
                  "i/n: every n-th file from the i-th on; the last shard to finish merges the results");
-  app.add_option("--write", flags.write,
-                 "Outputs, from figures (always), pictures, geopackage, geojson; the last two are some 30 and 40 times "
-                 "the input")
+  app.add_option(
+         "--write", flags.write,
+         "Outputs, from measurements (always), pictures, geopackage, geojson; the last two are some 30 and 40 times "
+         "the input")
       ->capture_default_str();
   app.add_flag("--metres", flags.metres,
                "GeoJSON in metres, which other programs read as degrees; by default longitude and latitude");

@@ -192,7 +192,7 @@ const char* word(const geometry::Verdict& verdict) {
 
 std::string words_of(const TakenApart& t) {
   const ObstacleShapes& s = t.shapes;
-  const geometry::ShapeFigures& f = s.figures;
+  const geometry::ShapeMeasurements& f = s.measurements;
   return fmt::format(
       "{} {}: {}, {:.6g} m^2; {} within {:.3g} m ({}), {} ({}), hull {:.6g} m^2 ({}), "
       "ellipse {:.6g} m^2 ({}), facade ellipses ({}), trap-free {}\n",

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Figures of a run as JSON, SI units, keys in a fixed order; a value that does not apply is null.
+/// Metrics of a run as JSON, SI units, keys in a fixed order; a value that does not apply is null.
 
 #include <string>
 #include <vector>

@@ -22,7 +22,7 @@ struct RecordHead {
   std::string outcome;  ///< "done", "repaired", "rejected"; empty: left out
 };
 
-/// The whole record: figures, verdicts, problems and, with `geometry`, every shape. No newline at the end.
+/// The whole record: measurements, verdicts, problems and, with `geometry`, every shape. No newline at the end.
 std::string to_json(const RecordHead& head, const geometry::ObstacleShapes& shapes, bool geometry = true);
 
 }  // namespace exactvo::datasets

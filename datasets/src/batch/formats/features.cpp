@@ -51,7 +51,7 @@ Feature flat_or_filled(std::size_t layer, Ring ring) {
 
 std::vector<Field> obstacle_fields(const FeatureHead& head, const ObstacleShapes& shapes) {
   const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
-  const geometry::ShapeFigures& f = shapes.figures;
+  const geometry::ShapeMeasurements& f = shapes.measurements;
   const bool free = shapes.trap_free.ellipse.has_value();
   return {{"key", head.key},
           {"file", head.file},
@@ -140,7 +140,7 @@ void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
 
 void give_hull(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   Feature feature = flat_or_filled(kHulls, shapes.hull.vertices);
-  feature.fields = hull_fields(head.key, shapes.figures.hull_area);
+  feature.fields = hull_fields(head.key, shapes.measurements.hull_area);
   take(feature);
 }
 

@@ -23,8 +23,8 @@ std::shared_ptr<const fs::path> started_folder(const Journal& journal) {
 }  // namespace
 
 Outputs::Outputs(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance)
-    : folder_(started_folder(journal)), figures_(output_file(*folder_ / "figures.jsonl")) {
-  figures_->write("{\"provenance\":" + provenance + "}\n");
+    : folder_(started_folder(journal)), measurements_(output_file(*folder_ / "measurements.jsonl")) {
+  measurements_->write("{\"provenance\":" + provenance + "}\n");
   if (configuration.geojson) start_geojson(configuration.geojson_in_metres, provenance);
   if (configuration.geopackage) geopackage_ = vector_library().make_geopackage(*folder_ / "obstacles.gpkg", provenance);
 }
@@ -39,7 +39,7 @@ void Outputs::start_geojson(bool in_metres, const std::string& provenance) {
 }
 
 void Outputs::add(const PartView& part) {
-  figures_->write(part.figures);
+  measurements_->write(part.measurements);
   for (std::size_t k = 0; k < geojson_.size(); ++k) {
     if (part.features[k].empty()) continue;
     auto& [file, is_empty] = geojson_[k];
@@ -51,7 +51,7 @@ void Outputs::add(const PartView& part) {
 }
 
 void Outputs::finish() {
-  figures_->commit();
+  measurements_->commit();
   for (const auto& [file, is_empty] : geojson_) {
     file->write("\n]}\n");
     file->commit();

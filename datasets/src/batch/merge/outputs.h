@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The files of a batch that grow part by part: figures.jsonl, the GeoJSON layers, the GeoPackage. The same parts in
-/// the same order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
+/// The files of a batch that grow part by part: measurements.jsonl, the GeoJSON layers, the GeoPackage. The same parts
+/// in the same order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
 /// session.cpp, summary.h.)
 
 #include <filesystem>
@@ -39,7 +39,7 @@ class Outputs {
 
   Counts counts_;
   std::shared_ptr<const std::filesystem::path> folder_;  ///< before the files, which are closed first
-  std::unique_ptr<AtomicFile> figures_;
+  std::unique_ptr<AtomicFile> measurements_;
   std::vector<std::pair<std::unique_ptr<AtomicFile>, bool>> geojson_;  ///< with whether nothing was added yet
   std::unique_ptr<GeoPackage> geopackage_;
 };

@@ -78,7 +78,7 @@ void append_rejection(const Chunk& chunk, const ChunkItem& item, Part& part) {
   json.begin_object().member("file", chunk.file).member("outcome", "rejected");
   json.member("code", code_name(item.rejected->code())).member("place", item.rejected->place());
   json.member("found", item.rejected->found()).member("expected", item.rejected->expected()).end_object();
-  part.figures += json.take() + "\n";
+  part.measurements += json.take() + "\n";
 }
 
 std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
@@ -86,7 +86,7 @@ std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& s
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("file", head.file).member("id", head.id).member("key", head.key);
   json.member("outcome", head.outcome);
-  append_figures(json, shapes);
+  append_measurements(json, shapes);
   append_verdicts(json, shapes);
   if (configuration.robot) counts.no_half_plane += append_half_planes(json, shapes, *configuration.robot);
   return json.end_object().take();
@@ -137,7 +137,7 @@ constexpr std::size_t kBytesBeforePictures = kMagic.size() + (kNumbers + 1) * si
 
 template <class Text>
 std::vector<Text*> texts_of(PartOf<Text>& part) {
-  std::vector<Text*> texts{&part.pictures, &part.figures};
+  std::vector<Text*> texts{&part.pictures, &part.measurements};
   for (Text& layer : part.features) texts.push_back(&layer);
   texts.push_back(&part.rows);
   return texts;
@@ -187,8 +187,8 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
                            item.repaired ? "repaired" : "done"};
     ++part.counts.obstacles;
     part.counts.certified += shapes.certified() ? 1 : 0;
-    part.counts.vertices += shapes.figures.vertices;
-    part.figures += record_of(head, shapes, configuration, part.counts) + "\n";
+    part.counts.vertices += shapes.measurements.vertices;
+    part.measurements += record_of(head, shapes, configuration, part.counts) + "\n";
     append_features(head, shapes, configuration, place, part);
     if (pictures > 0) {
       part.pictures += picture_of(head.id, shapes);

@@ -47,7 +47,7 @@ template <class Text>
 struct PartOf {
   Counts counts;
   Text pictures;               ///< SVG
-  Text figures;                ///< JSON Lines
+  Text measurements;           ///< JSON Lines
   std::vector<Text> features;  ///< a layer each: GeoJSON features, a comma and a newline between them
   Text rows;                   ///< features.h
 };

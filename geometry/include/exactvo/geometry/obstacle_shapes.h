@@ -4,7 +4,7 @@
 /// \file
 /// Everything that geometry/ knows to make of one obstacle, in one call, each shape with a verdict on what it contains:
 /// facades, convex pieces, hull, smallest ellipse, an ellipse round every facade (paper, equation (8)), an ellipse
-/// at which no robot can stall, and figures.
+/// at which no robot can stall, and measurements.
 ///
 /// Every verdict is decided by exact predicates on the doubles that are returned: `certified` never rests on how a
 /// shape was found. All are decided here, but for a polygon's pieces, which hull.h proves before it returns them.
@@ -74,7 +74,7 @@ struct TrapFreeEllipse {
 };
 
 /// Rounded, for people; never part of a proof.
-struct ShapeFigures {
+struct ShapeMeasurements {
   std::size_t vertices = 0;         ///< of all rings
   std::size_t holes = 0;            ///< rings but the outer ones
   double area = 0.0;                ///< m^2, holes taken off; 0 for walls and points
@@ -100,7 +100,7 @@ struct ObstacleShapes {
   Ellipse smallest_ellipse;                      ///< round every vertex, certified by `ellipse_contains`
   std::vector<FacadeEnclosure> facade_ellipses;  ///< one a facade, in their order
   TrapFreeEllipse trap_free;                     ///< round every vertex, certified by `trap_free_contains`
-  ShapeFigures figures;                          ///< areas and counts
+  ShapeMeasurements measurements;                ///< areas and counts
 
   Verdict facades_follow;           ///< the facades keep to the boundary, within their deviation
   Verdict pieces_cover;             ///< the pieces are convex and cover the obstacle and nothing else
