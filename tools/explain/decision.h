@@ -27,15 +27,36 @@ struct Decision {
   double time = 0.0;      ///< s, when the decision was taken
   formation::RobotStep step;
   std::vector<vo::Body> bodies;  ///< of the run
+  /// False: of what neither binds nor is violated, only half-planes against what could be met within a step.
+  bool has_all_half_planes = true;
+  std::vector<std::size_t> waits_for = {};  ///< robots (formation/waiting.h)
+  std::string waiting = {};                 ///< the same in words; empty where it waits for nobody
+  std::vector<char> fell_back = {};         ///< of each half-plane, whether it is of a pair that fell back
 
   const formation::Robot& who() const { return scenario.robots[robot]; }
+  bool is_of_fallen_pair(std::size_t half_plane) const {
+    return half_plane < fell_back.size() && fell_back[half_plane] != 0;
+  }
 };
+
+/// The decision of one robot in a row of a run that has these bodies.
+Decision decision_of(const formation::Scenario& scenario, const std::string& method, std::size_t robot,
+                     const formation::Step& row, const std::vector<vo::Body>& bodies, bool has_all_half_planes);
 
 /// The convex set that the robot must not reach, seen from it.
 geometry::GrownShape grown_shape(const formation::RecordedConstraint& constraint);
 
 /// m/s by which v lies on the forbidden side of the half-plane's line; negative on the allowed side.
 double violation_of(const formation::RecordedConstraint& constraint, Vec2 v);
+
+/// What the chosen velocity does to a half-plane. That a linear program counts it as active says nothing of the line
+/// itself: where half-planes contradict each other, the active ones are those that are violated most.
+enum class Effect { slack, binding, violated };
+
+Effect effect_of(const Decision& decision, const formation::RecordedConstraint& constraint);
+
+/// "slack", "binding", "violated".
+std::string name(Effect effect);
 
 /// From the robot's rim to the shape, m, to about a thousandth of its size; negative inside.
 double distance_to(const geometry::GrownShape& s);

@@ -11,6 +11,7 @@
 #include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 
@@ -36,6 +37,8 @@ Vec2 direction(int i) {
 
 /// m/s: a difference that two decimals do not show.
 constexpr double kNotSeen = 0.005;
+/// m/s: a velocity this near a line lies on it, whatever a solver rounded.
+constexpr double kOnLine = 1e-6;
 /// Of the greatest speed: slower than this while wanting more, a robot is being held.
 constexpr double kHeld = 0.05;
 /// m/s: what the balance may leave over before it explains nothing; solvers keep far below it.
@@ -54,21 +57,14 @@ std::string velocity(Vec2 v) {
   return fmt::format("{} m/s, speed {}", vector(v), number(norm(v)));
 }
 
-/// What the chosen velocity does to a half-plane. That an LP counts it as active says nothing of the line itself: where
-/// half-planes contradict each other, the active ones are those that are violated most.
-enum class Effect { slack, binding, violated };
-
-Effect effect_of(const Decision& d, const RecordedConstraint& c) {
-  const double violation = violation_of(c, d.step.chosen);
-  if (violation > kNotSeen) return Effect::violated;
-  return c.active && violation >= -kNotSeen ? Effect::binding : Effect::slack;
+/// Of a violation: what two decimals do not show has one digit that counts.
+std::string amount(double violation) {
+  return violation < kNotSeen ? fmt::format("{:.1g}", violation) : number(violation);
 }
 
-/// "[1] and [3]".
-std::string numbers_of(const Decision& d, Effect effect) {
+std::string numbered(const std::vector<std::size_t>& constraints) {
   std::vector<std::string> numbers;
-  for (std::size_t i = 0; i < d.step.constraints.size(); ++i)
-    if (effect_of(d, d.step.constraints[i]) == effect) numbers.push_back(fmt::format("[{}]", i + 1));
+  for (const std::size_t i : constraints) numbers.push_back(fmt::format("[{}]", i + 1));
   return formation::enumerated(numbers);
 }
 
@@ -80,7 +76,7 @@ std::string violated_words(const Decision& d) {
 }
 
 std::string status_words(const Decision& d) {
-  const std::string by = number(d.step.violation);
+  const std::string by = amount(d.step.violation);
   switch (d.step.status) {
     case lp::Status::optimal:
       return "every constraint is satisfied";
@@ -109,11 +105,12 @@ std::string head(const Decision& d) {
       "{} of {} at t = {} s, {}\n"
       "  position   {} m, moving at {}\n"
       "  mode       {}\n"
+      "{}"
       "  preferred  {}\n"
       "  chosen     {}: {}\n"
       "  status     {}\n",
       d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
-      mode_words(d), velocity(d.step.preferred), velocity(d.step.chosen),
+      mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n", velocity(d.step.preferred), velocity(d.step.chosen),
       shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
 }
 
@@ -149,21 +146,15 @@ std::string line_words(const RecordedConstraint& c) {
 }
 
 std::string effect_words(const Decision& d, const RecordedConstraint& c) {
-  switch (effect_of(d, c)) {
-    case Effect::binding:
-      return "binding";
-    case Effect::slack:
-      return "slack";
-    case Effect::violated:
-      return "violated by " + number(violation_of(c, d.step.chosen)) + " m/s";
-  }
-  return "";
+  const Effect effect = effect_of(d, c);
+  return effect == Effect::violated ? "violated by " + amount(violation_of(c, d.step.chosen)) + " m/s" : name(effect);
 }
 
 std::string constraint_words(const Decision& d, std::size_t i) {
   const RecordedConstraint& c = d.step.constraints[i];
-  return fmt::format("  [{}] {}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies), effect_words(d, c),
-                     contact_words(d, c), line_words(c));
+  return fmt::format("  [{}] {}{}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies),
+                     d.is_of_fallen_pair(i) ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, c),
+                     line_words(c));
 }
 
 std::string constraints_words(const Decision& d) {
@@ -234,14 +225,14 @@ std::string turned_words(const Decision& d) {
 
 /// Those that are binding, but push nothing.
 std::string idle_words(const Decision& d, const Balance& b) {
-  std::vector<std::string> idle;
+  std::vector<std::size_t> idle;
   for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
     const bool binds = effect_of(d, d.step.constraints[i]) == Effect::binding;
-    if (binds && b.factor_of(i) < kNotSeen) idle.push_back(fmt::format("[{}]", i + 1));
+    if (binds && b.factor_of(i) < kNotSeen) idle.push_back(i);
   }
   if (idle.empty()) return "";
   return fmt::format("     It lies on the line{} of {}, which {} not change it.\n", idle.size() == 1 ? "" : "s",
-                     formation::enumerated(idle), idle.size() == 1 ? "does" : "do");
+                     numbered(idle), idle.size() == 1 ? "does" : "do");
 }
 
 std::string unmoved_words(const Decision& d) {
@@ -259,19 +250,64 @@ std::string moved_words(const Decision& d) {
          (is_held(d) ? held_words(d, b) : "");
 }
 
+/// Which half-planes have the greatest violation, which is the least possible, and which are violated by less.
+std::string relaxed_words(const Decision& d) {
+  std::vector<std::size_t> violated, most, less;
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
+    if (effect_of(d, d.step.constraints[i]) != Effect::violated) continue;
+    violated.push_back(i);
+    greatest = std::max(greatest, violation_of(d.step.constraints[i], d.step.chosen));
+  }
+  for (const std::size_t i : violated)
+    (violation_of(d.step.constraints[i], d.step.chosen) > greatest - kOnLine ? most : less).push_back(i);
+  std::string text = "Why: no velocity satisfies all half-planes; the chosen one has the least greatest violation";
+  if (!most.empty()) text += ", that of " + numbered(most);
+  if (!less.empty()) text += fmt::format("; {} {} violated by less", numbered(less), less.size() == 1 ? "is" : "are");
+  return text + ".\n";
+}
+
+std::string fallen_words(const Decision& d) {
+  const auto fallen = std::find(d.fell_back.begin(), d.fell_back.end(), 1);
+  if (fallen == d.fell_back.end()) return "";
+  const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
+  return fmt::format(
+      "Fell back: half-planes of one robot of the pair contradicted each other. Both have those that they would have at "
+      "rest,\n     looking {:g} s ahead, which standing still satisfies.\n",
+      d.step.constraints[first].tau);
+}
+
 std::string why(const Decision& d) {
-  if (d.step.status == lp::Status::relaxed)
-    return fmt::format(
-        "Why: no velocity satisfies all half-planes; the chosen one has the least greatest violation ({}).\n",
-        numbers_of(d, Effect::violated));
+  if (d.step.status == lp::Status::relaxed) return relaxed_words(d);
   if (d.step.status != lp::Status::optimal) return "";
   return takes_preferred(d) ? unmoved_words(d) : moved_words(d);
 }
 
 }  // namespace
 
+Decision decision_of(const formation::Scenario& scenario, const std::string& method, std::size_t robot,
+                     const formation::Step& row, const std::vector<vo::Body>& bodies, bool has_all_half_planes) {
+  Decision d{scenario, method, robot, row.time, row.robots.at(robot), bodies, has_all_half_planes};
+  const formation::WaitForGraph waits = formation::waiting_in(scenario, row);
+  d.waits_for = waits[robot];
+  d.waiting = formation::waiting_words(scenario, row, waits, robot);
+  for (const RecordedConstraint& c : d.step.constraints)
+    d.fell_back.push_back(formation::fell_back(scenario, row, robot, c));
+  return d;
+}
+
 double violation_of(const RecordedConstraint& constraint, Vec2 v) {
   return geometry::violation(constraint.half_plane, v) / norm(constraint.half_plane.normal);
+}
+
+Effect effect_of(const Decision& decision, const RecordedConstraint& constraint) {
+  const double violation = violation_of(constraint, decision.step.chosen);
+  if (violation > kOnLine) return Effect::violated;
+  return constraint.active && violation >= -kNotSeen ? Effect::binding : Effect::slack;
+}
+
+std::string name(Effect effect) {
+  return effect == Effect::slack ? "slack" : effect == Effect::binding ? "binding" : "violated";
 }
 
 GrownShape grown_shape(const RecordedConstraint& constraint) {
@@ -301,7 +337,7 @@ std::optional<double> time_to_contact(const GrownShape& s, Vec2 v) {
 }
 
 std::string explanation(const Decision& decision) {
-  return head(decision) + constraints_words(decision) + why(decision);
+  return head(decision) + constraints_words(decision) + why(decision) + fallen_words(decision);
 }
 
 }  // namespace exactvo::tools

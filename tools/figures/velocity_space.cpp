@@ -19,7 +19,8 @@ namespace {
 
 constexpr const char* kStaticColour = "#7a8290";
 constexpr const char* kRobotColour = "#CC79A7";
-constexpr const char* kActiveColour = "#D55E00";
+constexpr const char* kBindingColour = "#D55E00";
+constexpr const char* kViolatedColour = "#a50026";  // and dashed
 constexpr const char* kSlackColour = "#9a9a9a";
 constexpr const char* kSlackNumber = "#6a6a6a";  // the same, readable as text
 constexpr const char* kAllowedColour = "#cdeccd";
@@ -27,10 +28,11 @@ constexpr const char* kPreferredColour = "#1030ff";
 constexpr const char* kChosenColour = "#2aa56f";
 constexpr std::size_t kNameLength = 24;  // characters of a name in the title
 constexpr double kTitleRoom = 800.0;     // px over the axes and a little beyond
+constexpr const char* kPartly =
+    "Recorded are half-planes that bind or are violated, and of what is near. Others may forbid more.";
 constexpr int kArcPoints = 200;
 /// More velocity obstacles than this are drawn paler and thinner.
 constexpr int kFewCones = 4;
-constexpr double kOnLine = 1e-6;    // m/s: a velocity this near a line lies on it
 constexpr int kHatchesAcross = 45;  // over the width of the view
 
 class VelocitySpace {
@@ -39,13 +41,15 @@ class VelocitySpace {
     add_allowed();
     add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
     add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
-    add_half_planes(false, kSlackColour, 1.5, "half-plane, slack");
-    add_half_planes(true, kActiveColour, 3.0, "half-plane, " + active_words());
+    add_half_planes(Effect::slack, "lw 1.5", kSlackColour);
+    add_half_planes(Effect::binding, "lw 3", kBindingColour);
+    add_half_planes(Effect::violated, "lw 3 dt (8,4)", kViolatedColour);
     add_hatching_key();
     add_speed_bound();
-    // The numbers of the printed explanation, beside the lines and in their colours; those that bind choose first.
-    add_numbers_of(true, kActiveColour);
-    add_numbers_of(false, kSlackNumber);
+    // The numbers of the printed explanation, beside the lines and in their colours; what is slack chooses last.
+    add_numbers_of(Effect::binding, kBindingColour);
+    add_numbers_of(Effect::violated, kViolatedColour);
+    add_numbers_of(Effect::slack, kSlackNumber);
     add_arrows();
   }
 
@@ -66,7 +70,7 @@ class VelocitySpace {
     // The line of a half-plane that the chosen velocity violates: without it all that is seen is forbidden.
     constexpr double kFarthestLine = 40.0;  // of the speed bound
     for (const RecordedConstraint& c : constraints()) {
-      if (!is_violated(c)) continue;
+      if (effect_of(d_, c) != Effect::violated) continue;
       const Vec2 foot = (c.half_plane.offset / squared_norm(c.half_plane.normal)) * c.half_plane.normal;
       if (norm(foot) <= kFarthestLine * limit()) box.add(1.1 * foot);
     }
@@ -87,13 +91,14 @@ class VelocitySpace {
     const int index = data_.begin("allowed velocities", "v_x [m/s], v_y [m/s]");
     data_.ring(ring);
     plot_.data(index, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", kAllowedColour),
-               "allowed velocities");
+               d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
   }
 
+  /// Those that have a cone: what the robot overlaps has none.
   std::vector<const RecordedConstraint*> of_kind(bool robots) const {
     std::vector<const RecordedConstraint*> result;
     for (const RecordedConstraint& c : constraints()) {
-      if ((c.source == ConstraintSource::robot) == robots) result.push_back(&c);
+      if ((c.source == ConstraintSource::robot) == robots && leg_normals(grown_shape(c))) result.push_back(&c);
     }
     return result;
   }
@@ -157,7 +162,6 @@ class VelocitySpace {
 
   void add_legs(const RecordedConstraint& c, std::vector<Points>& curves) const {
     const auto legs = leg_normals(grown_shape(c));
-    if (!legs) return;
     const Vec2 left = tangent_point(c, legs->first), right = tangent_point(c, legs->second);
     // Beyond any corner of the view, wherever in it or near it the leg starts.
     const double length = 4.0 * view_.diagonal() + norm(left) + norm(right);
@@ -166,9 +170,7 @@ class VelocitySpace {
   }
 
   void add_cut_off(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    const auto legs = leg_normals(grown_shape(c));
-    if (!legs) return;
-    const auto& [from, to] = *legs;
+    const auto [from, to] = *leg_normals(grown_shape(c));
     const double turn = std::atan2(cross(from, to), dot(from, to));
     Points arc;
     for (int i = 0; i <= kArcPoints; ++i) arc.push_back(tangent_point(c, rotated(from, turn * i / kArcPoints)));
@@ -182,33 +184,21 @@ class VelocitySpace {
     curves.push_back(ring);
   }
 
-  void add_half_planes(bool active, const char* colour, double width, const std::string& title) {
+  void add_half_planes(Effect effect, const std::string& line_style, const char* colour) {
     std::vector<std::pair<Points, Vec2>> lines;
     for (const RecordedConstraint& c : constraints()) {
-      const Points line = c.active == active ? boundary_within(view_, c.half_plane) : Points{};
+      const Points line = effect_of(d_, c) == effect ? boundary_within(view_, c.half_plane) : Points{};
       if (!line.empty()) lines.emplace_back(line, c.half_plane.normal);
     }
     if (lines.empty()) return;
+    const std::string title = "half-plane, " + name(effect);
     const int boundaries = data_.begin(title + ": boundaries", "v_x [m/s], v_y [m/s]");
     for (const auto& [line, normal] : lines) data_.curve(line);
     const int strokes = data_.begin(title + ": hatching on the forbidden side", "v_x [m/s], v_y [m/s]");
     for (const auto& [line, normal] : lines)
       for (const Points& stroke : hatching(line, normal, view_.width() / kHatchesAcross)) data_.curve(stroke);
-    plot_.data(boundaries, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", width, colour), title);
+    plot_.data(boundaries, fmt::format("using 1:2 with lines {} lc rgb '{}'", line_style, colour), title);
     plot_.data(strokes, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
-  }
-
-  bool is_violated(const RecordedConstraint& c) const {
-    return geometry::violation(c.half_plane, d_.step.chosen) > kOnLine * norm(c.half_plane.normal);
-  }
-
-  /// Of a compromise between half-planes that contradict each other, what is active is violated.
-  std::string active_words() const {
-    bool binds = false, is_missed = false;
-    for (const RecordedConstraint& c : constraints())
-      if (c.active) (is_violated(c) ? is_missed : binds) = true;
-    if (!is_missed) return "binding";
-    return binds ? "binding or violated" : "violated";
   }
 
   void add_speed_bound() {
@@ -217,11 +207,11 @@ class VelocitySpace {
     plot_.data(index, "using 1:2 with lines lw 1.5 dt (6,4) lc rgb 'black'", "speed bound");
   }
 
-  void add_numbers_of(bool active, const char* colour) {
+  void add_numbers_of(Effect effect, const char* colour) {
     std::vector<std::pair<Vec2, std::size_t>> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
       const Points line = boundary_within(view_, constraints()[i].half_plane);
-      if (constraints()[i].active != active || line.empty()) continue;
+      if (effect_of(d_, constraints()[i]) != effect || line.empty()) continue;
       numbers.emplace_back(free_place(line, constraints()[i].half_plane.normal), i + 1);
     }
     if (numbers.empty()) return;
@@ -299,9 +289,9 @@ Figure velocity_space_figure(const Decision& decision) {
   const std::string title =
       fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
                   shortened(decision.who().id, kNameLength), decision.time, decision.method);
-  const std::string body =
-      velocity_plane(quoted(shortened(title, characters_in(kTitleRoom))), space.box(), space.plot());
-  return {"velocity_space", space.data(), title + ".", {1060, 740}, body};
+  std::string titles = quoted(shortened(title, characters_in(kTitleRoom)));
+  if (!decision.has_all_half_planes) titles += ".\"\\n\"." + quoted(kPartly);
+  return {"velocity_space", space.data(), title + ".", {1060, 740}, velocity_plane(titles, space.box(), space.plot())};
 }
 
 }  // namespace exactvo::tools

@@ -10,6 +10,7 @@
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/run_info.h"
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/planned_routes.h"
 #include "exactvo/formation/stuck.h"
@@ -18,6 +19,7 @@
 #include "figures/outlines.h"
 #include "figures/velocity_space.h"
 #include "support/escape.h"
+#include "support/json_layout.h"
 #include "support/routes_of_run.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
@@ -40,6 +42,7 @@ struct ExplainFlags {
   std::string robot;
   std::string out;
   std::string map;
+  bool json = false;
 };
 
 std::vector<std::string> robot_ids(const Scenario& scenario) {
@@ -56,7 +59,7 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
   }
   throw UsageError(
       "--robot", text,
-      fmt::format("a number from 0 to {} or one of {}{}", ids.size() - 1, fmt::join(ids, " "), suggestion(text, ids)));
+      fmt::format("a number from 0 to {} or an id: {}{}", ids.size() - 1, formation::abridged(ids), suggestion(text, ids)));
 }
 
 /// Throws UsageError for a time after the end of the run.
@@ -114,9 +117,8 @@ Explained decide(const ExplainFlags& flags, const Scenario& scenario) {
   if (interrupted()) throw Interrupted();
   check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
              flags.time);
-  const formation::Step& step = last_decision(recording);
-  Explained explained{{scenario, method_words(datasets::run_info(scenario, options, {})), robot, step.time,
-                       step.robots.at(robot), recording.bodies},
+  Explained explained{decision_of(scenario, method_words(datasets::run_info(scenario, options, {})), robot,
+                                  last_decision(recording), recording.bodies, true),
                       remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, recording, options);
   return explained;
@@ -167,15 +169,15 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
                                          const formation::LyapunovRow*) { until.add(so_far, std::move(row)); });
   const std::size_t robot = find_robot(file.scenario, flags.robot);
   check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
-  const formation::Step& step = until.decision();
   Explained explained{
-      {file.scenario, method_words(file.info), robot, step.time, step.robots.at(robot), file.recording.bodies},
+      decision_of(file.scenario, method_words(file.info), robot, until.decision(), file.recording.bodies,
+                  file.recording.all_half_planes),
       remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
-        "The recording has only the half-planes that bind and those against what could be met within a time step: "
-        "simulate --record-all keeps the others too.");
+        "The recording has only the half-planes that bind or are violated and those against what could be met within a "
+        "time step: simulate --record-all keeps the others too, and explain of the scenario computes them.");
   return explained;
 }
 
@@ -256,11 +258,56 @@ std::string route_words(const Decision& decision, const formation::RouteAhead& a
 
 // --- The verb ---
 
+std::string words_of(const Explained& explained) {
+  std::string text = explanation(explained.decision);
+  if (explained.ahead) text += route_words(explained.decision, *explained.ahead);
+  text = shown_lines(text);
+  for (const std::string& remark : explained.remarks) text += shown(remark) + "\n";
+  return text;
+}
+
+OrderedJson json_of(const Decision& d, std::size_t half_plane) {
+  const formation::RecordedConstraint& c = d.step.constraints[half_plane];
+  return {{"number", half_plane + 1},
+          {"of", formation::name_of(c, d.scenario, d.bodies)},
+          {"effect", name(effect_of(d, c))},
+          {"violation", std::max(0.0, violation_of(c, d.step.chosen))},
+          {"normal", json_point(c.half_plane.normal)},
+          {"offset", c.half_plane.offset},
+          {"hard", c.hard},
+          {"certified", c.certified},
+          {"fell_back", d.is_of_fallen_pair(half_plane)},
+          {"time_horizon", c.tau},
+          {"clearance", c.clearance},
+          {"multiplier", c.multiplier}};
+}
+
+OrderedJson json_of(const Explained& explained) {
+  const Decision& d = explained.decision;
+  OrderedJson waits_for = OrderedJson::array(), half_planes = OrderedJson::array();
+  for (const std::size_t i : d.waits_for) waits_for.push_back(d.scenario.robots[i].id);
+  for (std::size_t k = 0; k < d.step.constraints.size(); ++k) half_planes.push_back(json_of(d, k));
+  return {{"scenario", d.scenario.name},
+          {"robot", d.who().id},
+          {"time", d.time},
+          {"how", d.method},
+          {"position", json_point(d.step.position)},
+          {"velocity", json_point(d.step.velocity)},
+          {"mode", name(d.step.mode)},
+          {"waits_for", waits_for},
+          {"waiting", d.waiting},
+          {"preferred", json_point(d.step.preferred)},
+          {"chosen", json_point(d.step.chosen)},
+          {"status", lp::name(d.step.status)},
+          {"violation", d.step.violation},
+          {"all_half_planes", d.has_all_half_planes},
+          {"half_planes", half_planes},
+          {"remarks", explained.remarks}};
+}
+
 ExitCode explain(const ExplainFlags& flags) {
   const Explained explained = explained_by(flags);
-  print(shown_lines(explanation(explained.decision)));
-  if (explained.ahead) print(shown_lines(route_words(explained.decision, *explained.ahead)));
-  for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
+  print(flags.json ? laid_out(json_of(explained)) : words_of(explained));
   if (!flags.out.empty()) write_figure(velocity_space_figure(explained.decision), flags.out);
   if (flags.map.empty()) return ExitCode::success;
   if (explained.ahead)
@@ -278,6 +325,7 @@ void declare_explain(CLI::App& app, ExplainFlags& flags) {
   declare_out(app, flags.out, kFigureFileHelp);
   app.add_option("--map", flags.map,
                  "The same for a map: the robot's route, where it heads for, and what separates a goal out of reach");
+  app.add_flag("--json", flags.json, "The decision, its half-planes and the remarks as JSON");
   declare_simulation_flags(app, flags.simulation);
 }
 
