@@ -148,6 +148,31 @@ TEST(Explanation, AViolatedLineIsNotCalledBinding) {
   EXPECT_THAT(words, testing::Not(HasSubstr("lies on")));
 }
 
+// A half-plane that a compromise violates by less than the greatest violation is no active one of the linear program.
+TEST(Explanation, WhatIsViolatedByLessThanTheMostIsViolatedAndNotSlack) {
+  Decision d = before_a_cart();
+  d.step.constraints[0].active = true;
+  d.step.constraints[1].half_plane.offset = 0.4;  // v_y <= -0.4
+  EXPECT_THAT(explanation(d), HasSubstr("[2] the edge (-2, 1.5)-(2, 1.5) of obstacle north, violated by 0.40 m/s"));
+  EXPECT_THAT(explanation(d), HasSubstr("has the least greatest violation, that of [1]; [2] is violated by less.\n"));
+  EXPECT_THAT(velocity_space_figure(d).body, testing::Not(HasSubstr("half-plane, slack")));
+  d.step.constraints[1].half_plane.offset = 0.0004;
+  EXPECT_THAT(explanation(d), HasSubstr("of obstacle north, violated by 0.0004 m/s"));
+}
+
+TEST(Explanation, SaysForWhomARobotWaitsAndWhichPairsFellBack) {
+  Decision d = with_two_walls();
+  EXPECT_THAT(explanation(d), testing::Not(testing::AnyOf(HasSubstr("waiting"), HasSubstr("ell back"))));
+  d.waiting = "R1 waits for R2, which moves";
+  d.step.constraints[1].source = ConstraintSource::robot;
+  d.step.constraints[1].index = 0;
+  d.step.constraints[1].tau = 0.1;
+  d.fell_back = {0, 1};
+  EXPECT_THAT(explanation(d), HasSubstr("  waiting    R1 waits for R2, which moves\n"));
+  EXPECT_THAT(explanation(d), HasSubstr("[2] robot R1 (the pair fell back), binding"));
+  EXPECT_THAT(explanation(d), HasSubstr("looking 0.1 s ahead"));
+}
+
 TEST(Explanation, TheSourceOfWhatIsViolatedIsNamed) {
   const std::string words = explanation(before_a_cart());
   EXPECT_THAT(words, HasSubstr("violated by at most 2.85 m/s, the least possible: moving obstacle cart\n"));
@@ -162,6 +187,22 @@ TEST(VelocitySpace, DrawsEveryLayerOnce) {
   }
   EXPECT_THAT(figure.body, HasSubstr("set size ratio -1"));
   EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
+}
+
+TEST(VelocitySpace, SaysWhereHalfPlanesWereNotRecorded) {
+  Decision d = with_two_walls();
+  EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("title 'allowed velocities'"));
+  EXPECT_THAT(velocity_space_figure(d).body, testing::Not(HasSubstr("Others may forbid more")));
+  d.has_all_half_planes = false;
+  EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("title 'allowed by the half-planes recorded'"));
+  EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("Others may forbid more.'\n"));
+}
+
+// What the robot overlaps has no cone; its shape stood in the legend without the heading that it belongs to.
+TEST(VelocitySpace, WhatIsOverlappedHasNoShapeInTheLegend) {
+  Decision d = with_two_walls();
+  for (auto& c : d.step.constraints) c.radius = 2.0;
+  EXPECT_THAT(velocity_space_figure(d).body, testing::Not(HasSubstr("its shape")));
 }
 
 // Inside an obstacle: all that was seen was forbidden, and no line said by what.

@@ -853,6 +853,34 @@ TEST(Explain, ARobotGoesByNumberToo) {
   EXPECT_EQ(here.run("explain s.json --time 1 --robot 1").status, 2);
 }
 
+/// Two that cannot pass each other between two walls, and three that stand aside.
+constexpr const char* kNarrow = R"({"name": "narrow", "time_limit": 12, "guidance": "none", "robots": [
+  {"id": "left", "position": [-4, 0], "goal": [4, 0]}, {"id": "right", "position": [4, 0], "goal": [-4, 0]},
+  {"id": "a", "position": [0, 9], "goal": [0, 9]}, {"id": "b", "position": [4, 9], "goal": [4, 9]},
+  {"id": "c", "position": [8, 9], "goal": [8, 9]}],
+  "obstacles": [{"id": "low", "polyline": [[-6, -0.7], [6, -0.7]]}, {"id": "high", "polyline": [[-6, 0.7], [6, 0.7]]}]})";
+
+TEST(Explain, SaysForWhomARobotWaitsAlsoInJson) {
+  const Workplace here;
+  here.write("s.json", kNarrow);
+  const std::string words = "left waits for right, which waits for left: a deadlock of two";
+  EXPECT_THAT(here.run("explain s.json --time 9 --robot left").out, HasSubstr("  waiting    " + words + "\n"));
+  const json decision = json::parse(here.run("explain s.json --time 9 --robot left --json").out);
+  EXPECT_EQ(decision.at("waiting"), words);
+  EXPECT_EQ(decision.at("waits_for"), json::array({"right"}));
+  EXPECT_EQ(decision.at("all_half_planes"), true);
+  EXPECT_EQ(decision.at("half_planes").at(0).at("number"), 1);
+  ASSERT_EQ(here.run("simulate s.json --no-figures --out run").status, 0);
+  EXPECT_EQ(json::parse(here.run("explain run --time 9 --robot left --json").out).at("all_half_planes"), false);
+}
+
+TEST(Explain, OfManyRobotsARangeIsNamedAndNotEveryOne) {
+  const Workplace here;
+  here.write("s.json", kNarrow);
+  EXPECT_THAT(here.run("explain s.json --time 1 --robot 80").err,
+              HasSubstr("expected a number from 0 to 4 or an id: left, right, a and 2 more\n"));
+}
+
 TEST(Explain, ATimeAfterTheEndIsRefused) {
   const Workplace here;
   here.write("s.json", kOneRobot);

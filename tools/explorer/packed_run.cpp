@@ -136,8 +136,8 @@ Step without_shapes(Step row) {
   return row;
 }
 
-std::uint8_t flags_of(const RecordedConstraint& c) {
-  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0));
+std::uint8_t flags_of(const RecordedConstraint& c, bool fell_back) {
+  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0) | (fell_back ? 8 : 0));
 }
 
 void append(std::vector<double>& numbers, Vec2 v) {
@@ -156,6 +156,7 @@ std::vector<Number> each(const std::vector<const Entry*>& entries, const Of& of)
 void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, PackedColumns& columns) {
   std::vector<double> time, moving, state, line;
   std::vector<std::uint32_t> waits;
+  std::vector<std::uint8_t> flags;
   std::vector<const RobotStep*> robots;
   std::vector<const lp::ActiveConstraint*> parts;
   std::vector<const RecordedConstraint*> half_planes;
@@ -164,13 +165,15 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
     // Of each robot the one that holds it most, by its number from 1 on.
     for (const std::vector<std::size_t>& by : formation::waiting_in(scenario, row))
       waits.push_back(by.empty() ? 0 : static_cast<std::uint32_t>(by.front() + 1));
-    for (const RobotStep& r : row.robots) {
+    for (std::size_t i = 0; i < row.robots.size(); ++i) {
+      const RobotStep& r = row.robots[i];
       robots.push_back(&r);
       for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen})
         append(state, v);
       for (const lp::ActiveConstraint& part : r.bound) parts.push_back(&part);
       for (const RecordedConstraint& c : r.constraints) {
         half_planes.push_back(&c);
+        flags.push_back(flags_of(c, formation::fell_back(scenario, row, i, c)));
         append(line, c.half_plane.normal);
         line.push_back(c.half_plane.offset);
       }
@@ -193,7 +196,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("half_plane.body", each<std::uint32_t>(half_planes, &RecordedConstraint::body));
   columns.add("half_plane.index", each<std::uint32_t>(half_planes, &RecordedConstraint::index));
   columns.add("half_plane.piece", each<std::uint32_t>(half_planes, &RecordedConstraint::piece));
-  columns.add("half_plane.flags", each<std::uint8_t>(half_planes, flags_of), 0);
+  columns.add("half_plane.flags", flags, 0);
   columns.add("half_plane.line", line, 0);
   columns.add("half_plane.time_horizon", each<double>(half_planes, &RecordedConstraint::time_horizon), 0);
   columns.add("half_plane.clearance", each<double>(half_planes, &RecordedConstraint::clearance), 0);

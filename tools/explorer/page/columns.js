@@ -179,7 +179,7 @@ class Run {
       body: number, kind: body.kind, index: c['half_plane.index'][i], piece: c['half_plane.piece'][i],
       nx: line[3 * i], ny: line[3 * i + 1], c: line[3 * i + 2],
       timeHorizon: c['half_plane.time_horizon'][i], clearance: c['half_plane.clearance'][i], multiplier: c['half_plane.multiplier'][i],
-      certified: (flags & 1) !== 0, hard: (flags & 2) !== 0, active: (flags & 4) !== 0,
+      certified: (flags & 1) !== 0, hard: (flags & 2) !== 0, active: (flags & 4) !== 0, fellBack: (flags & 8) !== 0,
       radius: this.robots[robot].radius,
     };
     Object.assign(h, this.placed(h, row));

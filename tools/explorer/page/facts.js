@@ -88,7 +88,8 @@ function fillHalfPlanes(d) {
   const run = shownRun(), counts = {slack: 0, binding: 0, violated: 0};
   for (const h of d.halfPlanes) ++counts[effectOf(d, h)];
   $('count').textContent = `${d.halfPlanes.length}: ${counts.binding} binding${counts.violated ? `, ${counts.violated} violated` : ''}`;
-  const order = d.halfPlanes.map((h, k) => k).sort((a, b) => d.halfPlanes[b].active - d.halfPlanes[a].active || a - b);
+  const isSlack = (k) => effectOf(d, d.halfPlanes[k]) === 'slack';
+  const order = d.halfPlanes.map((h, k) => k).sort((a, b) => isSlack(a) - isSlack(b) || a - b);
   const cards = order.slice(0, MOST_CARDS).map((k) => {
     const h = d.halfPlanes[k], card = element('li', undefined, effectOf(d, h)), head = element('div', undefined, 'head');
     const mark = element('span', '', 'mark');

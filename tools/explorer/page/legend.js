@@ -51,11 +51,13 @@ function coned(colour) {
   };
 }
 
-function hatched(colour) {
+function hatched(colour, dash = []) {
   return (ctx, colours) => {
     ctx.strokeStyle = colours[colour];
     ctx.lineWidth = 2;
+    ctx.setLineDash(dash);
     line(ctx, 1, 4, 25, 4);
+    ctx.setLineDash([]);
     ctx.lineWidth = 1;
     for (let x = 3; x < 24; x += 5) line(ctx, x, 4, x + 4, 10);
   };
@@ -98,7 +100,8 @@ function worldLegend(element, colours, isServed) {
 
 function spaceLegend(element, colours) {
   const entries = [['velocity obstacle, its cut-off thick', coned('cone')], ['of a robot or what moves', coned('coneRobot')],
-    ['half-plane, hatched where forbidden', hatched('slack')], ['binding', hatched('active')], ['allowed', filled('allowed')],
+    ['half-plane, hatched where forbidden', hatched('slack')], ['binding', hatched('active')], ['violated', hatched('bad', [6, 3])],
+    ['allowed', filled('allowed')],
     ['free, given away', filled('givenAway')], ['speed bound', stroked('text', 1.3, [7, 5])]];
   element.replaceChildren(...entries.map(([text, draw]) => entry(text, colours, draw)));
 }

@@ -70,7 +70,7 @@ function fillRun() {
   const hasDecisions = run.decisionTime.length > 0;
   for (const e of document.querySelectorAll('.of-decisions')) e.hidden = !hasDecisions;
   if (hasDecisions && !about.all_half_planes)
-    partial.push('The recording has only the half-planes that bind and those against what could be met within a time step: simulate --record-all keeps the others too.');
+    partial.push('The recording has only the half-planes that bind or are violated and those against what could be met within a time step: simulate --record-all keeps the others too.');
   if (run.head.decisions.every > 1) partial.push(`One row in ${run.head.decisions.every} has its decisions in this page.`);
   if (run.head.rows.every > 1) partial.push(`One row in ${run.head.rows.every} is in this page.`);
   $('partial').textContent = partial.join(' ');

@@ -2,6 +2,7 @@
 // The velocity space of one robot at one moment: velocity obstacles with legs and cut-off, half-planes hatched on the
 // forbidden side, the allowed velocities, speed bound, preferred and chosen velocity.
 import {drawGrid, label, line, arrow, tracePoints} from './draw.js';
+import {effectOf} from './words.js';
 import {velocityObstacle, ringOf, clipped, speedRing} from './shapes.js';
 
 // Everything of a decision that does not depend on the view.
@@ -9,7 +10,8 @@ function spaceOf(run, decision) {
   const obstacles = decision.halfPlanes.map((h) => velocityObstacle(h, decision.anchor));
   let allowed = speedRing(run, decision.robot);
   for (const h of decision.halfPlanes) if (allowed.length) allowed = clipped(allowed, h.nx, h.ny, h.c);
-  return {run, decision, obstacles, allowed, bound: speedRing(run, decision.robot), isWhole: run.about.all_half_planes};
+  return {run, decision, obstacles, allowed, bound: speedRing(run, decision.robot), isWhole: run.about.all_half_planes,
+    effects: decision.halfPlanes.map((h) => effectOf(decision, h))};
 }
 
 // The half-width of the square that shows all of it.
@@ -59,18 +61,25 @@ function drawCone(ctx, view, colours, h, obstacle, isMarked, strength) {
   ctx.globalAlpha = 1;
 }
 
-function drawHalfPlane(ctx, view, colours, h, isMarked) {
+// Of a half-plane that is slack, binding or violated.
+function paintOf(colours, effect) {
+  return effect === 'slack' ? colours.slack : effect === 'binding' ? colours.active : colours.bad;
+}
+
+function drawHalfPlane(ctx, view, colours, h, effect, isMarked) {
   const ends = lineInView(view, h);
   if (!ends) return null;
   const [x1, y1, x2, y2] = [view.px(ends[0][0]), view.py(ends[0][1]), view.px(ends[1][0]), view.py(ends[1][1])];
-  ctx.strokeStyle = h.active ? colours.active : colours.slack;
-  ctx.lineWidth = (h.active ? 2.6 : 1.3) + (isMarked ? 1.6 : 0);
+  ctx.strokeStyle = paintOf(colours, effect);
+  ctx.lineWidth = (effect === 'slack' ? 1.3 : 2.6) + (isMarked ? 1.6 : 0);
+  ctx.setLineDash(effect === 'violated' ? [9, 4] : []);
   line(ctx, x1, y1, x2, y2);
+  ctx.setLineDash([]);
   // Hatching: strokes into the forbidden side, at 45 degrees to the line.
   const length = Math.hypot(x2 - x1, y2 - y1), ux = (x2 - x1) / length, uy = (y2 - y1) / length;
   const n = Math.hypot(h.nx, h.ny), ox = -h.nx / n, oy = h.ny / n, size = 9, gap = 11;
   ctx.lineWidth = isMarked ? 1.6 : 1;
-  ctx.globalAlpha = h.active || isMarked ? 0.9 : 0.6;
+  ctx.globalAlpha = effect !== 'slack' || isMarked ? 0.9 : 0.6;
   ctx.beginPath();
   for (let s = gap / 2; s < length; s += gap) {
     const x = x1 + s * ux, y = y1 + s * uy;
@@ -89,7 +98,7 @@ function numberPlace(view, ends, taken) {
   let best = null, room = -1;
   for (let k = 1; k < 40; ++k) {
     const x = x1 + (x2 - x1) * k / 40, y = y1 + (y2 - y1) * k / 40;
-    const isInLegend = x > view.width - 100 && y < 68;
+    const isInLegend = (x > view.width - 100 && y < 68) || (x < 200 && y < 48);
     if (isInLegend || x < 16 || y < 30 || x > view.width - 16 || y > view.height - 26) continue;
     let here = 60;
     for (const [tx, ty] of taken) here = Math.min(here, Math.hypot(tx - x, ty - y));
@@ -101,15 +110,15 @@ function numberPlace(view, ends, taken) {
   return best;
 }
 
-function drawNumber(ctx, colours, text, x, y, isActive) {
+function drawNumber(ctx, colours, text, x, y, effect) {
   ctx.beginPath();
   ctx.arc(x, y, 9, 0, 2 * Math.PI);
   ctx.fillStyle = colours.ground;
   ctx.fill();
-  ctx.strokeStyle = ctx.fillStyle = isActive ? colours.active : colours.slack;
-  ctx.lineWidth = isActive ? 2 : 1;
+  ctx.strokeStyle = paintOf(colours, effect);
+  ctx.lineWidth = effect === 'slack' ? 1 : 2;
   ctx.stroke();
-  ctx.fillStyle = isActive ? colours.active : colours.faint;
+  ctx.fillStyle = effect === 'slack' ? colours.faint : paintOf(colours, effect);
   ctx.textAlign = 'center';
   ctx.textBaseline = 'middle';
   ctx.font = 'bold 10px system-ui, sans-serif';
@@ -170,7 +179,7 @@ function drawSpace(ctx, view, space, ui) {
     drawGrid(ctx, view, colours, 'm/s')();
     return;
   }
-  const {decision, obstacles, allowed, bound} = space;
+  const {decision, obstacles, allowed, bound, effects} = space;
   drawFree(ctx, view, colours, space);
   if (allowed.length > 2) {
     tracePoints(ctx, view, allowed, true);
@@ -188,9 +197,11 @@ function drawSpace(ctx, view, space, ui) {
   ctx.setLineDash([7, 5]);
   ctx.stroke();
   ctx.setLineDash([]);
-  const ends = decision.halfPlanes.map((h) => (h.active ? null : drawHalfPlane(ctx, view, colours, h, false)));
+  const draw = (h, k) => drawHalfPlane(ctx, view, colours, h, effects[k], ui.halfPlane === k);
+  const isAbove = (k) => effects[k] !== 'slack' || ui.halfPlane === k;
+  const ends = decision.halfPlanes.map((h, k) => (isAbove(k) ? null : draw(h, k)));
   decision.halfPlanes.forEach((h, k) => {
-    if (h.active || ui.halfPlane === k) ends[k] = drawHalfPlane(ctx, view, colours, h, ui.halfPlane === k);
+    if (isAbove(k)) ends[k] = draw(h, k);
   });
   drawVelocity(ctx, view, colours.velocity, decision.velocity, 1.5, [], 2);
   drawVelocity(ctx, view, colours.chosen, decision.chosen, 4, [], 4.5);
@@ -198,14 +209,16 @@ function drawSpace(ctx, view, space, ui) {
   const taken = [];
   const count = decision.halfPlanes.length;
   decision.halfPlanes.forEach((h, k) => {
-    if (!ends[k] || (count > 24 && !h.active && ui.halfPlane !== k)) return;
+    if (!ends[k] || (count > 24 && !isAbove(k))) return;
     const place = numberPlace(view, ends[k], taken);
     if (!place) return;
     taken.push(place);
-    drawNumber(ctx, colours, String(k + 1), place[0], place[1], h.active);
+    drawNumber(ctx, colours, String(k + 1), place[0], place[1], effects[k]);
   });
   numbers();
   drawLegend(ctx, view, colours);
+  if (!space.isWhole)
+    ['half-planes not recorded', 'may forbid more'].forEach((text, k) => label(ctx, text, 38, 18 + 15 * k, colours.text, colours.label));
 }
 
 // The half-plane whose line passes a point of the screen; null where none is near.

@@ -4,6 +4,7 @@ import {distanceOf, timeToContact} from './shapes.js';
 import {shortName} from './draw.js';
 
 const NOT_SEEN = 0.005;  // m/s: a difference that two decimals do not show
+const ON_LINE = 1e-6;    // m/s: a velocity this near a line lies on it
 
 function number(x, digits = 2) {
   const text = x.toFixed(digits);
@@ -25,20 +26,25 @@ function violationOf(h, v) {
 // 'slack', 'binding' or 'violated'.
 function effectOf(d, h) {
   const violation = violationOf(h, d.chosen);
-  if (violation > NOT_SEEN) return 'violated';
+  if (violation > ON_LINE) return 'violated';
   return h.active && violation >= -NOT_SEEN ? 'binding' : 'slack';
 }
 
+// Of a violation: what two decimals do not show has one digit that counts.
+function amount(violation) {
+  return violation < NOT_SEEN ? String(Number(violation.toPrecision(1))) : number(violation);
+}
+
 function effectWords(d, h) {
-  const effect = effectOf(d, h);
-  return effect === 'violated' ? `violated by ${number(violationOf(h, d.chosen))} m/s` : effect;
+  const effect = effectOf(d, h), fallen = h.fellBack ? ' (the pair fell back)' : '';
+  return (effect === 'violated' ? `violated by ${amount(violationOf(h, d.chosen))} m/s` : effect) + fallen;
 }
 
 function statusWords(d) {
   if (d.status === 'optimal') return 'every constraint is satisfied';
   if (d.status === 'relaxed')
-    return `the constraints contradict each other; the soft ones are violated by at most ${number(d.violation)} m/s, the least possible`;
-  if (d.status === 'infeasible') return `the hard constraints contradict each other or the speed bound by ${number(d.violation)} m/s`;
+    return `the constraints contradict each other; the soft ones are violated by at most ${amount(d.violation)} m/s, the least possible`;
+  if (d.status === 'infeasible') return `the hard constraints contradict each other or the speed bound by ${amount(d.violation)} m/s`;
   return 'the hard constraints leave no room for rounding';
 }
 
@@ -79,26 +85,41 @@ const TURNED = {
   'pushing-out': 'the robot is in contact, and the preferred velocity leads away from it',
 };
 
-// "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for nobody.
+// "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for nobody. A cycle of which some still move
+// may come apart (formation/waiting.h).
 function waitWords(run, row, robot) {
-  const most = 6, chain = [robot];
+  const named = 4, chain = [robot];
   for (;;) {
     const next = run.waitsFor(row, chain[chain.length - 1]);
     if (next < 0) break;
     chain.push(next);
-    if (chain.indexOf(next) < chain.length - 1 || chain.length > most) break;
+    if (chain.indexOf(next) < chain.length - 1) break;
   }
   if (chain.length < 2) return '';
   const id = (i) => shortName(run.robots[i].id, 40), last = chain[chain.length - 1];
-  const words = chain.slice(1).map((i, k) => `${k ? 'which waits' : 'waits'} for ${id(i)}`).join(', ');
-  return words + (chain.indexOf(last) < chain.length - 1 ? ': a deadlock' : '');
+  const between = chain.length - 1 - named;  // robots that are not named
+  const words = chain.slice(1, between > 1 ? named : chain.length).map((i, k) => `${k ? 'which waits' : 'waits'} for ${id(i)}`)
+    .join(', ') + (between > 1 ? ` and so on through ${between} more to ${id(last)}` : '');
+  const first = chain.indexOf(last);
+  const stands = (i) => Math.hypot(...run.decision(row, i).chosen) < run.robots[i].max_speed / 15;
+  return words + (first < chain.length - 1 && chain.slice(first).every(stands) ? ': a deadlock' : '');
+}
+
+// Which half-planes have the greatest violation, which is the least possible, and which are violated by less.
+function relaxedWords(d) {
+  const violations = d.halfPlanes.map((h) => (effectOf(d, h) === 'violated' ? violationOf(h, d.chosen) : 0));
+  const greatest = Math.max(0, ...violations), most = [], less = [];
+  violations.forEach((v, k) => {
+    if (v > 0) (v > greatest - ON_LINE ? most : less).push(`[${k + 1}]`);
+  });
+  return 'No velocity satisfies all half-planes; the chosen one has the least greatest violation' +
+    (most.length ? `, that of ${enumerated(most)}` : '') +
+    (less.length ? `; ${enumerated(less)} ${less.length === 1 ? 'is' : 'are'} violated by less` : '') + '.';
 }
 
 // Why the chosen velocity is what it is, in a few sentences.
 function whyWords(run, d, mode) {
-  const violated = d.halfPlanes.map((h, k) => (effectOf(d, h) === 'violated' ? `[${k + 1}]` : '')).filter(Boolean);
-  if (d.status === 'relaxed')
-    return [`No velocity satisfies all half-planes; the chosen one has the least greatest violation (${enumerated(violated)}).`];
+  if (d.status === 'relaxed') return [relaxedWords(d)];
   if (d.status !== 'optimal') return [];
   const turned = TURNED[mode] || '';
   const shift = Math.hypot(d.chosen[0] - d.preferred[0], d.chosen[1] - d.preferred[1]);
