@@ -443,6 +443,32 @@ class PageItself(Page):
         self.open("narrow.html", "#t=9&robot=left")
         self.assertEqual(self.text("[data-fact=waiting]"), "waits for right, which waits for left: a deadlock")
 
+    def test_what_is_violated_by_less_than_the_most_is_violated(self):
+        at = [[1.2 * (k % 4), 1.2 * (k // 4)] for k in range(16)]
+        scenario = {"name": "lattice", "time_limit": 3, "liveness": "off", "guidance": "none",
+                    "robots": [{"id": f"R{k}", "position": at[k], "goal": at[(5 * k + 3) % 16]} for k in range(16)]}
+        (self.place / "lattice.json").write_text(json.dumps(scenario))
+        self.run_program("view", "lattice.json", "--method", "orca", "--out", "lattice.html")
+        self.open("lattice.html")
+        time, robot, number = self.run_script("""
+            const run = exactvo.page.run;
+            for (let row = 0; row < run.decisionTime.length; ++row)
+              for (let i = 0; i < run.n; ++i) {
+                const d = run.decision(row, i);
+                if (d.status !== 'relaxed') continue;
+                const k = d.halfPlanes.findIndex((h) => !h.active && h.c - h.nx * d.chosen[0] - h.ny * d.chosen[1] > 1e-4);
+                if (k >= 0) return [d.time, i, k];
+              }
+            return [-1, -1, -1];""")
+        self.assertGreaterEqual(number, 0, "no such decision: another scene is needed")
+        self.run_script("exactvo.chooseRobot(arguments[0]); exactvo.seek(arguments[1])", robot, time)
+        self.settle()
+        self.assertEqual(self.run_script("return exactvo.page.space.effects[arguments[0]]", number), "violated")
+        self.assertIn("violated", self.run_script("return document.querySelector(`#half-planes [data-half-plane='${arguments[0]}']`).className", number))
+        explained = self.run_program("explain", "lattice.json", "--method", "orca", "--time", time, "--robot", robot).stdout
+        self.assertRegex(explained, rf"\[{number + 1}\] robot R\d+, violated by ")
+        self.assertIn(re.search(r"Why: no (.*)", explained)[1].strip(), self.text("#why"))
+
     def test_joint_plans_are_those_of_the_recording(self):
         wall = [[-12, 0], [12, 0], [12, 1.5], [5.7, 1.5], [5.7, 2.9], [4.3, 2.9], [4.3, 1.5], [-12, 1.5], [-12, 0]]
         scenario = {"name": "siding", "time_limit": 25, "obstacles": [{"id": "corridor", "polyline": wall}],
@@ -520,7 +546,15 @@ class PageItself(Page):
         svg = xml.fromstring(self.run_script("return exactvo.svgOfMoment()"))
         texts = [e.text for e in svg.iter("{http://www.w3.org/2000/svg}text")]
         self.assertTrue(any("R3 at 3.00 s" in text for text in texts))
+        self.assertNotIn("half-planes not recorded", texts)
         self.assertGreater(len(list(svg.iter("{http://www.w3.org/2000/svg}path"))), 20)
+
+    def test_the_picture_says_where_half_planes_were_not_recorded(self):
+        self.run_program("simulate", ARGS.data / "paper" / "A7.json", "--no-figures", "--out", "partly")
+        self.run_program("view", "partly", "--out", "partly.html")
+        self.open("partly.html", "#t=3&robot=R1")
+        svg = xml.fromstring(self.run_script("return exactvo.svgOfMoment()"))
+        self.assertIn("half-planes not recorded", [e.text for e in svg.iter("{http://www.w3.org/2000/svg}text")])
 
     def test_the_run_as_an_animation(self):
         self.run_program("view", "--out", "start.html")
