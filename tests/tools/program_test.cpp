@@ -858,7 +858,8 @@ constexpr const char* kNarrow = R"({"name": "narrow", "time_limit": 12, "guidanc
   {"id": "left", "position": [-4, 0], "goal": [4, 0]}, {"id": "right", "position": [4, 0], "goal": [-4, 0]},
   {"id": "a", "position": [0, 9], "goal": [0, 9]}, {"id": "b", "position": [4, 9], "goal": [4, 9]},
   {"id": "c", "position": [8, 9], "goal": [8, 9]}],
-  "obstacles": [{"id": "low", "polyline": [[-6, -0.7], [6, -0.7]]}, {"id": "high", "polyline": [[-6, 0.7], [6, 0.7]]}]})";
+  "obstacles": [{"id": "low", "polyline": [[-6, -0.7], [6, -0.7]]},
+    {"id": "high", "polyline": [[-6, 0.7], [6, 0.7]]}]})";
 
 TEST(Explain, SaysForWhomARobotWaitsAlsoInJson) {
   const Workplace here;

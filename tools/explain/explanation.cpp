@@ -110,7 +110,8 @@ std::string head(const Decision& d) {
       "  chosen     {}: {}\n"
       "  status     {}\n",
       d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
-      mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n", velocity(d.step.preferred), velocity(d.step.chosen),
+      mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n", velocity(d.step.preferred),
+      velocity(d.step.chosen),
       shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
 }
 
@@ -272,8 +273,8 @@ std::string fallen_words(const Decision& d) {
   if (fallen == d.fell_back.end()) return "";
   const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
   return fmt::format(
-      "Fell back: half-planes of one robot of the pair contradicted each other. Both have those that they would have at "
-      "rest,\n     looking {:g} s ahead, which standing still satisfies.\n",
+      "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at rest,\n"
+      "     looking {:g} s ahead, which standing still satisfies.\n",
       d.step.constraints[first].tau);
 }
 

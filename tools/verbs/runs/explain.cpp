@@ -57,9 +57,9 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (ids[i] == text || (std::to_string(i) == text && std::find(ids.begin(), ids.end(), text) == ids.end())) return i;
   }
-  throw UsageError(
-      "--robot", text,
-      fmt::format("a number from 0 to {} or an id: {}{}", ids.size() - 1, formation::abridged(ids), suggestion(text, ids)));
+  throw UsageError("--robot", text,
+                   fmt::format("a number from 0 to {} or an id: {}{}", ids.size() - 1, formation::abridged(ids),
+                               suggestion(text, ids)));
 }
 
 /// Throws UsageError for a time after the end of the run.
@@ -169,10 +169,9 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
                                          const formation::LyapunovRow*) { until.add(so_far, std::move(row)); });
   const std::size_t robot = find_robot(file.scenario, flags.robot);
   check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
-  Explained explained{
-      decision_of(file.scenario, method_words(file.info), robot, until.decision(), file.recording.bodies,
-                  file.recording.all_half_planes),
-      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
+  Explained explained{decision_of(file.scenario, method_words(file.info), robot, until.decision(),
+                                  file.recording.bodies, file.recording.all_half_planes),
+                      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
