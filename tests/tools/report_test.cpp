@@ -213,11 +213,11 @@ TEST(Claims, EachFigureShowsWhatIsJudged) {
     EXPECT_THAT(c.figure, testing::EndsWith(".png")) << c.where;
     // Two sheets have several controllers side by side.
     if (c.figure == "figures/all-formation.png" || c.figure == "figures/jitter.png") continue;
-    const std::string folder = c.judged == "orca"       ? "figures/fig5-orca/"
-                               : c.judged == "ivo-edge" ? "figures/fig6-ivo-edge/"
-                                                        : "figures/fig8-paper-signs/";
-    EXPECT_TRUE(c.figure.rfind(folder, 0) == 0 || c.figure == "figures/all-" + c.judged + ".png")
-        << c.where << ": " << c.judged << " is judged, " << c.figure << " is shown";
+    const std::string folder = c.subject == "orca"       ? "figures/fig5-orca/"
+                               : c.subject == "ivo-edge" ? "figures/fig6-ivo-edge/"
+                                                         : "figures/fig8-paper-signs/";
+    EXPECT_TRUE(c.figure.rfind(folder, 0) == 0 || c.figure == "figures/all-" + c.subject + ".png")
+        << c.where << ": " << c.subject << " is judged, " << c.figure << " is shown";
   }
 }
 

@@ -275,7 +275,7 @@ std::string fallen_words(const Decision& d) {
   return fmt::format(
       "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at rest,\n"
       "     looking {:g} s ahead, which standing still satisfies.\n",
-      d.step.constraints[first].tau);
+      d.step.constraints[first].time_horizon);
 }
 
 std::string why(const Decision& d) {

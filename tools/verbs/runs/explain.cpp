@@ -276,7 +276,7 @@ OrderedJson json_of(const Decision& d, std::size_t half_plane) {
           {"hard", c.hard},
           {"certified", c.certified},
           {"fell_back", d.is_of_fallen_pair(half_plane)},
-          {"time_horizon", c.tau},
+          {"time_horizon", c.time_horizon},
           {"clearance", c.clearance},
           {"multiplier", c.multiplier}};
 }
