@@ -176,6 +176,27 @@ std::vector<Equilibrium> rests_without_enclosures(const Scenario& s) {
   return rests;
 }
 
+TEST(Trap, RestsOutsideOfARoomAreOutOfReachOfARobotInside) {
+  for (const bool has_door : {false, true}) {
+    Scenario room =
+        one_robot(geometry::Polyline{{{10, 10}, {-10, 10}, {-10, -10}, {10, -10}, {10, has_door ? 8.0 : 10.0}}});
+    room.robots[0].goals = {{7.0, 3.0}};
+    for (const Method method : {Method::orca, Method::ivo, Method::ivo_edge}) {
+      SimulationOptions options;
+      options.method = method;
+      options.guidance = Guidance::none;
+      std::size_t outside = 0;
+      for (const TrapFinding& f : trap_test(room, options))
+        for (const Equilibrium& e : f.equilibria) {
+          if (std::max(std::fabs(e.position.x), std::fabs(e.position.y)) < 10.0) continue;
+          EXPECT_EQ(e.reachable, has_door) << name(method) << " " << e.position.x << " " << e.position.y;
+          ++outside;
+        }
+      EXPECT_GT(outside, 1u) << name(method);
+    }
+  }
+}
+
 TEST(Trap, WithoutEnclosuresAFlatEdgeBeforeTheGoalTraps) {
   const Scenario wall = one_robot(geometry::Polyline{{{4.0, -1.0}, {4.0, 1.0}}});
   const auto rests = rests_without_enclosures(wall);

@@ -9,6 +9,7 @@
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/orca_obstacle.h"
+#include "preflight/reachability.h"
 #include "scene/static_field.h"
 #include "traps/boundary.h"
 #include "traps/concave_vertex.h"
@@ -279,6 +280,20 @@ std::vector<TrapPlace> places_of(const detail::StaticField& field, const detail:
   return places;
 }
 
+/// Marks where the robots cannot be. Somewhere within `kRounded` of the rest a smaller disc would be free at the rest
+/// too.
+void mark_out_of_reach(const Scenario& scenario, std::vector<TrapFinding>& findings) {
+  constexpr double kRounded = 1e-3;  // of the radius: far above the rounding of a place
+  detail::Reachability reach(scenario, 0.0, false);
+  for (TrapFinding& f : findings) {
+    const Robot& robot = scenario.robots[f.robot];
+    const double radius = (1.0 - kRounded) * robot.radius;
+    for (Equilibrium& e : f.equilibria)
+      e.reachable = !reach.map().covers(robot.position) || !reach.map().covers(e.position) ||
+                    reach.plan(radius).is_reachable(robot.position, e.position);
+  }
+}
+
 }  // namespace
 
 double Equilibrium::rate_at(double max_speed) const {
@@ -323,6 +338,7 @@ std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOpt
     const std::vector<TrapPlace> places = places_of(field, scene, options.method);
     Examination(scenario, places, i, goal).run(findings);
   }
+  mark_out_of_reach(scenario, findings);
   return findings;
 }
 

@@ -2,6 +2,7 @@
 // exactvo trap: for every robot and enclosure, and every two that overlap, whether a stall is possible and where.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -33,6 +34,7 @@ OrderedJson json_of(const Equilibrium& e, double max_speed) {
           {"radius_of_curvature", e.radius_of_curvature},
           {"distance", e.distance},
           {"stable", e.stable},
+          {"reachable", e.reachable},
           {"rate", e.rate_at(max_speed)}};
 }
 
@@ -89,15 +91,27 @@ std::string subject_words(const formation::Scenario& scenario, const TrapFinding
 
 std::string rest_words(const TrapFinding& f, const Equilibrium& e) {
   const std::string at = fmt::format("at ({:.4g}, {:.4g})", e.position.x, e.position.y);
-  if (f.overlapping) return fmt::format("rests {} in their concave vertex, goal {:.4g} m away", at, e.distance);
-  return fmt::format("{} {}: {}, goal {:.4g} m away", e.stable ? "rests" : "unstable equilibrium, no stall,", at,
-                     curvature_words(e.radius_of_curvature), e.distance);
+  const std::string reach = e.reachable ? "" : "; obstacles shut the robot off from there";
+  if (f.overlapping)
+    return fmt::format("rests {} in their concave vertex, goal {:.4g} m away{}", at, e.distance, reach);
+  return fmt::format("{} {}: {}, goal {:.4g} m away{}", e.stable ? "rests" : "unstable equilibrium, no stall,", at,
+                     curvature_words(e.radius_of_curvature), e.distance, reach);
+}
+
+/// A stall may be one for robots in other places alone; where the goal is in the enclosure, it is not about rests.
+std::string verdict_words(const TrapFinding& f) {
+  if (!f.stall_possible) return "no stall";
+  const auto rests_here = [](const Equilibrium& e) { return e.stable && e.reachable; };
+  const bool has_rests = std::any_of(f.equilibria.begin(), f.equilibria.end(), [](const auto& e) { return e.stable; });
+  const bool is_shut_off =
+      f.goal_clear && has_rests && std::none_of(f.equilibria.begin(), f.equilibria.end(), rests_here);
+  return is_shut_off ? "a stall is possible, but not for a robot that starts here" : "a stall is possible";
 }
 
 std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
   const std::string grade = f.overlapping ? "overlapping, heuristic" : name(f.place.enclosure.grade);
   std::string text = fmt::format("{}, {}: {} ({})", scenario.robots[f.robot].id, subject_words(scenario, f, orca),
-                                 f.stall_possible ? "a stall is possible" : "no stall", grade);
+                                 verdict_words(f), grade);
   if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", relative margin {:.3g}", *f.margin);
   if (!f.start_clear) text += "; the start is not clear of it";
   if (!f.start_clear && !f.overlapping && f.place.enclosure.grade != geometry::EnclosureGrade::tight)

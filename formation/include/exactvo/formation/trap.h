@@ -27,6 +27,8 @@ struct Equilibrium {
   double radius_of_curvature = 0;  ///< m, rho of the grown boundary; infinite on a flat edge and in a concave corner
   double distance = 0;             ///< m, D to the goal
   bool stable = false;             ///< D < rho: the robot stays; otherwise it slides off at the slightest offset
+  /// False where `trap_test` proves that obstacles shut the robot of the scenario off from there. Elsewhere true.
+  bool reachable = true;
   double rate_at(double max_speed) const;  ///< 1/s: offsets grow like e^{rate t}; negative where stable
 };
 
@@ -76,8 +78,10 @@ struct TrapFinding {
 /// Every robot against every enclosure that the method builds for it, then every two of them that overlap once they are
 /// grown by the robot (`TrapFinding::stall_possible` says what is exact). Of two, a pair of crossings closer together
 /// than a hundredth of the radius can be missed. A goal inside a grown enclosure, by more than the arrival tolerance,
-/// is a stall: the robot stops at the boundary. Not judged: the pieces that an enclosure gives way to while the robot
-/// is inside it (`start_clear` is false there).
+/// is a stall: the robot stops at the boundary. An enclosure is judged for a robot from anywhere; places that the robot
+/// cannot get to from its start, such as those outside of a room that it is in, are marked (`Equilibrium::reachable`,
+/// exact for a disc smaller by a thousandth of the radius, moving obstacles left out). Not judged: the pieces that an
+/// enclosure gives way to while the robot is inside it (`start_clear` is false there).
 ///
 /// The method `orca` builds no enclosures: there each edge of each obstacle stands for itself, seen from its free side,
 /// together with the corner at its end where that is a concave one; a robot may rest on the edge over the goal's foot,
