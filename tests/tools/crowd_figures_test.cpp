@@ -91,5 +91,16 @@ TEST_F(CrowdFigures, ScriptsNameTheirUnitsAndDataHasEmptyCells) {
   EXPECT_THAT(figures[4].shows, HasSubstr("the ways of 60 of them"));
 }
 
+TEST_F(CrowdFigures, ABodyAtTheRimIsDrawnWholeAndOneThatIsFarAwayChangesNoPicture) {
+  const std::string without = crowd_figures(course_)[4].body;
+  course_.bodies = {geometry::Disc{{1e4, 0.0}, 1.0}};
+  EXPECT_EQ(crowd_figures(course_)[4].body.substr(0, without.find("plot")), without.substr(0, without.find("plot")));
+  course_.bodies = {geometry::Disc{course_.view.low, 3.0}};
+  const std::string with = crowd_figures(course_)[4].body, range = "set xrange [";
+  const std::size_t at = with.find(range);
+  ASSERT_NE(at, std::string::npos) << with;
+  EXPECT_LT(std::stod(with.substr(at + range.size())), course_.view.low.x - 3.0);
+}
+
 }  // namespace
 }  // namespace exactvo::tools

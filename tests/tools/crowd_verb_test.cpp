@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kRing = R"({"name": "ring", "time_step": 0.25, "time_limit": 60, "horizons": {"least": 0.5},
   "robots": [{"circle": {"count": 40, "radius": 20}, "max_speed": 1.5}],
@@ -47,6 +48,24 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
   EXPECT_EQ(table.status, 1);
   EXPECT_THAT(table.err, HasSubstr("cut.evr: the file was cut off after the last of these rows"));
   EXPECT_TRUE(here.has("cut.csv"));
+}
+
+TEST(CrowdVerb, WhoRunsManyRobotsOnTheStandardEngineIsToldOfTheCrowd) {
+  const Workplace here;
+  const auto run = [&](int robots, const std::string& more, const std::string& options) {
+    here.write("many.json", R"({"name": "many", "time_limit": 0.05, "robots": [{"circle": {"count": )" +
+                                std::to_string(robots) + R"(, "radius": 300}}])" + more + "}");
+    const Outcome outcome = here.run("simulate many.json " + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  const auto is_told = HasSubstr("note: 500 robots: --engine crowd can be");
+  EXPECT_THAT(run(500, "", ""), is_told);
+  EXPECT_THAT(run(499, "", ""), Not(HasSubstr("--engine crowd")));
+  EXPECT_EQ(run(500, "", "--quiet"), "");
+  EXPECT_THAT(run(500, "", "--engine crowd"), Not(HasSubstr("--engine crowd")));
+  EXPECT_THAT(run(500, R"(, "speed_bound": "box")", ""), Not(HasSubstr("--engine crowd"))) << "no crowd can run it";
+  EXPECT_THAT(run(500, R"(, "liveness": "plan")", ""), Not(HasSubstr("--engine crowd"))) << "nor make plans";
 }
 
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
@@ -104,7 +123,7 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   here.write("plan.json", R"({"name": "p", "liveness": "plan",
       "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   const std::pair<const char*, const char*> cases[] = {
-      {"simulate ring.json --engine crwd", "standard or crowd"},
+      {"simulate ring.json --engine crwd", "one of standard crowd; did you mean 'crowd'?"},
       {"simulate ring.json --record out.evr",
        "--record: found 'out.evr', expected - for stdout, or a pipe; or --engine crowd beside it"},
       {"simulate ring.json --record out.jsonl --out out", "--record: found 'out.jsonl', expected no --out beside it"},

@@ -112,11 +112,21 @@ std::string title_of(const CrowdCourse& course, const std::string& what) {
                      geometry::counted(course.robots, "robot"), course.duration, what);
 }
 
-/// What is drawn of the plane: all cells, and a rim.
+/// A body is drawn whole unless that makes a picture so many times as large as all cells.
+constexpr double kMostForABody = 2.0;
+
+/// What is drawn of the plane: all cells, bodies at the start, and a rim.
 Box plane_of(const CrowdCourse& course) {
   const CellGrid& g = course.grid;
   const Vec2 high = g.low + g.cell * Vec2{static_cast<double>(g.columns), static_cast<double>(g.rows)};
-  return Box{g.low, high}.grown(0.02 * norm(high - g.low));
+  const Box cells{g.low, high};
+  Box plane = cells;
+  for (const geometry::ConvexShape& body : course.bodies) {
+    Box with_body = cells;
+    with_body.add(geometry::box_of(body));
+    if (with_body.diagonal() <= kMostForABody * cells.diagonal()) plane.add(with_body);
+  }
+  return plane.grown(0.02 * norm(plane.high - plane.low));
 }
 
 Canvas canvas_for(const Box& plane) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "exactvo/datasets/ranks.h"
+#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
 #include "explorer/page.h"
@@ -190,6 +191,19 @@ std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) 
                                                 datasets::Unfinished::goes, datasets::Pipe::is_written);
 }
 
+/// From so many robots on, a step of two grids of them that cross takes more than 50 ms of a processor.
+constexpr std::size_t kManyRobots = 500;
+
+/// The engine is never chosen for the user, who may not know of the other one.
+void note_crowd(const datasets::LoadedScenario& read) {
+  const formation::Scenario& scenario = read.scenario;
+  const bool wants_plans = read.names_liveness && scenario.liveness != formation::Liveness::off;
+  if (scenario.robots.size() < kManyRobots || wants_plans || !crowd_problems(scenario).empty()) return;
+  message(fmt::format("note: {} robots: --engine crowd can be more than a hundred times as fast, with method orca and "
+                      "without joint plans (docs/guide/crowd-recordings.md)",
+                      scenario.robots.size()));
+}
+
 /// `ranks`: null where this process is alone.
 ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
   const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
@@ -206,6 +220,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
   const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
   note_liveness(flags.simulation, scenario, options);
+  note_crowd(read);
   if (!flags.out.empty()) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));

@@ -214,7 +214,7 @@ bool is_stdout(const std::string& path) {
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_option("--engine", flags.engine,
                  "standard: everything; crowd: many robots with goals among obstacles, method orca, every step "
-                 "certified")
+                 "certified. From 500 robots on a note says where crowd would be faster")
       ->capture_default_str();
   app.add_option("--record", flags.record,
                  "With --engine crowd: FILE.evr for positions, whole or not at all. Else, without --out: a pipe that "
@@ -242,8 +242,7 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
 }
 
 bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out) {
-  if (flags.engine != "crowd" && flags.engine != "standard")
-    throw UsageError("--engine", flags.engine, "standard or crowd");
+  require_known("--engine", flags.engine, {"standard", "crowd"});
   const bool is_crowd = flags.engine == "crowd";
   if (!is_crowd && !flags.record.empty()) check_record(flags.record, out);
   for (const CLI::Option* option : is_crowd ? flags.of_standard : flags.of_crowd)
