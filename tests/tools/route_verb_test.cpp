@@ -136,7 +136,23 @@ TEST(RouteVerb, TheWidestRadiusIsTheLargestDoubleWithARoute) {
   EXPECT_EQ(rooms.route("--from 1,1 --to 11,7 --widest").out, "widest radius: 0.5 m\n");
   const Outcome none = rooms.route("--from 1,1 --to 9,3 --widest");
   EXPECT_EQ(none.status, 1);
-  EXPECT_EQ(none.out, "widest radius: 0 m\n");
+  EXPECT_EQ(none.out, "blocked: the goal is inside desk\nwidest radius: 0 m\n");
+}
+
+TEST(RouteVerb, WhereNoDiscHasARouteAPointSaysWhyWithACertificate) {
+  const Rooms rooms;
+  rooms.here.write("box.wkt", "LINESTRING (0 0, 4 0, 4 4)\nLINESTRING (4 4, 0 4, 0 0)\n");
+  rooms.here.write("q.csv", "start_x,start_y,goal_x,goal_y\n1,1,3,3\n1,1,6,6\n9,9,1,1\n");
+  EXPECT_EQ(rooms.here.run("route box.wkt --queries q.csv --widest").out,
+            "0: widest radius: 1 m\n"
+            "1: separated, the start is enclosed: closed by 2 obstacles without a gap: wall 1, wall 2; widest radius: "
+            "0 m\n"
+            "2: separated, the goal is enclosed: closed by 2 obstacles without a gap: wall 1, wall 2; widest radius: "
+            "0 m\n");
+  rooms.here.write("answers.jsonl", rooms.here.run("route box.wkt --queries q.csv --widest --json").out);
+  const Outcome audit = rooms.here.run("audit --certificate answers.jsonl");
+  EXPECT_EQ(audit.status, 0) << audit.out;
+  EXPECT_THAT(audit.out, HasSubstr("2 certificates, 2 valid"));
 }
 
 TEST(RouteVerb, TheWidestRadiusIsNotBoundByTheMap) {

@@ -168,9 +168,7 @@ void check(const RouteFlags& flags) {
   }
   check_radius(flags);
   require(flags.figure.empty() || flags.radius, "--figure", "--figure without --radius", "the radius of the disc in m");
-  const bool known = std::any_of(std::begin(kCellPoints), std::end(kCellPoints),
-                                 [&](const char* word) { return flags.cell_point == word; });
-  require(known, "--cell-point", flags.cell_point, "one of middle corner");
+  require_known("--cell-point", flags.cell_point, {std::begin(kCellPoints), std::end(kCellPoints)});
   if (flags.figure.empty()) return;
   check_figure_name("--figure", flags.figure, all_read_with({flags.map}, flags.reading.format));
 }
@@ -223,33 +221,45 @@ class Answers {
 
   bool covers(Vec2 point) const { return routes_.covers(point); }
 
-  AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) const {
+  AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) {
     AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false};
-    if (plan_) answered.answer = plan_->query(start, goal);
+    if (flags_.radius) answered.answer = plan_->query(start, goal);
     if (!flags_.widest) return answered;
     answered.widest = routes_.widest_radius(start, goal);
     answered.is_widest_of_map = *answered.widest == routes_.largest_radius();
+    if (*answered.widest == 0.0 && !answered.answer) answered.answer = answer_for_a_point(start, goal);
     return answered;
   }
 
   /// Obstacles go with the first certificate.
-  void print_answer(const AnsweredRoute& answered) const {
-    if (flags_.json) return print(json_of(answered, asked_, answered.index == 0));
+  void print_answer(const AnsweredRoute& answered) {
+    if (flags_.json) {
+      print(json_of(answered, asked_, !has_certificate_));
+      has_certificate_ = has_certificate_ || answered.answer;
+      return;
+    }
     const bool is_one_of_many = !flags_.queries.empty();
     print((is_one_of_many ? fmt::format("{}: ", answered.index) : "") + words_of(answered, asked_, !is_one_of_many));
   }
 
  private:
+  /// Why no disc has a route: what stops even a point. REQUIRES: no radius is asked for.
+  geometry::RouteAnswer answer_for_a_point(Vec2 start, Vec2 goal) {
+    if (!plan_) plan_.emplace(routes_, 0.0);
+    return plan_->query(start, goal);
+  }
+
   const AskedMap& asked_;
   const RouteFlags& flags_;
   RouteMap routes_;
-  std::optional<RoutePlan> plan_;
+  std::optional<RoutePlan> plan_;  ///< of the radius, or of a point where none is given
+  bool has_certificate_ = false;   ///< one was printed
 };
 
 ExitCode answer_one(const AskedMap& map, const RouteFlags& flags) {
   const Vec2 start = point_in("--from", flags.from, map), goal = point_in("--to", flags.to, map);
   const geometry::Box box = box_of(map);
-  const Answers answers(map, flags, options_for(flags, box, distance_of(box, {start, goal})));
+  Answers answers(map, flags, options_for(flags, box, distance_of(box, {start, goal})));
   const AnsweredRoute answered = answers.answer(0, start, goal);
   if (!flags.figure.empty()) write_figure(route_figure(answered, map), flags.figure);
   answers.print_answer(answered);
@@ -276,7 +286,7 @@ ExitCode answer_many(const AskedMap& map, const RouteFlags& flags) {
   const geometry::Box box = box_of(map);
   const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
   const double farthest = map.shapes.empty() ? kFarthestOfEmptyMap : kFarthestOfQueries * side;
-  const Answers answers(map, flags, options_for(flags, box, farthest));
+  Answers answers(map, flags, options_for(flags, box, farthest));
   bool all = true;
   while (const std::optional<RouteQuery> query = queries.next()) {
     const Vec2 start = place_of(query->start, "start", map, answers, queries);
@@ -317,7 +327,8 @@ void declare_route(CLI::App& app, RouteFlags& flags) {
                  "on a Moving AI map a cell, as in its .scen");
   app.add_option("--to", flags.to, "Goal X,Y, likewise");
   app.add_option("--radius", flags.radius, "Radius of the disc, m; 0: a point, which touches no obstacle");
-  app.add_flag("--widest", flags.widest, "The largest radius for which there is a route, an exact double");
+  app.add_flag("--widest", flags.widest,
+               "The largest radius for which there is a route, an exact double; 0 with the reason if there is none");
   app.add_option("--queries", flags.queries,
                  "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "
                  "start_x,start_y,goal_x,goal_y, or a .scen of the Moving AI benchmarks");
@@ -327,7 +338,7 @@ void declare_route(CLI::App& app, RouteFlags& flags) {
   declare_reading_flags(app, flags.reading);
   app.add_flag("--repair", flags.repair, "Repair invalid geometry first");
   app.add_flag("--json", flags.json, "One line of JSON per question, with its certificate");
-  app.add_option("--figure", flags.figure, kFigureFileHelp);
+  app.add_option("--figure", flags.figure, std::string("Of the answer for --radius. ") + kFigureFileHelp);
 }
 
 }  // namespace
