@@ -414,6 +414,44 @@ TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
   expect_refusal(refused("\"number\":3", "\"number\":300000000", 0), DataCode::out_of_range, "line 3, /body/number");
 }
 
+TEST_F(RecordingFileTest, KeysThatNoRecordingHasAreRefusedWhereverTheyStand) {
+  write_recording(folder_ / "r.jsonl", sample(true));
+  const std::string of_formation = content_of(folder_ / "r.jsonl");
+  write_recording(folder_ / "r.jsonl", sample(false));
+  const std::string with_plan = content_of(folder_ / "r.jsonl");
+  // Beside what stands there already.
+  const std::pair<const char*, const char*> places[] = {
+      {"{\"header\":", "/new"},
+      {"\"header\":{", "/header/new"},
+      {"\"remedies\":{", "/header/remedies/new"},
+      {"{\"body\":", "/new"},
+      {"\"body\":{", "/body/new"},
+      {"\"shape\":{", "/body/shape/new"},
+      {"\"outlook\":{", "/outlook/new"},
+      {"\"plan\":{", "/plan/new"},
+      {"\"plan\":{\"row\":0,\"from_row\":0,\"robots\":[{", "/plan/robots/0/new"},
+      {"\"moves\":[{", "/plan/moves/0/new"},
+      {"\"row\":{", "/row/new"},
+      {"\"leader\":{", "/row/leader/new"},
+      {"\"robots\":[{\"position\"", "/row/robots/0/new"},
+      {"\"constraints\":[{", "/row/robots/1/constraints/0/new"},
+      {"\"lyapunov\":{", "/row/lyapunov/new"},
+      {"\"sound_rates\":{", "/row/lyapunov/sound_rates/new"},
+      {"\"end\":{", "/end/new"}};
+  for (const auto& [beside, pointer] : places) {
+    const bool is_of_plan = std::string(pointer).find("/plan") == 0;
+    std::string bad = is_of_plan ? with_plan : of_formation;
+    const bool is_of_row = std::string(pointer).find("/row/") == 0;  // the header's scenario has a leader too
+    const std::size_t at = bad.find(beside, is_of_row ? bad.find("{\"row\":") : 0);
+    ASSERT_NE(at, std::string::npos) << beside;
+    bad.insert(bad.find('{', at + std::string(beside).find_last_of('{')) + 1, "\"new\":1,");
+    const DataError error = refusal_of([&] { read_recording(put("bad.jsonl", bad)); });
+    EXPECT_EQ(error.code(), DataCode::key_unknown) << pointer << ": " << error.what();
+    EXPECT_EQ(error.place().substr(error.place().find(", ") + 2), pointer) << error.what();
+    EXPECT_EQ(error.found(), "an unknown key \"new\"") << pointer;
+  }
+}
+
 TEST_F(RecordingFileTest, ARecordingOfFormat1IsRefused) {
   const std::string header = "{\"kind\":\"exactvo-recording\",\"format_version\":1,\"method\":\"ivo\"}\n";
   const DataError error = refusal_of([&] { read_recording(put("old.jsonl", header)); });

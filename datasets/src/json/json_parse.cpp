@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "json/json_text.h"
 
+#include <algorithm>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -337,6 +338,11 @@ std::optional<std::string> pointer_within(const Json& value, const Json& all) {
   return std::nullopt;
 }
 
+/// Of a member; 0 beyond the 64th, which no object of ours has.
+std::uint64_t bit_of(std::size_t member) {
+  return member < 64 ? std::uint64_t{1} << member : 0;
+}
+
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file_name) {
@@ -386,14 +392,26 @@ std::string pointer_to(const Json& value, const Json& all) {
 JsonCursor JsonCursor::child(const Json& value) const {
   JsonCursor cursor = *this;
   cursor.value_ = &value;
+  cursor.asked_ = 0;
   return cursor;
 }
 
 JsonCursor JsonCursor::at(const std::string& key) const {
   if (!value_->is_object()) refuse("an object");
-  const auto member = value_->find(key);
-  if (member == value_->end()) refuse("the key \"" + key + "\"", DataCode::key_missing);
-  return child(*member);
+  const Json::object_t::Container& all = value_->get_ref<const Json::object_t&>();
+  const auto member = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == key; });
+  if (member == all.end()) refuse("the key \"" + key + "\"", DataCode::key_missing);
+  asked_ |= bit_of(static_cast<std::size_t>(member - all.begin()));
+  return child(member->second);
+}
+
+void JsonCursor::end_of_object() const {
+  if (others_ == OtherKeys::pass || !value_->is_object()) return;
+  std::size_t number = 0;
+  for (auto member = value_->begin(); member != value_->end(); ++member, ++number)
+    if ((asked_ & bit_of(number)) == 0)
+      throw DataError(DataCode::key_unknown, *file_, child(*member).place(), "an unknown key \"" + member.key() + "\"",
+                      "the keys that this format has");
 }
 
 JsonCursor JsonCursor::at(std::size_t index) const {
@@ -440,10 +458,13 @@ int JsonCursor::integer() const {
   return value_->get<int>();
 }
 
-void JsonCursor::refuse(const std::string& expected, DataCode code) const {
+std::string JsonCursor::place() const {
   const std::string pointer = pointer_to(*value_, *root_);
-  const std::string place = place_.empty() || pointer.empty() ? place_ + pointer : place_ + ", " + pointer;
-  throw DataError(code, *file_, place, described(*value_), expected);
+  return place_.empty() || pointer.empty() ? place_ + pointer : place_ + ", " + pointer;
+}
+
+void JsonCursor::refuse(const std::string& expected, DataCode code) const {
+  throw DataError(code, *file_, place(), described(*value_), expected);
 }
 
 }  // namespace exactvo::datasets

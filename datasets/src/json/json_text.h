@@ -220,10 +220,12 @@ std::string number_text(double number);
 class JsonCursor {
  public:
   static constexpr bool kReads = true;
+  /// Keys that nobody asks for.
+  enum class OtherKeys { pass, refused };
 
   /// `line` is put before the pointer in messages: "line 3" in JSON Lines, "" elsewhere.
-  JsonCursor(const Json& value, const std::string& file, std::string line)
-      : root_(&value), value_(&value), file_(&file), place_(std::move(line)) {}
+  JsonCursor(const Json& value, const std::string& file, std::string line, OtherKeys others = OtherKeys::pass)
+      : root_(&value), value_(&value), file_(&file), place_(std::move(line)), others_(others) {}
 
   bool has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
   bool is_null() const { return value_->is_null(); }
@@ -269,18 +271,24 @@ class JsonCursor {
   const JsonCursor& object(const char* key, const Read& read) const {
     const JsonCursor there = at(key);
     read(there);
+    there.end_of_object();
     return *this;
   }
+  /// To be called when an object has been read: refuses a key that `at` was not asked for, unless others pass.
+  void end_of_object() const;
 
   [[noreturn]] void refuse(const std::string& expected, DataCode code = DataCode::wrong_type) const;
 
  private:
   JsonCursor child(const Json& value) const;
+  std::string place() const;  ///< for messages: line and pointer
 
   const Json* root_;
   const Json* value_;
   const std::string* file_;
   std::string place_;
+  OtherKeys others_;
+  mutable std::uint64_t asked_ = 0;  ///< members of the object, a bit each; no object of ours has more than 64
 };
 
 // What members can be. Other files have more: shapes, words of enumerations.
@@ -313,6 +321,7 @@ auto read_value(const JsonCursor& at, T& v) -> decltype(at.get(v)) {
 template <class T>
 auto read_value(const JsonCursor& at, T& v) -> decltype(members(at, v)) {
   members(at, v);
+  at.end_of_object();
 }
 template <class T>
 void read_value(const JsonCursor& at, std::optional<T>& v) {

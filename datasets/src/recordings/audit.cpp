@@ -360,7 +360,9 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   words.emplace_back(
       "why a velocity was preferred, and what is said beside the numbers: mode, side, note, clearance, "
       "method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall time");
-  words.emplace_back("whether the rows have the half-planes against what is out of reach of a time step");
+  words.emplace_back(
+      "whether the rows have the half-planes against what is out of reach of a time step, also where "
+      "all_half_planes says so");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "

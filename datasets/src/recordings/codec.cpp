@@ -26,6 +26,7 @@ void read_value(const JsonCursor& at, geometry::ConvexShape& shape) {
   } else {
     at.member("ellipse", shape.emplace<geometry::Ellipse>());
   }
+  at.end_of_object();
 }
 
 }  // namespace exactvo::datasets

@@ -37,6 +37,7 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   if (recording.offsets.size() != slots)
     at.at("offsets").refuse(geometry::counted(slots, "offset") + ", one for each robot of a formation",
                             DataCode::wrong_count);
+  at.end_of_object();
 }
 
 void read_end(const JsonCursor& at, std::size_t rows, RecordingFile& file) {
@@ -44,6 +45,7 @@ void read_end(const JsonCursor& at, std::size_t rows, RecordingFile& file) {
     at.at("rows").refuse(std::to_string(rows) + ", the rows above", DataCode::wrong_count);
   members(at, file);
   at.at("sha256").text();
+  at.end_of_object();
 }
 
 /// Reads the lines after the header.
@@ -57,6 +59,12 @@ class RecordReader {
 
   void read(const JsonCursor& at) {
     if (at_end_) at.refuse("nothing after the end", DataCode::wrong_count);
+    read_member(at);
+    at.end_of_object();
+  }
+
+ private:
+  void read_member(const JsonCursor& at) {
     if (at.has("body")) return read_body(at.at("body"));
     if (at.has("goal_bodies")) return read_goal_bodies(at.at("goal_bodies"));
     if (at.has("plan")) return read_plan(at.at("plan"));
@@ -65,7 +73,6 @@ class RecordReader {
     at_end_ = true;
   }
 
- private:
   void read_body(const JsonCursor& at) {
     constexpr std::size_t kMostBodies = std::size_t{1} << 28;
     const std::size_t number = at.at("number").count();
@@ -79,6 +86,7 @@ class RecordReader {
     }
     if (known_[number]) at.at("number").refuse("a number of no body above", DataCode::out_of_range);
     members(at, bodies_[number]);
+    at.end_of_object();
     require_owners(at.at("owners"), bodies_[number]);
     if (bodies_[number].kind == vo::BodyKind::robot) {
       const formation::Robot& robot = file_.scenario.robots[bodies_[number].owners.front()];
@@ -109,6 +117,7 @@ class RecordReader {
     if (rows_ > 0 && !(of_goal.time > last_time_))
       at.at("time").refuse("a time after that of the rows above", DataCode::out_of_range);
     const JsonCursor list = at.at("bodies");
+    at.end_of_object();
     for (std::size_t k = 0; k < list.size(); ++k) of_goal.bodies.push_back(known_body(list.at(k)));
     file_.recording.goal_bodies.push_back(std::move(of_goal));
   }
@@ -125,12 +134,15 @@ class RecordReader {
       at.at("row").refuse(std::to_string(rows_) + ", the row that follows", DataCode::out_of_range);
     if (plan.from_row > plan.row) at.at("from_row").refuse("a row up to that of the plan", DataCode::out_of_range);
     const JsonCursor robots = at.at("robots"), moves = at.at("moves");
+    at.end_of_object();
     for (std::size_t k = 0; k < robots.size(); ++k) {
-      const std::size_t robot = robot_of_scenario(robots.at(k).at("robot"));
+      const JsonCursor one = robots.at(k);
+      const std::size_t robot = robot_of_scenario(one.at("robot"));
       if (!plan.robots.empty() && robot <= plan.robots.back())
-        robots.at(k).at("robot").refuse("robots in the order of the scenario, each once", DataCode::out_of_range);
+        one.at("robot").refuse("robots in the order of the scenario, each once", DataCode::out_of_range);
       plan.robots.push_back(robot);
-      plan.starts.push_back(robots.at(k).at("start").point());
+      plan.starts.push_back(one.at("start").point());
+      one.end_of_object();
     }
     for (std::size_t k = 0; k < moves.size(); ++k) {
       read_value(moves.at(k), plan.moves.emplace_back());
@@ -145,8 +157,10 @@ class RecordReader {
     Step step;
     step.time = at.at("time").number();
     if (file_.scenario.formation) {
-      step.leader_position = at.at("leader").at("position").point();
-      step.leader_velocity = at.at("leader").at("velocity").point();
+      at.object("leader", [&](const JsonCursor& leader) {
+        step.leader_position = leader.at("position").point();
+        step.leader_velocity = leader.at("velocity").point();
+      });
     }
     if (at.has("moving") && at.at("moving").size() != file_.scenario.moving_obstacles.size())
       at.at("moving").refuse("a place for every moving obstacle", DataCode::wrong_count);
@@ -161,6 +175,7 @@ class RecordReader {
         place(robots.at(i).at("constraints").at(k), i, step, step.robots[i].constraints[k]);
     std::optional<formation::LyapunovRow> lyapunov;
     at.optional("lyapunov", lyapunov);
+    at.end_of_object();
     if (lyapunov) lyapunov->time = step.time;
     ++rows_;
     last_time_ = step.time;
@@ -314,15 +329,16 @@ void read_recording_lines(const NextLine& next_line, const std::string& name, co
   require_recording(line, next_line, name);
   {
     const Json header = line_of_recording(line, next_line, name, 1, 0);
-    const JsonCursor first(header, name, "line 1");
+    const JsonCursor first(header, name, "line 1", JsonCursor::OtherKeys::refused);
     // A header of format 1 has no name: its version is what is wrong with it.
     read_header(first.has("header") ? first.at("header") : first, name, run);
+    first.end_of_object();
   }
   RecordReader reader(run, take);
   std::size_t number = 2;
   for (; next_line(line); ++number) {
     const Json content = line_of_recording(line, next_line, name, number, reader.rows());
-    reader.read(JsonCursor(content, name, "line " + std::to_string(number)));
+    reader.read(JsonCursor(content, name, "line " + std::to_string(number), JsonCursor::OtherKeys::refused));
   }
   if (!reader.is_at_end()) throw cut_off(name, number, reader.rows(), false);
 }
