@@ -352,6 +352,9 @@ TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefus
   expect_refusal(refusal_of([&] { audit_crowd_recording(folder_ / "none.evr"); }), DataCode::file_missing, "");
   expect_refusal(refusal_of([&] { audit_crowd_recording(put("short.evr", "EXA")); }), DataCode::format_syntax,
                  "byte 0");
+  const DataError empty = refusal_of([&] { audit_crowd_recording(put("empty.evr", "")); });
+  EXPECT_EQ(empty.code(), DataCode::cut_off);
+  EXPECT_EQ(empty.found(), "an empty file");
 }
 
 TEST_F(CrowdRecordings, ATableHasALineARobotAndRow) {

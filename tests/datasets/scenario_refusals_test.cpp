@@ -102,6 +102,13 @@ TEST(ScenarioRefusals, Property3_TheNearestKeyIsSuggested) {
   EXPECT_EQ(refused(with_robot(R"("radios": 1)")).expected(), "a known key; did you mean \"radius\"?");
   EXPECT_EQ(refused(with(R"("obstacle": [])")).expected(), "a known key; did you mean \"obstacles\"?");
   EXPECT_EQ(refused(R"({"name": "n", "robot": []})").expected(), "a known key; did you mean \"robots\"?");
+  EXPECT_EQ(refused(R"({"name": "n", "robots": [{"id": "R1", "position": [0,0], "golas": [[9,0]]}]})").expected(),
+            "a known key; did you mean \"goals\"?");
+  EXPECT_EQ(refused(R"({"name": "n", "robots": [{"id": "R1", "position": [0,0], "goal": [9,0], "gaol": []}]})")
+                .expected()
+                .substr(0, 6),
+            "one of")
+      << "a second goal was not meant";
   EXPECT_NE(refused(with(R"("xyzzyx": 1)")).expected().find("one of"), std::string::npos);
 }
 

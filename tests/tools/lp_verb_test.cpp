@@ -70,7 +70,9 @@ TEST(Lp, WhatIsNeitherJsonNorInstancesIsToldBothFormats) {
       {"\n\nhi\n", "line 3, column 1: found \"hi\""},
       {"12\n", "found \"12\""},
       {"\x89PNG\r\n\x1a\n....", "found \"?PNG\""},
-      {two_instances().substr(0, 40), "byte 0: found a count of 2 and 36 bytes after it"}};
+      {two_instances().substr(0, 40), "byte 0: found a count of 2 and 36 bytes after it"},
+      {"", "standard input: found an empty file"},
+      {"\n \n", "standard input: found blank lines alone"}};
   for (const auto& [bytes, words] : cases) {
     here.write("p", bytes);
     const Outcome outcome = here.run("lp - <p");
@@ -215,8 +217,8 @@ TEST(Lp, WhatIsTimedIsSaid) {
   EXPECT_THAT(here.run("lp --help").out, AllOf(HasSubstr("the solver alone"), HasSubstr("bench_lp --instances FILE")));
   here.write("p.jsonl", on_one_line(kGood));
   EXPECT_GT(summary_of(here.run("lp p.jsonl --json")).at("ns_per_solve"), 0.0);
-  here.write("none.jsonl", "");
-  EXPECT_EQ(summary_of(here.run("lp none.jsonl --json")).at("ns_per_solve"), 0.0);
+  here.write("none", std::string(4, '\0'));  // says itself that it has none
+  EXPECT_EQ(summary_of(here.run("lp none --json")).at("ns_per_solve"), 0.0);
 }
 
 }  // namespace

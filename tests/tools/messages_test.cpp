@@ -487,6 +487,9 @@ TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
   EXPECT_THAT(converted.err, HasSubstr(guess + "--from names another format"));
   EXPECT_THAT(place().run("validate g.map --format movingai-map").out, Not(HasSubstr("guessed")));
   EXPECT_THAT(place().run("validate missing.map").out, Not(HasSubstr("guessed")));
+  place().write("empty.geojson", "");
+  EXPECT_THAT(place().run("convert empty.geojson o.wkt").err,
+              AllOf(HasSubstr("found an empty file"), Not(HasSubstr("guessed"))));
 }
 
 TEST(Messages, PointsMayHaveAnyUsualSeparator) {

@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "exactvo/datasets/data_error.h"
+
 namespace exactvo::tools {
 namespace {
+
+using datasets::edit_distance;
+using datasets::nearest_word;
 
 TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(edit_distance("", ""), 0u);
@@ -26,6 +31,8 @@ TEST(NearestWord, IsTheNearestAndOnlyIfNearEnough) {
   EXPECT_EQ(nearest_word("q", {"r"}), "");
   EXPECT_EQ(nearest_word("orka", methods), "orca");
   EXPECT_EQ(nearest_word("something else", methods), "");
+  EXPECT_EQ(nearest_word("golas", {"goal", "goals"}), "goals");
+  EXPECT_EQ(nearest_word(std::string(1 << 20, 'o'), methods), "") << "at once";
   EXPECT_EQ(suggestion("something else", methods), "");
 }
 

@@ -171,6 +171,9 @@ TEST(VerbVo, AWrongLineIsNamed) {
     EXPECT_EQ(stream.status, 2) << text.substr(0, 40);
     EXPECT_EQ(stream.out.substr(0, 13), "1,0 collides\n") << "what stood before it";
   }
+  const Outcome empty = Workplace().run(kSquareAhead + "--velocities - < /dev/null");
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_THAT(empty.err, HasSubstr("standard input: found no velocity, expected vx,vy on each line [E_FORMAT_SYNTAX]"));
   const Outcome missing = Workplace().run(kSquareAhead + "--velocities nowhere.csv");
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, HasSubstr("E_FILE_MISSING"));

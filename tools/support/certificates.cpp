@@ -22,7 +22,6 @@
 #include "support/fields.h"
 #include "support/route_certificates.h"
 #include "support/unsigned_zero.h"
-#include "support/usage.h"
 
 namespace exactvo::tools {
 
@@ -288,7 +287,8 @@ CheckedCertificates check_certificates(const std::string& file) {
   CheckedCertificates checked = is_json(text) ? checked_in_json(text) : checked_in_lines(text);
   const bool is_empty = checked.all.empty() && checked.none == 0;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
-    throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
+    throw datasets::DataError(datasets::DataCode::format_unknown, datasets::name_of_input(file), "",
+                              whole.empty() ? "an empty file" : "no certificate", "a certificate a line");
   return checked;
 }
 

@@ -31,7 +31,7 @@ struct CheckedCertificates {
 /// proves, number by number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum,
 /// made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and
 /// the same one where that has a certificate of containment. In lines, nothing says which belong together, and this is
-/// not checked. Throws DataError where it can't be read, UsageError where neither a certificate nor a place that says
+/// not checked. Throws DataError where it can't be read, and where neither a certificate nor a place that says
 /// there is none is in it: no line begins as one, no JSON has any.
 CheckedCertificates check_certificates(const std::string& file);
 

@@ -34,14 +34,7 @@ void require(bool holds, const std::string& where, const std::string& found, con
 /// Throws UsageError unless `value` is a finite length of 0 m or more.
 void require_length(const std::string& option, double value);
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string alignment).
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
-/// The known word nearest to `word`, whatever the case of ASCII letters; empty where none is near enough to be meant: a
-/// third of the letters of the shorter word may differ, one always, two of five.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
-
-/// "; did you mean 'simulate'?" or nothing.
+/// "; did you mean 'simulate'?", the known word nearest to `word`, or nothing.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
 /// The value that `text` names, by one of the `parse` functions of formation/simulation.h. Throws UsageError.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/algorithm/string/replace.hpp>
 
 #include "files/system_error.h"
 
@@ -157,14 +158,18 @@ std::string read_text_file(const std::filesystem::path& path) {
   return text_of(Input(path), path.string());
 }
 
+std::string name_of_input(const std::string& file) {
+  return file == "-" ? "standard input" : file;
+}
+
 std::string read_file_or_input(const std::string& file) {
-  return file == "-" ? text_of(Input(), "standard input") : read_text_file(file);
+  return file == "-" ? text_of(Input(), name_of_input(file)) : read_text_file(file);
 }
 
 struct TextLines::State {
   explicit State(const std::filesystem::path& path) : name(path.string()), input(path) {}
   State(const std::string& file, std::size_t most)
-      : name(file == "-" ? "standard input" : file), input(file == "-" ? Input() : Input(file)), longest(most) {}
+      : name(name_of_input(file)), input(file == "-" ? Input() : Input(file)), longest(most) {}
   std::string name;
   Input input;
   std::size_t longest = kLargestWholeFile;
@@ -241,6 +246,10 @@ std::string excerpt(std::string_view text, std::size_t byte, std::size_t length)
     shown += c >= 0x20 && c < 0x7f ? c : '?';
   }
   return shown + "\"";
+}
+
+std::string csv_quoted(const std::string& text) {
+  return "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
 
 }  // namespace exactvo::datasets

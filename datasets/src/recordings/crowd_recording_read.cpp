@@ -191,7 +191,11 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   if (!p.in)
     throw DataError(DataCode::file_unreadable, p.name, "", "a file that cannot be read", "a recording of a crowd");
   char mark[kCrowdMark.size()] = {};
-  const bool whole = p.read(mark, sizeof mark), has_bodies = std::string_view(mark, sizeof mark) == kCrowdMarkOfBodies;
+  const bool whole = p.read(mark, sizeof mark);
+  if (p.at == 0)
+    throw DataError(DataCode::cut_off, p.name, "", "an empty file",
+                    "a recording of a crowd, as simulate --record writes it");
+  const bool has_bodies = std::string_view(mark, sizeof mark) == kCrowdMarkOfBodies;
   if (!whole || (!has_bodies && std::string_view(mark, sizeof mark) != kCrowdMark))
     throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
                     "\"EXACTVR1\" or \"EXACTVR2\", of a recording of a crowd");

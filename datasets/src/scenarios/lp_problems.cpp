@@ -160,7 +160,7 @@ bool begins_as_text(const std::string& bytes) {
 /// Objects, lists and texts: what is wrong with them has a line and a column.
 bool looks_like_lines(const std::string& bytes) {
   const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return first == std::string::npos || (begins_as_text(bytes) && std::strchr("{[\"", bytes[first]) != nullptr);
+  return first != std::string::npos && begins_as_text(bytes) && std::strchr("{[\"", bytes[first]) != nullptr;
 }
 
 bool holds_its_count(const std::string& bytes) {
@@ -170,6 +170,8 @@ bool holds_its_count(const std::string& bytes) {
 }
 
 DataError neither_format(const std::string& bytes, const std::string& file) {
+  if (is_blank(bytes))
+    return {DataCode::format_unknown, file, "", bytes.empty() ? "an empty file" : "blank lines alone", kBothFormats};
   const bool is_text = begins_as_text(bytes) || bytes.size() < 4;
   const std::size_t at = is_text ? std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()) : 0;
   return {DataCode::format_unknown, file, is_text ? line_and_column(bytes, at) : "byte 0",

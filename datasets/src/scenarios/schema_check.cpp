@@ -2,42 +2,14 @@
 #include "scenarios/schema_check.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 namespace exactvo::datasets {
 namespace {
-
-/// Insertions, deletions and substitutions that turn a into b (Levenshtein), a row at a time.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-/// The known word nearest to `word` by edit distance, or "" where none is near.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  std::string nearest;
-  // More than half of the letters changed is another word, not a slip of the finger.
-  std::size_t least = std::min<std::size_t>(word.size(), 40) / 2 + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word.substr(0, 40), candidate);
-    if (distance < least) least = distance, nearest = candidate;
-  }
-  return nearest;
-}
 
 class Checker {
  public:
@@ -180,7 +152,10 @@ class Checker {
 
   [[noreturn]] void refuse_unknown(const Json& value, const std::string& key,
                                    const std::vector<std::string>& known) const {
-    const std::string nearest = nearest_word(key, known);
+    std::vector<std::string> missing;  // a key that is there already was not meant
+    std::copy_if(known.begin(), known.end(), std::back_inserter(missing),
+                 [&](const std::string& name) { return !value.contains(name); });
+    const std::string nearest = nearest_word(key, missing);
     std::string all;
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
     refuse(DataCode::key_unknown, value.at(key), "an unknown key \"" + key + "\"",

@@ -169,7 +169,7 @@ bool asks_for_proofs(lp::Solver solver, const LpFlags& flags) {
 ExitCode run(const LpFlags& flags) {
   const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
   const std::vector<lp::Problem> problems =
-      datasets::parse_lp_problems(datasets::read_file_or_input(flags.file), flags.file);
+      datasets::parse_lp_problems(datasets::read_file_or_input(flags.file), datasets::name_of_input(flags.file));
   lp::Solving solving(solver, problems);
   const double before = thread_nanoseconds();
   solving.solve();

@@ -159,8 +159,10 @@ std::string guessed_format(const std::string& file) {
 std::string guess_words(const FileAnswer& answer, const std::string& option) {
   using datasets::DataCode;
   const DataCode code = answer.error ? answer.error->code() : DataCode::size;
-  // Another format would not help.
-  if (code == DataCode::size || code == DataCode::file_unreadable || answer.guessed_format.empty()) return "";
+  // Another format would not help; an empty file has none.
+  const bool is_no_guess =
+      code == DataCode::size || code == DataCode::file_unreadable || code == DataCode::format_unknown;
+  if (is_no_guess || answer.guessed_format.empty()) return "";
   return fmt::format("; read as {}, which is guessed from its content and name: {} names another format",
                      answer.guessed_format, option);
 }

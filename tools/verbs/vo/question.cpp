@@ -123,7 +123,7 @@ std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
     } else if (found != std::end(vo::kVariants)) {
       variants.push_back(*found);
     } else {
-      throw UsageError("--variant", word, "one of vo rvo hrvo orca ivo all");
+      throw unknown_word("--variant", word, {"vo", "rvo", "hrvo", "orca", "ivo", "all"});
     }
   }
   return variants;
@@ -171,10 +171,8 @@ std::vector<std::filesystem::path> files_named_in(const VoFlags& flags) {
 }
 
 void check_words(const VoFlags& flags) {
-  const bool known = flags.enclose == "none" || flags.enclose == "ellipse" || flags.enclose == "trap-free";
-  require(known, "--enclose", flags.enclose, "one of none ellipse trap-free");
-  require(flags.pieces.empty() || flags.pieces == "convex" || flags.pieces == "hull", "--pieces", flags.pieces,
-          "one of convex hull");
+  require_known("--enclose", flags.enclose, {"none", "ellipse", "trap-free"});
+  if (!flags.pieces.empty()) require_known("--pieces", flags.pieces, {"convex", "hull"});
   require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
   if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, files_named_in(flags));
 }

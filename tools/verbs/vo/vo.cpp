@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/membership.h"
 #include "figures/figure.h"
@@ -217,6 +218,8 @@ void answer_velocities(const VoQuestion& question, const std::string& file, bool
     throw;
   }
   answers.flush();
+  if (count == 0)
+    throw DataError(DataCode::format_syntax, datasets::name_of_input(file), "", "no velocity", "vx,vy on each line");
 }
 
 // --- The verb ---

@@ -34,6 +34,9 @@ std::string read_text_file(const std::filesystem::path& path);
 /// The same; "-" is standard input, whatever that is.
 std::string read_file_or_input(const std::string& file);
 
+/// What messages call that: "standard input" or the file.
+std::string name_of_input(const std::string& file);
+
 /// The lines of a file or a pipe, one after the other, as they come: memory does not grow with the input.
 class TextLines {
  public:

@@ -20,8 +20,8 @@
 
 namespace exactvo::datasets {
 
-/// Empty lines are skipped. Throws DataError, E_FORMAT_UNKNOWN where the bytes are neither; `file_name` is used in
-/// its words. Every problem returned passes lp::require_well_formed.
+/// Blank lines are skipped. Throws DataError, E_FORMAT_UNKNOWN where the bytes are neither, or nothing but blank;
+/// `file_name` is used in its words. Every problem returned passes lp::require_well_formed.
 std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name);
 
 /// The JSON Schema that a line is held against.
