@@ -43,6 +43,8 @@ const std::vector<Break> kBreaks = {
     {"SpeedFloor", "/horizons/speed_floor", [](Scenario& s) { s.horizons.speed_floor = 0.0; }},
     {"OrcaHorizon", "/horizons/orca", [](Scenario& s) { s.horizons.orca = 0.0; }},
     {"RobotsHorizon", "/horizons/robots", [](Scenario& s) { s.horizons.robots = 0.0; }},
+    {"OrcaHorizonBelowAStep", "/horizons/orca", [](Scenario& s) { s.horizons.orca = 0.9 * s.time_step; }},
+    {"RobotsHorizonBelowAStep", "/horizons/robots", [](Scenario& s) { s.horizons.robots = 0.9 * s.time_step; }},
     {"ObstacleMargin", "/margins/obstacle", [](Scenario& s) { s.margins.obstacle = -0.1; }},
     {"RobotMargin", "/margins/robot", [](Scenario& s) { s.margins.robot = -0.1; }},
     {"AdjacencyShape", "/formation/topology", [](Scenario& s) { s.formation->topology.adjacency.pop_back(); }},

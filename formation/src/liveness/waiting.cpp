@@ -184,17 +184,20 @@ bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, con
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
   if (scenario.formation) return "its slot cannot be filled";
   std::optional<std::size_t> first;
+  bool may_be_taken = scenario.unreachable == Unreachable::nearest && row.robots.size() > 1;
   const auto from_goal = [&](std::size_t j) { return norm(scenario.robots[j].goals.back() - row.robots[j].position); };
   for (std::size_t j = 0; j < row.robots.size(); ++j) {
     const double apart = norm(scenario.robots[j].goals.back() - scenario.robots[robot].goals.back());
     const bool is_rival = j != robot && detail::leave_no_room(scenario, robot, j, apart);
+    may_be_taken = may_be_taken || is_rival;
     if (!is_rival || row.robots[j].mode == Mode::staying) continue;
     const double pushed =
         scenario.unreachable == Unreachable::nearest ? 0.0 : scenario.robots[robot].radius + scenario.robots[j].radius;
     const double about = scenario.arrival_tolerance + 2.0 * pushed;
     if (from_goal(j) <= about && (!first || from_goal(j) < from_goal(*first))) first = j;
   }
-  return first ? detail::first_at_goal_words(scenario, *first, robot) : "its goal is out of reach";
+  if (first) return detail::first_at_goal_words(scenario, *first, robot);
+  return may_be_taken ? "its goal is out of reach or taken" : "its goal is out of reach";
 }
 
 }  // namespace exactvo::formation

@@ -233,7 +233,14 @@ class ClearanceSweep::Sweep {
   }
 
   void note(std::size_t robot, Other other, std::size_t step, double end, double bound, double& least) {
-    const double clearance = std::max(bound, least_possible(robot, other));
+    double clearance = std::max(bound, least_possible(robot, other));
+    Moment moment{};
+    if (touched(clearance)) {
+      moment = {rows_.back().time, motions_[robot],
+                motions_[other.first == CollisionKind::robot ? other.second : robot]};
+      // Chords with an end inside a polygon know the depth of their ends only.
+      clearance = std::min(clearance, deepest(robot, other, moment).clearance);
+    }
     least = std::min(least, clearance);
     if (!touched(clearance)) return;
     std::vector<Contact>& all = contacts_[{robot, other}];
@@ -247,8 +254,7 @@ class ClearanceSweep::Sweep {
     now.relaxed = now.relaxed || was_relaxed(rows_.back(), robot, other);
     if (!(clearance < now.clearance)) return;
     now.clearance = clearance;
-    now.deepest = {rows_.back().time, motions_[robot],
-                   motions_[other.first == CollisionKind::robot ? other.second : robot]};
+    now.deepest = moment;
   }
 
   static bool was_relaxed(const State& row, std::size_t robot, Other other) {
@@ -367,24 +373,33 @@ class ClearanceSweep::Sweep {
     return kind == CollisionKind::obstacle ? scenario_.obstacles[index].id : scenario_.moving_obstacles[index].id;
   }
 
+  struct Depth {
+    double clearance, share;  ///< m, and how far through the step
+  };
+
+  /// The least clearance of 65 moments of a step.
+  Depth deepest(std::size_t robot, Other other, const Moment& moment) const {
+    constexpr int kMoments = 64;
+    Depth least{kInfinity, 0.0};
+    for (int m = 0; m <= kMoments; ++m) {
+      const double share = static_cast<double>(m) / kMoments;
+      const double clearance = clearance_at(robot, other, moment, share);
+      if (clearance < least.clearance) least = {clearance, share};
+    }
+    return least;
+  }
+
   Collision collision(std::size_t robot, Other other, const Contact& contact) const {
-    constexpr int kMoments = 64;  // of the deepest step
     Collision c;
     c.robot = scenario_.robots[robot].id;
     c.kind = other.first;
     c.with = name_of(other);
     c.from = contact.from;
     c.until = contact.until;
-    double least = kInfinity;
-    for (int m = 0; m <= kMoments; ++m) {
-      const double share = static_cast<double>(m) / kMoments;
-      const double clearance = clearance_at(robot, other, contact.deepest, share);
-      if (!(clearance < least)) continue;
-      least = clearance;
-      c.deepest_at = contact.deepest.time + share * run_.time_step;
-      c.place = contact.deepest.robot.at(share);
-    }
-    c.depth = -std::min(least, contact.clearance);
+    const double share = deepest(robot, other, contact.deepest).share;
+    c.deepest_at = contact.deepest.time + share * run_.time_step;
+    c.place = contact.deepest.robot.at(share);
+    c.depth = -contact.clearance;
     c.relaxed = contact.relaxed;
     return c;
   }

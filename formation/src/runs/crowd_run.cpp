@@ -496,7 +496,6 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
             detail::metres(fastest(s.moving_obstacles[k]), 6) + "/s",
             "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
-  require(s.horizons.orca >= s.time_step, "/horizons/orca", "less than /time_step", "at least /time_step, for a crowd");
   const double step = position_step_for(s);
   require(s.arrival_tolerance >= step, "/arrival_tolerance", detail::metres(s.arrival_tolerance, 6),
           "at least " + detail::metres(step, 6) + ", the lattice of positions of a crowd of this extent and speed");

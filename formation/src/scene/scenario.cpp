@@ -173,8 +173,13 @@ void check_times(const Scenario& s, Checker& c) {
             "at least /horizons/least, " + show(s.horizons.least));
   require_step_within_horizon(s, c);
   c.positive(s.horizons.speed_floor, "/horizons/speed_floor", "share of max_speed");
-  c.positive(s.horizons.orca, "/horizons/orca", "s");
-  c.positive(s.horizons.robots, "/horizons/robots", "s");
+  const auto holds_for_a_step = [&](double horizon, const char* pointer) {
+    c.positive(horizon, pointer, "s");
+    c.require(!(horizon > 0.0) || horizon >= s.time_step, pointer, show(horizon),
+              "at least /time_step, " + show(s.time_step) + " (s)");
+  };
+  holds_for_a_step(s.horizons.orca, "/horizons/orca");
+  holds_for_a_step(s.horizons.robots, "/horizons/robots");
   c.not_negative(s.margins.obstacle, "/margins/obstacle", "m");
   c.not_negative(s.margins.robot, "/margins/robot", "m");
 }

@@ -50,8 +50,9 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 /// its horizon, so that it is false where another rule has the same one. REQUIRES: a row of a run of this scenario.
 bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const RecordedConstraint& constraint);
 
-/// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 rests at its goal, 0.3 m from its own", "its
-/// slot cannot be filled". REQUIRES: a row of a run of this scenario, not its last.
+/// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 was first at its goal, 0.3 m from that of
+/// R1", "its goal is out of reach or taken" where the row does not tell which, "its slot cannot be filled". REQUIRES: a
+/// row of a run of this scenario, not its last.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot);
 
 }  // namespace exactvo::formation
