@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "explorer/page.h"
 
@@ -58,6 +59,13 @@ bool is_of_a_figure(const fs::path& file) {
   std::string first, second;
   return std::getline(script, first) && std::getline(script, second) &&
          second.rfind("# Draw again with: gnuplot", 0) == 0;
+}
+
+/// Their files were synced as they were written, the names of these not yet.
+void sync_folders(const fs::path& folder) {
+  datasets::sync_directory(folder);
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_directory()) sync_folders(entry.path());
 }
 
 }  // namespace
@@ -136,6 +144,7 @@ void StagedFolder::publish(const std::string& last) {
     if (fs::exists(target_)) {
       merge_into_target(last);
     } else {
+      sync_folders(staging_);
       fs::rename(staging_, target_);
     }
   } catch (const fs::filesystem_error& error) {

@@ -116,9 +116,11 @@ formation::Metrics RunRecorder::finish(formation::Recording run, RecordingFile& 
   file.collisions = found.metrics.collisions;
   file.outcome = found.metrics.outcome;
   if (files_) {
-    files_->recording.finish(file);
-    if (files_->trajectory) files_->trajectory->finish();
-    if (files_->lyapunov) files_->lyapunov->commit();
+    // A folder of files is published as a whole, with their names (StagedFolder).
+    const auto durability = output_.folder.empty() ? datasets::Durability::name : datasets::Durability::content;
+    files_->recording.finish(file, durability);
+    if (files_->trajectory) files_->trajectory->finish(durability);
+    if (files_->lyapunov) files_->lyapunov->commit(durability);
     files_.reset();
   }
   return std::move(found.metrics);

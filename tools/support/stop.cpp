@@ -28,7 +28,7 @@ std::atomic<pid_t> child_of_ours{0};
 struct Slot {
   std::atomic<bool> is_taken{false};
   std::atomic<bool> is_set{false};
-  char path[PATH_MAX];
+  char path[PATH_MAX] = {};
 };
 std::array<Slot, 16> slots;
 

@@ -139,6 +139,7 @@ void AtomicFile::put(std::string_view bytes) {
 
 void AtomicFile::write(std::string_view bytes) {
   EXACTVO_REQUIRE(descriptor_ >= 0, "a write after commit to " + path_.string());
+  if (buffer_.capacity() < kBufferSize) buffer_.reserve(kBufferSize);  // once: growing would copy it again and again
   if (buffer_.size() + bytes.size() >= kBufferSize) flush();
   if (bytes.size() >= kBufferSize) return put(bytes);  // uncopied
   buffer_ += bytes;

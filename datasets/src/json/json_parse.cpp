@@ -179,8 +179,17 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
     void add_member(const std::string& key) {
       Members& all = members();
       if (!places.empty()) places.emplace(key, all.size());
+      if (all.size() == all.capacity()) grow(all);
       all.emplace_back(key, Json());
       target = &all.back().second;
+    }
+
+    /// The vector's own growth copies the values, with all that is in them: pairs with a constant key cannot be moved.
+    static void grow(Members& all) {
+      Members more;
+      more.reserve(std::max<std::size_t>(4, 2 * all.size()));
+      for (auto& [key, value] : all) more.emplace_back(key, std::move(value));
+      all.swap(more);
     }
 
     static constexpr std::size_t kFew = 16;  ///< members that are searched one by one

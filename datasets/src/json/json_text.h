@@ -13,6 +13,7 @@
 ///     }
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,6 +21,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
@@ -112,7 +114,42 @@ class JsonNesting {
   bool in_string_ = false, is_escaped_ = false;
 };
 
-/// Appends JSON to a string.
+/// A text in the making. It is written a few bytes at a time, for which each call of std::string's costs too much.
+class GrowingText {
+ public:
+  void add(char c) {
+    *room(1) = c;
+    ++size_;
+  }
+  void add(std::string_view bytes) {
+    std::memcpy(room(bytes.size()), bytes.data(), bytes.size());
+    size_ += bytes.size();
+  }
+  /// The shortest text that reads back to the same finite double ("-0.0" keeps its sign).
+  void add_number(double number);
+
+  std::string_view view() const { return {memory_.data(), size_}; }
+  std::string take() {
+    memory_.resize(std::exchange(size_, 0));
+    return std::move(memory_);
+  }
+  void clear() { size_ = 0; }
+
+ private:
+  /// For `count` bytes behind the text.
+  char* room(std::size_t count) {
+    if (memory_.size() - size_ < count) {
+      memory_.reserve(size_ + count);
+      memory_.resize(memory_.capacity());
+    }
+    return memory_.data() + size_;
+  }
+
+  std::string memory_;
+  std::size_t size_ = 0;  ///< of the text; what follows is free
+};
+
+/// Appends JSON to a text.
 class JsonWriter {
  public:
   static constexpr bool kReads = false;
@@ -191,8 +228,8 @@ class JsonWriter {
     return end_array();
   }
 
-  const std::string& text() const { return text_; }
-  std::string take() { return std::move(text_); }
+  std::string_view text() const { return text_.view(); }
+  std::string take() { return text_.take(); }
   void clear() { text_.clear(); }
 
  private:
@@ -204,14 +241,15 @@ class JsonWriter {
   JsonWriter& close(char bracket);
   void separate();
   void new_line(std::size_t depth);
+  void add_quoted(std::string_view raw);
 
   Layout layout_;
-  std::string text_;
+  GrowingText text_;
   std::vector<Level> levels_;
   bool after_key_ = false;
 };
 
-/// The shortest text that reads back to the same finite double ("-0.0" keeps its sign).
+/// As GrowingText::add_number.
 void append_number(std::string& text, double number);
 std::string number_text(double number);
 

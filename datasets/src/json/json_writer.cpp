@@ -29,11 +29,7 @@ class NumberTexts {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &number, sizeof bits);
     Entry& entry = entries_[static_cast<std::size_t>(bits * 0x9e3779b97f4a7c15u >> 55)];
-    if (entry.length == 0 || entry.bits != bits) {
-      entry.bits = bits;
-      entry.length = static_cast<std::uint8_t>(
-          std::to_chars(entry.text.data(), entry.text.data() + entry.text.size(), number).ptr - entry.text.data());
-    }
+    if (entry.length == 0 || entry.bits != bits) entry.fill(bits, number);
     return {entry.text.data(), entry.length};
   }
 
@@ -42,63 +38,43 @@ class NumberTexts {
     std::uint64_t bits;
     std::uint8_t length;  ///< 0: nothing yet
     std::array<char, 31> text;
+
+    void fill(std::uint64_t new_bits, double number) {
+      bits = new_bits;
+      // Integer text would lose the sign of zero: readers take "-0" for an integer.
+      const std::string_view negative_zero = "-0.0";
+      char* end = number == 0.0 && std::signbit(number)
+                      ? std::copy(negative_zero.begin(), negative_zero.end(), text.data())
+                      : std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+      length = static_cast<std::uint8_t>(end - text.data());
+    }
   };
   std::array<Entry, 512> entries_{};
 };
 
-void append_escaped(std::string& text, std::string_view raw) {
-  text += '"';
-  const std::size_t plain = static_cast<std::size_t>(std::find_if(raw.begin(), raw.end(), is_escaped) - raw.begin());
-  text += raw.substr(0, plain);
-  for (const char c : raw.substr(plain)) {
-    switch (c) {
-      case '"':
-        text += "\\\"";
-        break;
-      case '\\':
-        text += "\\\\";
-        break;
-      case '\n':
-        text += "\\n";
-        break;
-      case '\t':
-        text += "\\t";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) < 0x20) {
-          text += "\\u00";
-          text += "0123456789abcdef"[(c >> 4) & 0xf];
-          text += "0123456789abcdef"[c & 0xf];
-        } else {
-          text += c;
-        }
-    }
-  }
-  text += '"';
+NumberTexts& number_texts() {
+  // Not itself in the memory of the thread: a module that is loaded late gets little of that.
+  thread_local const auto texts = std::make_unique<NumberTexts>();
+  return *texts;
 }
 
 }  // namespace
 
+void GrowingText::add_number(double number) {
+  add(number_texts().of(number));
+}
+
 void append_number(std::string& text, double number) {
-  // Integer text would lose the sign of zero: readers take "-0" for an integer.
-  if (number == 0.0 && std::signbit(number)) {
-    text += "-0.0";
-  } else {
-    // Not itself in the memory of the thread: a module that is loaded late gets little of that.
-    thread_local const auto texts = std::make_unique<NumberTexts>();
-    text += texts->of(number);
-  }
+  text += number_texts().of(number);
 }
 
 std::string number_text(double number) {
-  std::string text;
-  append_number(text, number);
-  return text;
+  return std::string(number_texts().of(number));
 }
 
 void JsonWriter::new_line(std::size_t depth) {
-  text_ += '\n';
-  text_.append(2 * depth, ' ');
+  text_.add('\n');
+  for (std::size_t k = 0; k < depth; ++k) text_.add("  ");
 }
 
 void JsonWriter::separate() {
@@ -108,18 +84,18 @@ void JsonWriter::separate() {
   }
   if (levels_.empty()) return;
   Level& level = levels_.back();
-  if (!level.empty) text_ += ',';
+  if (!level.empty) text_.add(',');
   if (level.layout == Layout::indented) {
     new_line(levels_.size());
   } else if (!level.empty && layout_ == Layout::indented) {
-    text_ += ' ';
+    text_.add(' ');
   }
   level.empty = false;
 }
 
 JsonWriter& JsonWriter::open(char bracket, Layout layout) {
   separate();
-  text_ += bracket;
+  text_.add(bracket);
   const bool nested_inline = !levels_.empty() && levels_.back().layout == Layout::compact;
   levels_.push_back({nested_inline ? Layout::compact : layout, true});
   return *this;
@@ -129,14 +105,45 @@ JsonWriter& JsonWriter::close(char bracket) {
   const Level level = levels_.back();
   levels_.pop_back();
   if (level.layout == Layout::indented && !level.empty) new_line(levels_.size());
-  text_ += bracket;
+  text_.add(bracket);
   return *this;
+}
+
+void JsonWriter::add_quoted(std::string_view raw) {
+  text_.add('"');
+  const std::size_t plain = static_cast<std::size_t>(std::find_if(raw.begin(), raw.end(), is_escaped) - raw.begin());
+  text_.add(raw.substr(0, plain));
+  for (const char c : raw.substr(plain)) {
+    switch (c) {
+      case '"':
+        text_.add("\\\"");
+        break;
+      case '\\':
+        text_.add("\\\\");
+        break;
+      case '\n':
+        text_.add("\\n");
+        break;
+      case '\t':
+        text_.add("\\t");
+        break;
+      default:
+        if (is_escaped(c)) {
+          text_.add("\\u00");
+          text_.add("0123456789abcdef"[(c >> 4) & 0xf]);
+          text_.add("0123456789abcdef"[c & 0xf]);
+        } else {
+          text_.add(c);
+        }
+    }
+  }
+  text_.add('"');
 }
 
 JsonWriter& JsonWriter::key(std::string_view name) {
   separate();
-  append_escaped(text_, name);
-  text_ += layout_ == Layout::indented ? ": " : ":";
+  add_quoted(name);
+  text_.add(layout_ == Layout::indented ? ": " : ":");
   after_key_ = true;
   return *this;
 }
@@ -144,7 +151,7 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 JsonWriter& JsonWriter::value(double number) {
   if (!std::isfinite(number)) return value(word_for_non_finite(number));
   separate();
-  append_number(text_, number);
+  text_.add_number(number);
   return *this;
 }
 
@@ -154,11 +161,20 @@ JsonWriter& JsonWriter::value(bool truth) {
 
 JsonWriter& JsonWriter::value(std::string_view text) {
   separate();
-  append_escaped(text_, text);
+  add_quoted(text);
   return *this;
 }
 
 JsonWriter& JsonWriter::value(geometry::Vec2 point) {
+  if (layout_ == Layout::compact && std::isfinite(point.x) && std::isfinite(point.y)) {  // as below, without its calls
+    separate();
+    text_.add('[');
+    text_.add_number(point.x);
+    text_.add(',');
+    text_.add_number(point.y);
+    text_.add(']');
+    return *this;
+  }
   return begin_inline_array().value(point.x).value(point.y).end_array();
 }
 
@@ -168,7 +184,7 @@ JsonWriter& JsonWriter::null() {
 
 JsonWriter& JsonWriter::raw(std::string_view json) {
   separate();
-  text_ += json;
+  text_.add(json);
   return *this;
 }
 

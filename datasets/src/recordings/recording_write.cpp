@@ -70,30 +70,30 @@ std::string csv_text(const std::string& text) {
   return text.find_first_of(",\"\r\n") == std::string::npos ? text : csv_quoted(text);
 }
 
-void append_pair(std::string& row, geometry::Vec2 v) {
-  row += ',';
-  append_number(row, v.x);
-  row += ',';
-  append_number(row, v.y);
+void add_pair(GrowingText& row, geometry::Vec2 v) {
+  row.add(',');
+  row.add_number(v.x);
+  row.add(',');
+  row.add_number(v.y);
 }
 
-void append_csv_row(std::string& row, const formation::Step& step, const formation::RobotStep& robot,
-                    const std::string& id, bool has_leader) {
-  append_number(row, step.time);
-  row += ',';
-  row += csv_text(id);
-  for (const geometry::Vec2 v : {robot.position, robot.velocity, robot.preferred, robot.chosen}) append_pair(row, v);
-  row += ',';
-  row += word_for(robot.status);
-  row += ',';
-  row += word_for(robot.mode);
-  row += ',';
-  row += std::to_string(robot.side);
-  if (has_leader) {
-    append_pair(row, step.leader_position);
-    append_pair(row, step.leader_velocity);
+void add_csv_row(GrowingText& row, const formation::Step& step, const formation::RobotStep& robot,
+                 std::string_view csv_id, bool has_leader) {
+  row.add_number(step.time);
+  row.add(',');
+  row.add(csv_id);
+  for (const geometry::Vec2 v : {robot.position, robot.velocity, robot.preferred, robot.chosen}) add_pair(row, v);
+  for (const char* word : {word_for(robot.status), word_for(robot.mode)}) {
+    row.add(',');
+    row.add(word);
   }
-  row += '\n';
+  row.add(',');
+  row.add(std::to_string(robot.side));
+  if (has_leader) {
+    add_pair(row, step.leader_position);
+    add_pair(row, step.leader_velocity);
+  }
+  row.add('\n');
 }
 
 }  // namespace
@@ -107,11 +107,9 @@ struct RecordingWriter::State {
     json.clear();
     json.begin_object().key(name);
     append();
-    json.end_object();
-    for (const std::string_view part : {std::string_view(json.text()), std::string_view("\n")}) {
-      hash.add(part);
-      out->write(part);
-    }
+    json.end_object().raw("\n");
+    hash.add(json.text());
+    out->write(json.text());
   }
 
   void name_body(std::size_t number, const std::vector<vo::Body>& bodies) {
@@ -164,14 +162,14 @@ void RecordingWriter::add(const Step& row, const std::vector<vo::Body>& bodies,
   ++state_->rows;
 }
 
-void RecordingWriter::finish(const RecordingFile& about) {
+void RecordingWriter::finish(const RecordingFile& about, Durability durability) {
   const std::string digest = state_->hash.digest();
   state_->json.clear();
   state_->json.begin_object().key("end");
   append_end(state_->json, about, state_->rows, digest);
-  state_->json.end_object();
-  state_->out->write(state_->json.text() + "\n");
-  state_->out->commit();
+  state_->json.end_object().raw("\n");
+  state_->out->write(state_->json.text());
+  state_->out->commit(durability);
 }
 
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {
@@ -192,13 +190,19 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
 }
 
 struct TrajectoryWriter::State {
+  State(const std::filesystem::path& path, const formation::Scenario& scenario)
+      : out(path), has_leader(scenario.formation.has_value()) {
+    for (const formation::Robot& robot : scenario.robots) csv_ids.push_back(csv_text(robot.id));
+  }
+
   AtomicFile out;
-  const formation::Scenario& scenario;
-  std::string text;  ///< of a row, in memory that it leaves to the next
+  std::vector<std::string> csv_ids;  ///< of the robots
+  bool has_leader;
+  GrowingText text;  ///< of a row, in memory that it leaves to the next
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
-    : state_(new State{AtomicFile(path), scenario, {}}) {
+    : state_(std::make_unique<State>(path, scenario)) {
   state_->out.write(
       "time_s,robot,x_m,y_m,vx_m_s,vy_m_s,preferred_vx_m_s,preferred_vy_m_s,chosen_vx_m_s,chosen_vy_m_s,status,mode,"
       "side");
@@ -208,15 +212,15 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const form
 TrajectoryWriter::~TrajectoryWriter() = default;
 
 void TrajectoryWriter::add(const formation::Step& row) {
-  std::string& text = state_->text;
+  GrowingText& text = state_->text;
   text.clear();
   for (std::size_t i = 0; i < row.robots.size(); ++i)
-    append_csv_row(text, row, row.robots[i], state_->scenario.robots.at(i).id, state_->scenario.formation.has_value());
-  state_->out.write(text);
+    add_csv_row(text, row, row.robots[i], state_->csv_ids.at(i), state_->has_leader);
+  state_->out.write(text.view());
 }
 
-void TrajectoryWriter::finish() {
-  state_->out.commit();
+void TrajectoryWriter::finish(Durability durability) {
+  state_->out.commit(durability);
 }
 
 }  // namespace exactvo::datasets

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/run_info.h"
 #include "exactvo/formation/lyapunov.h"
@@ -30,8 +31,6 @@
 #include "exactvo/formation/stuck.h"
 
 namespace exactvo::datasets {
-
-class AtomicFile;
 
 /// What `format_version` says. Another one is refused (E_RANGE).
 inline constexpr int kRecordingFormat = 2;
@@ -67,7 +66,7 @@ class RecordingWriter {
   void add(const formation::Step& row, const std::vector<vo::Body>& bodies,
            const formation::LyapunovRow* lyapunov = nullptr);
   /// Of `about` the rest: outcome, warnings, who was stuck, the time it took.
-  void finish(const RecordingFile& about);
+  void finish(const RecordingFile& about, Durability durability = Durability::name);
 
  private:
   struct State;
@@ -92,13 +91,12 @@ RecordingFile parse_recording(const std::string& text, const std::string& file_n
 /// as RecordingWriter.
 class TrajectoryWriter {
  public:
-  /// `scenario` must outlive the writer.
   TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario);
   ~TrajectoryWriter();
   /// Adds the rows of one step.
   void add(const formation::Step& row);
   /// Publishes the file. Nothing stands there before.
-  void finish();
+  void finish(Durability durability = Durability::name);
 
  private:
   struct State;
