@@ -380,6 +380,26 @@ TEST_F(RecordingFileTest, WhatIsWrittenAsItIsMadeIsWhatIsWrittenAtOnce) {
   EXPECT_EQ(content_of(folder_ / "as_made.jsonl"), content_of(folder_ / "at_once.jsonl"));
 }
 
+TEST_F(RecordingFileTest, LyapunovFunctionsAreATable) {
+  formation::LyapunovRow row;
+  row.time = 0.05;
+  row.paper = {1e5, 1e15, 1e16, -0.0};
+  row.paper_rates = {1e-4, -9.9e-5, 0.625, 1.25e20};
+  row.sound.slots = 123456789.125;
+  LyapunovWriter writer(folder_ / "lyapunov.csv");
+  for (const bool has_rates : {true, false}) {
+    row.has_rates = has_rates;
+    writer.add(row);
+  }
+  writer.finish();
+  const std::string text = content_of(folder_ / "lyapunov.csv");
+  const std::string head = text.substr(0, text.find('\n'));
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), 16);
+  EXPECT_EQ(text.substr(head.size()),
+            "\n0.05,100000,1000000000000000,1e+16,-0,0.0001,-9.9e-05,0.625,1.25e+20,0,0,0,123456789.125,0,0,0,0\n"
+            "0.05,100000,1000000000000000,1e+16,-0,,,,,,0,0,123456789.125,,,,\n");
+}
+
 TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string good = content_of(folder_ / "r.jsonl");

@@ -11,6 +11,7 @@
 #include <valijson/validator.hpp>
 
 #include "exactvo/datasets/scenario_file.h"
+#include "scenarios/schema_check.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::datasets::test {
@@ -92,6 +93,19 @@ void mutate(nlohmann::json& tree, SeededRandom& random) {
   } else {
     *at = any_value(random);
   }
+}
+
+void remove_descriptions(nlohmann::json& schema) {
+  if (schema.is_object() && schema.contains("description") && schema.at("description").is_string())
+    schema.erase("description");
+  for (nlohmann::json& part : schema)
+    if (part.is_structured()) remove_descriptions(part);
+}
+
+TEST(SchemaAgreement, RulesAreTheSchemaWithoutDescriptions) {
+  nlohmann::json schema = nlohmann::json::parse(scenario_schema());
+  remove_descriptions(schema);
+  EXPECT_EQ(nlohmann::json::parse(scenario_rules()), schema);
 }
 
 TEST(SchemaAgreement, ThePaperScenariosFitBoth) {

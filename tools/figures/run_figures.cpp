@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figures/run_figures.h"
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -347,31 +346,6 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
                   "d{/:Italic V}/d{/:Italic t} [m²/s³]", Axis::rates, data);
   return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kTermsCanvas,
           filled("lyapunov", {{"end", fmt::format("{:.6g}", end)}, {"panels", panels}})};
-}
-
-std::string lyapunov_csv_head() {
-  return "time_s,paper_kinetic_m2_s2,paper_consensus_m2_s2,paper_pinning_m2_s2,paper_integral_m2_s2,"
-         "paper_rate_kinetic_m2_s3,paper_rate_consensus_m2_s3,paper_rate_pinning_m2_s3,paper_rate_integral_m2_s3,"
-         "paper_rate_claimed_m2_s3,sound_kinetic_m2_s2,sound_consensus_m2_s2,sound_slots_m2_s2,"
-         "sound_rate_consensus_m2_s3,sound_rate_tracking_m2_s3,sound_rate_intervention_m2_s3,"
-         "sound_rate_bound_m2_s3\n";
-}
-
-std::string lyapunov_csv_line(const LyapunovRow& r) {
-  std::string text;
-  fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), r.time);
-  const auto values = [&text](std::initializer_list<double> all) {
-    for (const double x : all) fmt::format_to(std::back_inserter(text), FMT_COMPILE(",{}"), x);
-  };
-  // A cell of a derivative that does not exist is empty.
-  const auto rates = [&](std::initializer_list<double> all) {
-    r.has_rates ? values(all) : void(text.append(all.size(), ','));
-  };
-  values({r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral});
-  rates({r.paper_rates.kinetic, r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate});
-  values({r.sound.kinetic, r.sound.consensus, r.sound.slots});
-  rates({r.sound_rates.consensus, r.sound_rates.tracking, r.sound_rates.intervention, r.rate_bound});
-  return text + "\n";
 }
 
 }  // namespace exactvo::tools

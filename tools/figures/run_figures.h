@@ -24,10 +24,6 @@ std::vector<Figure> run_figures(const datasets::RecordingFile& run);
 /// REQUIRES: a formation's run with its rows of `lyapunov`.
 Figure lyapunov_figure(const datasets::RecordingFile& run);
 
-/// The same as a table: its head, with units in the column names, and the line of one row.
-std::string lyapunov_csv_head();
-std::string lyapunov_csv_line(const formation::LyapunovRow& row);
-
 /// "A2, method ivo" or "B3, method ivo, default controller".
 std::string run_title(const datasets::RecordingFile& run);
 

@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "figures/run_figures.h"
-
 namespace exactvo::tools {
 
 using datasets::RecordingFile;
@@ -60,14 +58,12 @@ struct RunRecorder::Files {
   Files(const std::filesystem::path& folder, const RecordingFile& about)
       : recording(folder / "recording.jsonl", about) {
     trajectory.emplace(folder / "trajectory.csv", about.scenario);
-    if (!about.scenario.formation) return;
-    lyapunov.emplace(folder / "lyapunov.csv");
-    lyapunov->write(lyapunov_csv_head());
+    if (about.scenario.formation) lyapunov.emplace(folder / "lyapunov.csv");
   }
 
   datasets::RecordingWriter recording;
   std::optional<datasets::TrajectoryWriter> trajectory;
-  std::optional<datasets::AtomicFile> lyapunov;
+  std::optional<datasets::LyapunovWriter> lyapunov;
 };
 
 RunRecorder::RunRecorder(RecordingFile about, RunOutput output) : about_(std::move(about)), output_(std::move(output)) {
@@ -100,7 +96,7 @@ void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
   for (const formation::JointPlan& plan : plans_of_last_) files_->recording.add(plan);
   files_->recording.add(row, bodies_, lyapunov);
   if (files_->trajectory) files_->trajectory->add(row);
-  if (files_->lyapunov && lyapunov) files_->lyapunov->write(lyapunov_csv_line(*lyapunov));
+  if (files_->lyapunov && lyapunov) files_->lyapunov->add(*lyapunov);
 }
 
 std::string RunRecorder::packed(const RecordingFile& file, const std::string& metrics_json) const {
@@ -120,7 +116,7 @@ formation::Metrics RunRecorder::finish(formation::Recording run, RecordingFile& 
     const auto durability = output_.folder.empty() ? datasets::Durability::name : datasets::Durability::content;
     files_->recording.finish(file, durability);
     if (files_->trajectory) files_->trajectory->finish(durability);
-    if (files_->lyapunov) files_->lyapunov->commit(durability);
+    if (files_->lyapunov) files_->lyapunov->finish(durability);
     files_.reset();
   }
   return std::move(found.metrics);

@@ -114,6 +114,10 @@ class JsonNesting {
   bool in_string_ = false, is_escaped_ = false;
 };
 
+/// The shortest text that reads back to the same finite double ("-0.0" keeps its sign). It stays until the thread asks for
+/// that of another one.
+std::string_view shortest_text(double number);
+
 /// A text in the making. It is written a few bytes at a time, for which each call of std::string's costs too much.
 class GrowingText {
  public:
@@ -125,8 +129,7 @@ class GrowingText {
     std::memcpy(room(bytes.size()), bytes.data(), bytes.size());
     size_ += bytes.size();
   }
-  /// The shortest text that reads back to the same finite double ("-0.0" keeps its sign).
-  void add_number(double number);
+  void add_number(double number) { add(shortest_text(number)); }
 
   std::string_view view() const { return {memory_.data(), size_}; }
   std::string take() {
@@ -249,9 +252,12 @@ class JsonWriter {
   bool after_key_ = false;
 };
 
-/// As GrowingText::add_number.
-void append_number(std::string& text, double number);
-std::string number_text(double number);
+inline void append_number(std::string& text, double number) {
+  text += shortest_text(number);
+}
+inline std::string number_text(double number) {
+  return std::string(shortest_text(number));
+}
 
 /// A place in a JSON value that can find out how it was reached: what it can't give it names, with file, line and
 /// pointer.

@@ -52,24 +52,12 @@ class NumberTexts {
   std::array<Entry, 512> entries_{};
 };
 
-NumberTexts& number_texts() {
-  // Not itself in the memory of the thread: a module that is loaded late gets little of that.
-  thread_local const auto texts = std::make_unique<NumberTexts>();
-  return *texts;
-}
-
 }  // namespace
 
-void GrowingText::add_number(double number) {
-  add(number_texts().of(number));
-}
-
-void append_number(std::string& text, double number) {
-  text += number_texts().of(number);
-}
-
-std::string number_text(double number) {
-  return std::string(number_texts().of(number));
+std::string_view shortest_text(double number) {
+  // Not itself in the memory of the thread: a module that is loaded late gets little of that.
+  thread_local const auto texts = std::make_unique<NumberTexts>();
+  return texts->of(number);
 }
 
 void JsonWriter::new_line(std::size_t depth) {

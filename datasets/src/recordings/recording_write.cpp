@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/recording_file.h"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 
@@ -93,6 +97,40 @@ void add_csv_row(GrowingText& row, const formation::Step& step, const formation:
     add_pair(row, step.leader_position);
     add_pair(row, step.leader_velocity);
   }
+  row.add('\n');
+}
+
+// --- Lyapunov functions as CSV ---
+
+/// With an exponent below 1e-4 and from 1e16 on only, where other texts have the shorter form.
+void add_plain_number(GrowingText& row, double number) {
+  const double size = std::abs(number);
+  const bool has_exponent = size != 0.0 && (size < 1e-4 || size >= 1e16);
+  const std::string_view shortest = shortest_text(number);
+  if (size != 0.0 && (shortest.find('e') != std::string_view::npos) == has_exponent) return row.add(shortest);
+  std::array<char, 32> text;
+  const auto form = has_exponent ? std::chars_format::scientific : std::chars_format::fixed;
+  const char* end = std::to_chars(text.data(), text.data() + text.size(), number, form).ptr;
+  row.add({text.data(), static_cast<std::size_t>(end - text.data())});
+}
+
+void add_csv_row(GrowingText& row, const formation::LyapunovRow& r) {
+  const auto add = [&row](std::initializer_list<double> all) {
+    for (const double number : all) {
+      row.add(',');
+      add_plain_number(row, number);
+    }
+  };
+  const auto add_rates = [&](std::initializer_list<double> all) {
+    if (r.has_rates) return add(all);
+    for (std::size_t k = 0; k < all.size(); ++k) row.add(',');
+  };
+  add_plain_number(row, r.time);
+  add({r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral});
+  add_rates(
+      {r.paper_rates.kinetic, r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate});
+  add({r.sound.kinetic, r.sound.consensus, r.sound.slots});
+  add_rates({r.sound_rates.consensus, r.sound_rates.tracking, r.sound_rates.intervention, r.rate_bound});
   row.add('\n');
 }
 
@@ -220,6 +258,34 @@ void TrajectoryWriter::add(const formation::Step& row) {
 }
 
 void TrajectoryWriter::finish(Durability durability) {
+  state_->out.commit(durability);
+}
+
+struct LyapunovWriter::State {
+  explicit State(const std::filesystem::path& path) : out(path) {}
+
+  AtomicFile out;
+  GrowingText text;  ///< of a row, in memory that it leaves to the next
+};
+
+LyapunovWriter::LyapunovWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
+  state_->out.write(
+      "time_s,paper_kinetic_m2_s2,paper_consensus_m2_s2,paper_pinning_m2_s2,paper_integral_m2_s2,"
+      "paper_rate_kinetic_m2_s3,paper_rate_consensus_m2_s3,paper_rate_pinning_m2_s3,paper_rate_integral_m2_s3,"
+      "paper_rate_claimed_m2_s3,sound_kinetic_m2_s2,sound_consensus_m2_s2,sound_slots_m2_s2,"
+      "sound_rate_consensus_m2_s3,sound_rate_tracking_m2_s3,sound_rate_intervention_m2_s3,"
+      "sound_rate_bound_m2_s3\n");
+}
+
+LyapunovWriter::~LyapunovWriter() = default;
+
+void LyapunovWriter::add(const formation::LyapunovRow& row) {
+  state_->text.clear();
+  add_csv_row(state_->text, row);
+  state_->out.write(state_->text.view());
+}
+
+void LyapunovWriter::finish(Durability durability) {
   state_->out.commit(durability);
 }
 

@@ -85,13 +85,13 @@ class Checker {
   }
 
   void type(const Json& rule, const Json& value, const Json& rules) const {
-    const Json alternatives = rule.is_array() ? rule : Json::array({rule});
     std::string expected;
-    for (const Json& alternative : alternatives) {
-      const Type& wanted = type_named(alternative.get<std::string>());
-      if ((value.*wanted.holds)()) return;
+    const auto is_met = [&](const Json& alternative) {
+      const Type& wanted = type_named(alternative.get_ref<const std::string&>());
       expected += std::string(expected.empty() ? "" : " or ") + wanted.words;
-    }
+      return (value.*wanted.holds)();
+    };
+    if (rule.is_array() ? std::any_of(rule.begin(), rule.end(), is_met) : is_met(rule)) return;
     if (value.is_object() && rules.contains("items")) expected += of_entries(rules.at("items"));
     refuse(DataCode::wrong_type, value, described(value), with_unit(expected, rules));
   }
@@ -143,10 +143,12 @@ class Checker {
   void only_known_keys(const Json& rule, const Json& value, const Json& rules) const {
     if (rule != false) throw std::logic_error("schema: additionalProperties other than false is not supported");
     if (!value.is_object()) return;
-    std::vector<std::string> known;
-    for (const auto& [key, member] : rules.at("properties").items()) known.push_back(key);
+    const Json& properties = rules.at("properties");
     for (const auto& [key, member] : value.items()) {
-      if (std::find(known.begin(), known.end(), key) == known.end()) refuse_unknown(value, key, known);
+      if (properties.contains(key)) continue;
+      std::vector<std::string> known;
+      for (const auto& [name, property] : properties.items()) known.push_back(name);
+      refuse_unknown(value, key, known);
     }
   }
 
@@ -220,7 +222,7 @@ class Checker {
     } catch (const DataError&) {
       return;
     }
-    refuse(DataCode::no_alternative, value, all_of_keys(rule), rule.at("description").get<std::string>());
+    refuse(DataCode::no_alternative, value, all_of_keys(rule), rule.value("description", std::string()));
   }
 
   /// "both "goal" and "goals"": what a forbidden combination consists of.
@@ -235,16 +237,16 @@ class Checker {
   void one_of(const Json& rule, const Json& value, const Json&) const {
     if (!value.is_object()) refuse(DataCode::wrong_type, value, described(value), "an object");
     std::vector<const Json*> meant;
-    std::string keys;
     for (const Json& reference : rule) {
       const Json& alternative = resolved(reference);
       if (has_required_keys(value, alternative)) meant.push_back(&alternative);
-      keys += (keys.empty() ? "" : ", or ") + listed_keys(alternative);
     }
     if (meant.empty())
       if (const Json* likely = likeliest(rule, value)) meant.push_back(likely);
     if (meant.empty()) refuse_mistyped(rule, value);
     if (meant.size() == 1) return check(value, *meant.front());
+    std::string keys;
+    for (const Json& reference : rule) keys += (keys.empty() ? "" : ", or ") + listed_keys(resolved(reference));
     refuse(DataCode::no_alternative, value,
            meant.empty() ? keys_of(value) : "keys of several kinds: " + telling_keys(meant), keys);
   }

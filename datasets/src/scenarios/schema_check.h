@@ -9,6 +9,7 @@
 /// are why this is here.
 
 #include <string>
+#include <string_view>
 
 #include "json/json_text.h"
 
@@ -16,5 +17,8 @@ namespace exactvo::datasets {
 
 /// Throws DataError for the first misfit in the order of the text.
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name);
+
+/// `scenario_schema()` without its descriptions: the same verdicts in fewer words.
+std::string_view scenario_rules();
 
 }  // namespace exactvo::datasets

@@ -103,4 +103,19 @@ class TrajectoryWriter {
   std::unique_ptr<State> state_;
 };
 
+/// The table of a formation's Lyapunov functions as the run is made, term by term, one row per step. Units stand in the
+/// column names; a derivative that does not exist is an empty cell. Whole or not at all, as RecordingWriter.
+class LyapunovWriter {
+ public:
+  explicit LyapunovWriter(const std::filesystem::path& path);
+  ~LyapunovWriter();
+  void add(const formation::LyapunovRow& row);
+  /// Publishes the file. Nothing stands there before.
+  void finish(Durability durability = Durability::name);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 }  // namespace exactvo::datasets
