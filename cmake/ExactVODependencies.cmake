@@ -27,7 +27,8 @@ endif()
 if(EXACTVO_BUILDS_DATASETS)
   exactvo_need(pugixml libpugixml-dev CONFIG)
   exactvo_need(yaml-cpp libyaml-cpp-dev CONFIG)
-  # SHA-256 alone is used of it, and its shared library would be a quarter of the program's start: the archive, where it is.
+  # SHA-256 alone is used of it. Its shared library would be a quarter of the program's start, so its archive is taken
+  # where there is one.
   set(OPENSSL_USE_STATIC_LIBS ON)
   find_package(OpenSSL QUIET)
   if(NOT OpenSSL_FOUND)

@@ -89,7 +89,7 @@ RobotStep robot_step(int k, SeededRandom& random) {
   robot.exact_multipliers = k % 5 == 2;
   robot.mode = static_cast<formation::Mode>(k % 5);
   robot.side = k % 3 - 1;
-  robot.note = k % 4 == 0 ? "turned \"left\", because" : "";
+  robot.note = k % 4 == 0 ? "turned \"left\",\tbecause\nof \x01 \\" : "";
   robot.uncertified = static_cast<std::size_t>(k % 2);
   for (int c = 0; c < k % 4; ++c) robot.constraints.push_back(constraint_number(k + c, random));
   return robot;

@@ -114,8 +114,8 @@ class JsonNesting {
   bool in_string_ = false, is_escaped_ = false;
 };
 
-/// The shortest text that reads back to the same finite double ("-0.0" keeps its sign). It stays until the thread asks for
-/// that of another one.
+/// The shortest text that reads back to the same finite double ("-0.0" keeps its sign). It stays until the thread asks
+/// for that of another one.
 std::string_view shortest_text(double number);
 
 /// A text in the making. It is written a few bytes at a time, for which each call of std::string's costs too much.

@@ -17,8 +17,16 @@ const char* word_for_non_finite(double number) {
   return number > 0.0 ? "inf" : "-inf";
 }
 
+constexpr std::array<bool, 256> escaped_bytes() {
+  std::array<bool, 256> escaped{};
+  for (std::size_t c = 0; c < 0x20; ++c) escaped[c] = true;
+  escaped['"'] = escaped['\\'] = true;
+  return escaped;
+}
+
 bool is_escaped(char c) {
-  return c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20;
+  static constexpr std::array<bool, 256> kEscaped = escaped_bytes();
+  return kEscaped[static_cast<unsigned char>(c)];
 }
 
 /// Texts of doubles that were written lately: a row has the same ones in its place and its anchor, the next row and the
