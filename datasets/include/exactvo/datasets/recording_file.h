@@ -109,6 +109,7 @@ class LyapunovWriter {
  public:
   explicit LyapunovWriter(const std::filesystem::path& path);
   ~LyapunovWriter();
+  /// Adds the row of one step.
   void add(const formation::LyapunovRow& row);
   /// Publishes the file. Nothing stands there before.
   void finish(Durability durability = Durability::name);
