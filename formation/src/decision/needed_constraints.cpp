@@ -30,7 +30,10 @@ void NeededConstraints::look(const StaticField& field, const Viewpoint& from, do
   have_ = {};
   has_all_ = false;
   lines_.clear();
-  need_within(reach);
+  if (!field.bounds_room() || field.is_empty())
+    need_all();
+  else
+    need_within(reach);
 }
 
 bool NeededConstraints::need(const Need& need) {
@@ -50,6 +53,7 @@ bool NeededConstraints::need_within(double reach) {
 /// With room r > 0 at the present velocity u, a half-plane is violated at v by |v - u| - r at most. Those without room
 /// may be violated by any amount.
 bool NeededConstraints::need_at(Vec2 v) {
+  if (has_all_) return false;
   const double away = norm(v - from_.velocity) + kSpareRoom * from_.max_speed;
   bool added = false;
   for (;;) {

@@ -23,7 +23,8 @@ class NeededConstraints {
   /// Room for so many half-planes.
   void reserve(std::size_t lines) { lines_.reserve(lines); }
 
-  /// Begins with what lies within `reach` (m, from the rim). `field` must outlive the questions.
+  /// Begins with what lies within `reach` (m, from the rim), or with all where `field` bounds no room. `field` must
+  /// outlive the questions.
   void look(const StaticField& field, const Viewpoint& from, double reach);
 
   /// Nearest first.

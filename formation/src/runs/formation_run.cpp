@@ -177,7 +177,7 @@ class FormationRun {
     if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
     if (goes_by_plan(i)) return choose_by_plan(i, step);
-    robots_[i].field.constraints(here, statics_);
+    statics_.look(robots_[i].field, here, reach_of_step(scenario_, here));
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
                                            norm(relative_.position[i]),
@@ -185,8 +185,7 @@ class FormationRun {
                                            spec_.catch_up_speed,
                                            leader.velocity == Vec2{},
                                            wanted};
-    DecisionInput in{steered(i, situation, statics_, joint_.others[i], step), here, &statics_, &joint_.others[i],
-                     schedule_.keeps_all(time)};
+    DecisionInput in = input(i, steered(i, situation, step), here, time);
     if (misses_slot(i) && norm(relative_.position[i]) <= scenario_.arrival_tolerance) step.mode = Mode::staying;
     decider_.decide(in, step);
     if (!switches_.smoothing) return;
@@ -234,8 +233,13 @@ class FormationRun {
   void choose_again(std::size_t i, RobotStep& step) {
     if (goes_by_plan(i)) return choose_by_plan(i, step);
     const Viewpoint here = viewpoint(i);
-    robots_[i].field.constraints(here, statics_);
-    decider_.decide({step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(now_)}, step);
+    statics_.look(robots_[i].field, here, reach_of_step(scenario_, here));
+    decider_.decide(input(i, step.preferred, here, now_), step);
+  }
+
+  /// REQUIRES: it has looked, and nobody after it.
+  DecisionInput input(std::size_t i, Vec2 preferred, const Viewpoint& here, double time) {
+    return {preferred, here, &statics_.lines(), &joint_.others[i], schedule_.keeps_all(time), &statics_};
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -246,19 +250,18 @@ class FormationRun {
     return slotwards + consensus_input(spec_, relative_, i, switches_.signs ? -1.0 : 1.0) / spec_.gains.k3;
   }
 
-  Vec2 steered(std::size_t i, RobotBypass::Situation situation, const std::vector<Constraint>& statics,
-               const std::vector<Constraint>& others, RobotStep& step) {
+  Vec2 steered(std::size_t i, RobotBypass::Situation situation, RobotStep& step) {
     const Vec2 wanted = situation.preferred;
     if (!switches_.side_commitment) return wanted;
     const double speed = std::min(norm(wanted), scenario_.robots[i].max_speed);
-    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, speed, statics);
+    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, speed, statics_);
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
     add_note(step.note, answer.note);
     // Who is blocked by robots stands still then, and a plan is made.
     if (plans_ && plans_->is_active(situation.time)) return answer.preferred;
-    const std::optional<Vec2> round = robots_[i].bypass.steer(situation, statics, others, step.note);
+    const std::optional<Vec2> round = robots_[i].bypass.steer(situation, statics_, joint_.others[i], step.note);
     if (!round) return answer.preferred;
     step.mode = Mode::following;
     step.side = RobotBypass::kSide;
@@ -350,7 +353,7 @@ class FormationRun {
   // Memory that a step leaves to the next.
   RelativeState relative_;  ///< of the row that is decided
   JointDecisions joint_;
-  std::vector<Constraint> statics_;
+  NeededConstraints statics_;  ///< of the robot that decides
 };
 
 }  // namespace

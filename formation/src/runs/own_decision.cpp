@@ -14,20 +14,16 @@ std::string passed_goal_words(std::size_t next) {
 void OwnDecision::reserve(std::size_t statics, std::size_t others) {
   decider_.reserve(statics + others);
   needed_.reserve(statics);
-  all_.reserve(is_orca() ? statics : 0);
   following_.reserve(statics);
 }
 
 void OwnDecision::look(const StaticField& field, const Viewpoint& here) {
-  if (is_orca())
-    field.constraints(here, all_);
-  else
-    needed_.look(field, here, reach_of_step(scenario_, here));
+  needed_.look(field, here, reach_of_step(scenario_, here));
 }
 
 DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others,
                                  bool keep_all) {
-  return {preferred, here, &statics(), &others, keep_all, is_orca() ? nullptr : &needed_};
+  return {preferred, here, &statics(), &others, keep_all, &needed_};
 }
 
 Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
@@ -39,7 +35,7 @@ Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   }
   const bool in_contact = is_in_contact();
   if (in_contact) decision.mode = Mode::pushing_out;
-  if (is_orca()) return preferred;
+  if (options_.method == Method::orca) return preferred;
   if (options_.method != Method::ivo) return ties_broken(way, preferred, decision);
   const BoundaryFollower::Answer answer =
       way.follower.steer({errand.time, scenario_.time_step, here, errand.goal,

@@ -58,7 +58,7 @@ class OwnDecision {
   // REQUIRES of what follows: it has looked, and nobody after it.
 
   /// What was seen so far, nearest first. It grows as far as decisions need it.
-  const std::vector<Constraint>& statics() const { return is_orca() ? all_ : needed_.lines(); }
+  const std::vector<Constraint>& statics() const { return needed_.lines(); }
   bool is_in_contact() const { return !statics().empty() && statics().front().clearance < 0.0; }
 
   /// The preferred velocity, by the run's method; sets `mode` and `side` and adds to `note`.
@@ -79,15 +79,13 @@ class OwnDecision {
   Decider& decider() { return decider_; }
 
  private:
-  bool is_orca() const { return options_.method == Method::orca; }
   DecisionInput input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all);
   Vec2 ties_broken(OwnWay& way, Vec2 preferred, Decision& decision);
 
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Decider decider_;
-  NeededConstraints needed_;     ///< of the methods that have static fields of shapes
-  std::vector<Constraint> all_;  ///< of Method::orca
+  NeededConstraints needed_;
   BoundaryFollower::Memory following_;
 };
 

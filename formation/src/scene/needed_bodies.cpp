@@ -192,7 +192,7 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
 
 void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need& need,
                              std::vector<Constraint>& out) const {
-  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  EXACTVO_REQUIRE(bounds_room(), "bounds of other horizons");
   constexpr double kRounding = 1.0 + 1e-9;
   const auto is_within = [&](const Need& n, double distance) {
     return n.within >= 0.0 && distance <= kRounding * (n.within + from.radius + kContactSkin);
@@ -209,12 +209,14 @@ void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need&
   const auto add_if_new = [&](const Shape& s) {
     if (is_new(s.body)) build(s, from, out);
   };
-  for_each_shape_meeting(window_of(from, need), [&](const Shape& s) {
+  const auto look_at = [&](const Shape& s) {
     if (gives_way(s, from))
       for_each_piece_of(s, add_if_new);
     else
       add_if_new(s);
-  });
+  };
+  if (!is_small_) return for_each_shape_meeting(window_of(from, need), look_at);
+  for (const Shape& s : all_) look_at(s);
 }
 
 StaticField::NearBody StaticField::near_body(const Shape& shape) const {
@@ -283,7 +285,7 @@ bool StaticField::see(const NearBody& b, const Sight& sight, Candidate& out) con
 
 void StaticField::candidates(const std::vector<NearBody>& near, double moved, const Viewpoint& from, double reach,
                              std::vector<Candidate>& out) const {
-  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  EXACTVO_REQUIRE(bounds_room(), "bounds of other horizons");
   constexpr double kRounding = 1.0 + 1e-9;
   out.clear();
   const Horizons& h = scenario_->horizons;

@@ -43,13 +43,25 @@ bool is_beyond_reach(double clearance, const Viewpoint& from, double tau) {
 StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
                          Vec2 start, Vec2 goal, HorizonRule rule, SeenAs seen_as)
     : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule), margin_(scenario.margins.obstacle) {
-  if (method_ != Method::ivo_cluster && method_ != Method::ivo) return;
-  if (seen_as == SeenAs::pieces || guidance_of(scenario, options) == Guidance::route) {
+  const bool has_pieces = method_ == Method::ivo_cluster || method_ == Method::ivo;
+  if (has_pieces && (seen_as == SeenAs::pieces || guidance_of(scenario, options) == Guidance::route)) {
     tight_index_.resize(scene.pieces_by_place().size());
     std::iota(tight_index_.begin(), tight_index_.end(), 0u);
-    return;
+  } else if (has_pieces) {
+    take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
   }
-  take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
+  list_if_small();
+}
+
+/// Few shapes are looked at one by one faster than they are looked up by place.
+void StaticField::list_if_small() {
+  constexpr std::size_t kFew = 16;
+  is_small_ = true;
+  for_each_shape([this](const Shape& s) {
+    is_small_ = is_small_ && all_.size() < kFew;
+    if (is_small_) all_.push_back(s);
+  });
+  if (!is_small_) all_ = {};
 }
 
 /// Ellipses become bodies; what stands as its pieces is the scene's already. Of an obstacle either all pieces come, one
@@ -77,15 +89,10 @@ void StaticField::take_enclosures(const std::vector<Enclosure>& enclosures) {
 
 std::vector<BodyTable::Number> StaticField::shapes() const {
   std::vector<BodyTable::Number> all;
-  for (std::size_t k = 0; method_ == Method::ivo_edge && k < scene_->facade_ellipses_by_place().size(); ++k)
-    all.push_back(scene_->facade_ellipse(k));
-  const auto put = [&](std::size_t index, BodyTable::Number body) {
-    if (all.size() <= index) all.resize(index + 1);
-    all[index] = body;
-  };
-  for (const Shape& e : enclosures_) put(e.index, e.body);
-  for (std::size_t piece = 0; piece < tight_index_.size(); ++piece)
-    if (tight_index_[piece] != kEnclosed) put(tight_index_[piece], scene_->piece(piece));
+  for_each_shape([&](const Shape& s) {
+    if (all.size() <= s.index) all.resize(s.index + 1);
+    all[s.index] = s.body;
+  });
   return all;
 }
 

@@ -76,9 +76,13 @@ class StaticField {
   /// `reach` (m, from the rim) only some.
   void constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach = kEverywhere) const;
 
+  /// Whether the field knows what its half-planes leave a velocity: else there are only `constraints`.
+  bool bounds_room() const { return rule_ == HorizonRule::clamped && method_ != Method::orca; }
+  bool is_empty() const { return is_small_ && all_.empty(); }
+
   /// Adds the half-planes that are needed and were not before, in no order, each the same bits as `constraints` gives.
   /// Of what is left out, the unit normal n and offset c have n.v - c >= need.room at v = from.velocity, and a lower
-  /// bound of that is certain beyond all rounding. REQUIRES: HorizonRule::clamped; a method other than orca.
+  /// bound of that is certain beyond all rounding. REQUIRES: `bounds_room`.
   void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
 
   /// A body of the field, under the names that recordings use.
@@ -129,6 +133,9 @@ class StaticField {
 
  private:
   void take_enclosures(const std::vector<geometry::Enclosure>& enclosures);
+  void list_if_small();
+  template <class Visit>
+  void for_each_shape(const Visit& visit) const;
   template <class Visit>
   void for_each_shape_within(Vec2 x, double reach, const Visit& visit) const;
   template <class Visit>
@@ -162,10 +169,26 @@ class StaticField {
   double margin_;
   std::vector<Shape> enclosures_;           ///< fitted for this robot; method ivo_edge has the scene's
   std::vector<std::uint32_t> tight_index_;  ///< of each piece of the scene, its number here; kEnclosed: an enclosure's
+  bool is_small_ = false;
+  std::vector<Shape> all_;  ///< of a small field
 };
 
 template <class Visit>
+void StaticField::for_each_shape(const Visit& visit) const {
+  for (std::size_t k = 0; method_ == Method::ivo_edge && k < scene_->facade_ellipses_by_place().size(); ++k)
+    visit(Shape{scene_->facade_ellipse(k), k, geometry::EnclosureGrade::containing});
+  for (const Shape& e : enclosures_) visit(e);
+  for (std::size_t k = 0; k < tight_index_.size(); ++k)
+    if (tight_index_[k] != kEnclosed) visit(Shape{scene_->piece(k), tight_index_[k], geometry::EnclosureGrade::tight});
+}
+
+template <class Visit>
 void StaticField::for_each_shape_within(Vec2 x, double reach, const Visit& visit) const {
+  if (is_small_) {
+    for (const Shape& s : all_)
+      if (geometry::distance_below(scene_->bodies().box(s.body), x) <= reach) visit(s);
+    return;
+  }
   if (method_ == Method::ivo_edge) {
     scene_->facade_ellipses_by_place().for_each_within(x, reach, [&](std::size_t k) {
       visit(Shape{scene_->facade_ellipse(k), k, geometry::EnclosureGrade::containing});

@@ -29,11 +29,12 @@ bool RobotBypass::stalled(const Situation& s) {
   return s.time - best_time_ > kSlotStallTime && s.distance > s.tolerance;
 }
 
-std::optional<Vec2> RobotBypass::steer(const Situation& s, const std::vector<Constraint>& statics,
+std::optional<Vec2> RobotBypass::steer(const Situation& s, NeededConstraints& statics,
                                        const std::vector<Constraint>& others, std::string& note) {
   if (!s.target_rests) *this = RobotBypass{};
   if (!s.target_rests || (!goes_round_ && !stalled(s))) return std::nullopt;
-  const std::vector<Constraint> lines = all_lines(statics, others);
+  statics.need_all();
+  const std::vector<Constraint> lines = all_lines(statics.lines(), others);
   const bool free = !blocked(lines, s.preferred);
   if (goes_round_ && free && s.distance < hit_distance_ - kSlotLeaveGain) {
     *this = RobotBypass{};
@@ -43,7 +44,7 @@ std::optional<Vec2> RobotBypass::steer(const Situation& s, const std::vector<Con
   }
   if (!goes_round_) {
     // A wall in the way is the side commitment's business.
-    if (free || blocked(statics, s.preferred)) return std::nullopt;
+    if (free || blocked(statics.lines(), s.preferred)) return std::nullopt;
     goes_round_ = true;
     hit_distance_ = s.distance;
     add_note(note, "stalled among robots: goes round, turning left");

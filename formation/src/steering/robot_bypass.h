@@ -31,8 +31,8 @@ class RobotBypass {
   static constexpr int kSide = 1;
 
   /// m/s, what to prefer while going round; nothing otherwise. Says in `note` when that begins and ends.
-  std::optional<Vec2> steer(const Situation& s, const std::vector<Constraint>& statics,
-                            const std::vector<Constraint>& others, std::string& note);
+  std::optional<Vec2> steer(const Situation& s, NeededConstraints& statics, const std::vector<Constraint>& others,
+                            std::string& note);
 
  private:
   bool stalled(const Situation& s);

@@ -326,12 +326,15 @@ BoundaryFollower::Answer BoundaryFollower::follow(const Situation& s, NearConstr
 
 // --- Side commitment ---
 
-SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, const std::vector<Constraint>& lines) {
+SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, NeededConstraints& statics) {
+  statics.need_at(preferred);
+  const std::vector<Constraint>& lines = statics.lines();
   if (!blocked(lines, preferred)) {
     const bool kept_one = side_ != 0;
     side_ = 0;
     return {preferred, 0, kept_one ? "free again: the side is given up" : ""};
   }
+  statics.need_all();  // a turn may meet any
   const std::optional<Sweep> left = sweep(lines, preferred, 1.0, speed);
   const std::optional<Sweep> right = sweep(lines, preferred, -1.0, speed);
   std::string note;

@@ -134,7 +134,7 @@ class SideCommitment {
     int side = 0;
     std::string note;  ///< when a side is chosen or given up
   };
-  Answer steer(Vec2 preferred, double speed, const std::vector<Constraint>& lines);
+  Answer steer(Vec2 preferred, double speed, NeededConstraints& statics);
 
  private:
   int side_ = 0;
