@@ -30,6 +30,7 @@ void NeededConstraints::look(const StaticField& field, const Viewpoint& from, do
   have_ = {};
   has_all_ = false;
   lines_.clear();
+  meetings_.clear();
   if (!field.bounds_room() || field.is_empty())
     need_all();
   else
@@ -39,7 +40,7 @@ void NeededConstraints::look(const StaticField& field, const Viewpoint& from, do
 bool NeededConstraints::need(const Need& need) {
   if (has_all_) return false;
   const std::size_t before = lines_.size();
-  field_->add_needed(from_, have_, need, lines_);
+  field_->add_needed(from_, need, meetings_, lines_);
   have_ = need;
   if (lines_.size() == before) return false;
   std::sort(lines_.begin(), lines_.end(), comes_before);

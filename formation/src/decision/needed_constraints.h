@@ -21,7 +21,10 @@ bool violates(const geometry::HalfPlane& h, Vec2 v);
 class NeededConstraints {
  public:
   /// Room for so many half-planes.
-  void reserve(std::size_t lines) { lines_.reserve(lines); }
+  void reserve(std::size_t lines) {
+    lines_.reserve(lines);
+    meetings_.met.reserve(lines);
+  }
 
   /// Begins with what lies within `reach` (m, from the rim), or with all where `field` bounds no room. `field` must
   /// outlive the questions.
@@ -46,6 +49,7 @@ class NeededConstraints {
   Viewpoint from_;
   Need have_;
   bool has_all_ = false;
+  StaticField::Meetings meetings_;
   std::vector<Constraint> lines_;
 };
 

@@ -190,33 +190,48 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
   return window;
 }
 
-void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need& need,
+/// Of what is met again, `built` says what has its half-plane.
+void StaticField::meet_shapes(const Viewpoint& from, const Need& need, const std::vector<Constraint>& built,
+                              Meetings& meetings) const {
+  std::vector<Met>& met = meetings.met;
+  const auto meet_one = [&](const Shape& s, double distance) {
+    const bool is_built = std::any_of(built.begin(), built.end(), [&](const Constraint& c) {
+      return c.body == s.body && c.index == s.index && c.piece == s.piece;
+    });
+    met.push_back({s, distance, -kEverywhere, is_built});
+  };
+  const auto meet_it = [&](const Shape& s) {
+    const double distance = distance_to_box(s, from);
+    if (!gives_way(s, from, distance)) return meet_one(s, distance);
+    for_each_piece_of(s, [&](const Shape& piece) { meet_one(piece, distance_to_box(piece, from)); });
+  };
+  if (is_small_) {
+    if (met.empty()) std::for_each(all_.begin(), all_.end(), meet_it);
+    return;
+  }
+  const geometry::Box window = window_of(from, need);
+  if (meetings.window.contains(window.low) && meetings.window.contains(window.high)) return;
+  meetings.window = window;
+  met.clear();
+  for_each_shape_meeting(window, meet_it);
+}
+
+void StaticField::add_needed(const Viewpoint& from, const Need& need, Meetings& meetings,
                              std::vector<Constraint>& out) const {
   EXACTVO_REQUIRE(bounds_room(), "bounds of other horizons");
   constexpr double kRounding = 1.0 + 1e-9;
-  const auto is_within = [&](const Need& n, double distance) {
-    return n.within >= 0.0 && distance <= kRounding * (n.within + from.radius + kContactSkin);
-  };
-  const auto is_new = [&](BodyTable::Number body) {
-    const double distance = geometry::distance_below(scene_->bodies().box(body), from.position);
-    if (is_within(had, distance)) return false;
-    const bool is_near = is_within(need, distance);
-    if (is_near && !(had.room > 0.0)) return true;
-    if (!is_near && !(need.room > 0.0)) return false;
-    const double room = room_of(body, from, std::max(need.room, had.room));
-    return !(had.room > 0.0 && room < had.room) && (is_near || room < need.room);
-  };
-  const auto add_if_new = [&](const Shape& s) {
-    if (is_new(s.body)) build(s, from, out);
-  };
-  const auto look_at = [&](const Shape& s) {
-    if (gives_way(s, from))
-      for_each_piece_of(s, add_if_new);
-    else
-      add_if_new(s);
-  };
-  if (!is_small_) return for_each_shape_meeting(window_of(from, need), look_at);
-  for (const Shape& s : all_) look_at(s);
+  meet_shapes(from, need, out, meetings);
+  const double within = need.within < 0.0 ? -kEverywhere : kRounding * (need.within + from.radius + kContactSkin);
+  for (Met& m : meetings.met) {
+    if (m.is_built) continue;
+    if (!(m.distance <= within)) {
+      if (!(need.room > 0.0)) continue;
+      if (m.room < need.room) m.room = room_of(m.body, from, need.room);
+      if (!(m.room < need.room)) continue;
+    }
+    m.is_built = true;
+    build(m, from, out);
+  }
 }
 
 StaticField::NearBody StaticField::near_body(const Shape& shape) const {
@@ -300,7 +315,7 @@ void StaticField::candidates(const std::vector<NearBody>& near, double moved, co
   };
   for (const NearBody& b : near) {
     if (b.gathered > sight.within + kRounding * moved) break;
-    if (b.grade == EnclosureGrade::tight || !gives_way(b, from)) {
+    if (b.grade == EnclosureGrade::tight || !gives_way(b, from, distance_to_box(b, from))) {
       see_if_near(b);
       continue;
     }

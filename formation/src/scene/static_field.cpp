@@ -138,19 +138,17 @@ void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& ou
   std::sort(out.begin(), out.end(), comes_before);
 }
 
-/// An enclosure that the robot is in gives way to what it encloses.
-bool StaticField::gives_way(const Shape& shape, const Viewpoint& from) const {
-  if (shape.grade == EnclosureGrade::tight) return false;
-  BodyTable& bodies = scene_->bodies();
-  if (distance_below(bodies.box(shape.body), from.position) > from.radius) return false;
-  return locate(bodies.seen(shape.body, from.position, from.radius), Vec2{}) != geometry::Place::outside;
+/// An enclosure that the robot is in gives way to what it encloses. `distance`: m, to its box.
+bool StaticField::gives_way(const Shape& shape, const Viewpoint& from, double distance) const {
+  if (shape.grade == EnclosureGrade::tight || distance > from.radius) return false;
+  return locate(scene_->bodies().seen(shape.body, from.position, from.radius), Vec2{}) != geometry::Place::outside;
 }
 
 void StaticField::add_shape(const Shape& shape, const Viewpoint& from, double reach,
                             std::vector<Constraint>& out) const {
-  if (!gives_way(shape, from)) return build(shape, from, out);
+  if (!gives_way(shape, from, distance_to_box(shape, from))) return build(shape, from, out);
   for_each_piece_of(shape, [&](const Shape& piece) {
-    if (distance_below(scene_->bodies().box(piece.body), from.position) <= reach) build(piece, from, out);
+    if (distance_to_box(piece, from) <= reach) build(piece, from, out);
   });
 }
 

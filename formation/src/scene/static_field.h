@@ -80,11 +80,6 @@ class StaticField {
   bool bounds_room() const { return rule_ == HorizonRule::clamped && method_ != Method::orca; }
   bool is_empty() const { return is_small_ && all_.empty(); }
 
-  /// Adds the half-planes that are needed and were not before, in no order, each the same bits as `constraints` gives.
-  /// Of what is left out, the unit normal n and offset c have n.v - c >= need.room at v = from.velocity, and a lower
-  /// bound of that is certain beyond all rounding. REQUIRES: `bounds_room`.
-  void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
-
   /// A body of the field, under the names that recordings use.
   struct Shape {
     vo::BodyTable::Number body = 0;
@@ -92,6 +87,27 @@ class StaticField {
     geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
     std::size_t piece = 0;
   };
+  /// A body that has been met from a viewpoint, and what is known of it from there.
+  struct Met : Shape {
+    double distance = 0.0;         ///< m, from the robot's centre to its box
+    double room = -kEverywhere;    ///< m/s: less than n.v - c of its half-plane at v = from.velocity
+    bool is_built = false;
+  };
+  /// What has been met from one viewpoint: all whose boxes meet the window, or all of a small field.
+  struct Meetings {
+    std::vector<Met> met;
+    geometry::Box window;
+    void clear() {
+      met.clear();
+      window = {};
+    }
+  };
+  /// Adds the half-planes that are needed and not in `out`, in no order, each the same bits as `constraints` gives. Of
+  /// what is left out, the unit normal n and offset c have n.v - c >= need.room at v = from.velocity, and a lower bound
+  /// of that is certain beyond all rounding. `meetings`: from this viewpoint alone; none at first. REQUIRES:
+  /// `bounds_room`.
+  void add_needed(const Viewpoint& from, const Need& need, Meetings& meetings, std::vector<Constraint>& out) const;
+
   /// A body of the field as it is looked at again and again, from places near each other.
   struct NearBody : Shape {
     geometry::Box box;
@@ -142,7 +158,12 @@ class StaticField {
   void for_each_shape_meeting(const geometry::Box& window, const Visit& visit) const;
   double horizon(double distance, const Viewpoint& from) const;
   double farthest_that_matters(const Viewpoint& from) const;
-  bool gives_way(const Shape& shape, const Viewpoint& from) const;
+  bool gives_way(const Shape& shape, const Viewpoint& from, double distance) const;
+  double distance_to_box(const Shape& shape, const Viewpoint& from) const {
+    return geometry::distance_below(scene_->bodies().box(shape.body), from.position);
+  }
+  void meet_shapes(const Viewpoint& from, const Need& need, const std::vector<Constraint>& built,
+                   Meetings& meetings) const;
   template <class Visit>
   void for_each_piece_of(const Shape& shape, const Visit& visit) const;
   void add_shape(const Shape& shape, const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
