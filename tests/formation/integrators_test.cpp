@@ -11,6 +11,7 @@ namespace exactvo::formation {
 namespace {
 
 using detail::BodyState;
+using detail::Decay;
 using detail::step_body;
 
 constexpr double kGain = 37.5;  // 1/s
@@ -21,7 +22,7 @@ BodyState after(Integrator integrator, double dt, double duration) {
   const auto steps = static_cast<int>(std::lround(duration / dt));
   for (int k = 0; k < steps; ++k) {
     const double angle = 0.3 * k * dt;
-    s = step_body(integrator, s, {2.0 * std::cos(angle), 2.0 * std::sin(angle)}, kGain, dt);
+    s = step_body(integrator, s, {2.0 * std::cos(angle), 2.0 * std::sin(angle)}, Decay(kGain, dt));
   }
   return s;
 }
@@ -30,8 +31,8 @@ TEST(Integrators, ExactIsTheClosedFormAtAnyStep) {
   const Vec2 w{0.7, -0.2};
   const BodyState start{{0.0, 0.0}, {3.0, 1.0}};
   BodyState many = start;
-  for (int k = 0; k < 1000; ++k) many = step_body(Integrator::exact, many, w, kGain, 1e-3);
-  const BodyState once = step_body(Integrator::exact, start, w, kGain, 1.0);
+  for (int k = 0; k < 1000; ++k) many = step_body(Integrator::exact, many, w, Decay(kGain, 1e-3));
+  const BodyState once = step_body(Integrator::exact, start, w, Decay(kGain, 1.0));
   EXPECT_LT(norm(many.position - once.position), 1e-12);
   EXPECT_LT(norm(many.velocity - once.velocity), 1e-12);
 }
@@ -51,8 +52,8 @@ TEST(Integrators, RungeKuttaIsOfFourthOrder) {
     const Vec2 w{0.7, -0.2};
     BodyState rk{{0.0, 0.0}, {3.0, 1.0}}, exact = rk;
     for (int k = 0; k < std::lround(0.032 / dt); ++k) {
-      rk = step_body(Integrator::rk4, rk, w, kGain, dt);
-      exact = step_body(Integrator::exact, exact, w, kGain, dt);
+      rk = step_body(Integrator::rk4, rk, w, Decay(kGain, dt));
+      exact = step_body(Integrator::exact, exact, w, Decay(kGain, dt));
     }
     return norm(rk.velocity - exact.velocity);
   };
@@ -65,7 +66,7 @@ TEST(Integrators, RungeKuttaIsOfFourthOrder) {
 TEST(Integrators, EulerIsStableBelowTwoOverTheGainOnly) {
   const auto left_over = [](double dt) {
     BodyState s{{0.0, 0.0}, {1.0, 0.0}};
-    for (int k = 0; k < 200; ++k) s = step_body(Integrator::euler, s, {0.0, 0.0}, kGain, dt);
+    for (int k = 0; k < 200; ++k) s = step_body(Integrator::euler, s, {0.0, 0.0}, Decay(kGain, dt));
     return norm(s.velocity);
   };
   EXPECT_LT(left_over(0.02), 1e-9);

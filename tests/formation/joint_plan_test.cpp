@@ -447,7 +447,8 @@ TEST(Lemmas, Lemma4_EveryStepOfARunMayBeGoneBackwards) {
       anchors.push_back({here, {}});
       back.emplace_back((run.steps[k - 1].robots[i].position - here) / s.time_step);
     }
-    robot_constraints(s, options, anchors, scene, constraints);
+    PairMemory memory;
+    robot_constraints(s, options, anchors, scene, memory, constraints);
     follow_plans(s, anchors, scene, back, constraints);
     for (std::size_t i = 0; i < s.robots.size(); ++i) {
       pairs += constraints[i].size();

@@ -144,7 +144,8 @@ class Backwards {
     std::vector<std::optional<Vec2>> back;
     for (std::size_t i = 0; i < at_.size(); ++i)
       back.emplace_back(detail::velocity_along(scenario_, i, run_.steps[row - 1].robots[i].position - at_[i].position));
-    detail::robot_constraints(scenario_, options_, at_, scene, others_);
+    detail::PairMemory memory;
+    detail::robot_constraints(scenario_, options_, at_, scene, memory, others_);
     detail::follow_plans(scenario_, at_, scene, back, others_);
     Step step;
     step.time = time();

@@ -657,7 +657,8 @@ TEST(Liveness, APairThatFallsBackMayRest) {
     std::vector<detail::Anchor> anchors{{s.robots[0].position, random.in_box(2.0)},
                                         {s.robots[1].position, random.in_box(2.0)}};
     std::vector<std::vector<detail::Constraint>> constraints;
-    detail::robot_constraints(s, options, anchors, scene, constraints);
+    detail::PairMemory memory;
+    detail::robot_constraints(s, options, anchors, scene, memory, constraints);
     detail::fall_back(s, anchors, scene, 0, 1, constraints);
     for (int i = 0; i < 2; ++i) {
       ASSERT_EQ(constraints[i].size(), 1u);

@@ -13,6 +13,8 @@
 namespace exactvo::formation {
 namespace {
 
+using detail::Decay;
+using detail::Decays;
 using detail::RelativeState;
 
 void take_relative_state(const Step& row, const std::vector<Vec2>& offsets, RelativeState& s) {
@@ -65,23 +67,23 @@ double integrand(const Recording& run, const Step& row, const RelativeState& s) 
 
 /// The integral of v^.(v^ - a) over a step in which v^ goes from `from` to `to` as v' = -k3 (v - w).
 /// Math: v^ = w + b e^{-k3 t}, so it is h w.(w - a) + E1 b.(2w - a) + E2 |b|^2 with E_n = (1 - e^{-n k3 h}) / (n k3).
-double exponential_integral(Vec2 from, Vec2 to, Vec2 a, double k3, double h) {
-  const double settled = -std::expm1(-k3 * h);
-  const Vec2 b = (from - to) / settled;
+double exponential_integral(Vec2 from, Vec2 to, Vec2 a, const Decays& decays) {
+  const Decay& once = decays.of_step;
+  const Vec2 b = (from - to) / once.settled;
   const Vec2 w = from - b;
-  const double e1 = settled / k3, e2 = -std::expm1(-2.0 * k3 * h) / (2.0 * k3);
-  return h * dot(w, w - a) + e1 * dot(b, 2.0 * w - a) + e2 * squared_norm(b);
+  const double e1 = once.settled / once.gain, e2 = decays.twice_as_fast.settled / decays.twice_as_fast.gain;
+  return once.duration * dot(w, w - a) + e1 * dot(b, 2.0 * w - a) + e2 * squared_norm(b);
 }
 
 /// Of the integrand over the step from a row to the next, with the decision and the leader's velocity of that row.
-double integral_over_step(const Recording& run, const Step& row, const Step& next) {
+double integral_over_step(const Recording& run, const Decays& decays, const Step& row, const Step& next) {
   const double h = run.time_step;
   double sum = 0.0;
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     const Vec2 leader = row.leader_velocity, a = avoidance(run, row, i);
     const Vec2 from = row.robots[i].velocity - leader;
     const Vec2 to = next.robots[i].velocity - leader;
-    sum += run.motion == MotionLaw::exponential ? exponential_integral(from, to, a, run.tracking_gain, h)
+    sum += run.motion == MotionLaw::exponential ? exponential_integral(from, to, a, decays)
                                                 : 0.5 * h * (dot(from, from - a) + dot(to, to - a));
   }
   return sum;
@@ -108,6 +110,7 @@ SoundTerms sound_terms(const FormationSpec& f, const RelativeState& s) {
 /// A row and the next one.
 struct RowPair {
   const Recording& run;
+  const Decay& decay;
   const Step& row;
   const Step& next;
 };
@@ -116,7 +119,7 @@ struct RowPair {
 Vec2 acceleration(const RowPair& p, std::size_t i) {
   const Vec2 change = p.next.robots[i].velocity - p.row.robots[i].velocity;
   if (p.run.motion != MotionLaw::exponential) return change / p.run.time_step;
-  return p.run.tracking_gain / -std::expm1(-p.run.tracking_gain * p.run.time_step) * change;
+  return p.decay.gain / p.decay.settled * change;
 }
 
 PaperTerms paper_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s) {
@@ -157,7 +160,9 @@ void add_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s,
 namespace detail {
 
 LyapunovAccumulator::LyapunovAccumulator(const Scenario& scenario, const Recording& run)
-    : spec_(*scenario.formation), run_(run) {
+    : spec_(*scenario.formation),
+      run_(run),
+      decays_{Decay(run.tracking_gain, run.time_step), Decay(2.0 * run.tracking_gain, run.time_step)} {
   EXACTVO_REQUIRE(run.offsets.size() == scenario.robots.size(), scenario.name);
   EXACTVO_REQUIRE(spec_.topology.adjacency.size() == scenario.robots.size(), scenario.name);
 }
@@ -165,8 +170,8 @@ LyapunovAccumulator::LyapunovAccumulator(const Scenario& scenario, const Recordi
 std::optional<LyapunovRow> LyapunovAccumulator::add(std::shared_ptr<const Step> row) {
   std::optional<LyapunovRow> before;
   if (row_) {
-    add_rates(spec_, {run_, *row_, *row}, state_, values_);
-    integral_ += integral_over_step(run_, *row_, *row);
+    add_rates(spec_, {run_, decays_.of_step, *row_, *row}, state_, values_);
+    integral_ += integral_over_step(run_, decays_, *row_, *row);
     before = values_;
   }
   take_relative_state(*row, run_.offsets, state_);

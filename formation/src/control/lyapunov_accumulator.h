@@ -9,8 +9,14 @@
 
 #include "control/consensus.h"
 #include "exactvo/formation/lyapunov.h"
+#include "motion/integrators.h"
 
 namespace exactvo::formation::detail {
+
+/// What is left over a step of a velocity's distance from what it tracks, and of the square of that.
+struct Decays {
+  Decay of_step, twice_as_fast;
+};
 
 /// Takes the rows of a run one after the other, and keeps the last.
 class LyapunovAccumulator {
@@ -36,6 +42,7 @@ class LyapunovAccumulator {
 
   const FormationSpec& spec_;
   const Recording& run_;
+  Decays decays_;
   std::shared_ptr<const Step> row_;
   RelativeState state_;  ///< of the last row
   LyapunovRow values_;   ///< of the last row

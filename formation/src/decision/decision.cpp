@@ -119,6 +119,7 @@ PairConstraints against_each_other(const Party& a, const Party& b, vo::Reciproca
 }
 
 void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
+  if (lines.size() < 2) return;
   keys_.clear();
   for (const Constraint& c : lines)
     keys_.emplace_back(norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from), c.index, keys_.size());
@@ -140,7 +141,7 @@ void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Cons
 }
 
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
-                       Scene& scene, std::vector<std::vector<Constraint>>& out) {
+                       Scene& scene, PairMemory& memory, std::vector<std::vector<Constraint>>& out) {
   const std::size_t n = scenario.robots.size();
   out.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -149,8 +150,8 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
                         anchors[i].velocity);
   }
   const vo::ReciprocalOptions rule = pair_rule(scenario, options);
-  std::vector<Vec2> places;
-  places.reserve(n);
+  std::vector<Vec2>& places = memory.places;
+  places.clear();
   for (const Anchor& anchor : anchors) places.push_back(anchor.position);
   double radius = 0.0, speed = 0.0;
   for (const Robot& r : scenario.robots) {
@@ -167,8 +168,7 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
     if (a.yields) out[i].push_back(pair.of_a);
     if (b.yields) out[j].push_back(pair.of_b);
   });
-  NearestFirst nearest_first;
-  for (std::size_t i = 0; i < n; ++i) nearest_first.sort(scene.bodies(), anchors[i].position, out[i]);
+  for (std::size_t i = 0; i < n; ++i) memory.nearest_first.sort(scene.bodies(), anchors[i].position, out[i]);
 }
 
 bool is_of_robot(const Scene& scene, const Constraint& c) {

@@ -56,11 +56,17 @@ class NearestFirst {
   std::vector<std::tuple<double, std::size_t, std::size_t>> keys_;
 };
 
+/// What one call of `robot_constraints` leaves to the next, so that it allocates nothing.
+struct PairMemory {
+  std::vector<Vec2> places;
+  NearestFirst nearest_first;
+};
+
 /// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
 /// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
-                       Scene& scene, std::vector<std::vector<Constraint>>& out);
+                       Scene& scene, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
 
 bool is_of_robot(const Scene& scene, const Constraint& c);
 

@@ -135,7 +135,7 @@ class ClearanceSweep::Sweep {
   Motion motion_to(const Step& row, std::size_t robot) const {
     const State::Robot& from = rows_.back().robots[robot];
     const RobotStep& to = row.robots[robot];
-    return {run_.motion, run_.time_step, run_.tracking_gain, from.position, from.velocity, to.position, to.velocity};
+    return {run_.motion, decay_, from.position, from.velocity, to.position, to.velocity};
   }
 
   /// What is not touched need not be known beyond the least so far.
@@ -279,11 +279,11 @@ class ClearanceSweep::Sweep {
   /// Piece after piece of the obstacle's way.
   double moving_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
     const std::vector<WayPiece>& way = ways_[obstacle];
-    const double time = rows_.back().time, end = time + motion.duration;
+    const double time = rows_.back().time, end = time + motion.decay.duration;
     double least = kInfinity;
     for (std::size_t p = piece_at(way, time); p < way.size() && way[p].from < end; ++p) {
-      const double from = std::clamp((way[p].from - time) / motion.duration, 0.0, 1.0);
-      const double to = std::clamp((way[p].to - time) / motion.duration, 0.0, 1.0);
+      const double from = std::clamp((way[p].from - time) / motion.decay.duration, 0.0, 1.0);
+      const double to = std::clamp((way[p].to - time) / motion.decay.duration, 0.0, 1.0);
       least = std::min(least, along_piece(obstacle, way[p], time, robot, motion, from, to, std::min(enough, least)));
     }
     return least;
@@ -293,14 +293,14 @@ class ClearanceSweep::Sweep {
                      double from, double to, double enough) const {
     // Shares of the step become times, and times shares: 8 roundings of the time, which both spend moving.
     constexpr double kRoundingOfTime = 8 * 0x1p-53;
-    const double end = time + motion.duration;
+    const double end = time + motion.decay.duration;
     const double late =
         kRoundingOfTime * end * (motion.speed_bound() + 2.0 * piece.speed_bound(std::min(end, piece.to)));
     const double radius = scenario_.robots[robot].radius, off = radius + late + piece.error;
     const geometry::Obstacle& shape = scenario_.moving_obstacles[obstacle].shape;
     return least_clearance(
         [&](double start, double stop) {
-          const double t0 = time + start * motion.duration, t1 = time + stop * motion.duration;
+          const double t0 = time + start * motion.decay.duration, t1 = time + stop * motion.decay.duration;
           const Segment chord = motion.chord(start, stop);
           const Segment seen{chord.a - piece.at(t0), chord.b - piece.at(t1)};
           const double others = radius + motion.reach() + largest(chord);
@@ -414,6 +414,7 @@ class ClearanceSweep::Sweep {
 
   const Scenario& scenario_;
   const Recording& run_;
+  Decay decay_{run_.tracking_gain, run_.time_step};
   std::vector<double> largest_, moving_largest_;
   double largest_of_all_ = 0.0;
   mutable std::vector<std::optional<geometry::ObstacleIndex>> obstacles_;  ///< of those that were near

@@ -41,12 +41,10 @@ struct TrackingJacobian {
   }
 };
 
-BodyState closed_form(const BodyState& s, Vec2 w, double k3, double dt) {
+BodyState closed_form(const BodyState& s, Vec2 w, const Decay& decay) {
   const Vec2 gap = s.velocity - w;
-  const double decayed = std::exp(-k3 * dt);
-  // (1 - e^{-k3 dt}) / k3, accurate for a small product too.
-  const double lag = -std::expm1(-k3 * dt) / k3;
-  return {s.position + dt * w + lag * gap, w + decayed * gap};
+  const double lag = decay.settled / decay.gain;
+  return {s.position + decay.duration * w + lag * gap, w + decay.left * gap};
 }
 
 State pack(const BodyState& s) {
@@ -83,8 +81,9 @@ BodyState adaptive_rosenbrock4(const BodyState& s, const Tracking& system, doubl
 
 }  // namespace
 
-BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked, double k3, double dt) {
-  const Tracking system{tracked, k3};
+BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked, const Decay& decay) {
+  const Tracking system{tracked, decay.gain};
+  const double dt = decay.duration;
   switch (integrator) {
     case Integrator::exact:
       break;
@@ -97,7 +96,7 @@ BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked,
     case Integrator::rosenbrock4:
       return adaptive_rosenbrock4(state, system, dt);
   }
-  return closed_form(state, tracked, k3, dt);
+  return closed_form(state, tracked, decay);
 }
 
 MotionLaw motion_of(Integrator integrator) {

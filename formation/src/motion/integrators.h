@@ -6,6 +6,8 @@
 /// `exact` is the closed form, right at any dt; the others are there to compare (explicit Euler is stable for
 /// dt < 2 / k3 at the most).
 
+#include <cmath>
+
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
 
@@ -16,7 +18,18 @@ struct BodyState {
   Vec2 velocity;  ///< m/s
 };
 
-BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked, double k3, double dt);
+/// What time leaves of v - w: the same in every step of a run, and computed once.
+struct Decay {
+  Decay() = default;
+  Decay(double gain_of_law, double time)
+      : gain(gain_of_law), duration(time), left(std::exp(-gain * time)), settled(-std::expm1(-gain * time)) {}
+  double gain = 0.0;      ///< 1/s, k3
+  double duration = 0.0;  ///< s
+  double left = 1.0;      ///< e^{-k3 duration}
+  double settled = 0.0;   ///< 1 - e^{-k3 duration}, accurate where that is small too
+};
+
+BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked, const Decay& decay);
 
 /// How the position runs between two rows under that integrator.
 MotionLaw motion_of(Integrator integrator);

@@ -11,20 +11,20 @@
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/geometry/shapes.h"
+#include "motion/integrators.h"
 
 namespace exactvo::formation::detail {
 
 struct Motion {
   MotionLaw law;
-  double duration;  ///< s
-  double gain;      ///< k3 where exponential
+  Decay decay;  ///< the step's duration; k3 where exponential
   Vec2 from, from_velocity, to, to_velocity;
   /// m/s: w where exponential, asked for so often that it is computed once.
   Vec2 tracked = law == MotionLaw::exponential ? tracked_between(from_velocity, to_velocity) : Vec2{};
 
   /// Where the robot is a share s in [0, 1] of the way through the step.
   Vec2 at(double s) const {
-    const double t = s * duration;
+    const double t = s * decay.duration;
     if (law == MotionLaw::straight) return from + s * (to - from);
     if (law == MotionLaw::exponential) return from + t * tracked + lag(t) * (from_velocity - tracked);
     return cubic(s);
@@ -34,40 +34,41 @@ struct Motion {
 
   /// m: the greatest length met in computing where the robot is: what its coordinates are rounded in proportion to.
   double reach() const {
-    return law == MotionLaw::exponential ? duration * norm(tracked) : duration * norm(to_velocity);
+    return decay.duration * norm(law == MotionLaw::exponential ? tracked : to_velocity);
   }
 
   /// A bound of |x''| over the step, m/s^2.
   double acceleration_bound() const {
     if (law == MotionLaw::straight) return 0.0;
-    if (law == MotionLaw::exponential) return gain * norm(from_velocity - tracked);
+    if (law == MotionLaw::exponential) return decay.gain * norm(from_velocity - tracked);
     return std::max(norm(second_derivative(0.0)), norm(second_derivative(1.0)));
   }
 
   /// A bound of |x'| over the step, m/s: somewhere it is the mean, and nowhere does it change faster than |x''|.
-  double speed_bound() const { return norm(to - from) / duration + acceleration_bound() * duration; }
+  double speed_bound() const { return norm(to - from) / decay.duration + acceleration_bound() * decay.duration; }
 
   /// m: how far the path strays at most from a chord over this share of the step, at equal times: |x''| d^2 / 8.
   double stray(double share) const {
-    const double d = share * duration;
+    const double d = share * decay.duration;
     return acceleration_bound() * d * d / 8.0;
   }
 
  private:
-  double lag(double t) const { return -std::expm1(-gain * t) / gain; }
+  double lag(double t) const {
+    return (t == decay.duration ? decay.settled : -std::expm1(-decay.gain * t)) / decay.gain;
+  }
   /// w, from v(T) = w + e^{-k T} (v(0) - w).
   Vec2 tracked_between(Vec2 first, Vec2 last) const {
-    const double decayed = std::exp(-gain * duration);
-    return (last - decayed * first) / -std::expm1(-gain * duration);
+    return (last - decay.left * first) / decay.settled;
   }
   Vec2 cubic(double s) const {
-    const Vec2 m0 = duration * from_velocity, m1 = duration * to_velocity;
+    const Vec2 m0 = decay.duration * from_velocity, m1 = decay.duration * to_velocity;
     const double s2 = s * s, s3 = s2 * s;
     return (2 * s3 - 3 * s2 + 1) * from + (s3 - 2 * s2 + s) * m0 + (3 * s2 - 2 * s3) * to + (s3 - s2) * m1;
   }
   Vec2 second_derivative(double s) const {
-    const Vec2 m0 = duration * from_velocity, m1 = duration * to_velocity;
-    return ((12 * s - 6) * from + (6 * s - 4) * m0 + (6 - 12 * s) * to + (6 * s - 2) * m1) / (duration * duration);
+    const Vec2 m0 = decay.duration * from_velocity, m1 = decay.duration * to_velocity;
+    return ((12 * s - 6) * from + (6 * s - 4) * m0 + (6 - 12 * s) * to + (6 * s - 2) * m1) / (decay.duration * decay.duration);
   }
 };
 
@@ -75,8 +76,7 @@ struct Motion {
 /// duration and gain, which the robots of a recording have.
 inline Motion relative(const Motion& a, const Motion& b) {
   return {a.law,
-          a.duration,
-          a.gain,
+          a.decay,
           a.from - b.from,
           a.from_velocity - b.from_velocity,
           a.to - b.to,

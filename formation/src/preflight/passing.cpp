@@ -13,6 +13,7 @@
 #include "liveness/roadmap.h"
 #include "liveness/sweeps.h"
 #include "preflight/open_way.h"
+#include "preflight/preflight.h"
 #include "preflight/reachability.h"
 #include "preflight/square_cover.h"
 #include "preflight/strip.h"
@@ -244,8 +245,13 @@ class Proofs {
   std::size_t spared_ = 0;  ///< looks, at most
 };
 
+struct PairsFound {
+  std::vector<NoPassing> pairs;
+  bool none_have_little_room = true;  ///< no two robots: then no question finds a pair
+};
+
 /// Nothing where sparing could change what is found.
-std::optional<std::vector<NoPassing>> without_passing(const Scenario& scenario, Asked question, bool spares) {
+std::optional<PairsFound> without_passing(const Scenario& scenario, Asked question, bool spares) {
   Proofs proofs(scenario, question, spares);
   const auto is_sure = [&] { return !spares || proofs.is_sure(); };
   struct InLittleRoom {
@@ -266,23 +272,37 @@ std::optional<std::vector<NoPassing>> without_passing(const Scenario& scenario, 
         if (std::optional<NoPassing> proof = proofs.of(asked[k].robot, asked[l].robot))
           all.push_back(std::move(*proof));
   if (!is_sure()) return std::nullopt;
-  return all;
+  return PairsFound{std::move(all), asked.size() < 2};
 }
 
-std::vector<NoPassing> pairs_without(const Scenario& scenario, Asked question) {
+PairsFound pairs_without(const Scenario& scenario, Asked question) {
   if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return {};
-  if (std::optional<std::vector<NoPassing>> all = without_passing(scenario, question, true)) return std::move(*all);
+  if (std::optional<PairsFound> found = without_passing(scenario, question, true)) return std::move(*found);
   return *without_passing(scenario, question, false);
 }
 
 }  // namespace
 
 std::vector<NoPassing> robots_without_passing(const Scenario& scenario) {
-  return pairs_without(scenario, Asked::for_room);
+  return pairs_without(scenario, Asked::for_room).pairs;
 }
 
 std::vector<NoPassing> robots_without_gaps_to_pass(const Scenario& scenario) {
-  return pairs_without(scenario, Asked::for_room_with_gaps);
+  return pairs_without(scenario, Asked::for_room_with_gaps).pairs;
+}
+
+std::vector<NoPassing> detail::robots_without_passing_by_plan(const Scenario& scenario) {
+  PairsFound found = pairs_without(scenario, Asked::for_room);
+  if (found.none_have_little_room) return {};
+  const std::size_t proven = found.pairs.size();
+  for (NoPassing& within_gaps : robots_without_gaps_to_pass(scenario)) {
+    const auto is_of_same = [&](const NoPassing& p) {
+      return p.first == within_gaps.first && p.second == within_gaps.second;
+    };
+    const auto end = found.pairs.begin() + static_cast<std::ptrdiff_t>(proven);
+    if (std::none_of(found.pairs.begin(), end, is_of_same)) found.pairs.push_back(std::move(within_gaps));
+  }
+  return std::move(found.pairs);
 }
 
 std::string words_of(const Scenario& scenario, const NoPassing& proof) {

@@ -133,15 +133,7 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
 /// Robots that have to pass each other and cannot; the first ones.
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
-  std::vector<NoPassing> proofs = robots_without_passing(s);
-  const std::size_t proven = proofs.size();
-  for (NoPassing& within_gaps : robots_without_gaps_to_pass(s)) {
-    const auto is_of_same = [&](const NoPassing& p) {
-      return p.first == within_gaps.first && p.second == within_gaps.second;
-    };
-    if (std::none_of(proofs.begin(), proofs.begin() + static_cast<std::ptrdiff_t>(proven), is_of_same))
-      proofs.push_back(std::move(within_gaps));
-  }
+  const std::vector<NoPassing> proofs = robots_without_passing_by_plan(s);
   for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
   if (proofs.size() > kNamed)
     out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/passing.h"
 #include "exactvo/formation/scenario.h"
 #include "preflight/reachability.h"
 
@@ -25,5 +26,9 @@ namespace exactvo::formation::detail {
 /// reach: margins, the other robots and the limits of a method are not considered.
 std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets,
                                             Reachability& reach);
+
+/// `robots_without_passing` and, of other pairs, `robots_without_gaps_to_pass` (passing.h): what a plan finds no way
+/// for. Looks once at who has little room, where no two have.
+std::vector<NoPassing> robots_without_passing_by_plan(const Scenario& scenario);
 
 }  // namespace exactvo::formation::detail

@@ -292,7 +292,7 @@ class FormationRun {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       robots_[i].tracked = tracked_velocity(i, row);
       robots_[i].body =
-          step_body(options_.integrator, robots_[i].body, robots_[i].tracked, spec_.gains.k3, scenario_.time_step);
+          step_body(options_.integrator, robots_[i].body, robots_[i].tracked, decay_);
     }
   }
 
@@ -346,6 +346,7 @@ class FormationRun {
   RunSchedule schedule_;
   Decider decider_;
   std::vector<Vec2> offsets_;
+  Decay decay_{spec_.gains.k3, scenario_.time_step};
   std::vector<FormationRobot> robots_;
   double now_ = 0.0;                ///< s, of the present row
   std::optional<SlotPlans> plans_;  ///< with Liveness::plan

@@ -18,7 +18,7 @@ void JointDecisions::begin_step() {
 }
 
 void JointDecisions::look_at_robots(const Groups* groups) {
-  robot_constraints(scenario_, options_, anchors, scene_, others);
+  robot_constraints(scenario_, options_, anchors, scene_, pairs_, others);
   if (!groups || !groups->any()) return;
   std::vector<std::optional<Vec2>> planned(anchors.size());
   for (std::size_t i = 0; i < planned.size(); ++i)

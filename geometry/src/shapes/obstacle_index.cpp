@@ -47,19 +47,25 @@ bool ObstacleIndex::is_inside(Vec2 x) const {
          }) != Place::outside;
 }
 
-/// Looks at the edges within a reach that doubles until it holds the nearest. An edge beyond a window is farther than
-/// its reach, rounding and all.
+/// Looks at all of few edges, else at those within a reach that doubles until it holds the nearest. An edge beyond a
+/// window is farther than its reach, rounding and all.
 double ObstacleIndex::edge_distance(const Segment& path, double enough) const {
+  constexpr std::size_t kFew = 8;     // a window costs more
   constexpr double kRounding = 1e-9;  // of a reach
   const Box round = box_of(path);
   const Vec2 size = round.high - round.low;
   const double rounding = rounding_of_distance(std::max({largest_, largest(path.a), largest(path.b)}));
   double least = kInfinity;
+  const auto look_at = [&](std::size_t e) {
+    if (!are_apart(edges_by_place_.box(e), round, std::min(least, enough) + 2.0 * rounding))
+      least = std::min(least, distance(edges_[e], path));
+  };
+  if (edges_.size() <= kFew) {
+    for (std::size_t e = 0; e < edges_.size(); ++e) look_at(e);
+    return least;
+  }
   for (double reach = std::min(std::max({size.x, size.y, 1.0}), std::max(enough, 0.0));; reach *= 2.0) {
-    edges_by_place_.for_each_meeting(round.grown(reach * (1.0 + kRounding) + 2.0 * rounding), [&](std::size_t e) {
-      if (!are_apart(edges_by_place_.box(e), round, std::min(least, enough) + 2.0 * rounding))
-        least = std::min(least, distance(edges_[e], path));
-    });
+    edges_by_place_.for_each_meeting(round.grown(reach * (1.0 + kRounding) + 2.0 * rounding), look_at);
     if (least <= reach || reach >= enough || !std::isfinite(reach)) return least;
   }
 }

@@ -14,10 +14,6 @@ namespace {
 
 using Exact = CGAL::Mpzf;
 
-int sign_of_double(double x) {
-  return (x > 0.0) - (x < 0.0);
-}
-
 /// Between these the product of two is exact as two doubles (double_double.h).
 constexpr double kLeastFactor = 0x1p-400, kMostFactor = 0x1p400;
 
@@ -56,12 +52,7 @@ class ExactSum {
 
 }  // namespace
 
-int sign_of_violation(const HalfPlane& h, Vec2 v) {
-  const double px = h.normal.x * v.x;
-  const double py = h.normal.y * v.y;
-  const double rounded = h.offset - (px + py);
-  const double error = kSignError * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kSignUnderflow;
-  if (std::abs(rounded) > error) return sign_of_double(rounded);
+int exact_sign_of_violation(const HalfPlane& h, Vec2 v) {
   if (have_exact_products({h.offset, h.normal.x, h.normal.y, v.x, v.y})) {
     ExactSum sum;
     sum.add_product(h.offset, 1.0);
@@ -73,12 +64,16 @@ int sign_of_violation(const HalfPlane& h, Vec2 v) {
       CGAL::sign(Exact(h.offset) - Exact(h.normal.x) * Exact(v.x) - Exact(h.normal.y) * Exact(v.y)));
 }
 
-int sign_of_excess_speed(Vec2 v, double radius) {
-  if (std::isinf(radius)) return -1;
-  const double speed = squared_norm(v);
+/// Velocities at the bound are the usual case, and 106 bits tell most of them from it. What is left open has |v|^2 <= 2
+/// `limit`, so that the two sums are wrong by 64 u^2 `limit` at most (double_double.h). Within these bounds what a
+/// product may lose below the normal range is far less.
+int exact_sign_of_excess_speed(Vec2 v, double radius) {
+  constexpr double kError = 128.0 * 0x1p-106;
   const double limit = radius * radius;
-  const double error = kSignError * (speed + limit) + kSignUnderflow;
-  if (std::abs(speed - limit) > error) return sign_of_double(speed - limit);
+  if (limit > 0x1p-600 && limit < 0x1p600) {
+    const DoubleDouble excess = two_product(v.x, v.x) + two_product(v.y, v.y) - two_product(radius, radius);
+    if (std::abs(excess.high) > kError * limit) return sign_of_double(excess.high);
+  }
   if (have_exact_products({v.x, v.y, radius})) {
     ExactSum sum;
     sum.add_product(v.x, v.x);

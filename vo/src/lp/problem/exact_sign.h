@@ -6,6 +6,8 @@
 /// rounding, and outside of their range integers of any length. From them, which constraints a velocity satisfies, and
 /// which an answer has to.
 
+#include <cmath>
+
 #include "exactvo/vo/lp/problem.h"
 #include "exactvo/vo/lp/solution.h"
 
@@ -17,11 +19,31 @@ namespace exactvo::lp {
 inline constexpr double kSignError = 4.0 * 0x1p-53;
 inline constexpr double kSignUnderflow = 0x1p-1060;
 
+// What the filters leave open.
+int exact_sign_of_violation(const HalfPlane& h, Vec2 v);
+int exact_sign_of_excess_speed(Vec2 v, double radius);
+
+inline int sign_of_double(double x) {
+  return (x > 0.0) - (x < 0.0);
+}
+
 /// The sign of offset - normal . v: positive where v lies outside the half-plane. Exact.
-int sign_of_violation(const HalfPlane& h, Vec2 v);
+inline int sign_of_violation(const HalfPlane& h, Vec2 v) {
+  const double px = h.normal.x * v.x;
+  const double py = h.normal.y * v.y;
+  const double rounded = h.offset - (px + py);
+  const double error = kSignError * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kSignUnderflow;
+  return std::abs(rounded) > error ? sign_of_double(rounded) : exact_sign_of_violation(h, v);
+}
 
 /// The sign of |v| - radius, radius >= 0 and maybe infinite. Exact.
-int sign_of_excess_speed(Vec2 v, double radius);
+inline int sign_of_excess_speed(Vec2 v, double radius) {
+  if (std::isinf(radius)) return -1;
+  const double speed = squared_norm(v);
+  const double limit = radius * radius;
+  const double error = kSignError * (speed + limit) + kSignUnderflow;
+  return std::abs(speed - limit) > error ? sign_of_double(speed - limit) : exact_sign_of_excess_speed(v, radius);
+}
 
 /// Whether v keeps the disc and the box. Exact.
 bool within(const SpeedBound& bound, Vec2 v);
