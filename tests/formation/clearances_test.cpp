@@ -175,7 +175,8 @@ TEST(MovingWay, ThePiecesAreTheWay) {
 Vec2 position_at(const Recording& rec, double share) {
   const RobotStep& a = rec.steps[0].robots[0];
   const RobotStep& b = rec.steps[1].robots[0];
-  return detail::Motion{rec.motion, detail::Decay(rec.tracking_gain, rec.time_step), a.position, a.velocity, b.position, b.velocity}
+  return detail::Motion{rec.motion, detail::Decay(rec.tracking_gain, rec.time_step), a.position, a.velocity, b.position,
+                        b.velocity}
       .at(share);
 }
 

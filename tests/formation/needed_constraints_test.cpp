@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NeededHalfPlanes,
 
 /// The decision with some half-planes and with all: every row of a run, as it is written.
 TEST(NeededHalfPlanes, ARunThatKeepsAllDrivesTheSameRows) {
-  for (const char* scene : {"A2", "A7", "A14"}) {
+  for (const char* scene : {"A2", "A7", "A14", "B1", "B3"}) {
     const Scenario s = test::paper_scene(scene);
     SimulationOptions all;
     all.record_all = true;

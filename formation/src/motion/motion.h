@@ -33,9 +33,7 @@ struct Motion {
   geometry::Segment chord(double start, double end) const { return {at(start), at(end)}; }
 
   /// m: the greatest length met in computing where the robot is: what its coordinates are rounded in proportion to.
-  double reach() const {
-    return decay.duration * norm(law == MotionLaw::exponential ? tracked : to_velocity);
-  }
+  double reach() const { return decay.duration * norm(law == MotionLaw::exponential ? tracked : to_velocity); }
 
   /// A bound of |x''| over the step, m/s^2.
   double acceleration_bound() const {
@@ -58,9 +56,7 @@ struct Motion {
     return (t == decay.duration ? decay.settled : -std::expm1(-decay.gain * t)) / decay.gain;
   }
   /// w, from v(T) = w + e^{-k T} (v(0) - w).
-  Vec2 tracked_between(Vec2 first, Vec2 last) const {
-    return (last - decay.left * first) / decay.settled;
-  }
+  Vec2 tracked_between(Vec2 first, Vec2 last) const { return (last - decay.left * first) / decay.settled; }
   Vec2 cubic(double s) const {
     const Vec2 m0 = decay.duration * from_velocity, m1 = decay.duration * to_velocity;
     const double s2 = s * s, s3 = s2 * s;
@@ -68,19 +64,16 @@ struct Motion {
   }
   Vec2 second_derivative(double s) const {
     const Vec2 m0 = decay.duration * from_velocity, m1 = decay.duration * to_velocity;
-    return ((12 * s - 6) * from + (6 * s - 4) * m0 + (6 - 12 * s) * to + (6 * s - 2) * m1) / (decay.duration * decay.duration);
+    return ((12 * s - 6) * from + (6 * s - 4) * m0 + (6 - 12 * s) * to + (6 * s - 2) * m1) /
+           (decay.duration * decay.duration);
   }
 };
 
 /// a as seen from b: every law is linear in the states, so it is a motion of the same law. REQUIRES: the same law,
 /// duration and gain, which the robots of a recording have.
 inline Motion relative(const Motion& a, const Motion& b) {
-  return {a.law,
-          a.decay,
-          a.from - b.from,
-          a.from_velocity - b.from_velocity,
-          a.to - b.to,
-          a.to_velocity - b.to_velocity};
+  return {
+      a.law, a.decay, a.from - b.from, a.from_velocity - b.from_velocity, a.to - b.to, a.to_velocity - b.to_velocity};
 }
 
 /// What a chord says of the clearance over its share of the step.

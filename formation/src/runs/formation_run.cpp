@@ -291,8 +291,7 @@ class FormationRun {
   void move(const Step& row) {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       robots_[i].tracked = tracked_velocity(i, row);
-      robots_[i].body =
-          step_body(options_.integrator, robots_[i].body, robots_[i].tracked, decay_);
+      robots_[i].body = step_body(options_.integrator, robots_[i].body, robots_[i].tracked, decay_);
     }
   }
 

@@ -66,7 +66,7 @@ class JointDecisions {
   Decider& decider_;
   ViewpointOf viewpoint_;
   ChooseAgain choose_again_;
-  std::vector<char> held_by_all_;    ///< of those who go by plan: no share of what they want is allowed
+  std::vector<char> held_by_all_;  ///< of those who go by plan: no share of what they want is allowed
   PairMemory pairs_;
   std::vector<Constraint> statics_;  ///< of one who goes by plan; memory that is kept
 };

@@ -89,8 +89,8 @@ class StaticField {
   };
   /// A body that has been met from a viewpoint, and what is known of it from there.
   struct Met : Shape {
-    double distance = 0.0;         ///< m, from the robot's centre to its box
-    double room = -kEverywhere;    ///< m/s: less than n.v - c of its half-plane at v = from.velocity
+    double distance = 0.0;       ///< m, from the robot's centre to its box
+    double room = -kEverywhere;  ///< m/s: less than n.v - c of its half-plane at v = from.velocity
     bool is_built = false;
   };
   /// What has been met from one viewpoint: all whose boxes meet the window, or all of a small field.
