@@ -49,9 +49,9 @@ TEST(Waiting, APairThatFellBackIsKnownByItsHorizon) {
   Row row({{1}, {0}});
   RecordedConstraint& c = row.step.robots[0].constraints[0];
   const auto fell = [&] { return fell_back(row.scenario, row.step, 0, c); };
-  c.tau = row.scenario.horizons.robots;
+  c.time_horizon = row.scenario.horizons.robots;
   EXPECT_FALSE(fell());
-  c.tau = 0.1;
+  c.time_horizon = 0.1;
   EXPECT_TRUE(fell());
   // A step that is as long: half-planes of plans look ahead so far too.
   row.scenario.time_step = 0.1;
