@@ -455,6 +455,15 @@ TEST(Routes, AnEndInContactWithManySitesLeavesAlongTheOneThatLetsIt) {
   EXPECT_TRUE(std::holds_alternative<Route>(answer));
 }
 
+// Beside a wall that ends in open space the points to leave it at doubled from the start, so that the route overshot.
+TEST(Routes, AnEndInContactLeavesTheWallWhereItEnds) {
+  const std::vector<Obstacle> walls{Polyline{{{-4, -8}, {-4, 3}}}, Polyline{{{-4, 4}, {-4, 8}}}};
+  const RouteAnswer answer = asked(walls, 0.2, {-4.2, -2.800978000983318}, {-3.8, -6.097638863922139});
+  const auto* route = std::get_if<Route>(&answer);
+  ASSERT_NE(route, nullptr);
+  EXPECT_LE(route->length, 1.05 * route->lower_bound);
+}
+
 // The distance to a crossing of walls may round to 0: the widest radius was looked for from there without end.
 TEST(Routes, TheWidestRadiusOfAStartBesideACrossingIsFound) {
   const std::vector<Obstacle> crossing{Polyline{{{0, 0}, {3, 1}}}, Polyline{{{0, 1}, {3, 0}}},

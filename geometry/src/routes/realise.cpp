@@ -111,7 +111,10 @@ class Realiser {
 
   /// The same from points farther out, where there are any.
   bool between_far(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
-    std::vector<Point> far_from = straight_.far(leg.from, leg.to.at), far_to = straight_.far(leg.to, leg.from.at);
+    std::vector<Vec2> corners;
+    for (const Circle& c : leg.circles) corners.push_back(c.centre);
+    std::vector<Point> far_from = straight_.far(leg.from, leg.to.at, corners),
+                       far_to = straight_.far(leg.to, leg.from.at, corners);
     if (far_from.empty() && far_to.empty()) return false;
     far_from.insert(far_from.end(), from.begin(), from.end());
     far_to.insert(far_to.end(), to.begin(), to.end());

@@ -118,9 +118,10 @@ Stop StraightWays::end_at(Vec2 x) const {
   return stop;
 }
 
-/// Points x + k step, k >= 1, as far as the way there is clear; first the one beside the goal, then the farthest.
+/// Points x + k step, k >= 1, as far as the way there is clear; first the one beside the goal, then one step beyond
+/// each corner, where a wall ends in open space, then the farthest.
 void StraightWays::add_straight_on(const Point& x, const Vector<Rational>& step, const Point& goal,
-                                   std::vector<Point>& out) const {
+                                   const std::vector<Vec2>& corners, std::vector<Point>& out) const {
   constexpr int kDoublings = 24, kHalvings = 8;
   const auto at = [&](double steps) { return moved(x, {Rational(steps * step.x), Rational(steps * step.y)}); };
   std::vector<Point> found;
@@ -133,17 +134,22 @@ void StraightWays::add_straight_on(const Point& x, const Vector<Rational>& step,
     else
       far = middle;
   }
-  const Rational share = dot(goal.exact() - x.exact(), step) / dot(step, step);
-  if (share > 0) {
+  const auto add_beside = [&](const Point& place, int more_steps) {
+    Rational share = dot(place.exact() - x.exact(), step) / dot(step, step);
+    if (share <= 0) return;
+    share += more_steps;
     const Point beside = moved(x, {Rational(share * step.x), Rational(share * step.y)});
     if (plan_.is_clear(x, beside)) found.push_back(beside);
-  }
+  };
+  for (const Vec2 corner : corners) add_beside(corner, 1);
+  add_beside(goal, 0);
   out.insert(out.end(), found.rbegin(), found.rend());
 }
 
-std::vector<Point> StraightWays::far(const Stop& stop, const Point& goal) const {
+std::vector<Point> StraightWays::far(const Stop& stop, const Point& goal, const std::vector<Vec2>& corners) const {
   std::vector<Point> out;
-  for (const Vector<Rational>& way : stop.ways) add_straight_on(stop.at, stretch(way, kStraight[0]), goal, out);
+  for (const Vector<Rational>& way : stop.ways)
+    add_straight_on(stop.at, stretch(way, kStraight[0]), goal, corners, out);
   return out;
 }
 

@@ -36,12 +36,14 @@ class StraightWays {
   std::vector<Point> near(const Stop& stop) const;
 
   /// The same ways as far as they are clear: to where a passage ends that is a few units in the last place wider than
-  /// the disc, too few for a taut string. With the point on the way beside `goal`. May be empty.
-  std::vector<Point> far(const Stop& stop, const Point& goal) const;
+  /// the disc, too few for a taut string. With the points on the way beside `goal` and just beyond the corners. May be
+  /// empty.
+  std::vector<Point> far(const Stop& stop, const Point& goal, const std::vector<Vec2>& corners) const;
 
  private:
   Vector<Rational> stretch(const Vector<Rational>& way, double share) const;
-  void add_straight_on(const Point& x, const Vector<Rational>& step, const Point& goal, std::vector<Point>& out) const;
+  void add_straight_on(const Point& x, const Vector<Rational>& step, const Point& goal,
+                       const std::vector<Vec2>& corners, std::vector<Point>& out) const;
 
   const ClearancePlan& plan_;
   const CellMap& map_;
