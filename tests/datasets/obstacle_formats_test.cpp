@@ -102,6 +102,21 @@ TEST_P(EveryFormat, Property3_TheSameObstaclesAreTheSameBytes) {
   EXPECT_FALSE(content_of(folder_ / ("1" + name)).empty());
 }
 
+// Walls that end where they begin came back from SUMO as polygons, without a word.
+TEST_P(EveryFormat, Property4_AClosedWallStaysOneOrIsNamed) {
+  if (!can_be_tested() || !GetParam().walls) GTEST_SKIP() << "no such format, or none with walls";
+  const std::vector<SceneObstacle> wall{{"a", Polyline{{{0, 0}, {4, 0}, {4, 4}, {0, 0}}}}};
+  WriteOptions options;
+  options.format = GetParam().name;
+  options.metres = true;
+  std::string all;
+  for (const std::string& loss : write_obstacles(folder_ / GetParam().file, wall, options)) all += loss;
+  const ObstacleFile file = read_obstacles(folder_ / GetParam().file);
+  ASSERT_EQ(file.obstacles.size(), 1u);
+  EXPECT_NE(same_bits(file.obstacles[0].shape, wall[0].shape),
+            all.find("1 closed wall made solid") != std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Formats, EveryFormat,
     ::testing::Values(Format{"wkt", "a.wkt", true, true, true}, Format{"geojson", "a.geojson", true, true, true},

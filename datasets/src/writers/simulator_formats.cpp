@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Obstacles as simulators of crowds and traffic and a triangulator's tests hold them: outlines, mostly without holes.
+#include <algorithm>
+
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/markup.h"
 #include "exactvo/geometry/counted.h"
@@ -74,7 +76,16 @@ Written to_sumo_poly(const Obstacles& obstacles, const WriteOptions& options, co
       text += (text.back() == '"' ? "" : " ") + number_text(p.x) + "," + number_text(p.y);
     text += "\"/>\n";
   }
-  return outlines(text + "</additional>\n", obstacles, options, "SUMO");
+  Written written = outlines(text + "</additional>\n", obstacles, options, "SUMO");
+  const auto closed_walls = std::count_if(obstacles.begin(), obstacles.end(), [](const auto& obstacle) {
+    const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape);
+    return wall != nullptr && wall->points.size() > 2 && wall->points.front() == wall->points.back();
+  });
+  if (closed_walls > 0) {
+    written.losses.push_back(geometry::counted(static_cast<std::size_t>(closed_walls), "closed wall") +
+                             " made solid: in SUMO a closed outline is a polygon");
+  }
+  return written;
 }
 
 }  // namespace exactvo::datasets
