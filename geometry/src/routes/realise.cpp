@@ -111,10 +111,14 @@ class Realiser {
 
   /// The same from points farther out, where there are any.
   bool between_far(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
-    std::vector<Vec2> corners;
-    for (const Circle& c : leg.circles) corners.push_back(c.centre);
-    std::vector<Point> far_from = straight_.far(leg.from, leg.to.at, corners),
-                       far_to = straight_.far(leg.to, leg.from.at, corners);
+    constexpr std::size_t kCorners = 4;  // those after them are seldom on the way straight on
+    std::vector<Vec2> first, last;
+    for (std::size_t k = 0; k < std::min(kCorners, leg.circles.size()); ++k) {
+      first.push_back(leg.circles[k].centre);
+      last.push_back(leg.circles[leg.circles.size() - 1 - k].centre);
+    }
+    std::vector<Point> far_from = straight_.far(leg.from, leg.to.at, first),
+                       far_to = straight_.far(leg.to, leg.from.at, last);
     if (far_from.empty() && far_to.empty()) return false;
     far_from.insert(far_from.end(), from.begin(), from.end());
     far_to.insert(far_to.end(), to.begin(), to.end());
