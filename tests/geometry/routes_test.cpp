@@ -457,11 +457,17 @@ TEST(Routes, AnEndInContactWithManySitesLeavesAlongTheOneThatLetsIt) {
 
 // Beside a wall that ends in open space the points to leave it at doubled from the start, so that the route overshot.
 TEST(Routes, AnEndInContactLeavesTheWallWhereItEnds) {
-  const std::vector<Obstacle> walls{Polyline{{{-4, -8}, {-4, 3}}}, Polyline{{{-4, 4}, {-4, 8}}}};
-  const RouteAnswer answer = asked(walls, 0.2, {-4.2, -2.800978000983318}, {-3.8, -6.097638863922139});
-  const auto* route = std::get_if<Route>(&answer);
-  ASSERT_NE(route, nullptr);
-  EXPECT_LE(route->length, 1.05 * route->lower_bound);
+  const auto expect_short = [](const std::vector<Obstacle>& walls, double radius, Vec2 start, Vec2 goal) {
+    for (const RouteAnswer& answer : {asked(walls, radius, start, goal), asked(walls, radius, goal, start)}) {
+      const auto* route = std::get_if<Route>(&answer);
+      ASSERT_NE(route, nullptr);
+      EXPECT_LE(route->length, 1.05 * route->lower_bound);
+    }
+  };
+  expect_short({Polyline{{{-4, -8}, {-4, 3}}}, Polyline{{{-4, 4}, {-4, 8}}}}, 0.2, {-4.2, -2.800978000983318},
+               {-3.8, -6.097638863922139});
+  expect_short({Polyline{{{-5, -8}, {-5, -1}}}, Polyline{{{-5, -0.5}, {-5, 8}}}}, 1e-9,
+               {-5.000000001, -0.3491071895813336}, {-4.999999999, 0.9166390616227158});
 }
 
 // The distance to a crossing of walls may round to 0: the widest radius was looked for from there without end.
