@@ -28,6 +28,19 @@ def test_two_robots_swap_places():
     assert crowd.time == 15.0 and len(crowd) == 2 and crowd.kept.all()
 
 
+def test_a_refused_call_leaves_no_robot_id_and_no_wall():
+    crowd = exactvo.Crowd()
+    crowd.add_robot((0, 0))
+    with pytest.raises(exactvo.CrowdError):
+        crowd.add_robots([(5, 5), (5000, 0)])
+    assert crowd.positions.shape == (1, 2)
+    crowd.head_for([(1, 1)])
+    with pytest.raises(exactvo.CrowdError):
+        crowd.add_obstacles([exactvo.Wall([(0, 2), (1, 2)]), exactvo.Wall([(0, 2), (2e12, 2)])])
+    with pytest.raises(exactvo.CrowdError):
+        crowd.remove_obstacle(0)
+
+
 def test_a_hundred_thousand_robots_are_stepped_without_a_copy():
     count = 100_000
     crowd = exactvo.Crowd(threads=0)

@@ -5,6 +5,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -275,6 +276,11 @@ py::array_t<std::uint32_t> add_robots(PythonCrowd& self, py::handle positions, c
   std::size_t done = 0;
   try {
     const py::gil_scoped_release released;
+    // First whether there is a place for the farthest: a refusal then leaves no id behind.
+    const auto farthest = std::max_element(all.begin(), all.end(), [](Vec2 a, Vec2 b) {
+      return std::max(std::fabs(a.x), std::fabs(a.y)) < std::max(std::fabs(b.x), std::fabs(b.y));
+    });
+    if (farthest != all.end()) self.crowd().remove_robot(self.crowd().add_robot(*farthest, k));
     self.crowd().reserve(self.crowd().size() + all.size());
     for (; done < all.size(); ++done) added[done] = self.crowd().add_robot(all[done], k);
   } catch (...) {  // all or none
@@ -325,8 +331,13 @@ void bind_crowd(py::module_& module) {
              const PythonCrowd::Use use(self);
              std::vector<formation::ObstacleId> ids;
              const py::gil_scoped_release released;
-             for (const formation::SceneObstacle& obstacle : obstacles.list)
-               ids.push_back(self.crowd().add_obstacle(obstacle.shape));
+             try {
+               for (const formation::SceneObstacle& obstacle : obstacles.list)
+                 ids.push_back(self.crowd().add_obstacle(obstacle.shape));
+             } catch (...) {  // all or none
+               for (const formation::ObstacleId id : ids) self.crowd().remove_obstacle(id);
+               throw;
+             }
              return ids;
            })
       .def("remove_obstacle", [](PythonCrowd& self, std::uint32_t id) { PythonCrowd::Use(self)->remove_obstacle(id); })
