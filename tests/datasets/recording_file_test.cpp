@@ -443,11 +443,11 @@ TEST_F(RecordingFileTest, KeysThatNoRecordingHasAreRefusedWhereverTheyStand) {
   const std::pair<const char*, const char*> places[] = {
       {"{\"header\":", "/new"},
       {"\"header\":{", "/header/new"},
-      {"\"remedies\":{", "/header/remedies/new"},
+      {"\"controller_options\":{", "/header/controller_options/new"},
       {"{\"body\":", "/new"},
       {"\"body\":{", "/body/new"},
       {"\"shape\":{", "/body/shape/new"},
-      {"\"outlook\":{", "/outlook/new"},
+      {"\"goal_bodies\":{", "/goal_bodies/new"},
       {"\"plan\":{", "/plan/new"},
       {"\"plan\":{\"row\":0,\"from_row\":0,\"robots\":[{", "/plan/robots/0/new"},
       {"\"moves\":[{", "/plan/moves/0/new"},

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/nearest_word.h"
 
 namespace exactvo::tools {
 namespace {
 
-using datasets::edit_distance;
-using datasets::nearest_word;
+using geometry::edit_distance;
+using geometry::nearest_word;
 
 TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(edit_distance("", ""), 0u);

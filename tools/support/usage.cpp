@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/nearest_word.h"
 
 namespace exactvo::tools {
 
@@ -34,7 +34,7 @@ void require_length(const std::string& option, double value) {
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = datasets::nearest_word(word, known);
+  const std::string nearest = geometry::nearest_word(word, known);
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/data_error.h"
 
-#include <algorithm>
-#include <boost/algorithm/string/case_conv.hpp>
-#include <limits>
-#include <locale>
 #include <string_view>
 #include <utility>
 
@@ -58,12 +54,6 @@ std::string one_line(const std::string& file, const std::string& place, const st
   return text;
 }
 
-/// Letters that may differ in a word that is mistyped.
-std::size_t slips_among(std::size_t letters) {
-  const std::size_t few = letters < 2 ? 0 : letters < 5 ? 1 : 2;
-  return std::max(few, letters / 3);
-}
-
 }  // namespace
 
 const char* code_name(DataCode code) {
@@ -85,36 +75,5 @@ DataError::DataError(DataCode code, std::string file, std::string place, std::st
       place_(std::move(place)),
       found_(std::move(found)),
       expected_(std::move(expected)) {}
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
-      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  const std::locale& classic = std::locale::classic();
-  const std::string lower = boost::to_lower_copy(word, classic);
-  std::string best;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const std::string& candidate : known) {
-    const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
-    if (longer - shorter > slips_among(shorter)) continue;  // a word of a file may be very long
-    const std::size_t distance = edit_distance(lower, boost::to_lower_copy(candidate, classic));
-    if (distance >= least || distance > slips_among(shorter)) continue;
-    least = distance;
-    best = candidate;
-  }
-  return best;
-}
 
 }  // namespace exactvo::datasets

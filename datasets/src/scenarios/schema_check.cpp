@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "exactvo/geometry/nearest_word.h"
+
 namespace exactvo::datasets {
 namespace {
 
@@ -157,7 +159,7 @@ class Checker {
     std::vector<std::string> missing;  // a key that is there already was not meant
     std::copy_if(known.begin(), known.end(), std::back_inserter(missing),
                  [&](const std::string& name) { return !value.contains(name); });
-    const std::string nearest = nearest_word(key, missing);
+    const std::string nearest = geometry::nearest_word(key, missing);
     std::string all;
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
     refuse(DataCode::key_unknown, value.at(key), "an unknown key \"" + key + "\"",
@@ -281,7 +283,7 @@ class Checker {
       for (const auto& [key, member] : alternative.at("properties").items()) known.insert(key);
     }
     for (const auto& [key, member] : value.items())
-      if (known.count(key) == 0 && !nearest_word(key, telling).empty()) refuse_unknown(value, key, telling);
+      if (known.count(key) == 0 && !geometry::nearest_word(key, telling).empty()) refuse_unknown(value, key, telling);
   }
 
   /// Where no alternative has its required keys: the one that knows most of the value's, if there is one.

@@ -85,13 +85,4 @@ class DataError : public std::runtime_error {
   std::string expected_;
 };
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string alignment).
-/// Exact.
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
-/// The known word nearest to `word`, whatever the case of ASCII letters, for messages about mistyped words. Empty where
-/// none is near enough to be meant: a third of the letters of the shorter word may differ, one always, two of five.
-/// Heuristic.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
-
 }  // namespace exactvo::datasets
