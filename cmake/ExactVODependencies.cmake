@@ -30,6 +30,11 @@ if(EXACTVO_BUILDS_DATASETS)
   # SHA-256 alone is used of it. Its shared library would be a quarter of the program's start, so its archive is taken
   # where there is one.
   set(OPENSSL_USE_STATIC_LIBS ON)
+  if(OPENSSL_CRYPTO_LIBRARY MATCHES "\\.so$" AND NOT EXACTVO_LOOKED_FOR_LIBCRYPTO)  # of a folder from before
+    unset(OPENSSL_CRYPTO_LIBRARY CACHE)
+    unset(OPENSSL_SSL_LIBRARY CACHE)
+  endif()
+  set(EXACTVO_LOOKED_FOR_LIBCRYPTO ON CACHE INTERNAL "that an archive was looked for")
   find_package(OpenSSL QUIET)
   if(NOT OpenSSL_FOUND)
     set(OPENSSL_USE_STATIC_LIBS OFF)

@@ -23,7 +23,7 @@ SimulationOptions with(const ControllerOptions& wanted) {
 }
 
 TEST(ControllerOptions, AddedOneByOneTheyEndAtTheDefault) {
-  const std::vector<NamedControllerOptions> sets = incremental_options();
+  const std::vector<NamedControllerOptions> sets = incremental_controller_options();
   const Recording top = simulate(paper_scene("B1"), with(sets.back().options));
   const Recording standard = simulate(paper_scene("B1"));
   EXPECT_EQ(top.steps.back().robots[0].position, standard.steps.back().robots[0].position);
@@ -32,7 +32,7 @@ TEST(ControllerOptions, AddedOneByOneTheyEndAtTheDefault) {
 
 TEST(ControllerOptions, EverySwitchChangesTheRun) {
   const Vec2 standard = simulate(paper_scene("B3")).steps[200].robots[1].position;
-  for (const NamedControllerOptions& n : ablated_options()) {
+  for (const NamedControllerOptions& n : ablated_controller_options()) {
     if (n.name == "default") continue;
     const Recording r = simulate(paper_scene("B3"), with(n.options));
     EXPECT_NE(r.steps[200].robots[1].position, standard) << n.name;

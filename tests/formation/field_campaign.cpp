@@ -17,7 +17,7 @@ using namespace exactvo;
 
 /// A set of controller options, by name.
 bool parse_controller_options(const std::string& text, formation::SimulationOptions& options) {
-  for (const auto& list : {formation::incremental_options(), formation::ablated_options()})
+  for (const auto& list : {formation::incremental_controller_options(), formation::ablated_controller_options()})
     for (const formation::NamedControllerOptions& n : list)
       if (n.name == text) options.controller_options = n.options;
   return options.controller_options.has_value();

@@ -273,7 +273,8 @@ std::string fallen_words(const Decision& d) {
   if (fallen == d.fell_back.end()) return "";
   const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
   return fmt::format(
-      "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at rest,\n"
+      "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at "
+      "rest,\n"
       "     looking {:g} s ahead, which standing still satisfies.\n",
       d.step.constraints[first].time_horizon);
 }

@@ -181,7 +181,7 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
       "median J");
   for (std::size_t i = 0; i < results.size(); ++i) {
     const VariantResult& v = results[i];
-    if (i == formation::incremental_options().size()) text += "\n";
+    if (i == formation::incremental_controller_options().size()) text += "\n";
     text += fmt::format("{:<22}{:>16}{:>9}{:>9}", v.name, v.good(), v.reached(), v.safe());
     for (const Json& run : scenes[i])
       text += fmt::format("{:>9}{}", shown(value_of(run, "jitter"), "{:.0f}"), formed_untouched(run) ? ' ' : '!');
@@ -220,7 +220,8 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
              {{"title", quoted(title)},
               {"end", fmt::format("{}", 1.12 * static_cast<double>(options.fields))},
               {"top", fmt::format("{}", n + 0.7)},
-              {"between", fmt::format("{}", n - static_cast<double>(formation::incremental_options().size()) + 0.5)},
+              {"between",
+               fmt::format("{}", n - static_cast<double>(formation::incremental_controller_options().size()) + 0.5)},
               {"plot", plot.text()}});
   return {"options", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body};
 }
@@ -268,7 +269,7 @@ std::vector<Variant> random_field_variants() {
 
 std::vector<Variant> option_variants() {
   std::vector<Variant> variants;
-  for (const auto& list : {formation::incremental_options(), formation::ablated_options()}) {
+  for (const auto& list : {formation::incremental_controller_options(), formation::ablated_controller_options()}) {
     for (const formation::NamedControllerOptions& n : list) {
       formation::SimulationOptions options;
       options.controller_options = n.options;
@@ -373,7 +374,7 @@ CampaignFiles ablations(const CampaignOptions& options, const fs::path& scenario
   const std::vector<VariantResult> results = run_campaign(variants, options);
   Json tree = Json::parse(campaign_json("exactvo-ablations", results, options));
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    tree["rows"][i]["set"] = i < formation::incremental_options().size() ? "incremental" : "ablation";
+    tree["rows"][i]["set"] = i < formation::incremental_controller_options().size() ? "incremental" : "ablation";
     tree["rows"][i]["scenes"] = scenes[i];
   }
   return {ablation_table(results, scenes, options),

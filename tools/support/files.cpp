@@ -61,7 +61,7 @@ bool is_of_a_figure(const fs::path& file) {
          second.rfind("# Draw again with: gnuplot", 0) == 0;
 }
 
-/// Their files were synced as they were written, the names of these not yet.
+/// The names of files. What is in recordings and tables was synced as they were written.
 void sync_folders(const fs::path& folder) {
   datasets::sync_directory(folder);
   for (const auto& entry : fs::directory_iterator(folder))
@@ -159,6 +159,7 @@ void StagedFolder::merge_into_target(const std::string& last) {
     fs::create_directories((target_ / file).parent_path());
     fs::rename(staging_ / file, target_ / file);
   }
+  sync_folders(target_);
 }
 
 }  // namespace exactvo::tools

@@ -68,8 +68,8 @@ std::optional<formation::ControllerOptions> controller_options_of(const Simulati
   if (flags.ablation.empty() && flags.switches.empty()) return std::nullopt;
   formation::ControllerOptions options = formation::controller_options_of(controller);
   if (!flags.ablation.empty()) {
-    const auto named = formation::options_named(flags.ablation);
-    const std::vector<std::string> names = formation::option_set_names();
+    const auto named = formation::controller_options_named(flags.ablation);
+    const std::vector<std::string> names = formation::controller_option_set_names();
     if (!named)
       throw UsageError("--ablation", flags.ablation,
                        fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(flags.ablation, names)));
@@ -95,9 +95,9 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
           ->capture_default_str(),
       app.add_option("--integrator", flags.integrator, help("Formation integrator", formation::integrator_names()))
           ->capture_default_str(),
-      app.add_option(
-          "--ablation", flags.ablation,
-          help("Instead of the controller, a named set of controller options", formation::option_set_names())),
+      app.add_option("--ablation", flags.ablation,
+                     help("Instead of the controller, a named set of controller options",
+                          formation::controller_option_set_names())),
       app.add_option("--controller-option", flags.switches,
                      fmt::format("Switch a controller option: NAME=on or NAME=off, repeatable: {}; "
                                  "acceleration_bound=8 (m/s^2)",

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/algorithm/string/replace.hpp>
 
 #include "files/system_error.h"
 
@@ -246,10 +245,6 @@ std::string excerpt(std::string_view text, std::size_t byte, std::size_t length)
     shown += c >= 0x20 && c < 0x7f ? c : '?';
   }
   return shown + "\"";
-}
-
-std::string csv_quoted(const std::string& text) {
-  return "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
 
 }  // namespace exactvo::datasets

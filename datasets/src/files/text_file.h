@@ -32,7 +32,4 @@ std::string csv_quoted(std::string_view text);
 /// At most `length` printable characters from `byte` on, in quotes, for messages; in words if there are none.
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length = 20);
 
-/// In quotes, as a field of CSV: quotes in it are doubled (RFC 4180).
-std::string csv_quoted(const std::string& text);
-
 }  // namespace exactvo::datasets

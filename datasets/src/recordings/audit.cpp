@@ -282,19 +282,10 @@ AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError&
   return report;
 }
 
-/// Only these begin in rows that have passed.
-bool may_have_plans(const RecordingFile& file) {
-  return file.scenario.robots.size() > 1 && file.info.liveness == formation::name(formation::Liveness::plan);
-}
-
 }  // namespace
 
 AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
-    : file(recorded),
-      scenario(file.scenario),
-      duration(file.recording.time_step),
-      places(file, may_have_plans(file) ? PlacesInRows::kMostPositions : 0),
-      tally(counts) {
+    : file(recorded), scenario(file.scenario), duration(file.recording.time_step), places(file), tally(counts) {
   for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.emplace_back(o.shape);
   for (const formation::MovingObstacle& o : scenario.moving_obstacles) ways.emplace_back(o.motion);
   if (file.recording.motion == MotionLaw::exponential) law.emplace(Rational(file.recording.tracking_gain), duration);

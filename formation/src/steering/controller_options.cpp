@@ -39,7 +39,7 @@ ControllerOptions controller_options_of(Controller controller) {
   return r;
 }
 
-std::vector<NamedControllerOptions> incremental_options() {
+std::vector<NamedControllerOptions> incremental_controller_options() {
   using R = ControllerOptions;
   std::vector<NamedControllerOptions> sets{{"signs", controller_options_of(Controller::paper_signs)}};
   sets.front().options.margins = false;
@@ -57,7 +57,7 @@ std::vector<NamedControllerOptions> incremental_options() {
   return sets;
 }
 
-std::vector<NamedControllerOptions> ablated_options() {
+std::vector<NamedControllerOptions> ablated_controller_options() {
   using R = ControllerOptions;
   const R all;
   return {{"default", all},
@@ -93,16 +93,16 @@ ControllerOptions switched(ControllerOptions base, const AskedControllerOptions&
   return base;
 }
 
-std::optional<ControllerOptions> options_named(const std::string& name) {
-  for (const auto& list : {incremental_options(), ablated_options()})
+std::optional<ControllerOptions> controller_options_named(const std::string& name) {
+  for (const auto& list : {incremental_controller_options(), ablated_controller_options()})
     for (const NamedControllerOptions& n : list)
       if (n.name == name) return n.options;
   return std::nullopt;
 }
 
-std::vector<std::string> option_set_names() {
+std::vector<std::string> controller_option_set_names() {
   std::vector<std::string> names;
-  for (const auto& list : {incremental_options(), ablated_options()})
+  for (const auto& list : {incremental_controller_options(), ablated_controller_options()})
     for (const NamedControllerOptions& n : list) names.push_back(n.name);
   return names;
 }

@@ -280,8 +280,8 @@ std::vector<TrapPlace> places_of(const detail::StaticField& field, const detail:
   return places;
 }
 
-/// Marks where the robots cannot be. Somewhere within `kRounded` of the rest a smaller disc would be free at the rest
-/// too.
+/// Marks where the robots cannot be. Places are rounded: a disc smaller by `kRounded` has room at the rounded place
+/// where the robot has room at the exact one.
 void mark_out_of_reach(const Scenario& scenario, std::vector<TrapFinding>& findings) {
   constexpr double kRounded = 1e-3;  // of the radius: far above the rounding of a place
   detail::Reachability reach(scenario, 0.0, false);

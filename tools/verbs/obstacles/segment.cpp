@@ -40,7 +40,7 @@ struct SegmentFlags {
   std::string out, figure;
 };
 
-struct TakenApart {
+struct Decomposed {
   datasets::RecordHead head;
   ObstacleShapes shapes;
   const datasets::ObstacleFile* file = nullptr;
@@ -59,13 +59,13 @@ void check(const SegmentFlags& flags) {
     throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
 }
 
-std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const SegmentFlags& flags) {
+std::vector<Decomposed> decomposed(const std::vector<FileAnswer>& answers, const SegmentFlags& flags) {
   geometry::ShapeOptions options;
   options.facades.tolerance = flags.tolerance;
   options.robot_radius = flags.radius;
   options.facade_ellipses.margin = flags.facade_margin;
   options.check_validity = false;  // the reader did
-  std::vector<TakenApart> all;
+  std::vector<Decomposed> all;
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const formation::SceneObstacle& o : answer.content->obstacles) {
@@ -78,9 +78,9 @@ std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const
 
 // --- Records and features ---
 
-std::string records(const std::vector<TakenApart>& all) {
+std::string records(const std::vector<Decomposed>& all) {
   std::string text;
-  for (const TakenApart& t : all) text += datasets::to_json(t.head, t.shapes) + "\n";
+  for (const Decomposed& t : all) text += datasets::to_json(t.head, t.shapes) + "\n";
   return text;
 }
 
@@ -104,7 +104,7 @@ class Features {
  public:
   explicit Features(bool metres) : metres_(metres) {}
 
-  void add(const TakenApart& t) {
+  void add(const Decomposed& t) {
     choose_plane(*t.file);
     const ObstacleShapes& s = t.shapes;
     for (const geometry::Segment& f : s.facades.facades) feature(t, "facade", s.facades_follow, {f.a, f.b});
@@ -139,7 +139,7 @@ class Features {
     to_degrees_ = std::make_unique<datasets::MetresToDegrees>(plane_, file.file);
   }
 
-  static OrderedJson head(const TakenApart& t, const char* what) {
+  static OrderedJson head(const Decomposed& t, const char* what) {
     return {{"file", t.head.file}, {"id", t.head.id}, {"shape", what}};
   }
 
@@ -149,7 +149,7 @@ class Features {
                          {"geometry", ring_geometry(to_degrees_ ? (*to_degrees_)(points) : points)}});
   }
 
-  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const Points& points) {
+  void feature(const Decomposed& t, const char* what, const geometry::Verdict& verdict, const Points& points) {
     OrderedJson properties = head(t, what);
     properties["certified"] = verdict.certified;
     add(std::move(properties), points);
@@ -157,7 +157,7 @@ class Features {
 
   /// The drawn outline has its corners on the ellipse and so lies within it: the certificate is the ellipse's, whose
   /// numbers, m, stand beside it.
-  void ellipse(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const geometry::Ellipse& e) {
+  void ellipse(const Decomposed& t, const char* what, const geometry::Verdict& verdict, const geometry::Ellipse& e) {
     OrderedJson properties = head(t, what);
     properties["ellipse_certified"] = verdict.certified;
     properties["center_x"] = e.center.x;
@@ -176,11 +176,11 @@ class Features {
   OrderedJson features_ = OrderedJson::array();
 };
 
-void write_out(const std::vector<TakenApart>& all, const SegmentFlags& flags) {
+void write_out(const std::vector<Decomposed>& all, const SegmentFlags& flags) {
   const std::string& out = flags.out;
   if (std::filesystem::path(out).extension() == ".jsonl") return datasets::write_file_atomically(out, records(all));
   Features features(flags.metres);
-  for (const TakenApart& t : all) features.add(t);
+  for (const Decomposed& t : all) features.add(t);
   datasets::write_file_atomically(out, features.text());
 }
 
@@ -190,7 +190,7 @@ const char* word(const geometry::Verdict& verdict) {
   return verdict.certified ? "certified" : "NOT certified";
 }
 
-std::string words_of(const TakenApart& t) {
+std::string words_of(const Decomposed& t) {
   const ObstacleShapes& s = t.shapes;
   const geometry::ShapeMeasurements& f = s.measurements;
   return fmt::format(
@@ -208,18 +208,18 @@ std::string title_of_shapes(const std::vector<std::string>& files, std::size_t o
   return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
 }
 
-void draw_figure(const std::vector<TakenApart>& all, const SegmentFlags& flags) {
+void draw_figure(const std::vector<Decomposed>& all, const SegmentFlags& flags) {
   if (all.empty()) return message("no figure: no obstacle");
   std::vector<ObstacleShapes> shapes;
-  for (const TakenApart& t : all) shapes.push_back(t.shapes);
+  for (const Decomposed& t : all) shapes.push_back(t.shapes);
   write_figure(shapes_figure(shapes, title_of_shapes(flags.files, all.size())), flags.figure);
 }
 
 // --- The verb ---
 
-ExitCode exit_code(const std::vector<FileAnswer>& answers, const std::vector<TakenApart>& all) {
+ExitCode exit_code(const std::vector<FileAnswer>& answers, const std::vector<Decomposed>& all) {
   const bool all_read = std::all_of(answers.begin(), answers.end(), [](const FileAnswer& a) { return a.is_whole(); });
-  const bool proved = std::all_of(all.begin(), all.end(), [](const TakenApart& t) { return t.shapes.certified(); });
+  const bool proved = std::all_of(all.begin(), all.end(), [](const Decomposed& t) { return t.shapes.certified(); });
   return all_read && proved ? ExitCode::success : ExitCode::negative;
 }
 
@@ -237,7 +237,7 @@ ExitCode segment(const SegmentFlags& flags) {
   for (const FileAnswer& answer : answers) {
     for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
   }
-  const std::vector<TakenApart> all = take_apart(answers, flags);
+  const std::vector<Decomposed> all = decomposed(answers, flags);
   for (const FileAnswer& answer : answers) {
     if (answer.content->obstacles.empty()) message("no obstacle in " + counts_line(answer));
   }
@@ -248,7 +248,7 @@ ExitCode segment(const SegmentFlags& flags) {
   if (!flags.figure.empty()) draw_figure(all, flags);
   if (flags.json) print(records(all));
   if (!flags.json && flags.out.empty()) {
-    for (const TakenApart& t : all) print(words_of(t));
+    for (const Decomposed& t : all) print(words_of(t));
   }
   return exit_code(answers, all);
 }

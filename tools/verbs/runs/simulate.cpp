@@ -199,9 +199,10 @@ void note_crowd(const datasets::LoadedScenario& read) {
   const formation::Scenario& scenario = read.scenario;
   const bool wants_plans = read.names_liveness && scenario.liveness != formation::Liveness::off;
   if (scenario.robots.size() < kManyRobots || wants_plans || !crowd_problems(scenario).empty()) return;
-  message(fmt::format("note: {} robots: --engine crowd can be more than a hundred times as fast, with method orca and "
-                      "without joint plans (docs/guide/crowd-recordings.md)",
-                      scenario.robots.size()));
+  message(
+      fmt::format("note: {} robots: --engine crowd can be more than a hundred times as fast, with method orca and "
+                  "without joint plans (docs/guide/crowd-recordings.md)",
+                  scenario.robots.size()));
 }
 
 /// `ranks`: null where this process is alone.

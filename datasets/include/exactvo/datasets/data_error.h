@@ -8,10 +8,8 @@
 ///
 /// See also: geometry/validity.h finds the problems of a ring, whose codes appear here under the same names.
 
-#include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "exactvo/geometry/validity.h"
 

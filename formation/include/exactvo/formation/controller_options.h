@@ -65,14 +65,14 @@ struct NamedControllerOptions {
 
 /// From the corrected signs without margins to the default, adding one option per step. (The paper's controllers
 /// themselves keep the scenario's margins.)
-std::vector<NamedControllerOptions> incremental_options();
+std::vector<NamedControllerOptions> incremental_controller_options();
 
 /// The default with one option taken away (or smoothing added) at a time.
-std::vector<NamedControllerOptions> ablated_options();
+std::vector<NamedControllerOptions> ablated_controller_options();
 
 /// The set of that name; nothing where there is none.
-std::optional<ControllerOptions> options_named(const std::string& name);
-/// The names that `options_named` knows.
-std::vector<std::string> option_set_names();
+std::optional<ControllerOptions> controller_options_named(const std::string& name);
+/// The names that `controller_options_named` knows.
+std::vector<std::string> controller_option_set_names();
 
 }  // namespace exactvo::formation

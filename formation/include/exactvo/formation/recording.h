@@ -25,13 +25,13 @@ struct DecisionConstraint {
   /// Of the enclosure (of those for the robot's present goal), the obstacle edge (counted over the scene), the other
   /// robot or the moving obstacle.
   std::size_t index = 0;
-  std::size_t piece = 0;   ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
-  bool certified = false;  ///< proven to exclude the velocity obstacle's interior
-  bool hard = true;        ///< false: of a robot, and may give where half-planes contradict each other
-  bool active = false;     ///< binds the chosen velocity
+  std::size_t piece = 0;      ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
+  bool certified = false;     ///< proven to exclude the velocity obstacle's interior
+  bool hard = true;           ///< false: of a robot, and may give where half-planes contradict each other
+  bool active = false;        ///< binds the chosen velocity
   double time_horizon = 0.0;  ///< s
-  std::size_t body = 0;    ///< of `Recording::bodies`
-  double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
+  std::size_t body = 0;       ///< of `Recording::bodies`
+  double clearance = 0.0;     ///< m, robot's rim to the body; negative in overlap. Rounded
   /// KKT multiplier: the weight of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 if inactive. Rounded.
   double multiplier = 0.0;
 };
@@ -171,8 +171,8 @@ struct Recording {
   /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.
   std::vector<vo::Body> bodies;
   std::vector<GoalBodies>
-      goal_bodies;                ///< in order of time: of every robot's first goal, then of others as they came up
-  std::vector<JointPlan> plans;   ///< in order of time
+      goal_bodies;               ///< in order of time: of every robot's first goal, then of others as they came up
+  std::vector<JointPlan> plans;  ///< in order of time
   std::optional<LivenessCourse> liveness;  ///< where robots may go by plan
   std::optional<RoutesCourse> routes;      ///< where robots go along routes
   bool all_half_planes = false;            ///< every half-plane of every decision was kept

@@ -124,12 +124,12 @@ struct Topology {
 
 /// What robots without goals do together.
 struct FormationSpec {
-  Topology topology;             ///< who hears whom
-  std::vector<Vec2> offsets;     ///< Delta_i, m
-  bool recentre = true;          ///< subtract mean(Delta), as equation (4) needs
-  Leader leader;                 ///< whom they follow
-  Gains gains;                   ///< of the controller
-  double catch_up_speed = 1.5;   ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
+  Topology topology;            ///< who hears whom
+  std::vector<Vec2> offsets;    ///< Delta_i, m
+  bool recentre = true;         ///< subtract mean(Delta), as equation (4) needs
+  Leader leader;                ///< whom they follow
+  Gains gains;                  ///< of the controller
+  double catch_up_speed = 1.5;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
   AskedControllerOptions controller_options = {};  ///< switched on or off beside what the controller has
 };
 

@@ -112,15 +112,15 @@ inline constexpr auto& liveness_names = names_of<Liveness>;      ///< in the ord
 
 /// What a run depends on beside its scenario.
 struct SimulationOptions {
-  Method method = Method::ivo;                   ///< how robots avoid obstacles
-  std::optional<Guidance> guidance;              ///< instead of the scenario's
-  std::optional<Liveness> liveness;              ///< instead of the scenario's
-  Controller controller = Controller::standard;  ///< used by formations only
-  Integrator integrator = Integrator::exact;     ///< used by formations only
+  Method method = Method::ivo;                          ///< how robots avoid obstacles
+  std::optional<Guidance> guidance;                     ///< instead of the scenario's
+  std::optional<Liveness> liveness;                     ///< instead of the scenario's
+  Controller controller = Controller::standard;         ///< used by formations only
+  Integrator integrator = Integrator::exact;            ///< used by formations only
   std::optional<ControllerOptions> controller_options;  ///< formations: these instead of the controller's
-  double facade_minor_to_major = 0.5;            ///< ivo_edge: b = this * a
-  double facade_fixed_minor = 0.0;               ///< m, ivo_edge: > 0 fixes b
-  bool record_all = false;                       ///< keep every half-plane, not only the active ones
+  double facade_minor_to_major = 0.5;                   ///< ivo_edge: b = this * a
+  double facade_fixed_minor = 0.0;                      ///< m, ivo_edge: > 0 fixes b
+  bool record_all = false;                              ///< keep every half-plane, not only the active ones
   int threads = 1;  ///< 1 ... 1024, that search for joint plans; 0: as many as there are. The run is the same
   /// s, >= 0: stop after the last row at or before this time, keeping every half-plane of its decision.
   std::optional<double> stop_at;

@@ -29,8 +29,9 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-/// The known word nearest to `word`, whatever the case of ASCII letters. Empty where none is near enough to be meant: a
-/// third of the letters of the shorter word may differ, one always, two of five. Heuristic.
+/// The known word nearest to `word`, whatever the case of ASCII letters. Empty where none is near enough to be meant:
+/// of the letters of the shorter word one of two to four may differ, two of five and more, a third of longer words.
+/// Heuristic.
 inline std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   const auto lower = [](std::string text) {
     for (char& c : text)
