@@ -166,7 +166,7 @@ TEST(Explanation, SaysForWhomARobotWaitsAndWhichPairsFellBack) {
   d.waiting = "R1 waits for R2, which moves";
   d.step.constraints[1].source = ConstraintSource::robot;
   d.step.constraints[1].index = 0;
-  d.step.constraints[1].tau = 0.1;
+  d.step.constraints[1].time_horizon = 0.1;
   d.fell_back = {0, 1};
   EXPECT_THAT(explanation(d), HasSubstr("  waiting    R1 waits for R2, which moves\n"));
   EXPECT_THAT(explanation(d), HasSubstr("[2] robot R1 (the pair fell back), binding"));
