@@ -91,6 +91,7 @@ RecordingFile parse_recording(const std::string& text, const std::string& file_n
 /// as RecordingWriter.
 class TrajectoryWriter {
  public:
+  /// Throws DataError where it can't be written.
   TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario);
   ~TrajectoryWriter();
   /// Adds the rows of one step.
@@ -107,6 +108,7 @@ class TrajectoryWriter {
 /// column names; a derivative that does not exist is an empty cell. Whole or not at all, as RecordingWriter.
 class LyapunovWriter {
  public:
+  /// Throws DataError where it can't be written.
   explicit LyapunovWriter(const std::filesystem::path& path);
   ~LyapunovWriter();
   /// Adds the row of one step.
