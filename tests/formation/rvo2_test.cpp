@@ -120,16 +120,16 @@ class Rvo2Block : public testing::Test {
   RVOSimulator sim;
 };
 
-TEST_F(Rvo2Block, AgentsPassItOrStopBeforeItAsThoseOfRvo2Do) {
-  std::vector<Vector2> goals, ends;
+/// RVO2's last two stop before the block for good, at (-2.4, y); these turn to the right, since others hold them up.
+TEST_F(Rvo2Block, AgentsPassItAsThoseOfRvo2DoAndThoseThatStopTherePassToo) {
+  std::vector<Vector2> goals;
   for (int i = 0; i < 6; ++i) {
     const float y = 0.9F * static_cast<float>(i) - 4.0F;
     sim.addAgent({-8.0F, y});
     goals.push_back({8.0F, y});
-    ends.push_back({i < 4 ? 8.0F : -2.4F, y});
   }
-  EXPECT_EQ(steps_to(sim, goals, 0.2F, 400), 400U);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(RVO::abs(sim.getAgentPosition(i) - ends[i]), 2e-3F) << i;
+  EXPECT_LT(steps_to(sim, goals, 0.2F, 400), 200U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(RVO::abs(sim.getAgentPosition(i) - goals[i]), 0.2F) << i;
 }
 
 TEST_F(Rvo2Block, VisibilityIsThatOfRvo2) {
