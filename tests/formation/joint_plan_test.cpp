@@ -305,14 +305,15 @@ TEST(Groups, AStepOfABoxBoundIsGoneBackInOneStep) {
   Scenario s;
   Robot& r = s.robots.emplace_back();
   const Vec2 fastest{r.max_speed * s.time_step, -r.max_speed * s.time_step};
-  s.speed_bound = SpeedBoundKind::box;
+  DecisionRules rules = rules_of(s, {});
+  rules.speed_bound = SpeedBoundKind::box;
   constexpr double kRounding = 1e-12;
   for (const double share : {0.5, 1.0, 4.0}) {
     const Vec2 expected = std::min(1.0, share) / s.time_step * fastest;
-    EXPECT_NEAR(norm(velocity_along(s, 0, share * fastest) - expected), 0.0, kRounding) << share;
+    EXPECT_NEAR(norm(velocity_along(rules, r.max_speed, share * fastest) - expected), 0.0, kRounding) << share;
   }
-  s.speed_bound = SpeedBoundKind::disc;
-  EXPECT_NEAR(norm(velocity_along(s, 0, fastest)), r.max_speed, kRounding);
+  rules.speed_bound = SpeedBoundKind::disc;
+  EXPECT_NEAR(norm(velocity_along(rules, r.max_speed, fastest)), r.max_speed, kRounding);
 }
 
 /// A map of all that stand together on a large ring had more places than memory.
@@ -338,7 +339,8 @@ TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
   }
   const ObstacleSpace open({});
   int asked = 0;
-  Groups groups(s, open, true, 1, [&] { return ++asked > 300; });  // a few plans are enough
+  const DecisionRules rules = rules_of(s, {});
+  Groups groups(s, rules, s.robots, open, true, 1, [&] { return ++asked > 300; });  // a few plans are enough
   const auto way_left = [](std::size_t) { return 3.0; };
   groups.begin_step(0.0, now, way_left);
   groups.end_step(row);
@@ -436,6 +438,7 @@ TEST(Lemmas, Lemma4_EveryStepOfARunMayBeGoneBackwards) {
   }
   const Recording run = simulate(s);
   const SimulationOptions options;
+  const DecisionRules rules = rules_of(s, options);
   Scene scene(s, options);
   std::vector<std::vector<Constraint>> constraints;
   std::size_t pairs = 0;
@@ -448,8 +451,9 @@ TEST(Lemmas, Lemma4_EveryStepOfARunMayBeGoneBackwards) {
       back.emplace_back((run.steps[k - 1].robots[i].position - here) / s.time_step);
     }
     PairMemory memory;
-    robot_constraints(s, options, anchors, scene, memory, constraints);
-    follow_plans(s, anchors, scene, back, constraints);
+    const RobotsAt now{rules, s.robots, anchors, scene};
+    robot_constraints(now, memory, constraints);
+    follow_plans(now, back, constraints);
     for (std::size_t i = 0; i < s.robots.size(); ++i) {
       pairs += constraints[i].size();
       EXPECT_EQ(allowed_share(*back[i], {}, constraints[i]), 1.0) << run.steps[k].time << " " << i;

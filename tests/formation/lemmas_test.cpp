@@ -15,6 +15,7 @@
 #include "exactvo/formation/simulation.h"
 #include "liveness/groups.h"
 #include "liveness_scenes.h"
+#include "scene/step_limits.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
@@ -54,7 +55,7 @@ TEST(Lemmas, Lemma1_HalvesOfAPairAddUpAndNothingIsRelaxed) {
     SimulationOptions options;
     options.record_all = true;
     const Recording run = simulate(s, options);
-    const double at_rest = detail::contact_time(s);
+    const double at_rest = detail::contact_time(s.time_step);
     for (std::size_t row = 0; row + 1 < run.steps.size(); ++row) {
       const Step& step = run.steps[row];
       std::map<std::pair<std::size_t, std::size_t>, const RecordedConstraint*> half;
@@ -104,13 +105,13 @@ class Backwards {
     std::vector<std::unique_ptr<detail::StaticField>> fields;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
-      fields.push_back(std::make_unique<detail::StaticField>(scene, scenario_, options_, r.radius, r.position,
-                                                             r.goals[0], detail::HorizonRule::clamped));
+      fields.push_back(std::make_unique<detail::StaticField>(scene, rules_, r.radius, r.position, r.goals[0],
+                                                             detail::HorizonRule::clamped));
       fields.back()->set_margin(0.0);
       file_.recording.goal_bodies.push_back({0.0, i, 0, fields.back()->shapes()});
       at_.push_back({r.position, r.velocity});
     }
-    detail::Decider decider(scenario_, scene.bodies());
+    detail::Decider decider(rules_, scene.bodies());
     for (std::size_t row = run_.steps.size() - 1; row > 0; --row) add_row(row, scene, fields, decider);
     Step last;
     last.time = time();
@@ -143,10 +144,12 @@ class Backwards {
                detail::Decider& decider) {
     std::vector<std::optional<Vec2>> back;
     for (std::size_t i = 0; i < at_.size(); ++i)
-      back.emplace_back(detail::velocity_along(scenario_, i, run_.steps[row - 1].robots[i].position - at_[i].position));
+      back.emplace_back(detail::velocity_along(rules_, scenario_.robots[i].max_speed,
+                                               run_.steps[row - 1].robots[i].position - at_[i].position));
     detail::PairMemory memory;
-    detail::robot_constraints(scenario_, options_, at_, scene, memory, others_);
-    detail::follow_plans(scenario_, at_, scene, back, others_);
+    const detail::RobotsAt now{rules_, scenario_.robots, at_, scene};
+    detail::robot_constraints(now, memory, others_);
+    detail::follow_plans(now, back, others_);
     Step step;
     step.time = time();
     for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -155,7 +158,7 @@ class Backwards {
       const Robot& spec = scenario_.robots[i];
       detail::Viewpoint here{at_[i].position, *back[i], spec.radius, spec.max_speed};
       here.horizon = scenario_.time_step;
-      fields[i]->constraints(here, statics_, detail::reach_of_step(scenario_, here));
+      fields[i]->constraints(here, statics_, detail::reach_of_step(rules_.time_step, here.max_speed));
       const std::optional<double> share = detail::allowed_share(*back[i], statics_, others_[i]);
       EXPECT_TRUE(share.has_value() && *share == 1.0) << "row " << row << ", robot " << i;
       decider.decide({share.value_or(0.0) * *back[i], here, &statics_, &others_[i], false}, r);
@@ -170,6 +173,7 @@ class Backwards {
   const Recording& run_;
   Scenario scenario_;
   SimulationOptions options_;
+  detail::DecisionRules rules_ = detail::rules_of(scenario_, options_);
   datasets::RecordingFile file_;
   std::vector<detail::Anchor> at_;
   std::vector<detail::Constraint> statics_;

@@ -653,13 +653,15 @@ TEST(Liveness, APairThatFallsBackMayRest) {
     s.robots[1].position =
         (s.robots[0].radius + s.robots[1].radius + gap) * geometry::rotated({1.0, 0.0}, random.uniform(0.0, kTurn));
     const SimulationOptions options;
+    const detail::DecisionRules rules = detail::rules_of(s, options);
     detail::Scene scene(s, options);
     std::vector<detail::Anchor> anchors{{s.robots[0].position, random.in_box(2.0)},
                                         {s.robots[1].position, random.in_box(2.0)}};
     std::vector<std::vector<detail::Constraint>> constraints;
     detail::PairMemory memory;
-    detail::robot_constraints(s, options, anchors, scene, memory, constraints);
-    detail::fall_back(s, anchors, scene, 0, 1, constraints);
+    const detail::RobotsAt now{rules, s.robots, anchors, scene};
+    detail::robot_constraints(now, memory, constraints);
+    detail::fall_back(now, 0, 1, constraints);
     for (int i = 0; i < 2; ++i) {
       ASSERT_EQ(constraints[i].size(), 1u);
       EXPECT_LE(constraints[i][0].half_plane.offset, 0.0) << gap;

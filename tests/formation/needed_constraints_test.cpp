@@ -16,6 +16,7 @@
 #include "exactvo/datasets/generators.h"
 #include "generators/counter_random.h"
 #include "paper_scenes.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -23,7 +24,7 @@ namespace {
 /// A floor, or a field of polygons, seen by a robot at random places, going anywhere at any speed.
 struct Sight {
   Scenario scenario;
-  SimulationOptions options;
+  DecisionRules rules;
   std::optional<Scene> scene;
   std::optional<StaticField> field;
   geometry::Box extent;
@@ -35,9 +36,11 @@ struct Sight {
       for (SceneObstacle& o : datasets::generated_item(kind, item, 11)) scenario.obstacles.push_back(std::move(o));
     for (const SceneObstacle& o : scenario.obstacles)
       for (const Vec2 p : vertices_of(o.shape)) extent.add(p);
+    SimulationOptions options;
     options.method = method;
+    rules = rules_of(scenario, options);
     scene.emplace(scenario, options);
-    field.emplace(*scene, scenario, options, 0.2, extent.low, extent.high, HorizonRule::clamped);
+    field.emplace(*scene, rules, 0.2, extent.low, extent.high, HorizonRule::clamped);
   }
 
   Viewpoint draw(datasets::CounterRandom& random) const {
@@ -190,15 +193,13 @@ TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
   datasets::CounterRandom random(4);
   NeededConstraints needed;
   std::vector<Constraint> all;
-  Scenario one = sight.scenario;
-  one.robots.emplace_back();
-  Decider decider(one, sight.scene->bodies());
+  Decider decider(sight.rules, sight.scene->bodies());
   const std::vector<Constraint> others;
   for (int k = 0; k < 2000; ++k) {
     const Viewpoint from = sight.draw(random);
     const Vec2 preferred = Sight::velocity(random);
     sight.field->constraints(from, all);
-    needed.look(*sight.field, from, reach_of_step(one, from));
+    needed.look(*sight.field, from, reach_of_step(sight.rules.time_step, from.max_speed));
     RobotStep of_all, of_needed;
     decider.decide({preferred, from, &all, &others, false, nullptr}, of_all);
     decider.decide({preferred, from, &needed.lines(), &others, false, &needed}, of_needed);

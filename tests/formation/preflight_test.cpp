@@ -9,7 +9,7 @@
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
 #include "preflight/open_way.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
@@ -169,7 +169,7 @@ TEST(Preflight, AgreesWithAFloodedGrid) {
     const Vec2 start = s.robots[0].position, goal = s.robots[0].goals[0];
     const Flood certain(s, kDiagonal);
     if (!certain.is_free(start) || !certain.is_free(goal)) continue;
-    const bool shut = !detail::Reachability(s).reachable_place(kRadius, start, {goal, 0.0});
+    const bool shut = !detail::Reachability(detail::terrain_of(s)).reachable_place(kRadius, start, {goal, 0.0});
     if (certain.connects(start, goal)) {
       EXPECT_FALSE(shut) << "case " << k << ": a way exists";
       ++joined;
@@ -193,7 +193,7 @@ TEST(OpenWay, IsFoundOnlyWhereNothingSeparates) {
   for (int k = 0; k < 300; ++k) {
     const Scenario s = random_scene(random);
     const Vec2 start = s.robots[0].position, goal = s.robots[0].goals[0];
-    const bool separated = !detail::Reachability(s).reachable_place(kRadius, start, {goal, 0.0});
+    const bool separated = !detail::Reachability(detail::terrain_of(s)).reachable_place(kRadius, start, {goal, 0.0});
     if (detail::OpenWay(s.obstacles).is_found(start, goal, kRadius)) {
       EXPECT_FALSE(separated) << "case " << k;
       EXPECT_TRUE(Flood(s, -kDiagonal).connects(start, goal)) << "case " << k;

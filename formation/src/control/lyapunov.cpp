@@ -8,7 +8,7 @@
 #include "control/consensus.h"
 #include "control/lyapunov_accumulator.h"
 #include "exactvo/geometry/require.h"
-#include "runs/rows.h"
+#include "scene/borrowed_row.h"
 
 namespace exactvo::formation {
 namespace {

@@ -2,25 +2,15 @@
 #include "decision/decision.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
-#include "scene/moving.h"
 #include "scene/near_pairs.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 namespace {
-
-/// The farthest velocity of a box bound, in sides of it.
-const double kFastest = std::sqrt(2.0);
-
-/// m: how much nearer two that have these speeds together can come within a step.
-double reach_within(double time_step, double speeds) {
-  constexpr double kRounding = 1.0 + 1e-6;  // clearances are rounded
-  return kRounding * time_step * speeds;
-}
 
 Constraint against_robot(const geometry::HalfPlane& h, bool certified, const Party& self, const Party& other,
                          double tau) {
@@ -34,7 +24,7 @@ Constraint against_robot(const geometry::HalfPlane& h, bool certified, const Par
   c.normal = geometry::normalized(apart);
   c.time_horizon = tau;
   c.index = other.index;
-  c.speed = kFastest * other.max_speed;
+  c.speed = kBoxDiagonal * other.max_speed;
   return c;
 }
 
@@ -45,10 +35,9 @@ const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t 
   return nullptr;
 }
 
-Party party(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-            Vec2 velocity) {
-  const Robot& r = scenario.robots[i];
-  return {i, scene.robot(i), {anchors[i].position, velocity, r.radius}, r.max_speed, r.cooperates};
+Party party(const RobotsAt& now, std::size_t i, Vec2 velocity) {
+  const Robot& r = now.robots[i];
+  return {i, now.scene.robot(i), {now.anchors[i].position, velocity, r.radius}, r.max_speed, r.cooperates};
 }
 
 /// Where both yield, or neither does: half each.
@@ -65,11 +54,10 @@ Constraint* against(std::size_t robot, const Scene& scene, std::vector<Constrain
 
 /// The half-planes of two robots that stand still, which keep a gap between them. Where it is used up, neither comes
 /// nearer.
-PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-                        std::size_t j, double time_horizon, double gap) {
+PairConstraints at_rest(const RobotsAt& now, std::size_t i, std::size_t j, double time_horizon, double gap) {
   vo::ReciprocalOptions options;
   options.time_horizon = options.contact_time = time_horizon;
-  const Party a = party(scenario, anchors, scene, i, {}), b = party(scenario, anchors, scene, j, {});
+  const Party a = party(now, i, {}), b = party(now, j, {});
   const double centres = norm(a.disc.position - b.disc.position);
   // With some rounding: where a robot is held from all sides, half-planes through 0 leave it 0, and others a region
   // between doubles.
@@ -83,17 +71,15 @@ PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anc
 }
 
 /// Both go by a plan.
-PairConstraints with_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                           std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
+PairConstraints with_plans(const RobotsAt& now, std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
   vo::ReciprocalOptions options;
-  options.time_horizon = options.contact_time = scenario.time_step;
-  return half_each(party(scenario, anchors, scene, i, of_i), party(scenario, anchors, scene, j, of_j), options);
+  options.time_horizon = options.contact_time = now.rules.time_step;
+  return half_each(party(now, i, of_i), party(now, j, of_j), options);
 }
 
 /// One of them goes by a plan: the whole gap is its.
-PairConstraints with_a_plan(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                            std::size_t i, std::size_t j, bool it_is_i, double gap) {
-  PairConstraints pair = at_rest(scenario, anchors, scene, i, j, scenario.time_step, gap);
+PairConstraints with_a_plan(const RobotsAt& now, std::size_t i, std::size_t j, bool it_is_i, double gap) {
+  PairConstraints pair = at_rest(now, i, j, now.rules.time_step, gap);
   const double whole = 2.0 * std::max(pair.of_a.half_plane.offset, pair.of_b.half_plane.offset);
   pair.of_a.half_plane.offset = it_is_i ? whole : 0.0;
   pair.of_b.half_plane.offset = it_is_i ? 0.0 : whole;
@@ -102,12 +88,12 @@ PairConstraints with_a_plan(const Scenario& scenario, const std::vector<Anchor>&
 
 }  // namespace
 
-vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOptions& options) {
+vo::ReciprocalOptions pair_rule(const DecisionRules& rules) {
   vo::ReciprocalOptions rule;
-  const bool baseline = options.method == Method::orca;
-  rule.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
-  rule.contact_time = contact_time(scenario);
-  rule.margin = std::max(kContactSkin, baseline ? 0.0 : scenario.margins.robot);
+  const bool baseline = rules.method == Method::orca;
+  rule.time_horizon = baseline ? rules.horizons.orca : rules.horizons.robots;
+  rule.contact_time = contact_time(rules.time_step);
+  rule.margin = std::max(kContactSkin, baseline ? 0.0 : rules.margins.robot);
   return rule;
 }
 
@@ -140,30 +126,28 @@ void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Cons
   }
 }
 
-void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
-                       Scene& scene, PairMemory& memory, std::vector<std::vector<Constraint>>& out) {
-  const std::size_t n = scenario.robots.size();
+void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out) {
+  const auto& [rules, robots, anchors, scene] = now;
+  const std::size_t n = robots.size();
   out.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     out[i].clear();
-    scene.bodies().move(scene.robot(i), geometry::Disc{anchors[i].position, scenario.robots[i].radius},
-                        anchors[i].velocity);
+    scene.bodies().move(scene.robot(i), geometry::Disc{anchors[i].position, robots[i].radius}, anchors[i].velocity);
   }
-  const vo::ReciprocalOptions rule = pair_rule(scenario, options);
+  const vo::ReciprocalOptions rule = pair_rule(rules);
   std::vector<Vec2>& places = memory.places;
   places.clear();
   for (const Anchor& anchor : anchors) places.push_back(anchor.position);
   double radius = 0.0, speed = 0.0;
-  for (const Robot& r : scenario.robots) {
+  for (const Robot& r : robots) {
     radius = std::max(radius, r.radius);
     speed = std::max(speed, r.max_speed);
   }
-  for_each_near_pair(places, sight_of(scenario, 2.0 * radius, 2.0 * speed), [&](std::size_t i, std::size_t j) {
-    const Robot &r = scenario.robots[i], &other = scenario.robots[j];
-    if (norm(places[i] - places[j]) > sight_of(scenario, r.radius + other.radius, r.max_speed + other.max_speed))
+  for_each_near_pair(places, sight_of(rules, 2.0 * radius, 2.0 * speed), [&](std::size_t i, std::size_t j) {
+    const Robot &r = now.robots[i], &other = now.robots[j];
+    if (norm(places[i] - places[j]) > sight_of(now.rules, r.radius + other.radius, r.max_speed + other.max_speed))
       return;
-    const Party a = party(scenario, anchors, scene, i, anchors[i].velocity);
-    const Party b = party(scenario, anchors, scene, j, anchors[j].velocity);
+    const Party a = party(now, i, now.anchors[i].velocity), b = party(now, j, now.anchors[j].velocity);
     const PairConstraints pair = against_each_other(a, b, rule);
     if (a.yields) out[i].push_back(pair.of_a);
     if (b.yields) out[j].push_back(pair.of_b);
@@ -175,36 +159,35 @@ bool is_of_robot(const Scene& scene, const Constraint& c) {
   return scene.bodies()[c.body].kind == vo::BodyKind::robot;
 }
 
-void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-               std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap) {
-  Constraint* mine = against(j, scene, constraints[i]);
-  Constraint* theirs = against(i, scene, constraints[j]);
+void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<std::vector<Constraint>>& constraints,
+               double gap) {
+  Constraint* mine = against(j, now.scene, constraints[i]);
+  Constraint* theirs = against(i, now.scene, constraints[j]);
   if (!mine || !theirs) return;
-  const PairConstraints pair = at_rest(scenario, anchors, scene, i, j, contact_time(scenario), gap);
+  const PairConstraints pair = at_rest(now, i, j, contact_time(now.rules.time_step), gap);
   *mine = pair.of_a;
   *theirs = pair.of_b;
 }
 
-void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,
-                  double gap) {
-  const auto yields = [&](std::size_t i) { return scenario.robots[i].cooperates; };
+void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
+                  std::vector<std::vector<Constraint>>& constraints, double gap) {
+  const auto yields = [&](std::size_t i) { return now.robots[i].cooperates; };
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     std::vector<Constraint>& mine = constraints[i];
     // What a large crowd answers at once comes first: most have no plan, and nobody near them has one.
     const auto is_theirs = [&](const Constraint& c) {
-      return (planned[i] || planned[c.index]) && is_of_robot(scene, c) && yields(c.index);
+      return (planned[i] || planned[c.index]) && is_of_robot(now.scene, c) && yields(c.index);
     };
     const auto is_far = [&](const Constraint& c) {
-      const double speeds = scenario.robots[i].max_speed + scenario.robots[c.index].max_speed;
-      return is_theirs(c) && c.clearance > reach_within(scenario.time_step, kFastest * speeds);
+      const double speeds = now.robots[i].max_speed + now.robots[c.index].max_speed;
+      return is_theirs(c) && c.clearance > reach_within(now.rules.time_step, kBoxDiagonal * speeds);
     };
     mine.erase(std::remove_if(mine.begin(), mine.end(), is_far), mine.end());
     for (Constraint& c : mine) {
       if (!is_theirs(c)) continue;
       const std::size_t j = c.index;
-      c = planned[i] && planned[j] ? with_plans(scenario, anchors, scene, i, *planned[i], j, *planned[j]).of_a
-                                   : with_a_plan(scenario, anchors, scene, i, j, planned[i].has_value(), gap).of_a;
+      c = planned[i] && planned[j] ? with_plans(now, i, *planned[i], j, *planned[j]).of_a
+                                   : with_a_plan(now, i, j, planned[i].has_value(), gap).of_a;
     }
   }
 }
@@ -224,13 +207,9 @@ std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>
   return most;
 }
 
-double contact_time(const Scenario& scenario) {
-  return std::max(scenario.time_step, vo::ReciprocalOptions{}.contact_time);
-}
-
-lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
+lp::SpeedBound speed_bound(SpeedBoundKind kind, double max_speed) {
   lp::SpeedBound bound;
-  if (scenario.speed_bound == SpeedBoundKind::disc) {
+  if (kind == SpeedBoundKind::disc) {
     bound.disc = max_speed;
   } else {
     bound.box_x = bound.box_y = max_speed;
@@ -238,18 +217,9 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
-double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j) {
-  return reach_within(scenario.time_step,
-                      kFastest * scenario.robots[i].max_speed + kFastest * scenario.robots[j].max_speed);
-}
-
-double reach_of_step(const Scenario& scenario, const Viewpoint& from) {
-  return reach_within(scenario.time_step, kFastest * from.max_speed);
-}
-
 /// m: how much nearer the robot and the body can come within a step, whatever is decided.
 double Decider::reach_of(const Constraint& c, const Viewpoint& from) const {
-  return reach_within(scenario_->time_step, kFastest * from.max_speed + c.speed);
+  return reach_within(rules_->time_step, kBoxDiagonal * from.max_speed + c.speed);
 }
 
 DecisionConstraint Decider::named(const Kept& kept) const {
@@ -283,7 +253,7 @@ void Decider::reserve(std::size_t constraints) {
 }
 
 void Decider::state_problem(const DecisionInput& in) {
-  problem_.bound = speed_bound(*scenario_, in.from.max_speed);
+  problem_.bound = speed_bound(rules_->speed_bound, in.from.max_speed);
   problem_.preferred = in.preferred;
   problem_.constraints.clear();
   for (const std::vector<Constraint>* some : {in.statics, in.others})

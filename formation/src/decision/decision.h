@@ -13,6 +13,7 @@
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "scene/decision_rules.h"
 #include "scene/static_field.h"
 
 namespace exactvo::formation::detail {
@@ -38,7 +39,7 @@ struct PairConstraints {
 };
 
 /// The rule for a pair of robots, without their responsibilities.
-vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOptions& options);
+vo::ReciprocalOptions pair_rule(const DecisionRules& rules);
 /// Soft. Each half is the same bits whoever is `a`.
 PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule);
 
@@ -62,43 +63,40 @@ struct PairMemory {
   NearestFirst nearest_first;
 };
 
+/// All robots of a run, where they are in this step.
+struct RobotsAt {
+  const DecisionRules& rules;
+  const std::vector<Robot>& robots;
+  const std::vector<Anchor>& anchors;  ///< of each robot
+  Scene& scene;
+};
+
 /// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
 /// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
-void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
-                       Scene& scene, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
+void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
 
 bool is_of_robot(const Scene& scene, const Constraint& c);
 
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
 /// as `contact_time` and leaving `gap` (m) between their rims: v = 0 satisfies them as long as the robots do not
 /// overlap, and they are as certain (liveness, rule R0).
-void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-               std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap = kContactSkin);
+void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<std::vector<Constraint>>& constraints,
+               double gap = kContactSkin);
 
 /// Replaces the half-planes of all pairs of which one robot or both follow a joint plan and both cooperate (liveness,
 /// rule R4). `planned`: m/s, the velocities that plans want. If both follow one: the half-plane nearest to both planned
 /// velocities, each robot with half of its slack, so that both satisfy it where the plan is free of collision (lemma
 /// 2). If one does: it may use the whole gap, and the other may not come nearer. Pairs that cannot meet within a step
 /// have none. REQUIRES: half-planes against robots only.
-void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,
-                  double gap = kContactSkin);
+void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
+                  std::vector<std::vector<Constraint>>& constraints, double gap = kContactSkin);
 
 /// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
 std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
                                     const std::vector<Constraint>& others);
 
-/// s: within this a robot in contact is asked to part: never less than a step.
-double contact_time(const Scenario& scenario);
-
-/// m: how much nearer a robot and what stands still can come within a step, whatever is decided.
-double reach_of_step(const Scenario& scenario, const Viewpoint& from);
-
-/// m: how much nearer two robots can come within a step, whatever they decide.
-double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j);
-
-lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
+lp::SpeedBound speed_bound(SpeedBoundKind kind, double max_speed);
 
 /// The half-plane with the shape, place and radius that prove it again, as seen from `from`.
 RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies, const Viewpoint& from);
@@ -115,7 +113,8 @@ struct DecisionInput {
 /// Makes decisions one after the other in memory of its own.
 class Decider {
  public:
-  Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
+  /// Both must outlive it.
+  Decider(const DecisionRules& rules, const vo::BodyTable& bodies) : rules_(&rules), bodies_(&bodies) {}
 
   /// Room for decisions among so many half-planes: they allocate nothing then, unless doubles do not prove them.
   void reserve(std::size_t constraints);
@@ -150,7 +149,7 @@ class Decider {
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   DecisionConstraint named(const Kept& kept) const;
 
-  const Scenario* scenario_;
+  const DecisionRules* rules_;
   const vo::BodyTable* bodies_;
   lp::Problem problem_;
   lp::Pricing pricing_;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "exactvo/geometry/infinity.h"
-#include "steering/goals.h"
+#include "scene/goals.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
@@ -35,13 +35,13 @@ constexpr double kLargestMap = 1e7;
 /// Whether a map for these is of a size that can be searched.
 bool Groups::fits(const Members& who, const std::vector<Vec2>& from, int replans) const {
   if (uses_whole_map(who)) return true;
-  return Roadmap::lattice_places(region_for(who, from, replans), largest_radius(scenario_, who)) *
+  return Roadmap::lattice_places(region_for(who, from, replans), largest_radius(robots_, who)) *
              static_cast<double>(who.size()) <=
          kLargestMap;
 }
 
 geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& from, int replans) const {
-  const double diameter = 2.0 * largest_radius(scenario_, who);
+  const double diameter = 2.0 * largest_radius(robots_, who);
   geometry::Box here, both;
   for (const std::size_t i : who) {
     here.add(from[i]);
@@ -60,14 +60,14 @@ geometry::Box Groups::whole_scene(double radius) const {
 
 bool Groups::uses_whole_map(const Members& who) const {
   if (space_->is_open()) return false;
-  const double radius = largest_radius(scenario_, who);
+  const double radius = largest_radius(robots_, who);
   const double places = Roadmap::lattice_places(whole_scene(radius), radius);
   return places <= kMostPlaces && places * static_cast<double>(who.size()) <= kLargestMap;
 }
 
 /// For the largest of the members: who is larger and not among them needs no room.
 Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const {
-  const double radius = largest_radius(scenario_, who);
+  const double radius = largest_radius(robots_, who);
   if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius, detail);
   const std::pair key{radius, detail};
   const auto known = whole_maps_.find(key);
@@ -82,18 +82,18 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
   std::vector<std::tuple<int, double, std::size_t>> nearest_first;
   for (std::size_t k = 0; k < who.size(); ++k) {
     const RobotNow& r = now_[who[k]];
-    const bool passes = r.goal_number + 1 < scenario_.robots[who[k]].goals.size();
+    const bool passes = r.goal_number + 1 < robots_[who[k]].goals.size();
     nearest_first.emplace_back(r.yields ? 2 : passes ? 0 : 1, norm(r.goal - from[who[k]]), k);
   }
   std::sort(nearest_first.begin(), nearest_first.end());
   std::vector<geometry::Disc> taken;
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      taken.push_back({now_[j].position, scenario_.robots[j].radius});
+      taken.push_back({now_[j].position, robots_[j].radius});
   std::vector<PlaceNumber> targets(who.size());
   for (const auto& [rank, from_goal, k] : nearest_first) {
     const std::size_t i = who[k];
-    const double radius = scenario_.robots[i].radius;
+    const double radius = robots_[i].radius;
     const auto is_free = [&](Vec2 place) {
       return std::all_of(taken.begin(), taken.end(), [&](const geometry::Disc& t) {
         const double wanted = (1.0 + kPlannedGap) * (radius + t.radius);
@@ -126,7 +126,7 @@ bool Groups::serves_any(const Members& seeds, const Members& who, const Roadmap&
   constexpr double kThere = 1e-6;  // of the radius
   return std::any_of(seeds.begin(), seeds.end(), [&](std::size_t i) {
     const RobotNow& r = now_[i];
-    const double radius = scenario_.robots[i].radius;
+    const double radius = robots_[i].radius;
     const auto k = std::lower_bound(who.begin(), who.end(), i) - who.begin();
     const double left = norm(r.goal - map.place(targets[static_cast<std::size_t>(k)]));
     return !r.has_arrived && (left <= kThere * radius || left < norm(r.goal - r.position) - kNearer * 2.0 * radius);
@@ -148,15 +148,15 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   Roadmap map = map_for(who, from, replans, detail);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(scenario_, who) + scenario_.robots[j].radius));
+      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(robots_, who) + robots_[j].radius));
   JointProblem problem;
   problem.map = &map;
   problem.is_stopped = is_stopped_;
   problem.goals = targets_for(who, from, map);
   if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
   for (const std::size_t i : who) {
-    problem.radii.push_back(scenario_.robots[i].radius);
-    problem.starts.push_back(map.attach(from[i], scenario_.robots[i].radius));
+    problem.radii.push_back(robots_[i].radius);
+    problem.starts.push_back(map.attach(from[i], robots_[i].radius));
   }
   const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
   PlanFound found = search_.best_plan(problem, most_calls(row), has_lanes);

@@ -11,8 +11,8 @@
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
+#include "scene/goals.h"
 #include "scene/near_pairs.h"
-#include "steering/goals.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
@@ -66,29 +66,30 @@ std::string seconds(double t) {
 
 }  // namespace
 
-Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way) {
-  const double fastest = scenario.robots[robot].max_speed;
+Vec2 velocity_along(const DecisionRules& rules, double max_speed, Vec2 way) {
   const double length =
-      scenario.speed_bound == SpeedBoundKind::box ? std::max(std::fabs(way.x), std::fabs(way.y)) : norm(way);
-  return length > fastest * scenario.time_step ? fastest / length * way : way / scenario.time_step;
+      rules.speed_bound == SpeedBoundKind::box ? std::max(std::fabs(way.x), std::fabs(way.y)) : norm(way);
+  return length > max_speed * rules.time_step ? max_speed / length * way : way / rules.time_step;
 }
 
-Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int threads,
-               std::function<bool()> is_stopped)
+Groups::Groups(const Scenario& scenario, const DecisionRules& rules, const std::vector<Robot>& robots,
+               const FreeSpace& space, bool plans, int threads, std::function<bool()> is_stopped)
     : scenario_(scenario),
+      rules_(rules),
+      robots_(robots),
       space_(&space),
       plans_(plans),
       is_stopped_(std::move(is_stopped)),
-      patience_(patience_of(scenario)),
-      of_robot_(scenario.robots.size()),
-      group_of_(scenario.robots.size(), kNone),
-      wanted_(scenario.robots.size()),
-      notes_(scenario.robots.size()),
-      tries_(scenario),
+      patience_(patience_of(robots)),
+      of_robot_(robots.size()),
+      group_of_(robots.size(), kNone),
+      wanted_(robots.size()),
+      notes_(robots.size()),
+      tries_(robots, scenario.moving_obstacles),
       search_(threads) {
   for (const SceneObstacle& o : scenario.obstacles)
     for (const Vec2 p : geometry::vertices_of(o.shape)) scene_.add(p);
-  for (const Robot& r : scenario.robots) {
+  for (const Robot& r : robots) {
     scene_.add(r.position);
     for (const Vec2 goal : r.goals) scene_.add(goal);
   }
@@ -135,13 +136,20 @@ void Groups::watch(const std::function<double(std::size_t)>& way_left) {
     } else if ((row_ + i) % kEvery == 0) {
       OfRobot& r = of_robot_[i];
       const double left = way_left(i);
-      if (!(left < r.shortest - kNearer * 2.0 * scenario_.robots[i].radius)) continue;
+      if (!(left < r.shortest - kNearer * 2.0 * robots_[i].radius)) continue;
       r.shortest = left;
       r.since = time_;
       r.failures = 0;
       r.is_named = false;
     }
   }
+}
+
+/// In a formation whoever stands counts as waiting: robots that creep up to their slots wait for nobody.
+bool Groups::is_dead_in(const WaitForGraph& graph, const Step& row, std::size_t robot) const {
+  if (!scenario_.formation) return is_dead(scenario_, graph, row, robot);
+  const RobotStep& r = row.robots[robot];
+  return r.mode == Mode::arrived || stands(robots_[robot], r.chosen);
 }
 
 void Groups::end_step(const Step& row) {
@@ -153,9 +161,8 @@ void Groups::end_step(const Step& row) {
     const double stalled = stalled_for(i);
     const double pause = kBetweenPlans * patience_ * static_cast<double>(1 << std::min(r.failures, 6));
     if (stalled < kStalledAfter * patience_ || time_ - r.planned_at < pause) continue;
-    // In a formation whoever stands counts as waiting: robots that creep up to their slots wait for nobody.
     if (!graph) graph = scenario_.formation ? WaitForGraph(now_.size()) : waiting_in(scenario_, row);
-    const bool dead = is_dead(scenario_, *graph, row, i);
+    const bool dead = is_dead_in(*graph, row, i);
     if (!r.is_named && dead && !(*graph)[i].empty()) {
       r.is_named = true;
       notes_[i] = waiting_words(scenario_, row, *graph, i);
@@ -196,9 +203,9 @@ Groups::Members Groups::with_groups_of(Members who) const {
 /// a wide margin is joined over that.
 std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
   const auto reach = [&](double radii) {
-    return radii + std::max(kTogether * radii, kNearMargins * scenario_.margins.robot);
+    return radii + std::max(kTogether * radii, kNearMargins * rules_.margins.robot);
   };
-  const double farthest = reach(2.0 * largest_radius(scenario_));
+  const double farthest = reach(2.0 * largest_radius(robots_));
   Cells<std::size_t> by_place(farthest);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (now_[j].may_join) by_place.add(now_[j].position, j);
@@ -216,7 +223,7 @@ std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
     const std::size_t i = found[next];
     Members near;
     by_place.for_each_about(now_[i].position, farthest, [&](std::size_t j) {
-      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
+      const double radii = robots_[i].radius + robots_[j].radius;
       if (!in[j] && norm(now_[i].position - now_[j].position) < reach(radii)) near.push_back(j);
     });
     std::sort(near.begin(), near.end());
@@ -239,7 +246,7 @@ bool Groups::is_in_the_way_back(std::size_t robot, const Members& who, std::size
   constexpr std::size_t kStride = 3;  // rows
   const Vec2 here = now_[robot].position;
   return std::any_of(who.begin(), who.end(), [&](std::size_t i) {
-    const double near = (1.0 + beside) * (scenario_.robots[i].radius + scenario_.robots[robot].radius);
+    const double near = (1.0 + beside) * (robots_[i].radius + robots_[robot].radius);
     for (std::size_t x = history_.last(); x > to + kStride; x -= kStride)
       if (squared_norm(history_[x][i] - here) < near * near) return true;
     return squared_norm(history_[to][i] - here) < near * near;
@@ -297,7 +304,7 @@ void Groups::make_due_plans() {
 /// From now, else from where the members were a while ago: they can go back as they came (lemma 4).
 bool Groups::plan_for(Members who, const Members& seeds, int replans) {
   const std::size_t now = history_.last();
-  const auto rows_back = [&](double back) { return static_cast<std::size_t>(back / scenario_.time_step); };
+  const auto rows_back = [&](double back) { return static_cast<std::size_t>(back / rules_.time_step); };
   PlanEnd end = PlanEnd::too_large;
   for (double back = 0.0; !is_stopped_(); back = back == 0.0 ? kFirstBack * patience_ : 2.0 * back) {
     const std::size_t to = now - std::min(now - history_.first(), rows_back(back));
@@ -334,7 +341,7 @@ std::string Groups::plan_words(const Group& g) const {
   std::string text = std::to_string(g.who.size()) + (g.who.size() == 1 ? " robot goes" : " robots go") +
                      " by plan: " + std::to_string(g.following.plan().size()) + " moves";
   if (g.back_at > g.back_to)
-    text += "; they first go back " + seconds(static_cast<double>(g.back_at - g.back_to) * scenario_.time_step);
+    text += "; they first go back " + seconds(static_cast<double>(g.back_at - g.back_to) * rules_.time_step);
   return text;
 }
 
@@ -360,7 +367,7 @@ std::string Groups::no_plan_words(const Members& robots) const {
   for (const WithoutPlan& w : without_plan_) {
     std::vector<std::string> names;
     for (const std::size_t i : w.who)
-      if (contains(robots, i)) names.push_back(scenario_.robots[i].id);
+      if (contains(robots, i)) names.push_back(robots_[i].id);
     if (!names.empty()) add_note(text, words_of(w.why) + abridged(std::move(names)));
   }
   return text;
@@ -443,7 +450,7 @@ Vec2 Groups::wanted_by(std::size_t robot) const {
     const auto k = std::lower_bound(g.who.begin(), g.who.end(), robot) - g.who.begin();
     to = g.following.within_reach(static_cast<std::size_t>(k), at);
   }
-  return velocity_along(scenario_, robot, to - here[robot]);
+  return velocity_along(rules_, robots_[robot].max_speed, to - here[robot]);
 }
 
 bool Groups::halt_those_held_back(const Step& row) {
@@ -452,7 +459,7 @@ bool Groups::halt_those_held_back(const Step& row) {
   for (Group& g : groups_) {
     if (g.is_over || g.stands_still || g.back_at <= g.back_to) continue;
     const bool as_wanted = std::all_of(g.who.begin(), g.who.end(), [&](std::size_t i) {
-      return norm(row.robots[i].chosen - wanted_[i]) <= kAsWanted * scenario_.robots[i].max_speed;
+      return norm(row.robots[i].chosen - wanted_[i]) <= kAsWanted * robots_[i].max_speed;
     });
     if (as_wanted) continue;
     g.stands_still = any = true;

@@ -20,6 +20,7 @@
 #include "exactvo/formation/waiting.h"
 #include "liveness/plan_search.h"
 #include "liveness/plan_tries.h"
+#include "scene/decision_rules.h"
 
 namespace exactvo::formation::detail {
 
@@ -28,8 +29,8 @@ inline bool contains(const std::vector<std::size_t>& sorted, std::size_t x) {
   return std::binary_search(sorted.begin(), sorted.end(), x);
 }
 
-/// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
-Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
+/// m/s: gets as far along `way` (m) within a time step as the bound of a robot of that greatest speed (m/s) allows.
+Vec2 velocity_along(const DecisionRules& rules, double max_speed, Vec2 way);
 
 /// Where robots were, row by row, as far back as memory allows: they can go back as they came (liveness, rule R3).
 class History {
@@ -64,10 +65,12 @@ class History {
 
 class Groups {
  public:
-  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them. `threads`: that
-  /// search for plans, 0 for one per processor. `is_stopped` is asked while plans are made, which can take seconds:
-  /// true ends that without a plan.
-  Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int threads, std::function<bool()> is_stopped);
+  /// `robots`: the scenario's as they are planned for, which may be larger or slower. All of these and `space` must
+  /// outlive the groups. Without `plans` stalls are noted and nothing is done about them. `threads`: that search for
+  /// plans, 0 for one per processor. `is_stopped` is asked while plans are made, which can take seconds: true ends that
+  /// without a plan.
+  Groups(const Scenario& scenario, const DecisionRules& rules, const std::vector<Robot>& robots, const FreeSpace& space,
+         bool plans, int threads, std::function<bool()> is_stopped);
 
   /// Makes plans where they are due, and what members want. `way_left`: m, of a robot from where it is to its goal.
   void begin_step(double time, std::vector<RobotNow> now, const std::function<double(std::size_t)>& way_left);
@@ -134,6 +137,7 @@ class Groups {
   void want();
   Vec2 wanted_by(std::size_t robot) const;
   void restart_watch(std::size_t robot);
+  bool is_dead_in(const WaitForGraph& graph, const Step& row, std::size_t robot) const;
 
   Members everyone() const;
   Members members_of(const Group& g) const;
@@ -165,6 +169,8 @@ class Groups {
   std::string plan_words(const Group& g) const;
 
   const Scenario& scenario_;
+  const DecisionRules& rules_;
+  const std::vector<Robot>& robots_;
   const FreeSpace* space_;
   bool plans_;
   std::function<bool()> is_stopped_;

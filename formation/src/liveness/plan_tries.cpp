@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "exactvo/formation/speed_profile.h"
-#include "steering/goals.h"
+#include "scene/goals.h"
 
 namespace exactvo::formation::detail {
 
-double patience_of(const Scenario& scenario) {
+double patience_of(const std::vector<Robot>& robots) {
   double patience = 0.0;
-  for (const Robot& r : scenario.robots) patience = std::max(patience, 2.0 * r.radius / r.max_speed);
+  for (const Robot& r : robots) patience = std::max(patience, 2.0 * r.radius / r.max_speed);
   return patience;
 }
 
@@ -24,8 +24,7 @@ PlanTries::Look PlanTries::look(double time, const std::vector<RobotNow>& now,
     look.waiting.second.push_back(now[i].goal_number);
     look.left += norm(now[i].goal - now[i].position);
   }
-  for (std::size_t k = 0; k < scenario_.moving_obstacles.size(); ++k)
-    look.others.emplace_back(k, displacement_at(scenario_.moving_obstacles[k], time));
+  for (std::size_t k = 0; k < moving_.size(); ++k) look.others.emplace_back(k, displacement_at(moving_[k], time));
   for (std::size_t i = 0; i < now.size(); ++i)
     if (!now[i].may_join) look.others.emplace_back(i, now[i].position);
   return look;
@@ -33,7 +32,7 @@ PlanTries::Look PlanTries::look(double time, const std::vector<RobotNow>& now,
 
 /// Something has moved that could have kept them from their goals, or they have come nearer to these.
 bool PlanTries::has_changed_since(const Tries& tries, const Look& look) const {
-  const double far = kNearer * 2.0 * largest_radius(scenario_, look.waiting.first);
+  const double far = kNearer * 2.0 * largest_radius(robots_, look.waiting.first);
   if (look.left < tries.left - far) return true;
   return !std::equal(
       look.others.begin(), look.others.end(), tries.others.begin(), tries.others.end(),

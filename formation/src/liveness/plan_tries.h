@@ -28,7 +28,7 @@ struct RobotNow {
 };
 
 /// s, that the slowest robot needs for its diameter.
-double patience_of(const Scenario& scenario);
+double patience_of(const std::vector<Robot>& robots);
 
 class PlanTries {
  public:
@@ -36,8 +36,9 @@ class PlanTries {
   /// and longer pauses between them.
   static constexpr int kMost = 10;
 
-  /// `scenario` must outlive it.
-  explicit PlanTries(const Scenario& scenario) : scenario_(scenario), patience_(patience_of(scenario)) {}
+  /// Both must outlive it.
+  PlanTries(const std::vector<Robot>& robots, const std::vector<MovingObstacle>& moving)
+      : robots_(robots), moving_(moving), patience_(patience_of(robots)) {}
 
   /// Whether a plan for the robots in `who` has to wait. `time`: s.
   bool are_in_vain(double time, const std::vector<RobotNow>& now, const std::vector<std::size_t>& who) const;
@@ -65,7 +66,8 @@ class PlanTries {
   Look look(double time, const std::vector<RobotNow>& now, const std::vector<std::size_t>& who) const;
   bool has_changed_since(const Tries& tries, const Look& look) const;
 
-  const Scenario& scenario_;
+  const std::vector<Robot>& robots_;
+  const std::vector<MovingObstacle>& moving_;
   double patience_;  ///< s
   std::map<Waiting, Tries> tries_;
 };

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "exactvo/geometry/box.h"
-#include "liveness/cells.h"
 #include "liveness/sweeps.h"
+#include "scene/cells.h"
 #include "scene/free_space.h"
 
 namespace exactvo::formation::detail {

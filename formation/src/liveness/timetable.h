@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "liveness/cells.h"
 #include "liveness/joint_search.h"
+#include "scene/cells.h"
 
 namespace exactvo::formation::detail {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 
-#include "decision/decision.h"
 #include "motion/leader.h"
+#include "scene/goals.h"
 #include "scene/near_pairs.h"
 #include "scene/number_text.h"
-#include "steering/goals.h"
+#include "scene/step_limits.h"
 #include "steering/last_places.h"
 
 namespace exactvo::formation {
@@ -36,7 +36,8 @@ double near_enough(const Scenario& scenario, std::size_t robot) {
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
 bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
   return c.source == ConstraintSource::robot && c.clearance < near_enough(scenario, robot) &&
-         (c.active || c.clearance <= detail::reach_of_pair(scenario, robot, c.index)) &&
+         (c.active || c.clearance <= detail::reach_of_pair(scenario.time_step, scenario.robots[robot].max_speed,
+                                                           scenario.robots[c.index].max_speed)) &&
          (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);
 }
 
@@ -170,7 +171,7 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 }
 
 bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const RecordedConstraint& constraint) {
-  const double at_rest = detail::contact_time(scenario);
+  const double at_rest = detail::contact_time(scenario.time_step);
   if (constraint.source != ConstraintSource::robot || constraint.time_horizon != at_rest) return false;
   const auto has_plan = [&](std::size_t i) {
     return row.robots[i].mode == Mode::by_plan || row.robots[i].mode == Mode::going_back;
@@ -196,7 +197,7 @@ std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t 
     const double about = scenario.arrival_tolerance + 2.0 * pushed;
     if (from_goal(j) <= about && (!first || from_goal(j) < from_goal(*first))) first = j;
   }
-  if (first) return detail::first_at_goal_words(scenario, *first, robot);
+  if (first) return detail::first_at_goal_words(scenario.robots[*first], scenario.robots[robot]);
   return may_be_taken ? "its goal is out of reach or taken" : "its goal is out of reach";
 }
 

@@ -14,7 +14,7 @@
 #include "metrics/clearances.h"
 #include "metrics/divergence.h"
 #include "metrics/metrics_accumulator.h"
-#include "runs/rows.h"
+#include "scene/borrowed_row.h"
 #include "scene/number_text.h"
 
 namespace exactvo::formation {

@@ -12,7 +12,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "motion/leader.h"
-#include "runs/rows.h"
+#include "scene/borrowed_row.h"
 #include "traps/boundary.h"
 
 namespace exactvo::formation {

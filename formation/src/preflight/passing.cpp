@@ -14,10 +14,10 @@
 #include "liveness/sweeps.h"
 #include "preflight/open_way.h"
 #include "preflight/preflight.h"
-#include "preflight/reachability.h"
 #include "preflight/square_cover.h"
 #include "preflight/strip.h"
-#include "steering/goals.h"
+#include "reach/reachability.h"
+#include "scene/goals.h"
 
 namespace exactvo::formation {
 namespace {
@@ -95,7 +95,7 @@ class Proofs {
         asked_(asked),
         walls_(scenario.obstacles),
         open_(scenario.obstacles),
-        reach_(scenario, 0.0, false),
+        reach_(detail::terrain_of(scenario), 0.0, false),
         spares_(spares) {}
 
   /// Whether the covers that were spared could not have used up the looks: without sparing the same is found.
@@ -119,7 +119,9 @@ class Proofs {
   /// That the two cannot pass, where each of them could reach its goal if the other were not there. REQUIRES: both have
   /// little room.
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
-    if (overlap_at_start(i, j) || detail::are_too_near(scenario_, i, j)) return std::nullopt;
+    if (overlap_at_start(i, j) ||
+        detail::are_too_near(scenario_.robots[i], scenario_.robots[j], scenario_.arrival_tolerance))
+      return std::nullopt;
     std::optional<NoPassing> proof = asked_ == Asked::for_room ? by_walls(i, j) : by_gaps(i, j);
     return proof && !is_out_of_reach(i) && !is_out_of_reach(j) ? std::move(proof) : std::nullopt;
   }
@@ -169,7 +171,7 @@ class Proofs {
 
   bool is_proven_out_of_reach(std::size_t robot) {
     const Robot& r = scenario_.robots[robot];
-    const detail::Destination goal{r.goals[0], detail::reach_of(scenario_, r, 0)};
+    const detail::Destination goal{r.goals[0], detail::reach_of(r, 0, scenario_.arrival_tolerance)};
     return !reach_.reachable_place(r.radius, r.position, goal) &&
            reach_.is_proven_out_of_reach(r.radius, r.position, goal);
   }
@@ -199,7 +201,7 @@ class Proofs {
 
   detail::DiscWithGoal disc(std::size_t i) const {
     const Robot& r = scenario_.robots[i];
-    return {r.position, r.goals[0], detail::reach_of(scenario_, r, 0)};
+    return {r.position, r.goals[0], detail::reach_of(r, 0, scenario_.arrival_tolerance)};
   }
 
   /// Null where it is not whole. Robots in one another's cover share it.
@@ -224,7 +226,7 @@ class Proofs {
 
   std::vector<char> squares_at_goal(std::size_t robot, const SquareCover& cover) const {
     const Robot& r = scenario_.robots[robot];
-    return detail::squares_at(r.goals[0], detail::reach_of(scenario_, r, 0), cover);
+    return detail::squares_at(r.goals[0], detail::reach_of(r, 0, scenario_.arrival_tolerance), cover);
   }
 
   static std::vector<Vec2> corners_of(const SquareCover& cover) {

@@ -14,9 +14,9 @@
 #include "motion/leader.h"
 #include "motion/moving_way.h"
 #include "preflight/open_way.h"
+#include "scene/goals.h"
 #include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
-#include "steering/goals.h"
 #include "steering/last_places.h"
 
 namespace exactvo::formation::detail {
@@ -37,7 +37,7 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
   }
   for (std::size_t g = 0; g < robot.goals.size(); ++g) {
     const std::string number = robot.goals.size() > 1 ? " " + std::to_string(g + 1) : "";
-    targets.push_back({robot.goals[g], reach_of(s, robot, g),
+    targets.push_back({robot.goals[g], reach_of(robot, g, s.arrival_tolerance),
                        "goal" + number + " of " + robot.id + ", " + printed_place(robot.goals[g])});
   }
   return targets;
@@ -102,7 +102,9 @@ void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std:
     for (std::size_t j = 0; j < i; ++j) {
       const double radii = s.robots[i].radius + s.robots[j].radius, apart = norm(last[i].place - last[j].place);
       const double aside = places.empty() ? apart : norm(places[i] - places[j]);
-      if (are_too_near(s, i, j) || !leave_no_room(s, i, j, aside) || ++pairs > kNamed) continue;
+      if (are_too_near(s.robots[i], s.robots[j], s.arrival_tolerance) || !leave_no_room(s, i, j, aside) ||
+          ++pairs > kNamed)
+        continue;
       out.push_back(last[i].name + ", and " + last[j].name + ", are " + metres(apart) +
                     " apart, and radii and margin take " + metres(radii + s.margins.robot) +
                     ": the second to come finds no room");

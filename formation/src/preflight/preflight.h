@@ -6,7 +6,7 @@
 
 #include "exactvo/formation/passing.h"
 #include "exactvo/formation/scenario.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 
 namespace exactvo::formation::detail {
 

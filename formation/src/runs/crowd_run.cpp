@@ -19,9 +19,9 @@
 #include "exactvo/geometry/require.h"
 #include "motion/leader.h"
 #include "runs/crowd_way.h"
+#include "scene/goals.h"
 #include "scene/number_text.h"
 #include "steering/goal_claims.h"
-#include "steering/goals.h"
 #include "steering/guide.h"
 #include "steering/last_places.h"
 
@@ -298,7 +298,8 @@ class CrowdRun {
   void set_out(std::size_t i) {
     CrowdWay& way = ways_[i];
     const Vec2 aim = aim_of(i);
-    const double reach = std::max(0.0, reach_of(scenario_, scenario_.robots[i], way.goal) - norm(aim - goal_of(i)));
+    const double reach =
+        std::max(0.0, reach_of(scenario_.robots[i], way.goal, scenario_.arrival_tolerance) - norm(aim - goal_of(i)));
     way.heading = aim;
     if (!guide_) return;
     CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {aim, reach});
@@ -326,7 +327,7 @@ class CrowdRun {
   }
 
   bool is_at_goal(std::size_t i) const {
-    return norm(at_[i] - goal_of(i)) <= reach_of(scenario_, scenario_.robots[i], ways_[i].goal);
+    return norm(at_[i] - goal_of(i)) <= reach_of(scenario_.robots[i], ways_[i].goal, scenario_.arrival_tolerance);
   }
   /// A goal on the way that is taken is passed beside it.
   bool has_reached_goal(std::size_t i) const { return is_at_goal(i) || (!has_last_goal(i) && rests_beside(i)); }

@@ -19,6 +19,7 @@
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "scene/static_field.h"
+#include "scene/step_limits.h"
 #include "steering/robot_bypass.h"
 #include "steering/steering.h"
 
@@ -40,27 +41,30 @@ struct FormationRobot {
   bool sees_pieces = false;                ///< it went by plan when it decided last
 };
 
-Scenario with_margins(Scenario scenario, const ControllerOptions& options) {
-  if (!options.margins) scenario.margins.robot = 0.0;
-  return scenario;
+DecisionRules formation_rules(const Scenario& scenario, const SimulationOptions& options,
+                              const ControllerOptions& switches) {
+  DecisionRules rules = rules_of(scenario, options);
+  if (!switches.margins) rules.margins.robot = 0.0;
+  return rules;
 }
 
 class FormationRun {
  public:
   FormationRun(const Scenario& scenario, const SimulationOptions& options)
       : switches_(controller_options_in_use(scenario, options)),
-        scenario_(with_margins(scenario, switches_)),
-        spec_(*scenario_.formation),
+        scenario_(scenario),
+        rules_(formation_rules(scenario, options, switches_)),
+        spec_(*scenario.formation),
         options_(options),
-        scene_(scenario_, options),
-        schedule_(scenario_, options),
-        decider_(scenario_, scene_.bodies()),
+        scene_(scenario, options),
+        schedule_(scenario, options),
+        decider_(rules_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, switches_)),
         joint_(
-            scenario_, options_, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
+            rules_, scenario.robots, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
     if (liveness_of(scenario, options) == Liveness::plan) {
-      plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
+      plans_.emplace(scenario_, rules_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
     }
     const HorizonRule rule = switches_.horizon_clamp ? HorizonRule::clamped : HorizonRule::literal;
@@ -69,7 +73,7 @@ class FormationRun {
       const Vec2 slot = spec_.leader.path.back() + offsets_[i];
       robots_.push_back({{r.position, r.velocity},
                          r.velocity,
-                         StaticField(scene_, scenario_, options, r.radius, r.position, slot, rule),
+                         StaticField(scene_, rules_, r.radius, r.position, slot, rule),
                          {},
                          {}});
     }
@@ -134,7 +138,7 @@ class FormationRun {
     if (plans_) begin_plans(time, leader);
     take_relative_states(leader);
     joint_.look_at_robots(plans_ ? &plans_->groups() : nullptr);
-    move_obstacles(scenario_, time, scene_, row.moving);
+    move_obstacles(scenario_.moving_obstacles, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
     if (plans_) joint_.settle(plans_->groups(), row);
     return row;
@@ -155,8 +159,7 @@ class FormationRun {
   void go_beside_slot(std::size_t i, double time, const SlotPlans::Place& place, double distance) {
     FormationRobot& r = robots_[i];
     r.goes_beside = true;
-    r.field =
-        StaticField(scene_, scenario_, options_, scenario_.robots[i].radius, anchor(i), place.at, HorizonRule::clamped);
+    r.field = StaticField(scene_, rules_, scenario_.robots[i].radius, anchor(i), place.at, HorizonRule::clamped);
     r.side = {};
     note_goal_bodies(i, time, r.field.shapes());
     if (!place.why_not.empty())
@@ -172,12 +175,12 @@ class FormationRun {
     const Viewpoint here = viewpoint(i);
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
-    add_moving_constraints(scenario_, here, scene_, joint_.others[i]);
+    add_moving_constraints(rules_, here, scene_, joint_.others[i]);
     step.note = std::exchange(robots_[i].note, {});
     if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
     if (goes_by_plan(i)) return choose_by_plan(i, step);
-    statics_.look(robots_[i].field, here, reach_of_step(scenario_, here));
+    statics_.look(robots_[i].field, here, reach_of_step(rules_.time_step, here.max_speed));
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
                                            norm(relative_.position[i]),
@@ -225,7 +228,7 @@ class FormationRun {
 
   StaticField field_of_pieces(std::size_t i) {
     const double radius = scenario_.robots[i].radius;
-    StaticField field(scene_, scenario_, options_, radius, anchor(i), anchor(i), HorizonRule::clamped, SeenAs::pieces);
+    StaticField field(scene_, rules_, radius, anchor(i), anchor(i), HorizonRule::clamped, SeenAs::pieces);
     field.set_margin(plans_->gap_to_obstacles());
     return field;
   }
@@ -233,7 +236,7 @@ class FormationRun {
   void choose_again(std::size_t i, RobotStep& step) {
     if (goes_by_plan(i)) return choose_by_plan(i, step);
     const Viewpoint here = viewpoint(i);
-    statics_.look(robots_[i].field, here, reach_of_step(scenario_, here));
+    statics_.look(robots_[i].field, here, reach_of_step(rules_.time_step, here.max_speed));
     decider_.decide(input(i, step.preferred, here, now_), step);
   }
 
@@ -338,7 +341,8 @@ class FormationRun {
   }
 
   ControllerOptions switches_;
-  Scenario scenario_;
+  const Scenario& scenario_;
+  DecisionRules rules_;
   const FormationSpec& spec_;
   const SimulationOptions& options_;
   Scene scene_;

@@ -6,24 +6,25 @@
 #include <set>
 
 #include "scene/moving.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 
 void JointDecisions::begin_step() {
   anchors.clear();
-  for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
     const Viewpoint here = viewpoint_(i);
     anchors.push_back({here.position, here.velocity});
   }
 }
 
 void JointDecisions::look_at_robots(const Groups* groups) {
-  robot_constraints(scenario_, options_, anchors, scene_, pairs_, others);
+  robot_constraints(now(), pairs_, others);
   if (!groups || !groups->any()) return;
   std::vector<std::optional<Vec2>> planned(anchors.size());
   for (std::size_t i = 0; i < planned.size(); ++i)
     if (groups->is_member(i)) planned[i] = groups->wanted(i);
-  follow_plans(scenario_, anchors, scene_, planned, others, gap);
+  follow_plans(now(), planned, others, gap);
 }
 
 void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time,
@@ -32,8 +33,8 @@ void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const S
   const Vec2 wanted = groups.wanted(i);
   Viewpoint here = viewpoint_(i);
   here.velocity = wanted;
-  here.horizon = scenario_.time_step;
-  field.constraints(here, statics_, reach_of_step(scenario_, here));
+  here.horizon = rules_.time_step;
+  field.constraints(here, statics_, reach_of_step(rules_.time_step, here.max_speed));
   const std::optional<double> share = allowed_share(wanted, statics_, others[i]);
   held_by_all_[i] = !share;
   decider_.decide({share.value_or(0.0) * wanted, here, &statics_, &others[i], schedule_.keeps_all(time)}, step);
@@ -44,7 +45,7 @@ void JointDecisions::settle(Groups& groups, Step& row) {
   while (groups.any() && groups.halt_those_held_back(row)) {
     look_at_robots(&groups);
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
-      add_moving_constraints(scenario_, viewpoint_(i), scene_, others[i]);
+      add_moving_constraints(rules_, viewpoint_(i), scene_, others[i]);
       choose_again_(i, row.robots[i]);
     }
     repair(groups, row);
@@ -69,10 +70,9 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
     for (const std::size_t i : contradicted) {
       for (const Constraint& c : others[i]) {
         const std::size_t j = c.index;
-        const bool both_yield =
-            is_of_robot(scene_, c) && scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
+        const bool both_yield = is_of_robot(scene_, c) && robots_[i].cooperates && robots_[j].cooperates;
         if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
-        fall_back(scenario_, anchors, scene_, i, j, others, gap);
+        fall_back(now(), i, j, others, gap);
         fallen[i].push_back(j);
         fallen[j].push_back(i);
         changed.insert({i, j});

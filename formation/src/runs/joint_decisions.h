@@ -24,16 +24,16 @@ class JointDecisions {
   using ChooseAgain = std::function<void(std::size_t i, RobotStep& step)>;
 
   /// All must outlive it.
-  JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunSchedule& schedule,
-                 Decider& decider, ViewpointOf viewpoint, ChooseAgain choose_again)
-      : scenario_(scenario),
-        options_(options),
+  JointDecisions(const DecisionRules& rules, const std::vector<Robot>& robots, Scene& scene,
+                 const RunSchedule& schedule, Decider& decider, ViewpointOf viewpoint, ChooseAgain choose_again)
+      : rules_(rules),
+        robots_(robots),
         scene_(scene),
         schedule_(schedule),
         decider_(decider),
         viewpoint_(std::move(viewpoint)),
         choose_again_(std::move(choose_again)),
-        held_by_all_(scenario.robots.size(), 0) {}
+        held_by_all_(robots.size(), 0) {}
 
   // Of each robot, in their order.
 
@@ -56,11 +56,12 @@ class JointDecisions {
   void settle(Groups& groups, Step& row);
 
  private:
+  RobotsAt now() const { return {rules_, robots_, anchors, scene_}; }
   void repair(const Groups& groups, Step& row);
   void record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const;
 
-  const Scenario& scenario_;
-  const SimulationOptions& options_;
+  const DecisionRules& rules_;
+  const std::vector<Robot>& robots_;
   Scene& scene_;
   const RunSchedule& schedule_;
   Decider& decider_;

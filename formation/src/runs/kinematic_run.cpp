@@ -14,10 +14,10 @@
 #include "runs/rows.h"
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
+#include "scene/goals.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
 #include "steering/goal_claims.h"
-#include "steering/goals.h"
 #include "steering/guide.h"
 #include "steering/keep_right.h"
 #include "steering/last_places.h"
@@ -56,18 +56,18 @@ class KinematicRun {
   /// Without a guide robots head straight for their goals.
   KinematicRun(const Scenario& scenario, const SimulationOptions& options, Guide* guide)
       : scenario_(scenario),
-        options_(options),
         guide_(guide),
         liveness_(liveness_of(scenario, options)),
+        rules_(rules_of(scenario, options)),
         scene_(scenario, options),
         schedule_(scenario, options),
-        own_(scenario, options, scene_.bodies()),
+        own_(rules_, scene_.bodies()),
         joint_(
-            scenario, options, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
+            rules_, scenario.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
-      groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
-                      [this] { return schedule_.is_stopped(now_); });
+      groups_.emplace(scenario, rules_, scenario.robots, guide ? guide->space() : open_space_,
+                      liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (const MovingObstacle& o : scenario.moving_obstacles)
       moving_until_ = std::max(moving_until_, rests_from(o.motion));
@@ -112,7 +112,7 @@ class KinematicRun {
 
   void look_at_goal(std::size_t i) {
     const Robot& spec = scenario_.robots[i];
-    robots_[i].head_for(aim_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
+    robots_[i].head_for(aim_of(i), scene_, rules_, spec.radius, robots_[i].position);
     if (guide_) plan_course(i);
     goal_bodies_.push_back({now_, i, robots_[i].goal, robots_[i].field->shapes()});
   }
@@ -144,7 +144,9 @@ class KinematicRun {
 
   bool has_last_goal(std::size_t i) const { return robots_[i].goal + 1 == scenario_.robots[i].goals.size(); }
 
-  double reach_of_goal(std::size_t i) const { return reach_of(scenario_, scenario_.robots[i], robots_[i].goal); }
+  double reach_of_goal(std::size_t i) const {
+    return reach_of(scenario_.robots[i], robots_[i].goal, scenario_.arrival_tolerance);
+  }
 
   bool is_within_reach(std::size_t i) const { return norm(goal_of(i) - robots_[i].position) <= reach_of_goal(i); }
 
@@ -192,7 +194,7 @@ class KinematicRun {
     joint_.look_at_robots(groups_ ? &*groups_ : nullptr);
     Step row;
     row.time = time;
-    move_obstacles(scenario_, time, scene_, row.moving);
+    move_obstacles(scenario_.moving_obstacles, time, scene_, row.moving);
     if (standing_) look_at_what_stands(row.moving);
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i));
@@ -304,7 +306,7 @@ class KinematicRun {
     pass_waypoint(i);
     look_whether_it_waits(i);
     if (!goes_by_plan(i)) look(i);
-    add_moving_constraints(scenario_, viewpoint(i), scene_, joint_.others[i]);
+    add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
     KinematicRobot& r = robots_[i];
     RobotStep step = undecided(r.position, r.velocity);
     step.note = std::exchange(r.note, {});
@@ -480,11 +482,11 @@ class KinematicRun {
   }
 
   const Scenario& scenario_;
-  const SimulationOptions& options_;
   Guide* guide_;
   std::optional<StandingObstacles> standing_;  ///< with guidance, where there are moving obstacles
   RoutesCourse routes_;
   Liveness liveness_;
+  DecisionRules rules_;
   Scene scene_;
   RunSchedule schedule_;
   double now_ = 0.0;           ///< s, of the present row

@@ -12,9 +12,10 @@
 #include "runs/rows.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
+#include "scene/goals.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
-#include "steering/goals.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation {
 namespace {
@@ -69,54 +70,44 @@ void require_goals(const std::vector<Vec2>& goals) {
   for (std::size_t k = 0; k < goals.size(); ++k) require_vector(goals[k], "goal", k, "position");
 }
 
-/// Its robot stands anywhere: where it is comes with every decision.
-Scenario scenario_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
-  Scenario s;
-  Robot& robot = s.robots.emplace_back();
+DecisionRules rules_of(const NavigatorSetup& setup) {
+  return {setup.method,  Guidance::none,  setup.speed_bound,       setup.horizons,
+          setup.margins, setup.time_step, setup.neighbour_distance};
+}
+
+Robot robot_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
+  Robot robot;  // stands anywhere: where it is comes with every decision
   robot.radius = setup.radius;
   robot.max_speed = setup.max_speed;
   robot.cooperates = setup.cooperates;
   robot.goals = std::move(goals);
-  s.obstacles = setup.obstacles;
-  s.guidance = Guidance::none;
-  s.liveness = Liveness::off;
-  s.speed_bound = setup.speed_bound;
-  s.horizons = setup.horizons;
-  s.margins = setup.margins;
-  s.time_step = setup.time_step;
-  s.time_limit = setup.time_step;  // nobody asks
-  s.arrival_tolerance = setup.arrival_tolerance;
-  s.neighbour_distance = setup.neighbour_distance;
-  return s;
+  return robot;
 }
 
-/// The field of the setup that a pointer into its scenario names: "radius" of "/robots/0/radius".
-std::string field_at(const std::string& pointer) {
-  const std::string robot = "/robots/0/";
-  return pointer.rfind(robot, 0) == 0 ? pointer.substr(robot.size()) : pointer.substr(1);
+/// The first of them names a field of the setup.
+void require_none(const std::vector<ScenarioProblem>& problems) {
+  if (problems.empty()) return;
+  const ScenarioProblem& first = problems.front();
+  const bool is_number = first.found.find("nan") == std::string::npos && first.found.find("inf") == std::string::npos;
+  refuse(is_number ? Problem::out_of_range : Problem::not_finite, first.pointer.substr(1), first.found, first.expected);
 }
 
-Scenario checked(const NavigatorSetup& setup, std::vector<Vec2> goals) {
+/// Of Method::ivo_edge, as in `simulate` by default.
+geometry::FacadeEllipseOptions facade_ellipses(const Margins& margins) {
+  const SimulationOptions usual;
+  return {usual.facade_minor_to_major, usual.facade_fixed_minor, margins.obstacle};
+}
+
+const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec2>& goals) {
   require_goals(goals);
   if (!*name(setup.method)) refuse(Problem::out_of_range, "method", "no Method", "one");
   if (setup.neighbours > kMostNeighbours)
     refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
   for (std::size_t k = 0; k < setup.obstacles.size(); ++k)
     for (const Vec2 v : geometry::vertices_of(setup.obstacles[k].shape)) require_vector(v, "obstacle", k, "vertex");
-  Scenario scenario = scenario_of(setup, std::move(goals));
-  const std::vector<ScenarioProblem> problems = field_problems(scenario);
-  if (problems.empty()) return scenario;
-  const ScenarioProblem& first = problems.front();
-  const bool is_number = first.found.find("nan") == std::string::npos && first.found.find("inf") == std::string::npos;
-  refuse(is_number ? Problem::out_of_range : Problem::not_finite, field_at(first.pointer), first.found, first.expected);
-}
-
-SimulationOptions options_of(const NavigatorSetup& setup) {
-  SimulationOptions options;
-  options.method = setup.method;
-  options.guidance = Guidance::none;
-  options.liveness = Liveness::off;
-  return options;
+  require_none(field_problems(setup.radius, setup.max_speed));
+  require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
+  return setup;
 }
 
 }  // namespace
@@ -158,15 +149,17 @@ std::vector<SceneObstacle> solids_of(const std::vector<SceneObstacle>& obstacles
 class Navigator::Core {
  public:
   Core(const NavigatorSetup& setup, std::vector<Vec2> goals)
-      : scenario_(checked(setup, std::move(goals))),
-        options_(options_of(setup)),
+      : rules_(rules_of(checked(setup, goals))),
+        obstacles_(setup.obstacles),
+        robot_(robot_of(setup, std::move(goals))),
+        arrival_tolerance_(setup.arrival_tolerance),
         id_(setup.id),
-        scene_(scenario_, options_),
-        own_(scenario_, options_, scene_.bodies()),
-        rule_(pair_rule(scenario_, options_)),
-        solids_(solids_of(scenario_.obstacles)) {
+        scene_(rules_.method, obstacles_, {robot_}, {}, facade_ellipses(rules_.margins)),
+        own_(rules_, scene_.bodies()),
+        rule_(pair_rule(rules_)),
+        solids_(solids_of(obstacles_)) {
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
-                               scene_.edges_by_place().size() + scenario_.obstacles.size();
+                               scene_.edges_by_place().size() + obstacles_.size();
     const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
     own_.reserve(statics, others);
     others_.reserve(others);
@@ -185,7 +178,7 @@ class Navigator::Core {
 
   void set_goals(std::vector<Vec2> goals) {
     require_goals(goals);
-    scenario_.robots.front().goals = std::move(goals);
+    robot_.goals = std::move(goals);
     goal_ = 0;
     way_.field.reset();
   }
@@ -225,11 +218,10 @@ class Navigator::Core {
   }
 
  private:
-  const Robot& robot() const { return scenario_.robots.front(); }
-  Vec2 goal() const { return robot().goals[goal_]; }
-  Viewpoint here() const { return {now_.position, now_.velocity, robot().radius, robot().max_speed}; }
-  bool is_last_goal() const { return goal_ + 1 == robot().goals.size(); }
-  bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(scenario_, robot(), goal_); }
+  Vec2 goal() const { return robot_.goals[goal_]; }
+  Viewpoint here() const { return {now_.position, now_.velocity, robot_.radius, robot_.max_speed}; }
+  bool is_last_goal() const { return goal_ + 1 == robot_.goals.size(); }
+  bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(robot_, goal_, arrival_tolerance_); }
 
   void require_state(const NavigatorState& now) {
     if (!std::isfinite(now.time)) refuse(Problem::not_finite, "time", number(now.time), "a finite number");
@@ -249,7 +241,7 @@ class Navigator::Core {
     if (norm(x - clear_place_) < clear_) return nullptr;
     const double clear = solids_.clearance(x, kLooksRound);
     if (clear < 0.0)
-      for (const SceneObstacle& o : scenario_.obstacles)
+      for (const SceneObstacle& o : obstacles_)
         if (geometry::signed_distance(o.shape, x) < 0.0) return &o;
     clear_place_ = x;
     clear_ = clear - kRounding;
@@ -286,11 +278,11 @@ class Navigator::Core {
 
   void look_at_others(const std::vector<Neighbour>& neighbours, const std::vector<MovingBody>& moving) {
     others_.clear();
-    const Party self{id_, 0, {now_.position, now_.velocity, robot().radius}, robot().max_speed, robot().cooperates};
+    const Party self{id_, 0, {now_.position, now_.velocity, robot_.radius}, robot_.max_speed, robot_.cooperates};
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
       const Neighbour& n = neighbours[k];
-      if (!self.yields || norm(n.position - now_.position) >
-                              sight_of(scenario_, robot().radius + n.radius, robot().max_speed + n.max_speed))
+      if (!self.yields ||
+          norm(n.position - now_.position) > sight_of(rules_, robot_.radius + n.radius, robot_.max_speed + n.max_speed))
         continue;
       const vo::BodyTable::Number body = slot(robots_, k, vo::BodyKind::robot);
       scene_.bodies().move(body, geometry::Disc{n.position, n.radius}, n.velocity);
@@ -301,7 +293,7 @@ class Navigator::Core {
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const vo::BodyTable::Number body = slot(moving_, k, vo::BodyKind::moving_obstacle);
       scene_.bodies().move(body, moving[k].shape, moving[k].velocity);
-      add_moving_constraint(scenario_, here(), scene_.bodies(), body, k, others_);
+      add_moving_constraint(rules_, here(), scene_.bodies(), body, k, others_);
     }
   }
 
@@ -314,12 +306,14 @@ class Navigator::Core {
   }
 
   void begin_goal() {
-    way_.head_for(goal(), scene_, scenario_, options_, robot().radius, now_.position);
+    way_.head_for(goal(), scene_, rules_, robot_.radius, now_.position);
     heads_since_ = now_.time;
   }
 
-  Scenario scenario_;
-  SimulationOptions options_;
+  DecisionRules rules_;
+  std::vector<SceneObstacle> obstacles_;
+  Robot robot_;
+  double arrival_tolerance_;  ///< m
   std::size_t id_;
   Scene scene_;
   OwnDecision own_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "runs/own_decision.h"
 
-#include "steering/goals.h"
+#include "scene/goals.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 
@@ -18,7 +19,7 @@ void OwnDecision::reserve(std::size_t statics, std::size_t others) {
 }
 
 void OwnDecision::look(const StaticField& field, const Viewpoint& here) {
-  needed_.look(field, here, reach_of_step(scenario_, here));
+  needed_.look(field, here, reach_of_step(rules_.time_step, here.max_speed));
 }
 
 DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others,
@@ -28,18 +29,18 @@ DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const st
 
 Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   const Viewpoint& here = errand.here;
-  const Vec2 preferred = straight_for(here.position, here.max_speed, errand.goal, scenario_.time_step);
+  const Vec2 preferred = straight_for(here.position, here.max_speed, errand.goal, rules_.time_step);
   if (errand.has_arrived) {
     decision.mode = Mode::arrived;
     return preferred;
   }
   const bool in_contact = is_in_contact();
   if (in_contact) decision.mode = Mode::pushing_out;
-  if (options_.method == Method::orca) return preferred;
-  if (options_.method != Method::ivo) return ties_broken(way, preferred, decision);
+  if (rules_.method == Method::orca) return preferred;
+  if (rules_.method != Method::ivo) return ties_broken(way, preferred, decision);
   const BoundaryFollower::Answer answer =
-      way.follower.steer({errand.time, scenario_.time_step, here, errand.goal,
-                          here.max_speed * scenario_.horizons.least, preferred, &*way.field},
+      way.follower.steer({errand.time, rules_.time_step, here, errand.goal, here.max_speed * rules_.horizons.least,
+                          preferred, &*way.field},
                          following_);
   decision.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
   decision.side = answer.side;

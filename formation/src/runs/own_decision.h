@@ -24,9 +24,8 @@ struct OwnWay {
   bool tied = false;  ///< the last preference was turned to break a tie
 
   /// Another goal: the obstacles are seen anew, and whatever was followed is forgotten.
-  void head_for(Vec2 goal, Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
-                Vec2 start) {
-    field.emplace(scene, scenario, options, radius, start, goal, HorizonRule::clamped);
+  void head_for(Vec2 goal, Scene& scene, const DecisionRules& rules, double radius, Vec2 start) {
+    field.emplace(scene, rules, radius, start, goal, HorizonRule::clamped);
     follower.reset();
   }
 };
@@ -45,9 +44,8 @@ std::string passed_goal_words(std::size_t next);
 /// Decides for one robot after the other, in memory of its own: `look`, `steer`, `choose`.
 class OwnDecision {
  public:
-  /// All must outlive it.
-  OwnDecision(const Scenario& scenario, const SimulationOptions& options, const vo::BodyTable& bodies)
-      : scenario_(scenario), options_(options), decider_(scenario, bodies) {}
+  /// Both must outlive it.
+  OwnDecision(const DecisionRules& rules, const vo::BodyTable& bodies) : rules_(rules), decider_(rules, bodies) {}
 
   /// Room for so many static bodies and other ones within reach: decisions among them allocate nothing.
   void reserve(std::size_t statics, std::size_t others);
@@ -82,8 +80,7 @@ class OwnDecision {
   DecisionInput input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all);
   Vec2 ties_broken(OwnWay& way, Vec2 preferred, Decision& decision);
 
-  const Scenario& scenario_;
-  const SimulationOptions& options_;
+  const DecisionRules& rules_;
   Decider decider_;
   NeededConstraints needed_;
   BoundaryFollower::Memory following_;

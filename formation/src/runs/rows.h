@@ -5,7 +5,6 @@
 /// Passes rows from the simulation to a RunSink.
 
 #include <chrono>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,11 +12,6 @@
 #include "exactvo/vo/constraint.h"
 
 namespace exactvo::formation::detail {
-
-/// A non-owning pointer; `row` must outlive it.
-inline std::shared_ptr<const Step> borrowed(const Step& row) {
-  return {std::shared_ptr<void>(), &row};
-}
 
 /// The row of a robot that has not decided yet.
 inline RobotStep undecided(Vec2 position, Vec2 velocity) {

@@ -10,7 +10,7 @@
 #include "exactvo/geometry/require.h"
 
 #include "preflight/preflight.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 #include "runs/runs.h"
 #include "steering/guide.h"
 
@@ -63,7 +63,7 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
 }
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
-  Reachability reach(scenario, 0.0, false);
+  Reachability reach(terrain_of(scenario), 0.0, false);
   return warnings_with(scenario, options, reach);
 }
 

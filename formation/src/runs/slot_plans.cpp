@@ -17,8 +17,8 @@ namespace {
 using geometry::norm;
 
 /// What robots keep anyway, so that a plan can begin from wherever half-planes let them go.
-double gap_of(const Scenario& scenario) {
-  return std::max(kContactSkin, std::min(scenario.margins.robot, scenario.margins.obstacle));
+double gap_of(const Margins& margins) {
+  return std::max(kContactSkin, std::min(margins.robot, margins.obstacle));
 }
 
 /// Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to each other.
@@ -28,15 +28,15 @@ constexpr double kShareOfGap = 0.25;
 constexpr double kNearEnough = 0.9;
 
 /// With the speed at which robots close in on their slots.
-Scenario with_larger_robots(Scenario scenario, const std::vector<Vec2>& offsets, double gap) {
-  const FormationSpec& formation = *scenario.formation;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    Robot& robot = scenario.robots[i];
+std::vector<Robot> larger_robots(std::vector<Robot> robots, const FormationSpec& formation,
+                                 const std::vector<Vec2>& offsets, double gap) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    Robot& robot = robots[i];
     robot.radius += kShareOfGap * gap;
     robot.max_speed = std::min(robot.max_speed, formation.catch_up_speed);
     robot.goals = {formation.leader.path.back() + offsets[i]};
   }
-  return scenario;
+  return robots;
 }
 
 /// m: the distance to the slot, as a measure of progress. Robots close in ever more slowly, so that near it a share of
@@ -49,16 +49,17 @@ double way_left(double distance, double diameter) {
 
 }  // namespace
 
-SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped)
+SlotPlans::SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets, int threads,
+                     std::function<bool()> is_stopped)
     : scenario_(scenario),
       offsets_(std::move(offsets)),
       leader_arrival_(detail::leader_arrival(scenario.formation->leader)),
       tolerance_(scenario.arrival_tolerance),
-      gap_(gap_of(scenario)),
+      gap_(gap_of(rules.margins)),
       gap_to_obstacles_(kShareOfGap * gap_),
-      larger_(with_larger_robots(scenario, offsets_, gap_)),
+      larger_(larger_robots(scenario.robots, *scenario.formation, offsets_, gap_)),
       space_(scenario.obstacles),
-      groups_(larger_, space_, true, threads, std::move(is_stopped)) {}
+      groups_(scenario, rules, larger_, space_, true, threads, std::move(is_stopped)) {}
 
 double SlotPlans::room_of(std::size_t robot) const {
   return scenario_.robots[robot].radius + scenario_.margins.obstacle + 2.0 * kContactSkin;
@@ -67,7 +68,7 @@ double SlotPlans::room_of(std::size_t robot) const {
 /// Empty where nothing is known to keep the robot from the slot.
 std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Reachability& reach) const {
   const double radius = scenario_.robots[robot].radius;
-  const double wanted = std::max(larger_.robots[robot].radius, room_of(robot) - kNearEnough * tolerance_);
+  const double wanted = std::max(larger_[robot].radius, room_of(robot) - kNearEnough * tolerance_);
   if (space_.clearance(slot, wanted) < wanted) {
     double nearest = geometry::kInfinity;
     std::string id;
@@ -100,9 +101,9 @@ void SlotPlans::shift_off_the_wall(std::size_t i) {
   const double room = room_of(i);
   bool is_free = norm(beside - mine.at) <= kNearEnough * tolerance_ && space_.clearance(beside, room) >= room;
   for (std::size_t j = 0; j < places_.size() && is_free; ++j)
-    is_free = j == i || norm(beside - places_[j].at) >=
-                            std::min((1.0 + kPlannedGap) * (larger_.robots[i].radius + larger_.robots[j].radius),
-                                     kAsFar * norm(mine.at - places_[j].at));
+    is_free = j == i ||
+              norm(beside - places_[j].at) >= std::min((1.0 + kPlannedGap) * (larger_[i].radius + larger_[j].radius),
+                                                       kAsFar * norm(mine.at - places_[j].at));
   if (is_free) mine.at = beside;
 }
 
@@ -137,7 +138,7 @@ Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const s
 
 /// Who is nearest to its slot has it first.
 void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
-  Reachability reach(scenario_, 0.0, false);
+  Reachability reach(terrain_of(scenario_), 0.0, false);
   std::vector<std::pair<double, std::size_t>> nearest_first;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const Vec2 slot = leader + offsets_[i];
@@ -176,10 +177,10 @@ void SlotPlans::begin_step(double time, const std::vector<Anchor>& anchors, cons
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const Vec2 goal = goal_of(i);
     const bool is_there = !rests || norm(goal - anchors[i].position) <= tolerance_;
-    now.push_back({anchors[i].position, goal, is_there, rests && larger_.robots[i].cooperates, 0});
+    now.push_back({anchors[i].position, goal, is_there, rests && larger_[i].cooperates, 0});
   }
   groups_.begin_step(time, std::move(now), [&](std::size_t i) {
-    return way_left(norm(goal_of(i) - anchors[i].position), 2.0 * larger_.robots[i].radius);
+    return way_left(norm(goal_of(i) - anchors[i].position), 2.0 * larger_[i].radius);
   });
 }
 

@@ -17,16 +17,17 @@
 #include "decision/decision.h"
 #include "liveness/groups.h"
 #include "motion/leader.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 #include "scene/free_space.h"
 
 namespace exactvo::formation::detail {
 
 class SlotPlans {
  public:
-  /// `scenario` must outlive it. `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups. REQUIRES: a
-  /// formation.
-  SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped);
+  /// Scenario and rules must outlive it. `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups.
+  /// REQUIRES: a formation.
+  SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets, int threads,
+            std::function<bool()> is_stopped);
   SlotPlans(const SlotPlans&) = delete;  // groups refer to members
 
   /// m: what brake points of pairs that fall back, and of robots of a plan and others, keep between the rims. The
@@ -66,7 +67,7 @@ class SlotPlans {
   double leader_arrival_;  ///< s
   double tolerance_;       ///< m
   double gap_, gap_to_obstacles_;
-  Scenario larger_;  ///< with robots larger by what they keep from obstacles
+  std::vector<Robot> larger_;  ///< the robots, larger by what they keep from obstacles
   ObstacleSpace space_;
   Groups groups_;
   std::vector<Place> places_;

@@ -4,10 +4,17 @@
 #include <vector>
 
 #include "exactvo/formation/simulation.h"
+#include "scene/decision_rules.h"
 
 namespace exactvo::formation::detail {
 
 /// What `validate` finds in the fields alone: not whether robots start clear of obstacles.
 std::vector<ScenarioProblem> field_problems(const Scenario& scenario);
+
+/// The same of the numbers of a decision and the tolerance of arrival (m) alone.
+std::vector<ScenarioProblem> field_problems(const DecisionRules& rules, double arrival_tolerance);
+
+/// The same of a robot's radius (m) and greatest speed (m/s): "/radius" and "/max_speed".
+std::vector<ScenarioProblem> field_problems(double radius, double max_speed);
 
 }  // namespace exactvo::formation::detail

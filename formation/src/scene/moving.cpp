@@ -3,38 +3,33 @@
 
 #include <algorithm>
 
-#include "decision/decision.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/hull.h"
 #include "motion/leader.h"
+#include "scene/static_field.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 
-void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved) {
-  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
-    const MovingObstacle& obstacle = scenario.moving_obstacles[k];
-    const MovedObstacle& at =
-        moved.emplace_back(MovedObstacle{displacement_at(obstacle, time), leader_at(obstacle.motion, time).velocity});
-    scene.bodies().move(scene.moving_obstacle(k), hull_of(obstacle, at.displacement), at.velocity);
+void move_obstacles(const std::vector<MovingObstacle>& obstacles, double time, Scene& scene,
+                    std::vector<MovedObstacle>& moved) {
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const MovedObstacle& at = moved.emplace_back(
+        MovedObstacle{displacement_at(obstacles[k], time), leader_at(obstacles[k].motion, time).velocity});
+    scene.bodies().move(scene.moving_obstacle(k), hull_of(obstacles[k], at.displacement), at.velocity);
   }
 }
 
-double sight_of(const Scenario& scenario, double radii, double speeds) {
-  constexpr double kOfABox = 1.4143;  // the diagonal of a bound on each coordinate
-  constexpr double kSpare = 1.001;    // roundings, and what is kept at contact
-  return std::max(scenario.neighbour_distance, kSpare * (radii + kOfABox * speeds * scenario.time_step));
-}
-
-void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
+void add_moving_constraint(const DecisionRules& rules, const Viewpoint& from, vo::BodyTable& bodies,
                            vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out) {
   const Vec2 u = bodies[body].velocity;
   geometry::GrownShape& seen = bodies.seen(body, from.position, from.radius);
   const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
-  if (nearest.distance > sight_of(scenario, from.radius, from.max_speed + norm(u))) return;
+  if (nearest.distance > sight_of(rules, from.radius, from.max_speed + norm(u))) return;
   vo::ClearancePolicy policy;
-  policy.time_horizon = scenario.horizons.robots;
-  policy.room = std::max(kContactSkin, scenario.margins.robot);
-  policy.push_out_time = contact_time(scenario);
+  policy.time_horizon = rules.horizons.robots;
+  policy.room = std::max(kContactSkin, rules.margins.robot);
+  policy.push_out_time = contact_time(rules.time_step);
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
   Constraint& c = out.emplace_back();
   c.half_plane = vo::shifted_by(found.half_plane, u);
@@ -48,10 +43,10 @@ void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::
   c.speed = norm(u);
 }
 
-void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
+void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out) {
-  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k)
-    add_moving_constraint(scenario, from, scene.bodies(), scene.moving_obstacle(k), k, out);
+  for (std::size_t k = 0; k < scene.moving_obstacles(); ++k)
+    add_moving_constraint(rules, from, scene.bodies(), scene.moving_obstacle(k), k, out);
 }
 
 }  // namespace exactvo::formation::detail

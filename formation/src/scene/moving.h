@@ -15,23 +15,21 @@
 namespace exactvo::formation::detail {
 
 struct Constraint;
+struct DecisionRules;
 struct Viewpoint;
 class Scene;
 
 /// Brings the bodies of moving obstacles to where they are at `time`, and says where that is.
-void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved);
-
-/// m: `neighbour_distance`, or, if that is more, the distance of centres within which two can meet in a time step whose
-/// radii and greatest speeds add up to these (m, m/s).
-double sight_of(const Scenario& scenario, double radii, double speeds);
+void move_obstacles(const std::vector<MovingObstacle>& obstacles, double time, Scene& scene,
+                    std::vector<MovedObstacle>& moved);
 
 /// Appends the half-plane against body number `body`, moving obstacle number `index`, if that is in sight: soft,
 /// certified while the obstacle keeps its velocity.
-void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
+void add_moving_constraint(const DecisionRules& rules, const Viewpoint& from, vo::BodyTable& bodies,
                            vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out);
 
 /// The same of every moving obstacle. REQUIRES: `move_obstacles` for this time.
-void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
+void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out);
 
 }  // namespace exactvo::formation::detail

@@ -46,7 +46,7 @@ double distance_below(const geometry::Box& box, Vec2 x, Vec2 u) {
 
 template <class Visit>
 void StaticField::for_each_shape_meeting(const geometry::Box& window, const Visit& visit) const {
-  if (method_ == Method::ivo_edge) {
+  if (rules_->method == Method::ivo_edge) {
     scene_->facade_ellipses_by_place().for_each_meeting(window, [&](std::size_t k) {
       visit(Shape{scene_->facade_ellipse(k), k, EnclosureGrade::containing});
     });
@@ -162,9 +162,9 @@ double StaticField::room_of(BodyTable::Number body, const Viewpoint& from, doubl
 
 /// m, from the rim: whatever is farther leaves a robot at rest at least that room.
 double StaticField::distance_of_room(const Viewpoint& from, double room) const {
-  const Horizons& h = scenario_->horizons;
+  const Horizons& h = rules_->horizons;
   const double kept = margin_ + kContactSkin;
-  const double least = std::max(h.least, 2.0 * scenario_->time_step);
+  const double least = std::max(h.least, 2.0 * rules_->time_step);
   const double pace = std::max(norm(from.velocity), h.speed_floor * from.max_speed);  // tau = distance / pace between
   if (const double d = kept + least * room; d <= pace * least) return d;
   if (const double d = kept * pace / (pace - room); room < pace && d <= pace * h.most) return std::max(d, pace * least);
@@ -181,7 +181,7 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
   const double kept = from.radius + margin_ + 2.0 * kContactSkin;
   geometry::Box window = grown(from.position, kept + std::max(need.within, 0.0));
   if (!(need.room > 0.0)) return window;
-  const double most = scenario_->horizons.most;
+  const double most = rules_->horizons.most;
   const geometry::Box slow = grown(from.position, kept + distance_of_room(from, need.room + norm(from.velocity)));
   geometry::Box fast = grown(from.position, kept + most * need.room);
   fast.add(grown(from.position + most * from.velocity, kept + most * need.room));
@@ -303,12 +303,12 @@ void StaticField::candidates(const std::vector<NearBody>& near, double moved, co
   EXACTVO_REQUIRE(bounds_room(), "bounds of other horizons");
   constexpr double kRounding = 1.0 + 1e-9;
   out.clear();
-  const Horizons& h = scenario_->horizons;
+  const Horizons& h = rules_->horizons;
   const Sight sight{from,
                     kRounding * distance_within(from, reach),
                     norm(from.position) + from.radius,
                     1.0 / std::max(norm(from.velocity), h.speed_floor * from.max_speed),
-                    std::max(h.least, 2.0 * scenario_->time_step),
+                    std::max(h.least, 2.0 * rules_->time_step),
                     h.most};
   const auto see_if_near = [&](const NearBody& b) {
     if (!see(b, sight, out.emplace_back())) out.pop_back();

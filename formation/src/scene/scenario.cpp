@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -85,14 +86,20 @@ std::vector<std::vector<std::size_t>> near_each_other(const std::vector<Robot>& 
   return before;
 }
 
+/// `at`: makes the pointer of a key.
+template <class At>
+void check_body(double radius, double max_speed, const At& at, Checker& c) {
+  c.positive(radius, at("/radius"), "m");
+  c.positive(max_speed, at("/max_speed"), "m/s");
+}
+
 void check_robots(const Scenario& s, Checker& c) {
   c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
   const std::vector<std::vector<std::size_t>> near = near_each_other(s.robots);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const Robot& r = s.robots[i];
     const auto at = [i](const char* key) { return [i, key] { return "/robots/" + std::to_string(i) + key; }; };
-    c.positive(r.radius, at("/radius"), "m");
-    c.positive(r.max_speed, at("/max_speed"), "m/s");
+    check_body(r.radius, r.max_speed, at, c);
     c.finite(r.position, at("/position"));
     c.finite(r.velocity, at("/velocity"));
     if (!s.formation && r.goals.empty())
@@ -150,7 +157,7 @@ void check_moving(const Scenario& s, Checker& c) {
 }
 
 /// Said of the one of the two that is not the default, where that is one.
-void require_step_within_horizon(const Scenario& s, Checker& c) {
+void require_step_within_horizon(const detail::DecisionRules& s, Checker& c) {
   const bool holds = s.horizons.least >= 2.0 * s.time_step;
   if (s.time_step > Scenario{}.time_step)
     return c.require(holds, "/time_step", show(s.time_step),
@@ -159,15 +166,18 @@ void require_step_within_horizon(const Scenario& s, Checker& c) {
             "at least twice /time_step, " + show(2.0 * s.time_step) + " (s)");
 }
 
-void check_times(const Scenario& s, Checker& c) {
+/// `time_limit`: s, of a run.
+void check_times(const detail::DecisionRules& s, double arrival_tolerance, std::optional<double> time_limit,
+                 Checker& c) {
   c.positive(s.time_step, "/time_step", "s");
-  c.positive(s.time_limit, "/time_limit", "s");
-  c.positive(s.arrival_tolerance, "/arrival_tolerance", "m");
+  if (time_limit) c.positive(*time_limit, "/time_limit", "s");
+  c.positive(arrival_tolerance, "/arrival_tolerance", "m");
   c.positive(s.neighbour_distance, "/neighbour_distance", "m");
   c.positive(s.horizons.least, "/horizons/least", "s");
   constexpr double kMostSteps = 1e7;  // rows that a recording can hold in memory
-  c.require(!(s.time_step > 0.0) || s.time_limit / s.time_step <= kMostSteps, "/time_limit", show(s.time_limit),
-            "at most 10^7 steps of /time_step, " + show(1e7 * s.time_step) + " (s)");
+  if (time_limit)
+    c.require(!(s.time_step > 0.0) || *time_limit / s.time_step <= kMostSteps, "/time_limit", show(*time_limit),
+              "at most 10^7 steps of /time_step, " + show(1e7 * s.time_step) + " (s)");
   c.positive(s.horizons.most, "/horizons/most", "s");
   c.require(s.horizons.most >= s.horizons.least, "/horizons/most", show(s.horizons.most),
             "at least /horizons/least, " + show(s.horizons.least));
@@ -247,8 +257,21 @@ std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
   check_robots(scenario, c);
   check_moving(scenario, c);
-  check_times(scenario, c);
+  check_times(rules_of(scenario, {}), scenario.arrival_tolerance, scenario.time_limit, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
+  return std::move(c.problems);
+}
+
+std::vector<ScenarioProblem> detail::field_problems(const DecisionRules& rules, double arrival_tolerance) {
+  Checker c;
+  check_times(rules, arrival_tolerance, std::nullopt, c);
+  return std::move(c.problems);
+}
+
+std::vector<ScenarioProblem> detail::field_problems(double radius, double max_speed) {
+  Checker c;
+  check_body(
+      radius, max_speed, [](const char* key) { return std::string(key); }, c);
   return std::move(c.problems);
 }
 

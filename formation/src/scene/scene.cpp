@@ -10,22 +10,24 @@ namespace exactvo::formation::detail {
 using vo::BodyKind;
 using vo::BodyTable;
 
-Scene::Scene(const Scenario& scenario, const SimulationOptions& options) {
-  if (options.method == Method::orca)
-    add_chains(scenario);
+Scene::Scene(const Scenario& scenario, const SimulationOptions& options)
+    : Scene(options.method, scenario.obstacles, scenario.robots, scenario.moving_obstacles,
+            {options.facade_minor_to_major, options.facade_fixed_minor, scenario.margins.obstacle}) {}
+
+Scene::Scene(Method method, const std::vector<SceneObstacle>& obstacles, const std::vector<Robot>& robots,
+             const std::vector<MovingObstacle>& moving, const geometry::FacadeEllipseOptions& ellipse) {
+  if (method == Method::orca)
+    add_chains(obstacles);
   else
-    add_pieces(scenario);
-  if (options.method == Method::ivo_edge) add_facade_ellipses(scenario, options);
+    add_pieces(obstacles);
+  if (method == Method::ivo_edge) add_facade_ellipses(ellipse);
   first_robot_ = bodies_.size();
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    const Robot& r = scenario.robots[i];
-    bodies_.add({BodyKind::robot, geometry::Disc{r.position, r.radius}, r.velocity, {i}});
-  }
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    bodies_.add({BodyKind::robot, geometry::Disc{robots[i].position, robots[i].radius}, robots[i].velocity, {i}});
   first_moving_ = bodies_.size();
-  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
-    const MovingObstacle& o = scenario.moving_obstacles[k];
-    bodies_.add({BodyKind::moving_obstacle, hull_of(o, displacement_at(o, 0.0)), {}, {k}});
-  }
+  moving_count_ = moving.size();
+  for (std::size_t k = 0; k < moving.size(); ++k)
+    bodies_.add({BodyKind::moving_obstacle, hull_of(moving[k], displacement_at(moving[k], 0.0)), {}, {k}});
 }
 
 geometry::BoxGrid Scene::by_place(const std::vector<BodyTable::Number>& some) const {
@@ -35,10 +37,10 @@ geometry::BoxGrid Scene::by_place(const std::vector<BodyTable::Number>& some) co
   return geometry::BoxGrid(std::move(boxes));
 }
 
-void Scene::add_pieces(const Scenario& scenario) {
-  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+void Scene::add_pieces(const std::vector<SceneObstacle>& obstacles) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
     first_piece_.push_back(pieces_.size());
-    parts_.push_back(geometry::parts_of(scenario.obstacles[i].shape));
+    parts_.push_back(geometry::parts_of(obstacles[i].shape));
     for (const geometry::ConvexShape& piece : parts_.back().pieces)
       pieces_.push_back(bodies_.add({BodyKind::enclosure, piece, {}, {i}}));
   }
@@ -46,9 +48,7 @@ void Scene::add_pieces(const Scenario& scenario) {
   pieces_by_place_ = by_place(pieces_);
 }
 
-void Scene::add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options) {
-  const geometry::FacadeEllipseOptions ellipse{options.facade_minor_to_major, options.facade_fixed_minor,
-                                               scenario.margins.obstacle};
+void Scene::add_facade_ellipses(const geometry::FacadeEllipseOptions& ellipse) {
   for (std::size_t i = 0; i < parts_.size(); ++i)
     for (const geometry::Segment& facade : parts_[i].facades)
       facade_ellipses_.push_back(
@@ -56,9 +56,9 @@ void Scene::add_facade_ellipses(const Scenario& scenario, const SimulationOption
   facade_ellipses_by_place_ = by_place(facade_ellipses_);
 }
 
-void Scene::add_chains(const Scenario& scenario) {
-  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
-    for (vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[i].shape)) {
+void Scene::add_chains(const std::vector<SceneObstacle>& obstacles) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    for (vo::OrcaChain& chain : vo::orca_chains(obstacles[i].shape)) {
       // A closed chain has one edge per vertex, an open one is walked there and back: an edge begins at every vertex.
       first_edge_.push_back(edges_.size());
       const std::size_t n = chain.vertices.size();

@@ -20,6 +20,9 @@ namespace exactvo::formation::detail {
 class Scene {
  public:
   Scene(const Scenario& scenario, const SimulationOptions& options);
+  /// `ellipse`: of facades, for Method::ivo_edge alone.
+  Scene(Method method, const std::vector<SceneObstacle>& obstacles, const std::vector<Robot>& robots,
+        const std::vector<MovingObstacle>& moving, const geometry::FacadeEllipseOptions& ellipse);
 
   const vo::BodyTable& bodies() const { return bodies_; }
   vo::BodyTable& bodies() { return bodies_; }
@@ -43,12 +46,13 @@ class Scene {
   const geometry::BoxGrid& edges_by_place() const { return edges_by_place_; }
 
   vo::BodyTable::Number robot(std::size_t i) const { return first_robot_ + i; }
+  std::size_t moving_obstacles() const { return moving_count_; }
   vo::BodyTable::Number moving_obstacle(std::size_t k) const { return first_moving_ + k; }
 
  private:
-  void add_pieces(const Scenario& scenario);
-  void add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options);
-  void add_chains(const Scenario& scenario);
+  void add_pieces(const std::vector<SceneObstacle>& obstacles);
+  void add_facade_ellipses(const geometry::FacadeEllipseOptions& ellipse);
+  void add_chains(const std::vector<SceneObstacle>& obstacles);
   geometry::BoxGrid by_place(const std::vector<vo::BodyTable::Number>& some) const;
 
   vo::BodyTable bodies_;
@@ -62,7 +66,7 @@ class Scene {
   std::vector<std::size_t> first_edge_, chain_of_;
   std::vector<vo::BodyTable::Number> edges_;
   geometry::BoxGrid edges_by_place_;
-  std::size_t first_robot_ = 0, first_moving_ = 0;
+  std::size_t first_robot_ = 0, first_moving_ = 0, moving_count_ = 0;
 };
 
 }  // namespace exactvo::formation::detail

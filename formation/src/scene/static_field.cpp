@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "decision/decision.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -26,9 +26,9 @@ constexpr double kPushOutShare = 0.3;  // of max_speed
 
 constexpr double kLiteralHorizonAtRest = 1e6;  // s: the printed tau divides by |v| = 0
 
-geometry::EnclosureOptions enclosure_options(const Scenario& scenario) {
+geometry::EnclosureOptions enclosure_options(const Margins& margins) {
   geometry::EnclosureOptions options;
-  options.margin = scenario.margins.obstacle;
+  options.margin = margins.obstacle;
   options.least_margin = std::min(options.least_margin, options.margin);
   return options;
 }
@@ -40,15 +40,15 @@ bool is_beyond_reach(double clearance, const Viewpoint& from, double tau) {
 
 }  // namespace
 
-StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
-                         Vec2 start, Vec2 goal, HorizonRule rule, SeenAs seen_as)
-    : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule), margin_(scenario.margins.obstacle) {
-  const bool has_pieces = method_ == Method::ivo_cluster || method_ == Method::ivo;
-  if (has_pieces && (seen_as == SeenAs::pieces || guidance_of(scenario, options) == Guidance::route)) {
+StaticField::StaticField(Scene& scene, const DecisionRules& rules, double radius, Vec2 start, Vec2 goal,
+                         HorizonRule rule, SeenAs seen_as)
+    : scene_(&scene), rules_(&rules), rule_(rule), margin_(rules.margins.obstacle) {
+  const bool has_pieces = rules.method == Method::ivo_cluster || rules.method == Method::ivo;
+  if (has_pieces && (seen_as == SeenAs::pieces || rules.guidance == Guidance::route)) {
     tight_index_.resize(scene.pieces_by_place().size());
     std::iota(tight_index_.begin(), tight_index_.end(), 0u);
   } else if (has_pieces) {
-    take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
+    take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(rules.margins)));
   }
   list_if_small();
 }
@@ -97,7 +97,7 @@ std::vector<BodyTable::Number> StaticField::shapes() const {
 }
 
 std::vector<Enclosure> StaticField::enclosures() const {
-  const EnclosureGrade usual = method_ == Method::ivo_edge ? EnclosureGrade::containing : EnclosureGrade::tight;
+  const EnclosureGrade usual = rules_->method == Method::ivo_edge ? EnclosureGrade::containing : EnclosureGrade::tight;
   std::vector<Enclosure> all;
   for (const BodyTable::Number body : shapes())
     all.push_back({scene_->bodies()[body].shape, scene_->bodies()[body].owners, usual});
@@ -107,20 +107,20 @@ std::vector<Enclosure> StaticField::enclosures() const {
 
 double StaticField::horizon(double distance, const Viewpoint& from) const {
   if (from.horizon > 0.0) return from.horizon;
-  const Horizons& h = scenario_->horizons;
+  const Horizons& h = rules_->horizons;
   const double speed = norm(from.velocity);
   if (rule_ == HorizonRule::literal)
     return speed > 0.0 && distance > 0.0 ? std::min(distance / speed, kLiteralHorizonAtRest) : kLiteralHorizonAtRest;
   const double tau = distance / std::max(speed, h.speed_floor * from.max_speed);
-  return std::clamp(tau, std::max(h.least, 2.0 * scenario_->time_step), h.most);
+  return std::clamp(tau, std::max(h.least, 2.0 * rules_->time_step), h.most);
 }
 
 /// m, from the centre: what is farther is beyond reach at the longest horizon, whatever the rounding of its distance.
 double StaticField::farthest_that_matters(const Viewpoint& from) const {
   constexpr double kRounding = 1.0 + 1e-9;
-  const Horizons& h = scenario_->horizons;
-  if (method_ != Method::orca && rule_ == HorizonRule::literal) return kEverywhere;
-  const double tau = method_ == Method::orca ? h.orca : h.most;
+  const Horizons& h = rules_->horizons;
+  if (rules_->method != Method::orca && rule_ == HorizonRule::literal) return kEverywhere;
+  const double tau = rules_->method == Method::orca ? h.orca : h.most;
   return kRounding * (std::sqrt(2.0) * from.max_speed * tau + from.radius + kContactSkin);
 }
 
@@ -133,7 +133,7 @@ double StaticField::distance_within(const Viewpoint& from, double reach) const {
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
   const double within = distance_within(from, reach);
-  if (method_ == Method::orca) return add_edges(from, within, out);
+  if (rules_->method == Method::orca) return add_edges(from, within, out);
   for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
   std::sort(out.begin(), out.end(), comes_before);
 }
@@ -188,7 +188,7 @@ void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Con
       of_chain.push_back(near[first] - scene_->first_edge(chain));
     for (const vo::OrcaHalfPlane& found :
          vo::orca_half_planes(scene_->chains()[chain], of_chain, from.position, from.velocity,
-                              from.radius + kContactSkin, from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca))
+                              from.radius + kContactSkin, from.horizon > 0.0 ? from.horizon : rules_->horizons.orca))
       add_edge(chain, found, from, out);
   }
   add_unguarded(near, from, out);
@@ -198,7 +198,7 @@ void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Con
 
 void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
                            std::vector<Constraint>& out) const {
-  const double tau = from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca;
+  const double tau = from.horizon > 0.0 ? from.horizon : rules_->horizons.orca;
   const std::size_t number = scene_->first_edge(chain) + found.edge;
   const BodyTable::Number body = scene_->edge(number);
   const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);
@@ -227,8 +227,8 @@ void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, co
 /// what can be met within a step, of which rows keep all, excludes it.
 void StaticField::add_unguarded(const std::vector<std::size_t>& near, const Viewpoint& from,
                                 std::vector<Constraint>& out) const {
-  const double tau = from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca;
-  const double reach = reach_of_step(*scenario_, from);
+  const double tau = from.horizon > 0.0 ? from.horizon : rules_->horizons.orca;
+  const double reach = reach_of_step(rules_->time_step, from.max_speed);
   for (const std::size_t number : near) {
     const BodyTable::Number body = scene_->edge(number);
     const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);
@@ -236,7 +236,7 @@ void StaticField::add_unguarded(const std::vector<std::size_t>& near, const View
     if (geometry::orientation(edge.a, edge.b, from.position) == geometry::Sign::positive) continue;  // faces away
     geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
     const auto excludes = [&](const Constraint& c) {
-      return c.clearance <= reach && geometry::half_plane_is_safe(seen, scenario_->time_step, c.half_plane);
+      return c.clearance <= reach && geometry::half_plane_is_safe(seen, rules_->time_step, c.half_plane);
     };
     if (std::any_of(out.begin(), out.end(), excludes)) continue;
     const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);

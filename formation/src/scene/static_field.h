@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "exactvo/formation/recording.h"
-#include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/enclosure.h"
+#include "scene/decision_rules.h"
 #include "scene/scene.h"
 
 namespace exactvo::formation::detail {
@@ -35,7 +35,7 @@ struct Viewpoint {
   Vec2 velocity;         ///< m/s, v_opt
   double radius = 0.0;   ///< m
   double max_speed = 0;  ///< m/s
-  double horizon = 0.0;  ///< s: instead of what the scenario says; 0: none
+  double horizon = 0.0;  ///< s: instead of what the rules say; 0: none
 };
 
 /// Which static shapes a decision needs: those within reach, and those whose half-plane may leave the robot's velocity
@@ -65,11 +65,12 @@ class StaticField {
   static constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 
   /// Shapes for a robot of `radius` going from `start` to `goal`: with guidance the pieces of obstacles alone.
-  StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius, Vec2 start,
-              Vec2 goal, HorizonRule rule, SeenAs seen_as = SeenAs::by_rule);
+  /// Scene and rules must outlive the field.
+  StaticField(Scene& scene, const DecisionRules& rules, double radius, Vec2 start, Vec2 goal, HorizonRule rule,
+              SeenAs seen_as = SeenAs::by_rule);
 
-  /// m: what a piece is kept away from beside the radius while there is room; the scenario's by default. Not between a
-  /// look and the decision that is made of it.
+  /// m: what a piece is kept away from beside the radius while there is room; that of the rules by default. Not between
+  /// a look and the decision that is made of it.
   void set_margin(double margin) { margin_ = margin; }
 
   /// Half-planes of every shape that could matter to a robot of that speed, nearest first; of those farther than
@@ -77,7 +78,7 @@ class StaticField {
   void constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach = kEverywhere) const;
 
   /// Whether the field knows what its half-planes leave a velocity: else there are only `constraints`.
-  bool bounds_room() const { return rule_ == HorizonRule::clamped && method_ != Method::orca; }
+  bool bounds_room() const { return rule_ == HorizonRule::clamped && rules_->method != Method::orca; }
   bool is_empty() const { return is_small_ && all_.empty(); }
 
   /// A body of the field, under the names that recordings use.
@@ -184,8 +185,7 @@ class StaticField {
   double distance_of_room(const Viewpoint& from, double room) const;
 
   Scene* scene_;
-  const Scenario* scenario_;
-  Method method_;
+  const DecisionRules* rules_;
   HorizonRule rule_;
   double margin_;
   std::vector<Shape> enclosures_;           ///< fitted for this robot; method ivo_edge has the scene's
@@ -196,7 +196,7 @@ class StaticField {
 
 template <class Visit>
 void StaticField::for_each_shape(const Visit& visit) const {
-  for (std::size_t k = 0; method_ == Method::ivo_edge && k < scene_->facade_ellipses_by_place().size(); ++k)
+  for (std::size_t k = 0; rules_->method == Method::ivo_edge && k < scene_->facade_ellipses_by_place().size(); ++k)
     visit(Shape{scene_->facade_ellipse(k), k, geometry::EnclosureGrade::containing});
   for (const Shape& e : enclosures_) visit(e);
   for (std::size_t k = 0; k < tight_index_.size(); ++k)
@@ -210,7 +210,7 @@ void StaticField::for_each_shape_within(Vec2 x, double reach, const Visit& visit
       if (geometry::distance_below(scene_->bodies().box(s.body), x) <= reach) visit(s);
     return;
   }
-  if (method_ == Method::ivo_edge) {
+  if (rules_->method == Method::ivo_edge) {
     scene_->facade_ellipses_by_place().for_each_within(x, reach, [&](std::size_t k) {
       visit(Shape{scene_->facade_ellipse(k), k, geometry::EnclosureGrade::containing});
     });

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/goals.h"
 #include "scene/near_pairs.h"
 #include "scene/number_text.h"
-#include "steering/goals.h"
 
 namespace exactvo::formation::detail {
 
@@ -14,7 +14,7 @@ GoalClaims::GoalClaims(const Scenario& scenario, const RoomAtEnds& room, double 
     : scenario_(scenario),
       room_(room),
       horizon_(horizon),
-      largest_(largest_radius(scenario)),
+      largest_(largest_radius(scenario.robots)),
       claimed_(4.0 * largest_),
       robots_(scenario.robots.size()) {}
 
@@ -135,7 +135,8 @@ Vec2 GoalClaims::beside_taken_place(std::size_t i, Vec2 preferred) const {
 std::string GoalClaims::words(std::size_t i) const {
   const std::size_t first = *robots_[i].taken_by;
   const std::string room = ", which leaves no room for both";
-  if (now_[i].is_goal && robots_[first].is_goal) return first_at_goal_words(scenario_, first, i) + room;
+  if (now_[i].is_goal && robots_[first].is_goal)
+    return first_at_goal_words(scenario_.robots[first], scenario_.robots[i]) + room;
   const double apart = norm(robots_[first].place - now_[i].end);
   const std::string& id = scenario_.robots[first].id;
   if (apart == 0.0) return id + " was first at the nearest place that both can reach" + room;

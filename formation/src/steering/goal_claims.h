@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "liveness/cells.h"
+#include "scene/cells.h"
 #include "steering/last_places.h"
 
 namespace exactvo::formation::detail {

@@ -38,11 +38,14 @@ double share_beside(Vec2 from, Vec2 piece, Vec2 here) {
 }  // namespace
 
 Guide::Guide(const Scenario& scenario, double most_margin, double most_radius)
-    : unreachable_(scenario.unreachable),
+    : Guide(terrain_of(scenario), scenario.unreachable, most_margin, most_radius) {}
+
+Guide::Guide(const Terrain& terrain, Unreachable unreachable, double most_margin, double most_radius)
+    : unreachable_(unreachable),
       most_margin_(most_margin),
-      reach_(scenario, most_margin + kSkins + most_radius),
-      nearest_(scenario, reach_),
-      space_(scenario.obstacles) {}
+      reach_(terrain, most_margin + kSkins + most_radius),
+      nearest_(terrain.obstacles, reach_),
+      space_(terrain.obstacles) {}
 
 CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
   CourseAnswer answer = course_to(radius, from, to);

@@ -14,8 +14,8 @@
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/routes.h"
-#include "preflight/nearest_place.h"
-#include "preflight/reachability.h"
+#include "reach/nearest_place.h"
+#include "reach/reachability.h"
 #include "scene/free_space.h"
 
 namespace exactvo::formation::detail {
@@ -49,8 +49,9 @@ struct Heading {
 class Guide {
  public:
   /// `most_margin`: what robots keep beside their radius where there is room, m. `most_radius`: of what is guided, m,
-  /// beside the robots. The scenario must outlive the guide.
+  /// beside the robots. The scenario's obstacles must outlive the guide.
   Guide(const Scenario& scenario, double most_margin, double most_radius = 0.0);
+  Guide(const Terrain& terrain, Unreachable unreachable, double most_margin, double most_radius = 0.0);
   Guide(const Guide&) = delete;
 
   double most_margin() const { return most_margin_; }

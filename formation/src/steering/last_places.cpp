@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "exactvo/geometry/box_grid.h"
-#include "liveness/cells.h"
-#include "steering/goals.h"
+#include "scene/cells.h"
+#include "scene/goals.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -39,7 +39,7 @@ std::vector<std::vector<std::size_t>> by_goal(const Scenario& s) {
 /// Pairs that may come too near to each other where they stand aside, but for those whose goals are too near in any
 /// case. In order.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_to_part(const Scenario& s, const RoomAtEnds& room) {
-  const double largest = largest_radius(s), most = 2.0 * most_moved(s);
+  const double largest = largest_radius(s.robots), most = 2.0 * most_moved(s);
   const std::vector<std::vector<std::size_t>> groups = by_goal(s);  // many may have one goal, which parts none of them
   Cells<std::size_t> before(4.0 * largest);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -96,7 +96,7 @@ bool any_leave_no_room(const Scenario& scenario, const std::vector<RobotPlace>& 
   std::vector<geometry::Box> boxes;
   for (const RobotPlace& p : places) boxes.push_back({p.place, p.place});
   const geometry::BoxGrid grid(std::move(boxes));
-  const double most = largest_radius(scenario) + room.margin;
+  const double most = largest_radius(scenario.robots) + room.margin;
   bool any = false;
   for (std::size_t k = 0; k < places.size() && !any; ++k) {
     const auto& [i, here] = places[k];

@@ -6,7 +6,7 @@
 
 #include "control/consensus.h"
 #include "exactvo/geometry/require.h"
-#include "steering/goals.h"
+#include "scene/goals.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -43,7 +43,7 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
   leader.path = {from, goal.to};  // the map covers both
   leader.why_short.clear();
   leader.note.clear();
-  const double whole = radius_of_formation(scenario, offsets), single = detail::largest_radius(scenario);
+  const double whole = radius_of_formation(scenario, offsets), single = detail::largest_radius(scenario.robots);
   Guide guide(scenario, scenario.margins.obstacle, whole);
   const detail::Destination to{goal.to};
   const bool fits = guide.can_go(whole, from, to);

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "steering/goals.h"
+#include "scene/goals.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -22,7 +22,7 @@ PlannedRoute routed(const Scenario& scenario, std::size_t i, std::size_t goal, V
 
 detail::Destination destination(const Scenario& scenario, std::size_t i, std::size_t goal) {
   const Robot& robot = scenario.robots[i];
-  return {robot.goals[goal], detail::reach_of(scenario, robot, goal)};
+  return {robot.goals[goal], detail::reach_of(robot, goal, scenario.arrival_tolerance)};
 }
 
 }  // namespace

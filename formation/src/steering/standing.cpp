@@ -58,10 +58,14 @@ std::shared_ptr<Guide> StandingObstacles::guide() {
     if (world->standing == now_) return guide_of(world);
   constexpr std::size_t kMostKept = 8;  // of obstacles that stop at many places
   if (worlds_.size() == kMostKept) worlds_.pop_front();
-  const auto world = std::make_shared<World>(now_, scenario_);
+  const auto world = std::make_shared<World>();
+  world->standing = now_;
+  world->obstacles = scenario_.obstacles;
   for (std::size_t n = 0; n < now_.size(); ++n)
-    world->scenario.obstacles.push_back({scenario_.moving_obstacles[now_[n].first].id, shapes_[n]});
-  world->guide.emplace(world->scenario, most_margin_);
+    world->obstacles.push_back({scenario_.moving_obstacles[now_[n].first].id, shapes_[n]});
+  const Terrain given = terrain_of(scenario_);
+  world->guide.emplace(Terrain{world->obstacles, given.places, given.largest_radius}, scenario_.unreachable,
+                       most_margin_);
   return guide_of(worlds_.emplace_back(world));
 }
 

@@ -38,11 +38,11 @@ class StandingObstacles {
   /// Which stand, each with the place it has moved to.
   using Standing = std::vector<std::pair<std::size_t, Vec2>>;
 
+  /// The static obstacles with those that stand.
   struct World {
-    World(Standing now, const Scenario& given) : standing(std::move(now)), scenario(given) {}
     Standing standing;
-    Scenario scenario;
-    std::optional<Guide> guide;
+    std::vector<SceneObstacle> obstacles;
+    std::optional<Guide> guide = {};
   };
 
   const Scenario& scenario_;

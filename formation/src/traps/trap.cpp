@@ -9,7 +9,7 @@
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/orca_obstacle.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 #include "scene/static_field.h"
 #include "traps/boundary.h"
 #include "traps/concave_vertex.h"
@@ -284,7 +284,7 @@ std::vector<TrapPlace> places_of(const detail::StaticField& field, const detail:
 /// where the robot has room at the exact one.
 void mark_out_of_reach(const Scenario& scenario, std::vector<TrapFinding>& findings) {
   constexpr double kRounded = 1e-3;  // of the radius: far above the rounding of a place
-  detail::Reachability reach(scenario, 0.0, false);
+  detail::Reachability reach(detail::terrain_of(scenario), 0.0, false);
   for (TrapFinding& f : findings) {
     const Robot& robot = scenario.robots[f.robot];
     const double radius = (1.0 - kRounded) * robot.radius;
@@ -324,13 +324,13 @@ double evolute_margin(const Ellipse& ellipse, Vec2 goal) {
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options) {
   EXACTVO_REQUIRE(validate(scenario).empty(), validate(scenario).front().pointer);
   detail::Scene scene(scenario, options);
+  const detail::DecisionRules rules = detail::rules_of(scenario, options);
   const std::vector<Facade> facades = facades_of(scene);
   std::vector<TrapFinding> findings;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
     const Vec2 goal = first_goal(scenario, options, i);
-    const detail::StaticField field(scene, scenario, options, robot.radius, robot.position, goal,
-                                    detail::HorizonRule::clamped);
+    const detail::StaticField field(scene, rules, robot.radius, robot.position, goal, detail::HorizonRule::clamped);
     for (std::size_t k = 0; k < facades.size(); ++k) {
       findings.push_back(examine(facades[k], k, facades, robot, goal));
       findings.back().robot = i;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preflight/nearest_place.h"
+#include "reach/nearest_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -144,7 +144,7 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
 bool NearestPlaces::is_map_for(double radius, Vec2 from, Vec2 goal) {
   if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return false;
   if (!reach_.plan(radius).is_reachable(from, from)) return false;
-  if (!edges_) edges_.emplace(scenario_.obstacles);
+  if (!edges_) edges_.emplace(obstacles_);
   return true;
 }
 
@@ -202,7 +202,7 @@ double NearestPlaces::at_least(double radius, Vec2 from, Vec2 goal) {
   });
   // A polygon's boundary lies between what is inside of it and every free place.
   double bound = std::max(0.0, radius - nearest_edge);
-  for (const SceneObstacle& o : scenario_.obstacles) {
+  for (const SceneObstacle& o : obstacles_) {
     const auto* polygon = std::get_if<geometry::Polygon>(&o.shape);
     if (polygon && geometry::contains(*polygon, goal))
       bound = std::max(bound, radius - geometry::signed_distance(o.shape, goal));

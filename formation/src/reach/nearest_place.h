@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "exactvo/geometry/routes.h"
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 #include "scene/edges_by_place.h"
 
 namespace exactvo::formation::detail {
@@ -29,7 +29,8 @@ std::string words_of(const NearestPlace& nearest);
 class NearestPlaces {
  public:
   /// Both must outlive this.
-  NearestPlaces(const Scenario& scenario, Reachability& reach) : scenario_(scenario), reach_(reach) {}
+  NearestPlaces(const std::vector<SceneObstacle>& obstacles, Reachability& reach)
+      : obstacles_(obstacles), reach_(reach) {}
 
   /// The nearest place that leaves a disc of `radius` room to stand in besides `room`. Nothing where it can reach
   /// none. REQUIRES: the goal cannot be reached; radius and room no more than `reach` has its map for.
@@ -53,7 +54,7 @@ class NearestPlaces {
   std::vector<Candidate> crossings(double offset, Vec2 goal, double nearer_than) const;
   double distance_beyond(const geometry::Separated& answer, double radius, Vec2 goal) const;
 
-  const Scenario& scenario_;
+  const std::vector<SceneObstacle>& obstacles_;
   Reachability& reach_;
   std::optional<EdgesByPlace> edges_;  ///< from the first question on
 };

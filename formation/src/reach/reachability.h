@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
 #include "scene/number_text.h"
 
@@ -33,11 +34,20 @@ std::vector<Vec2> places_about(Vec2 place, double reach);
 /// m: of a plan.
 inline constexpr double kLeastPlanned = 0x1p-100;
 
+/// What routes are planned in. The obstacles must outlive what is made of it.
+struct Terrain {
+  const std::vector<SceneObstacle>& obstacles;
+  geometry::Box places;         ///< m: where robots start and have to go
+  double largest_radius = 0.0;  ///< m, of the robots
+};
+/// That of a scenario's robots among its static obstacles.
+Terrain terrain_of(const Scenario& scenario);
+
 class Reachability {
  public:
   /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0. `routes`: whether the map and plans
   /// will be asked for routes too; without, they are made sooner.
-  explicit Reachability(const Scenario& scenario, double most_extra = 0.0, bool routes = true);
+  explicit Reachability(const Terrain& terrain, double most_extra = 0.0, bool routes = true);
 
   /// Made at the first question and kept: of many scenes nobody asks for it.
   const geometry::RouteMap& map();
@@ -62,7 +72,7 @@ class Reachability {
  private:
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;
 
-  const Scenario& scenario_;
+  Terrain terrain_;
   double most_extra_;  ///< m
   bool routes_;
   std::optional<geometry::RouteMap> map_;

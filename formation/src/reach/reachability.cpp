@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "preflight/reachability.h"
+#include "reach/reachability.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"
+#include "scene/goals.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -20,9 +21,9 @@ using geometry::Blocked;
 using geometry::RouteAnswer;
 using geometry::Separated;
 
-std::vector<geometry::Obstacle> shapes_of(const Scenario& scenario) {
+std::vector<geometry::Obstacle> shapes_of(const std::vector<SceneObstacle>& obstacles) {
   std::vector<geometry::Obstacle> all;
-  for (const SceneObstacle& o : scenario.obstacles) all.push_back(o.shape);
+  for (const SceneObstacle& o : obstacles) all.push_back(o.shape);
   return all;
 }
 
@@ -42,14 +43,13 @@ geometry::Box places_of(const Scenario& scenario) {
 }
 
 /// Starts, goals and their surroundings, where robots may be pushed.
-geometry::RouteMapOptions options_for(const Scenario& scenario, double extra, bool routes) {
-  geometry::Box box = places_of(scenario);
-  for (const SceneObstacle& o : scenario.obstacles)
+geometry::RouteMapOptions options_for(const Terrain& terrain, double extra, bool routes) {
+  geometry::Box box = terrain.places;
+  for (const SceneObstacle& o : terrain.obstacles)
     for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
   geometry::RouteMapOptions options;
   options.chains_only = !routes;
-  options.largest_radius = kLeastPlanned;
-  for (const Robot& r : scenario.robots) options.largest_radius = std::max(options.largest_radius, r.radius + extra);
+  options.largest_radius = std::max(kLeastPlanned, terrain.largest_radius + extra);
   options.largest_distance = 2.0 * norm(box.high - box.low) + 100.0 * options.largest_radius;
   return options;
 }
@@ -84,11 +84,15 @@ std::vector<Vec2> places_about(Vec2 place, double reach) {
   return places;
 }
 
-Reachability::Reachability(const Scenario& scenario, double most_extra, bool routes)
-    : scenario_(scenario), most_extra_(most_extra), routes_(routes) {}
+Terrain terrain_of(const Scenario& scenario) {
+  return {scenario.obstacles, places_of(scenario), largest_radius(scenario.robots)};
+}
+
+Reachability::Reachability(const Terrain& terrain, double most_extra, bool routes)
+    : terrain_(terrain), most_extra_(most_extra), routes_(routes) {}
 
 const geometry::RouteMap& Reachability::map() {
-  if (!map_) map_.emplace(shapes_of(scenario_), options_for(scenario_, most_extra_, routes_));
+  if (!map_) map_.emplace(shapes_of(terrain_.obstacles), options_for(terrain_, most_extra_, routes_));
   return *map_;
 }
 
@@ -98,7 +102,7 @@ const geometry::RoutePlan& Reachability::plan(double radius) {
 }
 
 std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, const Destination& to) {
-  if (scenario_.obstacles.empty()) return to.place;
+  if (terrain_.obstacles.empty()) return to.place;
   if (!map().covers(from) || !map().covers(to.place)) return std::nullopt;
   const geometry::RoutePlan& of_robot = plan(radius);
   if (of_robot.is_reachable(from, to.place)) return to.place;
@@ -109,7 +113,7 @@ std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, cons
 }
 
 bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destination& to) {
-  if (scenario_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
+  if (terrain_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
   const RouteAnswer answer = plan(radius).query(from, to.place);
   if (const auto* separated = std::get_if<Separated>(&answer)) {
     // The disc lies on the same side of the chain as its centre.
@@ -128,7 +132,7 @@ std::string Reachability::why_not(double radius, Vec2 from, const Destination& t
   const RouteAnswer answer = plan(radius).query(from, to.place);
   if (const auto* blocked = std::get_if<Blocked>(&answer)) {
     const bool of_start = blocked->end == Blocked::End::start;
-    const SceneObstacle& by = scenario_.obstacles[blocked->by.obstacle];
+    const SceneObstacle& by = terrain_.obstacles[blocked->by.obstacle];
     const std::string what = of_start ? "the robot" : goal;
     const bool is_inside = blocked->inside || geometry::signed_distance(by.shape, of_start ? from : to.place) < 0.0;
     return what + (is_inside ? " lies inside" : " is nearer than the robot's radius to") + " obstacle '" + by.id + "'";
@@ -155,7 +159,7 @@ std::string Reachability::words_of(const Separated& answer, double radius, const
     widest = std::max(widest, norm(corners[(k + 1) % corners.size()] - corners[k]));
   }
   std::vector<std::string> ids;
-  for (const std::size_t o : obstacles) ids.push_back("'" + scenario_.obstacles[o].id + "'");
+  for (const std::size_t o : obstacles) ids.push_back("'" + terrain_.obstacles[o].id + "'");
   const bool one = ids.size() == 1;
   std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
                      (geometry::contains(geometry::Polygon{corners, {}}, place) ? goal : "the start");

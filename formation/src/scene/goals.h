@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "scene/number_text.h"
+
+namespace exactvo::formation::detail {
+
+/// m, of all robots.
+inline double largest_radius(const std::vector<Robot>& robots) {
+  double largest = 0.0;
+  for (const Robot& r : robots) largest = std::max(largest, r.radius);
+  return largest;
+}
+/// m, of the robots in `who`.
+inline double largest_radius(const std::vector<Robot>& robots, const std::vector<std::size_t>& who) {
+  double largest = 0.0;
+  for (const std::size_t i : who) largest = std::max(largest, robots[i].radius);
+  return largest;
+}
+
+/// How near to its goal number `goal` a robot has reached it, m: a goal on the way counts within the robot's own
+/// radius. `tolerance`: m, of arrival.
+inline double reach_of(const Robot& robot, std::size_t goal, double tolerance) {
+  return goal + 1 == robot.goals.size() ? tolerance : std::max(tolerance, robot.radius);
+}
+
+/// m/s: straight for a place, to be there after a step or as soon as the speed allows.
+inline Vec2 straight_for(Vec2 here, double max_speed, Vec2 place, double time_step) {
+  const Vec2 way = place - here;
+  return std::min(max_speed, norm(way) / time_step) * geometry::normalized(way);
+}
+
+/// Whether two robots cannot both be at their last goals: they would overlap. `tolerance`: m, of arrival.
+inline bool are_too_near(const Robot& a, const Robot& b, double tolerance) {
+  return norm(a.goals.back() - b.goals.back()) + 2.0 * tolerance < a.radius + b.radius;
+}
+
+/// "R1 was first at its goal, 0.3 m from that of R2".
+inline std::string first_at_goal_words(const Robot& first, const Robot& other) {
+  if (first.goals.back() == other.goals.back()) return first.id + " was first at the goal that both have";
+  return first.id + " was first at its goal, " + metres(norm(first.goals.back() - other.goals.back())) +
+         " from that of " + other.id;
+}
+
+}  // namespace exactvo::formation::detail
