@@ -184,7 +184,7 @@ class Serve(unittest.TestCase):
             with self.subTest(path):
                 self.assertEqual(self.server.request("GET", self.server.path + path)[0], 404)
         for scenario in [{**SCENARIO, "obstacles": [{"file": name}]} for name in ["secret.wkt", str(self.place / "secret.wkt"), "/etc/passwd", "/dev/stdin"]] + \
-                [{**SCENARIO, "robots": [{"file": str(self.place / "secret.csv")}]}]:
+                [{**SCENARIO, "robots": robots} for robots in ([{"file": str(self.place / "secret.csv")}], {"file": str(self.place / "secret.csv")})]:
             status, body = self.server.ask(scenario=scenario)
             self.assertEqual(status, 400)
             self.assertEqual(json.loads(body)["code"], "E_PATH_ESCAPE")
@@ -201,7 +201,8 @@ class Serve(unittest.TestCase):
         robot = SCENARIO["robots"][0]
         for change, place in [({"robots": [{**robot, "radius": 0}]}, "/robots/0/radius"), ({"robots": [{**robot, "position": [0, "x"]}]}, "/robots/0/position/1"),
                               ({"robots": [{**robot, "position": [6, 0]}]}, "/robots/0/position"), ({"time_step": -1}, "/time_step"),
-                              ({"robots": [{"circle": {"count": 10**9, "radius": 5}}]}, "/scenario/robots/0"), ({"robots": [robot] * 1001}, "/scenario/robots")]:
+                              ({"robots": [{"circle": {"count": 10**9, "radius": 5}}]}, "/scenario/robots/0"),
+                              ({"robots": {"circle": {"count": 10**9}}}, "/scenario/robots"), ({"robots": [robot] * 1001}, "/scenario/robots")]:
             with self.subTest(place):
                 status, answer = self.server.ask(scenario={**SCENARIO, **change})
                 self.assertEqual((status, json.loads(answer)["place"]), (400, place))

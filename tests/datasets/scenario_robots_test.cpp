@@ -2,6 +2,8 @@
 // Robots of a scenario by generators and tables.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "exactvo/datasets/scenario_file.h"
@@ -86,7 +88,94 @@ TEST(ScenarioRobots, RobotsThatOverlapAtTheStartAreNamedByTheirIds) {
   EXPECT_NE(overlap.found().find("overlapping robot 'left' by 0.7 m"), std::string::npos) << overlap.found();
 }
 
+TEST(ScenarioRobots, AnOverlapIsNamedHoweverSmallItIs) {
+  const DataError robots = refused(R"({"id": "A", "position": [0, 0], "goal": [9, 0]},
+                                      {"id": "B", "position": [0.9999999999, 0], "goal": [-9, 0]})");
+  EXPECT_EQ(robots.found(), "[0.9999999999, 0], overlapping robot 'A' by 1e-10 m");
+  const DataError wall = refused(R"({"id": "A", "position": [0, 0], "goal": [9, 0]})",
+                                 R"(, "obstacles": [{"polyline": [[0.49999999, -1], [0.49999999, 1]]}])");
+  EXPECT_EQ(wall.found(), "[0, 0], overlapping obstacle 'O1' by 1e-08 m");
+  const DataError far = refused(R"({"id": "A", "position": [1e6, 1e6], "goal": [9, 0]},
+                                   {"id": "B", "position": [1000000.99999, 1e6], "goal": [-9, 0]})");
+  EXPECT_EQ(far.found(), "[1000000.99999, 1000000], overlapping robot 'A' by 1e-05 m");
+}
+
+TEST(ScenarioRobots, NumbersThatAreComparedDifferInTheMessage) {
+  const DataError least = refused(R"({"id": "A", "position": [0, 0], "goal": [9, 0]})",
+                                  R"(, "time_step": 0.05, "horizons": {"least": 0.09999999999})");
+  EXPECT_EQ(least.found(), "0.09999999999");
+  EXPECT_EQ(least.expected(), "at least twice /time_step, 0.1 (s)");
+}
+
+/// m: between the rims of neighbours on a circle.
+double gap_on(const Scenario& s) {
+  const Robot &a = s.robots[0], &b = s.robots[1];
+  return norm(a.position - b.position) - a.radius - b.radius;
+}
+
+TEST(ScenarioRobots, ACircleWithoutARadiusHasRoomForItsRobots) {
+  for (const double radius : {0.5, 500.0, 5e-4})
+    for (const int count : {100, 1000}) {
+      const std::string of = R"({"circle": {"count": )" + std::to_string(count) + R"(, "centre": [7, -3]}, "radius": )";
+      const Scenario s = read(of + std::to_string(radius) + "}");
+      ASSERT_EQ(s.robots.size(), static_cast<std::size_t>(count));
+      EXPECT_NEAR(gap_on(s), 2.0 * radius, 1e-9 * radius * count);
+      EXPECT_NEAR(norm(s.robots[0].position + s.robots[0].goals[0] - Vec2{14, -6}), 0.0, 1e-9 * radius * count);
+    }
+  for (const int count : {1, 2, 3, 15}) {  // small crowds have some way to go
+    const Scenario s = read(R"({"circle": {"count": )" + std::to_string(count) + "}}");
+    EXPECT_NEAR(norm(s.robots[0].position), 5.0, 1e-12) << count;
+  }
+}
+
+TEST(ScenarioRobots, RandomRobotsWithoutABoxHaveRoomAboutTheOrigin) {
+  for (const int count : {1, 40, 2000}) {
+    const Scenario s = read(R"({"random": {"count": )" + std::to_string(count) + R"(, "apart": 0.5}})");
+    ASSERT_EQ(s.robots.size(), static_cast<std::size_t>(count));
+    const double half = 0.5 * 3.0 * 1.5 * std::sqrt(count);
+    for (const Robot& r : s.robots)
+      for (const Vec2 p : {r.position, r.goals[0]}) EXPECT_LE(std::max(std::fabs(p.x), std::fabs(p.y)), half);
+  }
+}
+
+TEST(ScenarioRobots, RandomRobotsWithoutABoxStandAmongTheObstacles) {
+  const Scenario hall =
+      read(R"({"random": {"count": 30}})",
+           R"(, "obstacles": [{"polyline": [[1000, 0], [1060, 0], [1060, 40], [1000, 40], [1000, 0]]}])");
+  for (const Robot& r : hall.robots)
+    for (const Vec2 p : {r.position, r.goals[0]})
+      EXPECT_TRUE(p.x > 1000 && p.x < 1060 && p.y > 0 && p.y < 40) << p.x << ", " << p.y;
+  EXPECT_EQ(read(R"({"random": {"count": 300}})", kWall).robots.size(), 300U) << "a box that the obstacle fills";
+  EXPECT_EQ(read(R"({"random": {"count": 5}})", kWall).robots.size(), 5U) << "and hardly room round it";
+}
+
+/// Robots by an entry in the place of the list.
+TEST(ScenarioRobots, AnEntryAloneIsReadAsAListOfIt) {
+  const auto alone = [](const std::string& robots, const std::filesystem::path& folder = {}) {
+    return parse_scenario(R"({"name": "n", "robots": )" + robots + "}", "s.json", folder);
+  };
+  for (const char* entry : {R"({"circle": {"count": 8, "radius": 10}, "prefix": "ring"})",
+                            R"({"grid": {"columns": 3, "rows": 2, "spacing": 1.5, "goal": [0, 30]}})",
+                            R"({"random": {"count": 9}})", R"({"id": "R", "position": [0, 0], "goal": [9, 0]})"})
+    EXPECT_EQ(write_scenario(alone(entry)), write_scenario(read(entry))) << entry;
+  const auto refused_alone = [&](const std::string& robots) { return refusal_of([&] { alone(robots, "/nowhere"); }); };
+  expect_refusal(refused_alone(R"({"circle": {"count": 0}})"), DataCode::out_of_range, "/robots/circle/count");
+  expect_refusal(refused_alone(R"({"circle": {"count": 20, "radius": 1}})"), DataCode::scenario, "/robots");
+  expect_refusal(refused_alone(R"({"file": "none.csv"})"), DataCode::file_missing, "/robots/file");
+  expect_refusal(refused_alone(R"({"id": "R", "position": [0, 0], "goal": [1e99, 0]})"), DataCode::out_of_range,
+                 "/robots/goal/0");
+  expect_refusal(refused_alone(R"("circle")"), DataCode::wrong_type, "/robots");
+  expect_refusal(refused_alone("null"), DataCode::wrong_type, "/robots");
+}
+
 class ScenarioRobotTables : public TemporaryFolder {};
+
+TEST_F(ScenarioRobotTables, ATableAloneIsAmongTheFilesOfTheScenario) {
+  std::ofstream(folder_ / "robots.csv") << "x,y,goal_x,goal_y\n1,2,3,4\n";
+  std::ofstream(folder_ / "s.json") << R"({"name": "n", "robots": {"file": "robots.csv"}})";
+  EXPECT_EQ(load_scenario(folder_ / "s.json").robots.size(), 1U);
+  EXPECT_EQ(files_of_scenario(folder_ / "s.json"), (std::vector{folder_ / "s.json", folder_ / "robots.csv"}));
+}
 
 TEST_F(ScenarioRobotTables, AByteOrderMarkIsLeftOut) {
   std::ofstream(folder_ / "robots.csv") << "\xEF\xBB\xBFx,y,goal_x,goal_y\r\n1,2,3,4\r\n";
@@ -120,7 +209,8 @@ TEST(ScenarioRobots, Property2_EntriesThatAreNoRobotsArePlaced) {
   expect_refusal(refused(R"({"ring": {}})"), DataCode::no_alternative, "/robots/0");
   expect_refusal(refused(R"({"circle": {"count": 0, "radius": 1}})"), DataCode::out_of_range, "/robots/0/circle/count");
   expect_refusal(refused(R"({"circle": {"count": 2.5, "radius": 1}})"), DataCode::wrong_type, "/robots/0/circle/count");
-  expect_refusal(refused(R"({"circle": {"count": 3}})"), DataCode::key_missing, "/robots/0/circle");
+  expect_refusal(refused(R"({"circle": {"radius": 3}})"), DataCode::key_missing, "/robots/0/circle");
+  expect_refusal(refused(R"({"random": {"count": 3, "high": [9, 9]}})"), DataCode::scenario, "/robots/0/random");
   expect_refusal(refused(R"({"circle": {"count": 3, "radius": 9}, "grid": {}})"), DataCode::no_alternative,
                  "/robots/0");
   expect_refusal(refused(R"({"grid": {"columns": 1000000, "rows": 1000000, "spacing": 1, "goal": [1, 0]}})"),

@@ -118,6 +118,19 @@ TEST(SchemaAgreement, ThePaperScenariosFitBoth) {
   }
 }
 
+TEST(SchemaAgreement, RobotsMayBeAListOrAnEntryAlone) {
+  const Oracle oracle;
+  int accepted = 0;
+  for (const char* robots : {R"({"circle": {"count": 4}})", R"({"id": "R", "position": [0, 0], "goal": [9, 0]})",
+                             R"([{"circle": {"count": 4}}])", R"({"circle": {"count": 0}})", R"({"circle": 4})",
+                             R"({"circle": {"count": 4}, "grid": {}})", "{}", "[]", "[[]]", "4", "null"}) {
+    const nlohmann::json tree = nlohmann::json::parse(R"({"name": "n", "robots": )" + std::string(robots) + "}");
+    EXPECT_EQ(ours_accepts(tree), oracle.accepts(tree)) << robots;
+    accepted += oracle.accepts(tree);
+  }
+  EXPECT_EQ(accepted, 3);
+}
+
 TEST(SchemaAgreement, MutatedScenariosGetTheSameVerdict) {
   const Oracle oracle;
   SeededRandom random(exactvo::test::seed_of_run(11));

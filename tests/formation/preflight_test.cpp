@@ -46,6 +46,24 @@ TEST(Preflight, AGoalInARoomWithANarrowDoorCannotBeReached) {
   EXPECT_EQ(warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.0)}})).size(), 1u);
 }
 
+TEST(Preflight, NumbersThatAreComparedDifferInTheWarning) {
+  const auto door = warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.9999)}}));
+  ASSERT_EQ(door.size(), 1u);
+  EXPECT_THAT(door[0], HasSubstr("with a gap of 0.9999 m for a robot 1 m wide"));
+  Scenario fast = scene({0, 0}, {{9, 0}}, {});
+  fast.robots[0].velocity = {3.00000002, 0};
+  ASSERT_EQ(warnings_before(fast).size(), 1u);
+  EXPECT_EQ(warnings_before(fast)[0], "R1 starts at 3.00000002 m/s, beyond its max_speed of 3 m/s");
+  Scenario near = scene({0, 0}, {{9, 0}}, {});
+  near.robots.push_back(near.robots[0]);
+  near.robots[1].id = "R2";
+  near.robots[1].position = {0, 5};
+  near.robots[1].goals = {{9, 1.0 + near.margins.robot - 1e-5}};
+  near.arrival_tolerance = 1e-6;
+  ASSERT_EQ(warnings_before(near).size(), 1u);
+  EXPECT_THAT(warnings_before(near)[0], HasSubstr("are 1.03999 m apart, and radii and margin take 1.04 m"));
+}
+
 TEST(Preflight, AStartThatIsShutInIsSaidToBe) {
   const auto warnings = warnings_before(scene({0, 0}, {{8, 0}}, {{"room", room(0.9)}}));
   ASSERT_EQ(warnings.size(), 1u);

@@ -8,13 +8,17 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
+#include "exactvo/geometry/pi.h"
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
 #include "figures/run_figures.h"
+#include "figures/thinning.h"
+#include "support/seeded_random.h"
 
 namespace exactvo::tools {
 namespace {
@@ -249,6 +253,206 @@ TEST(LabelPlaces, KeepClearOfLinesAndOfEachOther) {
   for (int k = 0; k < 200; ++k) crowded.keep_off({{0, 0.1 * k}, {20, 0.1 * k}}, false);
   EXPECT_FALSE(crowded.place_beside({10, 10}, 0.5, false).has_value());
   EXPECT_TRUE(crowded.place_beside({10, 10}, 0.5, true).has_value());
+}
+
+/// Where a label goes when all points of all curves are looked at.
+class EveryPointLooked {
+ public:
+  EveryPointLooked(const Box& view, double scale) : view_(view), scale_(scale) {}
+  void keep_off(const Points& curve) {
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+      const int count = static_cast<int>(std::clamp(norm(curve[i + 1] - curve[i]) * scale_ / 4.0, 1.0, 1000.0));
+      for (int k = 0; k <= count; ++k)
+        lines_.push_back(curve[i] + (static_cast<double>(k) / count) * (curve[i + 1] - curve[i]));
+    }
+  }
+  std::optional<Vec2> place_beside(Vec2 p, double radius, bool must) {
+    std::optional<Vec2> best;
+    double most = -2.0;
+    for (const double out : {18.0, 30.0, 44.0}) {
+      if (out > 30.0 && !must) break;
+      for (const int turn : {1, 7, 3, 5, 0, 4, 2, 6}) {
+        const double angle = 0.25 * geometry::kPi * turn, away = radius + out / scale_;
+        const Vec2 place = p + Vec2{1.2 * away * std::cos(angle), away * std::sin(angle)};
+        const double room = most >= 5.0 ? -2.0 : room_round(place);
+        if (room > most) best = place, most = room;
+      }
+    }
+    if (!must && most <= 0.0) return std::nullopt;
+    labels_.push_back(*best);
+    return best;
+  }
+
+ private:
+  double room_round(Vec2 p) const {
+    if (!view_.grown(-22.0 / scale_).contains(p)) return -1.0;
+    double room = 1e9;
+    const auto beside = [&](Vec2 q, double width, double height) {
+      room = std::min(room, std::max(std::max(0.0, scale_ * std::fabs(q.x - p.x) - width),
+                                     std::max(0.0, scale_ * std::fabs(q.y - p.y) - height)));
+    };
+    for (const Vec2 q : lines_) beside(q, 22.0, 8.0);
+    for (const Vec2 q : labels_) beside(q, 44.0, 16.0);
+    return room;
+  }
+  Box view_;
+  double scale_;
+  Points lines_, labels_;
+};
+
+TEST(LabelPlaces, AreThoseOfALookAtEveryPoint) {
+  test::SeededRandom random(test::seed_of_run(31));
+  int placed = 0, refused = 0;
+  for (int k = 0; k < 60; ++k) {
+    const double size = std::pow(10.0, random.uniform(-3.0, 6.0)), scale = 700.0 / size;
+    const Vec2 corner{random.uniform(-3.0, 3.0) * size, random.uniform(-3.0, 3.0) * size};
+    const auto anywhere = [&] { return corner + size * Vec2{random.uniform(-0.3, 1.3), random.uniform(-0.3, 1.3)}; };
+    const Box view{corner, corner + Vec2{size, random.uniform(0.4, 1.0) * size}};
+    LabelPlaces places(view, scale);
+    EveryPointLooked all(view, scale);
+    for (int curve = random.integer(0, 40); curve > 0; --curve) {
+      const Points points{anywhere(), anywhere(), anywhere()};
+      places.keep_off(points, false);
+      all.keep_off(points);
+    }
+    for (int label = 0; label < 40; ++label) {
+      const Vec2 at = anywhere();
+      const bool must = random.integer(0, 9) == 0;
+      const std::optional<Vec2> place = places.place_beside(at, 0.01 * size, must);
+      ASSERT_EQ(place, all.place_beside(at, 0.01 * size, must)) << k << ' ' << label;
+      ++(place ? placed : refused);
+    }
+  }
+  EXPECT_GT(placed, 200);
+  EXPECT_GT(refused, 200);
+}
+
+/// px: how far `p` is from a stretch.
+double distance_px(Vec2 a, Vec2 b, Vec2 p) {
+  const double length = dot(b - a, b - a);
+  const double along = length > 0.0 ? std::clamp(dot(p - a, b - a) / length, 0.0, 1.0) : 0.0;
+  return norm(p - (a + along * (b - a)));
+}
+
+TEST(DrawnPoints, LeaveNoPointFartherThanTheThinning) {
+  test::SeededRandom random(test::seed_of_run(32));
+  std::size_t all = 0, kept = 0;
+  for (int k = 0; k < 40; ++k) {
+    Points curve{{0.0, 300.0}};
+    const double step = std::pow(10.0, random.uniform(-2.0, 1.0)), turn = random.uniform(0.0, 0.5);
+    double angle = 0.0;
+    for (int i = random.integer(0, 6000); i > 0; --i) {
+      angle += random.uniform(-turn, turn);
+      curve.push_back(curve.back() + step * Vec2{std::cos(angle), std::sin(angle)});
+    }
+    const std::vector<std::size_t> drawn = drawn_points(curve);
+    ASSERT_EQ(drawn.front(), 0U);
+    ASSERT_EQ(drawn.back(), curve.size() - 1);
+    for (std::size_t d = 0; d + 1 < drawn.size(); ++d) {
+      ASSERT_LT(drawn[d], drawn[d + 1]);
+      for (std::size_t i = drawn[d]; i <= drawn[d + 1]; ++i)
+        ASSERT_LE(distance_px(curve[drawn[d]], curve[drawn[d + 1]], curve[i]), kThinning) << k << ' ' << i;
+    }
+    all += curve.size();
+    kept += drawn.size();
+  }
+  EXPECT_LT(2 * kept, all);
+  EXPECT_EQ(drawn_points({{0, 0}, {1, 0}, {2, 0}, {3, 0}}), (std::vector<std::size_t>{0, 3}));
+  EXPECT_EQ(drawn_points({{0, 0}, {1, 0}}), (std::vector<std::size_t>{0, 1}));
+  EXPECT_TRUE(drawn_points({}).empty());
+}
+
+/// So many robots side by side that all drive upward in waves.
+datasets::RecordingFile long_run(std::size_t robots, int rows) {
+  datasets::RecordingFile run = short_run();
+  run.scenario.robots.clear();
+  run.recording.steps.clear();
+  const auto place = [](std::size_t i, int k) {
+    return Vec2{static_cast<double>(i) + 0.3 * std::sin(0.02 * k), 0.01 * k};
+  };
+  for (std::size_t i = 0; i < robots; ++i)
+    run.scenario.robots.push_back({"R" + std::to_string(i + 1), place(i, 0), {}, 0.2, 1.0, {place(i, rows)}});
+  for (int k = 0; k <= rows; ++k) {
+    formation::Step step;
+    step.time = 0.1 * k;
+    for (std::size_t i = 0; i < robots; ++i) {
+      formation::RobotStep& robot = step.robots.emplace_back();
+      robot.position = place(i, k);
+      robot.velocity = {0.06 * std::cos(0.02 * k), 0.1};
+    }
+    run.recording.steps.push_back(step);
+  }
+  return run;
+}
+
+std::size_t count_of(const std::string& words, const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
+  return count;
+}
+
+TEST(RunFigures, ManyRobotsTakeFewDataSetsAndFewRows) {
+  const datasets::RecordingFile run = long_run(300, 300);
+  std::vector<std::string> begun;
+  const std::vector<Figure> figures = run_figures(run, [&](const char* name) { begun.emplace_back(name); });
+  EXPECT_EQ(begun, names_of(figures));
+  EXPECT_EQ(figures.size(), 4u);
+  for (const Figure& figure : figures) {
+    EXPECT_LT(count_of("data index ", figure.body), 160u) << figure.name;
+    EXPECT_LT(count_of("\n", figure.data), 30'000u) << figure.name << ": of 90,000 states";
+    EXPECT_THAT(figure.body, HasSubstr("title '300 robots'"));
+    EXPECT_THAT(figure.data, Not(HasSubstr("nan")));
+  }
+  const std::string& paths = figures[0].data;
+  EXPECT_THAT(paths, HasSubstr(": path of R1 and 10 more\n"));
+  EXPECT_THAT(paths, HasSubstr(": outlines of R28 and 9 more\n"));
+  EXPECT_THAT(figures[0].body, Not(HasSubstr("with circles")));
+}
+
+/// Numbers of the second column of the data set that has this title.
+std::vector<double> values_of(const Figure& figure, const std::string& title) {
+  std::istringstream lines(figure.data.substr(figure.data.find(title)));
+  std::vector<double> values;
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);  // the columns
+  for (double time = 0.0, value = 0.0; std::getline(lines, line) && !line.empty();) {
+    std::istringstream(line) >> time >> value;
+    values.push_back(value);
+  }
+  return values;
+}
+
+TEST(RunFigures, AThinnedCurveKeepsItsExtremes) {
+  const datasets::RecordingFile run = long_run(4, 12'000);
+  const Figure velocity = run_figures(run)[3];
+  ASSERT_EQ(velocity.name, "velocity");
+  const std::vector<double> drawn = values_of(velocity, ": R2\n");
+  EXPECT_LT(drawn.size(), 6000u);
+  EXPECT_GT(drawn.size(), 200u);
+  const double a_pixel = 0.132 / 380.0;  // of an axis from -0.066 to 0.066
+  EXPECT_NEAR(*std::max_element(drawn.begin(), drawn.end()), 0.06, 0.2 * a_pixel);
+  EXPECT_NEAR(*std::min_element(drawn.begin(), drawn.end()), -0.06, 0.2 * a_pixel);
+}
+
+TEST(RunFigures, ShortRunsHaveEveryRow) {
+  const datasets::RecordingFile run = long_run(4, 1000);
+  for (const char* robot : {": R1\n", ": R4\n"}) EXPECT_EQ(values_of(run_figures(run)[3], robot).size(), 1001u);
+}
+
+TEST(LyapunovFigure, ALongRunIsThinned) {
+  datasets::RecordingFile run = short_run();
+  run.lyapunov.resize(50'000);
+  for (std::size_t k = 0; k < run.lyapunov.size(); ++k) {
+    run.lyapunov[k].time = 0.1 * static_cast<double>(k);
+    run.lyapunov[k].paper.kinetic = std::exp(-0.001 * static_cast<double>(k));
+    run.lyapunov[k].sound.kinetic = run.lyapunov[k].paper.kinetic;
+  }
+  const Figure figure = lyapunov_figure(run);
+  EXPECT_LT(count_of("\n", figure.data), 5000u);
+  const std::vector<double> drawn = values_of(figure, ": V of (18)\n");
+  EXPECT_EQ(drawn.front(), 1.0);
+  EXPECT_NEAR(drawn.back(), std::exp(-49.999), 1e-25);
 }
 
 TEST(LyapunovFigure, HasEveryTerm) {

@@ -156,10 +156,12 @@ TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
 TEST(Messages, AMistypedGeneratorIsAnsweredWithThoseThereAre) {
   const std::string all = R"("id" with "position", or "circle", or "grid", or "random", or "file")";
   const std::pair<const char*, std::string> cases[] = {
-      {R"({"circle": {"count": 4, "radius": 9}})",
-       "/robots: found an object, expected a list [{...}] of objects with " + all + " [E_TYPE]"},
-      {R"({"count": 4, "radius": 9})",
-       "/robots: found an object, expected a list [{...}] of objects with " + all + " [E_TYPE]"},
+      {"4", "/robots: found 4, expected a list [{...}] of objects with " + all + " [E_TYPE]"},
+      {R"({"count": 4, "radius": 9})", R"(/robots: found only the keys "count", "radius", expected )" + all},
+      {R"({"circle": {"count": 4, "radus": 9}})",
+       R"(/robots/circle/radus: found an unknown key "radus", expected a known key; did you mean "radius"?)"},
+      {R"({"random": {"count": 4, "low": [0, 0]}})",
+       "/robots/random: found low without high, expected both corners of the box, or neither"},
       {R"([{"circl": {"count": 4, "radius": 9}}])",
        R"(/robots/0/circl: found an unknown key "circl", expected a known key; did you mean "circle"?)"},
       {R"([{"Grid": {"columns": 2}, "radius": 1}])",

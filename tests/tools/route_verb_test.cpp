@@ -117,6 +117,19 @@ TEST(RouteVerb, ABlockedEndIsToldWithWhatBlocksItAndHowNear) {
   EXPECT_EQ(rooms.route("--from 6,1 --to 1,1 --radius 0.4").out, "blocked: the start is on wall 7\n");
 }
 
+TEST(RouteVerb, ABlockedEndIsNeverSaidToBeFarEnough) {
+  const Rooms rooms;
+  // So far from (0, 0) the distance in doubles comes out larger than the radius that it is too small for.
+  rooms.here.write("far.wkt",
+                   "LINESTRING (5000009.014274576 6000000.305899831, 5000009.777650406 6000016.134149286)\n");
+  const std::string question =
+      "route far.wkt --units metres --from 4999997.797257831,6000004.1179422075 --to 4999947,6000004 --radius ";
+  EXPECT_EQ(rooms.here.run(question + "11.387630414779485").out,
+            "blocked: the start is less than 11.387630414779485 m from wall 1 and would have to be 11.387630414779485 "
+            "m\n");
+  EXPECT_EQ(rooms.here.run(question + "11.3").status, 0);
+}
+
 TEST(RouteVerb, TheWidestRadiusIsTheLargestDoubleWithARoute) {
   const Rooms rooms;
   rooms.here.write("door.wkt",

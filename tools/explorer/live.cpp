@@ -94,16 +94,19 @@ const Json& member(const Json& object, const char* key, bool (Json::*is_right)()
 
 /// Entries by themselves: no generator of many robots, and no file.
 void check_entries(const Json& scenario, const char* list, std::initializer_list<const char*> allowed) {
-  const auto found = scenario.find(list);
-  if (found == scenario.end() || !found->is_array()) return;  // the schema says so
-  for (std::size_t k = 0; k < found->size(); ++k) {
-    if (!(*found)[k].is_object()) continue;
-    for (const auto& [key, value] : (*found)[k].items())
+  const auto check = [&](const Json& entry, const std::string& pointer) {
+    if (!entry.is_object()) return;  // the schema says so
+    for (const auto& [key, value] : entry.items())
       if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
-        refuse(key == "file" ? DataCode::path_escape : DataCode::key_unknown,
-               std::string("/scenario/") + list + "/" + std::to_string(k), "the key '" + key + "'",
+        refuse(key == "file" ? DataCode::path_escape : DataCode::key_unknown, pointer, "the key '" + key + "'",
                "an entry by itself: a page names neither files nor generators");
-  }
+  };
+  const auto found = scenario.find(list);
+  if (found == scenario.end()) return;
+  const std::string pointer = std::string("/scenario/") + list;
+  check(*found, pointer);  // an entry may stand in the place of the list
+  for (std::size_t k = 0; found->is_array() && k < found->size(); ++k)
+    check((*found)[k], pointer + "/" + std::to_string(k));
 }
 
 /// At the moment that is asked about: what moves has come to where it is then before robots are held against it.

@@ -225,9 +225,14 @@ void PlotCommand::item(const std::string& what, const std::string& title) {
   items_.push_back(what + (title.empty() ? " notitle" : " title " + quoted(title)));
 }
 
+std::vector<std::vector<std::size_t>> drawn_together(std::size_t count, std::size_t styles) {
+  std::vector<std::vector<std::size_t>> sets(count <= kMostInLegend ? count : std::min(count, styles));
+  for (std::size_t i = 0; i < count; ++i) sets[i % sets.size()].push_back(i);
+  return sets;
+}
+
 std::string robot_in_legend(std::size_t i, std::size_t count, const std::string& name, std::size_t longest) {
-  constexpr std::size_t kMostNamed = 60;
-  if (count <= kMostNamed) return shortened(name, longest);
+  if (count <= kMostInLegend) return shortened(name, longest);
   return i == 0 ? std::to_string(count) + " robots" : "";
 }
 

@@ -112,9 +112,24 @@ std::string commented(const std::string& text);
 /// `text` in at most `most` characters (UTF-8), with an ellipsis in the middle where it was longer; `most` >= 3.
 std::string shortened(const std::string& text, std::size_t most);
 
+/// Robots that a legend names one by one.
+inline constexpr std::size_t kMostInLegend = 60;
+
 /// What a legend says of robot i of `count`: its name, up to 60 robots. Beyond that names would fill the sheet: the
 /// first entry stands for all ("300 robots"), and the others have none.
 std::string robot_in_legend(std::size_t i, std::size_t count, const std::string& name, std::size_t longest);
+
+/// Robots 0, ..., count - 1 by the data set that they are drawn with: each alone as long as a legend names them; beyond
+/// that robot i together with i + styles, i + 2 styles and so on, which look alike. Else a script would have thousands
+/// of data sets, for each of which gnuplot reads the file from its beginning.
+std::vector<std::vector<std::size_t>> drawn_together(std::size_t count, std::size_t styles);
+
+/// "R1", or "R1 and 3 more" of some that are drawn together.
+template <class NameOf>
+std::string names_of(const std::vector<std::size_t>& robots, const NameOf& name_of) {
+  const std::string first = name_of(robots.front());
+  return robots.size() == 1 ? first : first + " and " + std::to_string(robots.size() - 1) + " more";
+}
 
 /// How many characters of a title go into so many pixels of the SVG.
 std::size_t characters_in(double pixels);

@@ -4,7 +4,9 @@
 /// \file
 /// Runs gnuplot on scripts that stand beside their data.
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,8 +25,15 @@ struct RenderResult {
   std::vector<std::string> missing;
 };
 
-/// Draws every script in one gnuplot process, each from within its own folder, in every format that this gnuplot has.
-/// Where it fails, no picture of these scripts is left.
-RenderResult render(const std::vector<std::filesystem::path>& scripts);
+/// Gets from time to time how many pictures have been drawn, of how many.
+using RenderProgress = std::function<void(std::size_t drawn, std::size_t pictures)>;
+
+/// SVG, PNG and PDF.
+inline constexpr std::size_t kPicturesOfScript = 3;
+
+/// Draws every script, each from within its own folder, in every format that this gnuplot has, in a gnuplot process per
+/// processor, four at most. The pictures do not depend on how many there are. Where it fails, no picture of these
+/// scripts is left.
+RenderResult render(const std::vector<std::filesystem::path>& scripts, const RenderProgress& progress = {});
 
 }  // namespace exactvo::tools

@@ -18,29 +18,58 @@ constexpr double kHalfHeight = 8.0;
 constexpr double kSpacing = 4.0;
 /// px: nobody takes a line this far off for the label's.
 constexpr double kEnough = 5.0;
+/// px: of the cells by which points are looked up, about what a label needs.
+constexpr double kCellWidth = 32.0, kCellHeight = 16.0;
 
 }  // namespace
 
+LabelPlaces::LabelPlaces(const Box& view, double scale)
+    : view_(view),
+      scale_(scale),
+      columns_(cell_of(scale * view.width(), kCellWidth) + 1),
+      rows_(cell_of(scale * view.height(), kCellHeight) + 1),
+      lines_(static_cast<std::size_t>(columns_ * rows_)) {}
+
+/// A label lies within the view, so that lines farther outside than a cell are never near it.
+void LabelPlaces::add_point(Vec2 p) {
+  const Vec2 px = scale_ * (p - view_.low);
+  if (!(px.x > -kCellWidth && px.y > -kCellHeight && px.x < kCellWidth * static_cast<double>(columns_ + 1) &&
+        px.y < kCellHeight * static_cast<double>(rows_ + 1)))
+    return;
+  const long column = std::clamp(cell_of(px.x, kCellWidth), 0L, columns_ - 1);
+  const long row = std::clamp(cell_of(px.y, kCellHeight), 0L, rows_ - 1);
+  lines_[static_cast<std::size_t>(row * columns_ + column)].push_back(p);
+}
+
 void LabelPlaces::keep_off(const Points& curve, bool closed) {
-  if (curve.size() == 1) lines_.push_back(curve.front());
+  if (curve.size() == 1) add_point(curve.front());
   for (std::size_t i = 0; i + (closed ? 0 : 1) < curve.size(); ++i) {
     const Vec2 a = curve[i], b = curve[(i + 1) % curve.size()];
     const int count = static_cast<int>(std::clamp(norm(b - a) * scale_ / kSpacing, 1.0, 1000.0));
-    for (int k = 0; k <= count; ++k) lines_.push_back(a + (static_cast<double>(k) / count) * (b - a));
+    for (int k = 0; k <= count; ++k) add_point(a + (static_cast<double>(k) / count) * (b - a));
   }
 }
 
-/// px: how far the nearest line or label is from the box of a label round `p`; negative outside the view.
-double LabelPlaces::room_round(Vec2 p) const {
+/// px: how far the nearest line or label is from the box of a label round `p`, kEnough at most; negative outside the
+/// view. Any number up to `floor` where it is not more than that.
+double LabelPlaces::room_round(Vec2 p, double floor) const {
   if (!view_.grown(-kHalfWidth / scale_).contains(p)) return -1.0;
-  double room = 1e9;
+  double room = kEnough;
   const auto beside = [&](Vec2 q, double width, double height) {
     const double x = std::max(0.0, scale_ * std::fabs(q.x - p.x) - width);
     const double y = std::max(0.0, scale_ * std::fabs(q.y - p.y) - height);
     room = std::min(room, std::max(x, y));
   };
-  for (const Vec2 q : lines_) beside(q, kHalfWidth, kHalfHeight);
   for (const Vec2 q : labels_) beside(q, 2.0 * kHalfWidth, 2.0 * kHalfHeight);
+  const Vec2 px = scale_ * (p - view_.low), reach{kHalfWidth + kEnough, kHalfHeight + kEnough};
+  const auto column = [&](double x) { return std::clamp(cell_of(x, kCellWidth), 0L, columns_ - 1); };
+  const auto row = [&](double y) { return std::clamp(cell_of(y, kCellHeight), 0L, rows_ - 1); };
+  for (long r = row(px.y - reach.y); r <= row(px.y + reach.y); ++r)
+    for (long c = column(px.x - reach.x); c <= column(px.x + reach.x); ++c)
+      for (const Vec2 q : lines_[static_cast<std::size_t>(r * columns_ + c)]) {
+        beside(q, kHalfWidth, kHalfHeight);
+        if (room <= floor) return room;
+      }
   return room;
 }
 
@@ -49,7 +78,7 @@ std::optional<Vec2> LabelPlaces::best_of(const Points& places, bool must) {
   Vec2 best = places.front();
   double most = -2.0;
   for (const Vec2 place : places) {
-    const double room = most >= kEnough ? -2.0 : room_round(place);
+    const double room = most >= kEnough ? -2.0 : room_round(place, most);
     if (room <= most) continue;
     best = place;
     most = room;

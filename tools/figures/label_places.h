@@ -5,7 +5,9 @@
 /// Where a short label (a time of about six characters) can be written beside a disc: clear of lines and of other
 /// labels. For drawing only.
 
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "figures/outlines.h"
 
@@ -14,7 +16,7 @@ namespace exactvo::tools {
 class LabelPlaces {
  public:
   /// `scale`: px a metre.
-  LabelPlaces(const Box& view, double scale) : view_(view), scale_(scale) {}
+  LabelPlaces(const Box& view, double scale);
 
   /// No label may lie on this curve.
   void keep_off(const Points& curve, bool closed);
@@ -27,13 +29,17 @@ class LabelPlaces {
   std::optional<Vec2> place_at_side(Vec2 p, double half_width, bool must);
 
  private:
-  double room_round(Vec2 p) const;
+  void add_point(Vec2 p);
+  double room_round(Vec2 p, double floor) const;
   std::optional<Vec2> best_of(const Points& places, bool must);
+  /// The column or row of a coordinate, px from the view's corner; also of those outside.
+  static long cell_of(double px, double size) { return static_cast<long>(std::floor(px / size)); }
 
   Box view_;
   double scale_;
-  Points lines_;   ///< m: points of the curves, a few pixels apart
-  Points labels_;  ///< m: middles of the labels
+  long columns_, rows_;
+  std::vector<Points> lines_;  ///< m: points of the curves, a few pixels apart, by cells of the view, row by row
+  Points labels_;              ///< m: middles of the labels
 };
 
 }  // namespace exactvo::tools

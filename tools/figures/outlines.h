@@ -35,6 +35,9 @@ inline const char* series_dash(std::size_t i) {
   return kDashes[i / 7 % kDashes.size()];
 }
 
+/// How many colours, and how many line styles, there are.
+inline constexpr std::size_t kColours = 7, kStyles = 28;
+
 inline constexpr const char* kCollisionColour = "#e00000";
 inline constexpr const char* kSeparatorColour = "#b2182b";  ///< what separates a goal out of reach
 inline constexpr const char* kRouteColour = "#0072B2";

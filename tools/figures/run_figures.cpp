@@ -11,6 +11,7 @@
 
 #include "exactvo/formation/metrics.h"
 #include "figures/outlines.h"
+#include "figures/thinning.h"
 
 namespace exactvo::tools {
 
@@ -52,16 +53,6 @@ std::string line_style(std::size_t i) {
   return fmt::format("with lines lw 2{} lc rgb '{}'", series_dash(i), series_colour(i));
 }
 
-void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFile& data, PlotCommand& plot) {
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const int index = data.begin(all[i].label, "t [s], value");
-    const std::size_t rows = std::min(all[i].values.size(), run.recording.steps.size());
-    for (std::size_t k = 0; k < rows; ++k) data.row({run.recording.steps[k].time, all[i].values[k]});
-    plot.data(index, "using 1:2 " + (rows == 1 ? point_style(i) : line_style(i)),
-              robot_in_legend(i, all.size(), all[i].label, kKeyLength));
-  }
-}
-
 /// The time axis: to the end, but where robots got stuck not far beyond their last move.
 double run_time(const RecordingFile& run) {
   return run.recording.steps.empty() ? 0.0 : run.recording.steps.back().time;
@@ -69,6 +60,59 @@ double run_time(const RecordingFile& run) {
 double shown_time(const RecordingFile& run) {
   const double end = run_time(run);
   return std::max(kLeastTime, run.scenario.formation ? end : std::min(end, 1.5 * end_of_motion(run) + 1.0));
+}
+
+/// Of a vertical axis.
+struct Range {
+  double low = 0.0, high = 0.0;
+  bool is_logarithmic = false;
+};
+
+/// px of the SVG: about what the axes of a figure enclose.
+constexpr double kAxesWidth = 720.0, kAxesHeight = 380.0;
+
+double height_of(const Range& range) {
+  return range.is_logarithmic ? std::log10(range.high / range.low) : range.high - range.low;
+}
+
+/// The rows that are drawn of a curve: all, or those that are seen to make a difference.
+std::vector<std::size_t> drawn_rows(const std::vector<double>& times, const std::vector<double>& values, double end,
+                                    const Range& range, bool all) {
+  if (all) return all_points(values.size());
+  const double a_second = kAxesWidth / end, a_unit = kAxesHeight / height_of(range);
+  Points curve;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double shown = std::clamp(values[k], range.low, range.high);
+    curve.push_back({a_second * times[k], a_unit * (range.is_logarithmic ? std::log10(shown) : shown)});
+  }
+  return drawn_points(curve);
+}
+
+bool are_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// Robots of one style share a data set where the legend names none: gnuplot looks for each from the file's beginning.
+void add_series(const RecordingFile& run, const std::vector<Series>& all, const Range& range, DataFile& data,
+                PlotCommand& plot) {
+  std::vector<double> times;
+  for (const Step& step : run.recording.steps) times.push_back(step.time);
+  const bool is_short = all.size() * times.size() <= kMostWholePoints;
+  for (const std::vector<std::size_t>& alike : drawn_together(all.size(), kStyles)) {
+    const std::size_t first = alike.front();
+    const int index = data.begin(names_of(alike, [&](std::size_t i) { return all[i].label; }), "t [s], value");
+    for (const std::size_t i : alike) {
+      data.gap();
+      std::vector<double> values(
+          all[i].values.begin(),
+          all[i].values.begin() + static_cast<std::ptrdiff_t>(std::min(all[i].values.size(), times.size())));
+      const bool whole = is_short || !are_finite(values);
+      for (const std::size_t k : drawn_rows(times, values, shown_time(run), range, whole))
+        data.row({times[k], values[k]});
+    }
+    plot.data(index, "using 1:2 " + (times.size() == 1 ? point_style(first) : line_style(first)),
+              robot_in_legend(first, all.size(), all[first].label, kKeyLength));
+  }
 }
 
 /// Where the axis ends before the run does: a line where the robots came to rest, with words.
@@ -92,7 +136,7 @@ std::string series_body(const RecordingFile& run, const std::string& title, cons
 }
 
 /// From a little below the lesser of zero and the values to a little above them; never empty.
-std::string value_range(const std::vector<Series>& all) {
+Range range_of(const std::vector<Series>& all) {
   double low = 0.0;
   double high = 0.0;
   for (const Series& series : all) {
@@ -103,7 +147,11 @@ std::string value_range(const std::vector<Series>& all) {
     }
   }
   const double room = high - low < kLeastRange ? 0.5 : 0.05 * (high - low);
-  return fmt::format("set yrange [{:.6g}:{:.6g}]", low - room, high + room);
+  return {low - room, high + room};
+}
+
+std::string y_axis(const Range& range) {
+  return fmt::format("set yrange [{:.6g}:{:.6g}]", range.low, range.high);
 }
 
 /// Distances: from zero up where nothing touches, and a line at contact.
@@ -111,11 +159,12 @@ Figure distance_figure(const RecordingFile& run, const std::string& name, const 
                        const std::vector<Series>& all) {
   DataFile data;
   PlotCommand plot;
-  add_series(run, all, data, plot);
+  const Range range = range_of(all);
+  add_series(run, all, range, data, plot);
   plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
   const std::string title = run_title(run) + ": " + what;
   return {name, data.text(), title + ". Below zero they overlap.", kCanvas,
-          series_body(run, title, "distance [m]", value_range(all), plot)};
+          series_body(run, title, "distance [m]", y_axis(range), plot)};
 }
 
 std::vector<Series> pair_distances(const RecordingFile& run) {
@@ -129,21 +178,23 @@ std::vector<Series> pair_distances(const RecordingFile& run) {
   return all;
 }
 
-void lower(std::vector<double>& values, const std::vector<double>& to) {
-  if (values.empty()) values = to;
-  for (std::size_t k = 0; k < std::min(values.size(), to.size()); ++k) values[k] = std::min(values[k], to[k]);
-}
-
+/// Row by row, as robot_distance_series has it of each pair.
 std::vector<Series> nearest_distances(const RecordingFile& run) {
   const auto& robots = run.scenario.robots;
   std::vector<Series> all;
   for (const auto& robot : robots) all.push_back({robot.id, {}});
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    for (std::size_t j = i + 1; j < robots.size(); ++j) {
-      const std::vector<double> values = robot_distance_series(run.scenario, run.recording, i, j);
-      lower(all[i].values, values);
-      lower(all[j].values, values);
+  std::vector<double> nearest(robots.size());
+  for (const Step& row : run.recording.steps) {
+    std::fill(nearest.begin(), nearest.end(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      for (std::size_t j = i + 1; j < robots.size(); ++j) {
+        const double radii = robots[i].radius + robots[j].radius;
+        const double distance = norm(row.robots[i].position - row.robots[j].position) - radii;
+        nearest[i] = std::min(nearest[i], distance);
+        nearest[j] = std::min(nearest[j], distance);
+      }
     }
+    for (std::size_t i = 0; i < robots.size(); ++i) all[i].values.push_back(nearest[i]);
   }
   return all;
 }
@@ -158,11 +209,17 @@ std::vector<Series> velocity_components(const RecordingFile& run, const std::fun
   return all;
 }
 
-void add_leader(const RecordingFile& run, const std::function<double(Vec2)>& component, DataFile& data,
-                PlotCommand& plot) {
+void add_leader(const RecordingFile& run, const std::function<double(Vec2)>& component, const Range& range,
+                DataFile& data, PlotCommand& plot) {
   if (!run.scenario.formation) return;
   const int index = data.begin("virtual leader", "t [s], value");
-  for (const Step& step : run.recording.steps) data.row({step.time, component(step.leader_velocity)});
+  std::vector<double> times, values;
+  for (const Step& step : run.recording.steps) {
+    times.push_back(step.time);
+    values.push_back(component(step.leader_velocity));
+  }
+  const bool whole = times.size() <= kMostWholePoints || !are_finite(values);
+  for (const std::size_t k : drawn_rows(times, values, shown_time(run), range, whole)) data.row({times[k], values[k]});
   plot.data(index, "using 1:2 with lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
 }
 
@@ -170,9 +227,10 @@ std::string velocity_panel(const RecordingFile& run, const std::string& title, c
                            const std::function<double(Vec2)>& component, DataFile& data) {
   PlotCommand plot;
   const std::vector<Series> all = velocity_components(run, component);
-  add_series(run, all, data, plot);
-  add_leader(run, component, data, plot);
-  return series_body(run, title, y_label, value_range(all), plot);
+  const Range range = range_of(all);
+  add_series(run, all, range, data, plot);
+  add_leader(run, component, range, data, plot);
+  return series_body(run, title, y_label, y_axis(range), plot);
 }
 
 // --- The Lyapunov functions ---
@@ -220,43 +278,69 @@ enum class Axis { linear, logarithmic, rates };
 /// Of V on a logarithmic axis, m^2/s^2: what is smaller is drawn here.
 constexpr double kLeastShown = 1e-24;
 
+/// Of the whole figure.
+constexpr std::size_t kCurves = 20;
+
 void add_curve(const Curve& curve, std::size_t number, const std::vector<LyapunovRow>& rows, double floor,
-               DataFile& data, PlotCommand& plot) {
+               const Range& range, DataFile& data, PlotCommand& plot) {
   const int index = data.begin(curve.label, "t [s], value");
+  std::vector<double> times, values;
   for (const LyapunovRow& row : rows) {
     const double value = curve.value(row);
-    if (std::isfinite(value)) data.row({row.time, std::max(value, floor)});
+    if (!std::isfinite(value)) continue;
+    times.push_back(row.time);
+    values.push_back(std::max(value, floor));
   }
+  const bool whole = rows.size() <= kMostWholePoints / kCurves;
+  for (const std::size_t k : drawn_rows(times, values, std::max(rows.back().time, kLeastTime), range, whole))
+    data.row({times[k], values[k]});
   plot.data(index,
             fmt::format("using 1:2 with lines lw {} lc rgb '{}'", curve.sum ? 4.0 : 1.5,
                         curve.sum ? "black" : series_colour(number)),
             curve.label);
 }
 
-/// Of a derivative: what all but the shortest spikes (the start, the leader's stop) need.
-std::string range_of_rates(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows) {
-  constexpr double kShare = 0.98;  // of the values
-  std::vector<double> sizes;
+std::vector<double> finite_values(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows) {
+  std::vector<double> values;
   for (const Curve& curve : curves)
     for (const LyapunovRow& row : rows)
-      if (std::isfinite(curve.value(row))) sizes.push_back(std::fabs(curve.value(row)));
-  if (sizes.empty()) return "set autoscale y";
-  std::sort(sizes.begin(), sizes.end());
+      if (std::isfinite(curve.value(row))) values.push_back(curve.value(row));
+  return values;
+}
+
+/// Of a derivative: what all but the shortest spikes (the start, the leader's stop) need.
+Range range_of_rates(std::vector<double> values) {
+  constexpr double kShare = 0.98;  // of the values
+  for (double& value : values) value = std::fabs(value);
+  std::sort(values.begin(), values.end());
   const double most =
-      std::max(1.5 * sizes[static_cast<std::size_t>(kShare * static_cast<double>(sizes.size() - 1))], 1e-6);
-  return fmt::format("set yrange [{:.4g}:{:.4g}]", -most, most);
+      std::max(1.5 * values[static_cast<std::size_t>(kShare * static_cast<double>(values.size() - 1))], 1e-6);
+  return {-most, most};
+}
+
+/// Of values in one panel. REQUIRES: not empty.
+Range panel_range(const std::vector<double>& values, Axis axis) {
+  if (axis == Axis::rates) return range_of_rates(values);
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (axis == Axis::linear) return {*least, std::max(*most, *least + kLeastRange)};
+  const double low = std::max(*least, kLeastShown);
+  return {low, std::max(*most, 10.0 * low), true};
 }
 
 std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows, const std::string& title,
                   const std::string& y_label, Axis axis, DataFile& data) {
   const bool logarithmic = axis == Axis::logarithmic;
+  const std::vector<double> values = finite_values(curves, rows);
+  const Range shown = values.empty() ? Range{0.0, 1.0} : panel_range(values, axis);
   PlotCommand plot;
   const double floor = logarithmic ? kLeastShown : -std::numeric_limits<double>::infinity();
   // The sum first and wide: a term that makes up all of it is seen within.
   for (const bool sum : {true, false})
     for (std::size_t i = 0; i < curves.size(); ++i)
-      if (curves[i].sum == sum) add_curve(curves[i], i, rows, floor, data, plot);
-  const std::string range = axis == Axis::rates ? range_of_rates(curves, rows) : std::string("set autoscale y");
+      if (curves[i].sum == sum) add_curve(curves[i], i, rows, floor, shown, data, plot);
+  const std::string range = axis == Axis::rates && !values.empty()
+                                ? fmt::format("set yrange [{:.4g}:{:.4g}]", shown.low, shown.high)
+                                : std::string("set autoscale y");
   const std::string scale =
       logarithmic ? "set logscale y\nunset mytics\nset format y '10^{%T}'\n" : "unset logscale y\nset format y '%g'\n";
   return filled(
@@ -299,6 +383,20 @@ Figure velocity_figure(const RecordingFile& run) {
           filled("velocity", {{"x", x}, {"y", y}})};
 }
 
+/// Of values above 0.
+Range logarithmic_range(const std::vector<Series>& all) {
+  Range range{1.0, 1.0, true};
+  for (const Series& series : all) {
+    for (const double value : series.values) {
+      if (!std::isfinite(value)) continue;
+      range.low = std::min(range.low, value);
+      range.high = std::max(range.high, value);
+    }
+  }
+  range.high = std::max(range.high, 10.0 * range.low);  // what gnuplot draws at least
+  return range;
+}
+
 /// |x_i - x_L - Delta_i|, logarithmic. REQUIRES a formation.
 Figure formation_error_figure(const RecordingFile& run) {
   DataFile data;
@@ -308,7 +406,7 @@ Figure formation_error_figure(const RecordingFile& run) {
     all.push_back({run.scenario.robots[i].id, formation_error_series(run.scenario, run.recording, i)});
     for (double& value : all.back().values) value = std::max(value, kLeastError);
   }
-  add_series(run, all, data, plot);
+  add_series(run, all, logarithmic_range(all), data, plot);
   const std::string title = run_title(run) + ": distance of each robot from its slot";
   return {"formation_error", data.text(), title + ", logarithmic.", kCanvas,
           series_body(run, title, "|{/:Italic x}_i − {/:Italic x}_L − {/:Italic Δ}_i| [m]",
@@ -317,14 +415,24 @@ Figure formation_error_figure(const RecordingFile& run) {
 
 }  // namespace
 
-std::vector<Figure> run_figures(const datasets::RecordingFile& run) {
-  std::vector<Figure> figures = {paths_figure(run)};
-  if (!run.scenario.obstacles.empty() || !run.scenario.moving_obstacles.empty())
-    figures.push_back(obstacle_distance_figure(run));
-  if (run.scenario.robots.size() > 1) figures.push_back(robot_distance_figure(run));
-  figures.push_back(velocity_figure(run));
-  if (run.scenario.formation) figures.push_back(formation_error_figure(run));
-  if (!run.lyapunov.empty()) figures.push_back(lyapunov_figure(run));
+std::vector<Figure> run_figures(const datasets::RecordingFile& run, const std::function<void(const char*)>& begins) {
+  const bool has_obstacles = !run.scenario.obstacles.empty() || !run.scenario.moving_obstacles.empty();
+  const struct {
+    bool applies;
+    const char* name;
+    Figure (*make)(const RecordingFile&);
+  } all[] = {{true, "paths", paths_figure},
+             {has_obstacles, "obstacle_distance", obstacle_distance_figure},
+             {run.scenario.robots.size() > 1, "robot_distance", robot_distance_figure},
+             {true, "velocity", velocity_figure},
+             {run.scenario.formation.has_value(), "formation_error", formation_error_figure},
+             {!run.lyapunov.empty(), "lyapunov", lyapunov_figure}};
+  std::vector<Figure> figures;
+  for (const auto& figure : all) {
+    if (!figure.applies) continue;
+    if (begins) begins(figure.name);
+    figures.push_back(figure.make(run));
+  }
   return figures;
 }
 

@@ -7,6 +7,7 @@
 /// enclosures, the robots' paths and where they were when.
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@
 namespace exactvo::tools {
 
 /// Those that apply, in this order: `paths`; `obstacle_distance` (with obstacles); `robot_distance` (with two robots or
-/// more); `velocity`; `formation_error` and `lyapunov` (with a formation).
-std::vector<Figure> run_figures(const datasets::RecordingFile& run);
+/// more); `velocity`; `formation_error` and `lyapunov` (with a formation). `begins` gets the name of each before it is
+/// made.
+std::vector<Figure> run_figures(const datasets::RecordingFile& run,
+                                const std::function<void(const char*)>& begins = {});
 
 /// `lyapunov`: the paper's (18) and its derivative above, the function that holds and its derivative below.
 /// REQUIRES: a formation's run with its rows of `lyapunov`.

@@ -81,33 +81,36 @@ void add_moving_obstacles(PanelLayers& to) {
   to.draw(ways, fmt::format("with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", kObstacleLine));
 }
 
-bool add_enclosures_of(PanelLayers& to, std::size_t i) {
-  std::vector<Points> rings;
-  for (const formation::GoalBodies& of_goal : to.run.recording.goal_bodies)
-    if (of_goal.robot == i) add_ellipses(to.run, of_goal, rings);
-  if (rings.empty()) return false;
-  const int index = to.data.begin("enclosures seen by " + to.run.scenario.robots[i].id, "x [m], y [m]");
-  for (const Points& ring : rings) to.data.ring(ring);
-  to.draw(index, fmt::format("with lines lw 1.2 dt (6,5) lc rgb '{}'", series_colour(i)));
-  return true;
-}
+/// Robots by the colour of what is drawn of them, and which set each is in.
+struct ByColour {
+  explicit ByColour(const RecordingFile& run)
+      : sets(drawn_together(run.scenario.robots.size(), kColours)), set_of(run.scenario.robots.size()) {
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      for (const std::size_t i : sets[s]) set_of[i] = s;
+  }
+  std::string names(const RecordingFile& run, std::size_t set) const {
+    return names_of(sets[set], [&](std::size_t i) { return run.scenario.robots[i].id; });
+  }
+  const char* colour(std::size_t set) const { return series_colour(sets[set].front()); }
+
+  std::vector<std::vector<std::size_t>> sets;
+  std::vector<std::size_t> set_of;
+};
 
 void add_enclosures(PanelLayers& to) {
+  const ByColour robots(to.run);
+  std::vector<std::vector<Points>> rings(robots.sets.size());
+  for (const formation::GoalBodies& of_goal : to.run.recording.goal_bodies)
+    add_ellipses(to.run, of_goal, rings[robots.set_of[of_goal.robot]]);
   bool any = false;
-  for (std::size_t i = 0; i < to.run.scenario.robots.size(); ++i) any |= add_enclosures_of(to, i);
+  for (std::size_t s = 0; s < rings.size(); ++s) {
+    if (rings[s].empty()) continue;
+    any = true;
+    const int index = to.data.begin("enclosures seen by " + robots.names(to.run, s), "x [m], y [m]");
+    for (const Points& ring : rings[s]) to.data.ring(ring);
+    to.draw(index, fmt::format("with lines lw 1.2 dt (6,5) lc rgb '{}'", robots.colour(s)));
+  }
   if (any) to.plot.item("keyentry with lines lw 1.2 dt (6,5) lc rgb '#222222'", "enclosures");
-}
-
-bool add_routes_of(PanelLayers& to, std::size_t i, const std::vector<formation::PlannedRoute>& routes) {
-  bool any = false;
-  for (const formation::PlannedRoute& route : routes) any |= route.robot == i && !route.points.empty();
-  if (!any) return false;
-  const int index = to.data.begin("routes of " + to.run.scenario.robots[i].id, "x [m], y [m]");
-  for (const formation::PlannedRoute& route : routes)
-    if (route.robot == i) to.data.curve(route.points);
-  const std::string pale = std::string("#c0") + (series_colour(i) + 1);
-  to.draw(index, fmt::format("with lines lw 7 lc rgb '{}'", pale));
-  return true;
 }
 
 /// Solid along obstacles, dashed across gaps.
@@ -133,8 +136,19 @@ void add_chains(PanelLayers& to, const std::vector<formation::PlannedRoute>& rou
 void add_routes(PanelLayers& to) {
   const std::vector<formation::PlannedRoute> routes =
       routes_of(to.run).value_or(std::vector<formation::PlannedRoute>{});
+  const ByColour robots(to.run);
+  std::vector<std::vector<const Points*>> ways(robots.sets.size());
+  for (const formation::PlannedRoute& route : routes)
+    if (!route.points.empty()) ways[robots.set_of[route.robot]].push_back(&route.points);
   bool any = false;
-  for (std::size_t i = 0; i < to.run.scenario.robots.size(); ++i) any |= add_routes_of(to, i, routes);
+  for (std::size_t s = 0; s < ways.size(); ++s) {
+    if (ways[s].empty()) continue;
+    any = true;
+    const int index = to.data.begin("routes of " + robots.names(to.run, s), "x [m], y [m]");
+    for (const Points* way : ways[s]) to.data.curve(*way);
+    const std::string pale = std::string("#c0") + (robots.colour(s) + 1);
+    to.draw(index, fmt::format("with lines lw 7 lc rgb '{}'", pale));
+  }
   if (any) to.plot.item("keyentry with lines lw 7 lc rgb '#c0222222'", "route");
   add_chains(to, routes);
 }

@@ -14,6 +14,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "figures/gnuplot.h"
+#include "figures/run_figures.h"
 #include "support/files.h"
 #include "support/terminal.h"
 
@@ -146,8 +147,24 @@ std::vector<fs::path> write_figures(const std::vector<Figure>& figures, const fs
   return scripts;
 }
 
-void draw(const std::vector<fs::path>& scripts) {
-  const RenderResult result = render(scripts);
+void draw_figures_of(const datasets::RecordingFile& run, const fs::path& folder) {
+  const std::string& name = run.info.scenario;
+  std::vector<fs::path> scripts;
+  {
+    ProgressLine line(0.0, "");
+    const auto begins = [&](const char* figure) { line.say("drawing figures of " + name + ": data of " + figure); };
+    scripts = write_figures(run_figures(run, begins), folder);
+  }
+  draw(scripts, name);
+}
+
+void draw(const std::vector<fs::path>& scripts, const std::string& what) {
+  const std::string doing = "drawing figures" + (what.empty() ? "" : " of " + what);
+  ProgressLine line(static_cast<double>(kPicturesOfScript * scripts.size()), "pictures");
+  line.show(0.0, doing);
+  const RenderResult result =
+      render(scripts, [&](std::size_t drawn, std::size_t) { line.show(static_cast<double>(drawn), doing); });
+  line.clear();
   switch (result.outcome) {
     case Rendering::done:
       if (!result.missing.empty())

@@ -56,8 +56,12 @@ std::optional<std::filesystem::path> recording_at(const std::filesystem::path& p
 std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figures,
                                                  const std::filesystem::path& folder);
 
-/// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.
-void draw(const std::vector<std::filesystem::path>& scripts);
+/// Runs gnuplot on the scripts; a message where it is absent. Says on a terminal how far it is and how long it will
+/// take: "drawing figures of `what`". Throws std::runtime_error where it fails.
+void draw(const std::vector<std::filesystem::path>& scripts, const std::string& what = "");
+
+/// The figures of a run, drawn into `folder`, which is created. Says what it is at.
+void draw_figures_of(const datasets::RecordingFile& run, const std::filesystem::path& folder);
 
 /// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-". Its notes are said.
 datasets::LoadedScenario read_scenario(const std::string& path);

@@ -23,7 +23,7 @@ namespace {
 
 std::atomic<int> at_once{0};
 std::atomic<const char*> termination_words{""};
-std::atomic<pid_t> child_of_ours{0};
+std::array<std::atomic<pid_t>, kMostChildren> children{};  ///< 0: none
 
 struct Slot {
   std::atomic<bool> is_taken{false};
@@ -112,11 +112,11 @@ RemoveFolderOnSignal::~RemoveFolderOnSignal() {
   mine.is_taken = false;
 }
 
-KillChildOnSignal::KillChildOnSignal(pid_t child) {
-  child_of_ours = child;
+void KillChildrenOnSignal::add(pid_t child) {
+  children.at(count_++) = child;
 }
-KillChildOnSignal::~KillChildOnSignal() {
-  child_of_ours = 0;
+KillChildrenOnSignal::~KillChildrenOnSignal() {
+  for (std::atomic<pid_t>& child : children) child = 0;
 }
 
 void write_words(const char* words) {
@@ -124,10 +124,10 @@ void write_words(const char* words) {
 }
 
 void remove_what_is_unfinished() {
-  if (const pid_t child = child_of_ours; child > 0) {
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-  }
+  for (const std::atomic<pid_t>& child : children)
+    if (child > 0) ::kill(child, SIGKILL);
+  for (const std::atomic<pid_t>& child : children)
+    if (child > 0) ::waitpid(child, nullptr, 0);
   for (Slot& slot : slots)
     if (slot.is_set.exchange(false)) remove_entry(AT_FDCWD, slot.path, 0);
 }

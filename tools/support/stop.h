@@ -7,6 +7,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <string>
 
 namespace exactvo::tools {
@@ -38,13 +39,23 @@ class RemoveFolderOnSignal {
   int slot_;
 };
 
-/// A child that a signal ends first, since it may write into such a folder. At most one at a time.
-class KillChildOnSignal {
+/// How many children a signal can end.
+inline constexpr std::size_t kMostChildren = 16;
+
+/// Children that a signal ends first, since they may write into such a folder. At most one of these objects lives at a
+/// time.
+class KillChildrenOnSignal {
  public:
-  explicit KillChildOnSignal(pid_t child);
-  ~KillChildOnSignal();
-  KillChildOnSignal(const KillChildOnSignal&) = delete;
-  KillChildOnSignal& operator=(const KillChildOnSignal&) = delete;
+  KillChildrenOnSignal() = default;
+  ~KillChildrenOnSignal();
+  KillChildrenOnSignal(const KillChildrenOnSignal&) = delete;
+  KillChildrenOnSignal& operator=(const KillChildrenOnSignal&) = delete;
+
+  /// REQUIRES: fewer than kMostChildren so far.
+  void add(pid_t child);
+
+ private:
+  std::size_t count_ = 0;
 };
 
 /// On stderr. Async-signal-safe.

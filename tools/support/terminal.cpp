@@ -189,9 +189,9 @@ std::string ProgressLine::how_long() const {
 void ProgressLine::put_line(const std::string& now, const std::string& pace) {
   const std::lock_guard lock(mutex_);
   if (now != line_) changed_at_ = elapsed();
-  const std::string duration = how_long();
-  print_to_stderr("\r\033[K" + now + (duration.empty() ? pace : duration));
+  print_to_stderr("\r\033[K" + now + pace + how_long());
   line_ = now;
+  pace_ = pace;
   if (clock_.joinable()) return;
   // Signals are for the thread that works: it is the one that waits for files and children.
   sigset_t all, before;
@@ -205,7 +205,7 @@ void ProgressLine::say_how_long() {
   std::unique_lock lock(mutex_);
   while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; })) {
     const std::string more = line_.empty() ? "" : how_long();
-    if (!more.empty()) print_to_stderr("\r\033[K" + line_ + more);
+    if (!more.empty()) print_to_stderr("\r\033[K" + line_ + pace_ + more);
   }
 }
 

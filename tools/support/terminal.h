@@ -105,6 +105,7 @@ class ProgressLine {
   std::condition_variable ends_{};
   bool at_end_ = false;
   std::string line_{};       ///< shown last, without pace and time; empty: none
+  std::string pace_{};       ///< its rate and the time left
   double changed_at_ = 0.0;  ///< s, since when it has been that
 };
 

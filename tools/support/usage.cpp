@@ -33,6 +33,18 @@ void require_length(const std::string& option, double value) {
   require(value >= 0.0 && !std::isinf(value), option, fmt::format("{}", value), "a length in m, at least 0");
 }
 
+UsageError conflict(const std::string& option, const std::string& other, const std::string& why) {
+  return UsageError(option + " cannot be combined with " + other + ": " + why);
+}
+
+void refuse_both(bool both, const std::string& option, const std::string& other, const std::string& why) {
+  if (both) throw conflict(option, other, why);
+}
+
+UsageError lacking(const std::string& option, const std::string& needed, const std::string& why) {
+  return UsageError(option + " needs " + needed + (why.empty() ? "" : ": " + why));
+}
+
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
   const std::string nearest = geometry::nearest_word(word, known);
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";

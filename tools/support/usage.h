@@ -34,6 +34,16 @@ void require(bool holds, const std::string& where, const std::string& found, con
 /// Throws UsageError unless `value` is a finite length of 0 m or more.
 void require_length(const std::string& option, double value);
 
+/// "OPTION cannot be combined with OTHER: WHY".
+UsageError conflict(const std::string& option, const std::string& other, const std::string& why);
+
+/// Throws `conflict` where both are given.
+void refuse_both(bool both, const std::string& option, const std::string& other,
+                 const std::string& why = "give one of the two");
+
+/// "OPTION needs NEEDED: WHY"; without a reason "OPTION needs NEEDED".
+UsageError lacking(const std::string& option, const std::string& needed, const std::string& why = "");
+
 /// "; did you mean 'simulate'?", the known word nearest to `word`, or nothing.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 

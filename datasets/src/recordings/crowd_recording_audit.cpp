@@ -12,6 +12,7 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/told_apart.h"
 #include "generators/counter_random.h"
 #include "recordings/exact_plane.h"
 
@@ -162,10 +163,11 @@ class CrowdAuditor {
   }
 
   void check_speed(std::size_t i) {
-    const double way = norm(place(*to_, i) - place(*from_, i));
-    if (way <= time_ * kind(i).max_speed * (1.0 + kSpeedRounding)) return;
+    const double way = norm(place(*to_, i) - place(*from_, i)), most = time_ * kind(i).max_speed;
+    if (way <= most * (1.0 + kSpeedRounding)) return;
     ++report.too_fast;
-    find(i, ": moves " + std::to_string(way) + " m, farther than its speed allows");
+    const auto [allowed, moved] = geometry::told_apart(most, way);
+    find(i, ": moves " + moved + " m, farther than the " + allowed + " m that its speed allows");
   }
 
   void check_edges(std::size_t i) {

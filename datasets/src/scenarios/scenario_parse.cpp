@@ -155,6 +155,7 @@ class ScenarioReader {
 
   void read_robot_list(const Json& list, Scenario& scenario) {
     RobotList read = read_robots(list, scenario.obstacles, file_, base_dir_);
+    robots_are_one_entry_ = list.is_object();
     scenario.robots = std::move(read.robots);
     origin_of_robot_ = std::move(read.origins);
     for (std::filesystem::path& table : read.tables) files_.push_back(std::move(table));
@@ -308,7 +309,7 @@ class ScenarioReader {
   std::string in_the_text(const std::string& pointer) const {
     if (const auto robot = robot_in(pointer)) {
       const RobotOrigin& origin = origin_of_robot_.at(*robot);
-      const std::string entry = "/robots/" + std::to_string(origin.entry);
+      const std::string entry = robots_are_one_entry_ ? "/robots" : "/robots/" + std::to_string(origin.entry);
       return origin.is_one_of_many ? entry : entry + pointer.substr(pointer.find('/', kRobots.size()));
     }
     const std::string prefix = "/obstacles/";
@@ -335,6 +336,7 @@ class ScenarioReader {
   std::string file_;
   std::filesystem::path base_dir_;
   std::vector<RobotOrigin> origin_of_robot_;
+  bool robots_are_one_entry_ = false;  ///< which stands in the place of the list
   /// An obstacle's entry in the text, and whether that has an id.
   struct Origin {
     std::string pointer;
@@ -378,9 +380,14 @@ Scenario load_scenario(const std::filesystem::path& path) {
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files{path};
   const Json tree = parse_json(read_text_file(path), path.string());
-  for (const char* list : {"robots", "obstacles"})
-    for (const Json& entry : list_in(tree, list))
-      if (entry.contains("file")) files.push_back(path.parent_path() / entry.at("file").get<std::string>());
+  const auto add_file_of = [&](const Json& entry) {
+    if (entry.contains("file")) files.push_back(path.parent_path() / entry.at("file").get<std::string>());
+  };
+  for (const char* name : {"robots", "obstacles"}) {
+    const Json& list = list_in(tree, name);
+    if (list.is_object()) add_file_of(list);
+    if (list.is_array()) std::for_each(list.begin(), list.end(), add_file_of);
+  }
   return files;
 }
 

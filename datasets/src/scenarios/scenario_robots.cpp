@@ -7,9 +7,11 @@
 #include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
+#include "exactvo/datasets/repair.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/obstacle_index.h"
@@ -139,14 +141,18 @@ class RobotsReader {
       : obstacles_(obstacles), file_(file), base_dir_(base_dir) {}
 
   RobotList read(const Json& list) {
-    for (std::size_t k = 0; k < list.size(); ++k) read_entry(list[k], k);
+    if (list.is_object()) {
+      read_entry(list, 0, "/robots");
+    } else {
+      for (std::size_t k = 0; k < list.size(); ++k) read_entry(list[k], k, "/robots/" + std::to_string(k));
+    }
     return std::move(out_);
   }
 
  private:
-  void read_entry(const Json& entry, std::size_t k) {
+  void read_entry(const Json& entry, std::size_t k, std::string pointer) {
     entry_ = k;
-    pointer_ = "/robots/" + std::to_string(k);
+    pointer_ = std::move(pointer);
     const JsonCursor at(entry, file_, "");
     if (entry.contains("position")) {
       Robot& robot = out_.robots.emplace_back();
@@ -188,13 +194,21 @@ class RobotsReader {
   void make_circle(const Json& rule) {
     const auto count = rule.at("count").get<std::size_t>();
     require_room_for(count, "circle");
-    const double radius = rule.at("radius").get<double>();
+    const double radius = rule.value("radius", roomy_circle(count));
     const Vec2 centre = rule.value("centre", Vec2{});
     for (std::size_t i = 0; i < count; ++i) {
       const double angle = 2.0 * geometry::kPi * static_cast<double>(i) / static_cast<double>(count);
       const Vec2 out = radius * Vec2{std::cos(angle), std::sin(angle)};
       add(centre + out, centre - out);
     }
+  }
+
+  /// m: a circle on which neighbours leave a diameter of room between their rims.
+  double roomy_circle(std::size_t count) const {
+    constexpr double kApart = 4.0, kLeast = 10.0;  // radii of a robot, from centre to centre
+    const double half_angle = geometry::kPi / static_cast<double>(count);
+    const double needed = count < 2 ? 0.0 : 0.5 * kApart / std::sin(half_angle);
+    return pattern_.radius * std::max(needed, kLeast);
   }
 
   void make_grid(const Json& rule) {
@@ -214,7 +228,13 @@ class RobotsReader {
     require_room_for(count, "random");
     const auto seed = rule.value("seed", std::uint64_t{0});
     const double apart = rule.value("apart", 0.0);
-    const Vec2 low = rule.at("low").get<Vec2>(), high = rule.at("high").get<Vec2>();
+    if (rule.contains("low") != rule.contains("high"))
+      refuse(DataCode::scenario, "random", rule.contains("low") ? "low without high" : "high without low",
+             "both corners of the box, or neither");
+    const geometry::Box box = rule.contains("low")
+                                  ? geometry::Box{rule.at("low").get<Vec2>(), rule.at("high").get<Vec2>()}
+                                  : roomy_box(count, apart);
+    const Vec2 low = box.low, high = box.high;
     const Vec2 goal_low = rule.value("goal_low", low), goal_high = rule.value("goal_high", high);
     FreeRoom starts(obstacles_, out_.robots, start_of, pattern_.radius, apart);
     FreeRoom ends(obstacles_, out_.robots, end_of, pattern_.radius, apart);
@@ -228,6 +248,23 @@ class RobotsReader {
       ends.take(*goal);
       add(*at, *goal);
     }
+  }
+
+  /// The box of all obstacles, widened about its middle where it is too small for so many robots: for each the room of
+  /// nine squares about it, beside what polygons cover.
+  geometry::Box roomy_box(std::size_t count, double apart) const {
+    constexpr double kSquares = 9.0;
+    const double side_of_one = 2.0 * pattern_.radius + apart;
+    geometry::Box box;
+    double needed = kSquares * static_cast<double>(count) * side_of_one * side_of_one;
+    for (const formation::SceneObstacle& o : obstacles_) {
+      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+      if (const auto* polygon = std::get_if<geometry::Polygon>(&o.shape)) needed += area(*polygon);
+    }
+    if (box.is_empty()) box.add(Vec2{});
+    const double side = std::sqrt(needed);
+    const double more_x = 0.5 * std::max(0.0, side - box.width()), more_y = 0.5 * std::max(0.0, side - box.height());
+    return {box.low - Vec2{more_x, more_y}, box.high + Vec2{more_x, more_y}};
   }
 
   template <class IsFree>

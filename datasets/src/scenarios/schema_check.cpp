@@ -235,8 +235,22 @@ class Checker {
     return words;
   }
 
+  static bool is_list(const Json& schema) {
+    const auto type = schema.find("type");
+    return type != schema.end() && *type == "array";
+  }
+
+  /// Two alternatives: a list, and an entry of it alone.
+  void list_or_entry(const Json& rule, const Json& value) const {
+    const Json& list = resolved(rule.at(0));
+    if (!value.is_array() && !value.is_object())
+      refuse(DataCode::wrong_type, value, described(value), "a list" + of_entries(list.at("items")));
+    check(value, value.is_array() ? list : rule.at(1));
+  }
+
   /// The alternatives are told apart by their required keys; the one that is meant gives its own words.
   void one_of(const Json& rule, const Json& value, const Json&) const {
+    if (is_list(resolved(rule.front()))) return list_or_entry(rule, value);
     if (!value.is_object()) refuse(DataCode::wrong_type, value, described(value), "an object");
     std::vector<const Json*> meant;
     for (const Json& reference : rule) {

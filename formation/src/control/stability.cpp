@@ -7,6 +7,7 @@
 #include <complex>
 
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/told_apart.h"
 
 namespace exactvo::formation {
 namespace {
@@ -99,13 +100,13 @@ std::vector<std::string> step_warnings(const FormationSpec& spec, Integrator int
   std::vector<std::string> warnings;
   const Stability s = stability_of(spec);
   if (integrator == Integrator::euler && dt >= s.euler_step_limit)
-    warnings.push_back(
-        "time_step " + std::to_string(dt) +
-        " s is beyond explicit Euler's limit 2 / (k3 + k2 l_max) = " + std::to_string(s.euler_step_limit) + " s");
+    warnings.push_back("time_step " + geometry::lossless(dt) +
+                       " s is at or beyond explicit Euler's limit 2 / (k3 + k2 l_max) = " +
+                       geometry::lossless(s.euler_step_limit) + " s");
   const double radius = step_spectral_radius(spec, integrator, dt);
   if (radius >= 1.0)
-    warnings.push_back("the formation does not converge at time_step " + std::to_string(dt) +
-                       " s: the spectral radius of a step is " + std::to_string(radius));
+    warnings.push_back("the formation does not converge at time_step " + geometry::lossless(dt) +
+                       " s: the spectral radius of a step is " + geometry::told_apart(1.0, radius, 6).second);
   return warnings;
 }
 

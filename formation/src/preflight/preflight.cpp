@@ -11,6 +11,7 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/told_apart.h"
 #include "motion/leader.h"
 #include "motion/moving_way.h"
 #include "preflight/open_way.h"
@@ -105,9 +106,9 @@ void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std:
       if (are_too_near(s.robots[i], s.robots[j], s.arrival_tolerance) || !leave_no_room(s, i, j, aside) ||
           ++pairs > kNamed)
         continue;
-      out.push_back(last[i].name + ", and " + last[j].name + ", are " + metres(apart) +
-                    " apart, and radii and margin take " + metres(radii + s.margins.robot) +
-                    ": the second to come finds no room");
+      const auto [have, need] = geometry::told_apart(apart, radii + s.margins.robot);
+      out.push_back(last[i].name + ", and " + last[j].name + ", are " + have + " m apart, and radii and margin take " +
+                    need + " m: the second to come finds no room");
     }
   }
   if (pairs > kNamed)
@@ -147,8 +148,8 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
     if (!words->empty()) out.push_back(*words);
   const double arrival = leader_arrival(s.formation->leader);
   if (!(arrival > s.time_limit)) return;
-  const std::string when =
-      "only after " + number_text(arrival, 6) + " s, beyond the time limit of " + number_text(s.time_limit, 6) + " s";
+  const auto [limit, end] = geometry::told_apart(s.time_limit, arrival, 6);
+  const std::string when = "only after " + end + " s, beyond the time limit of " + limit + " s";
   out.push_back(std::isfinite(arrival) ? "the leader reaches the end of its path " + when
                                        : "the leader never reaches the end of its path");
 }
@@ -193,17 +194,18 @@ void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
   const TopSpeed top = top_speed(s, s.formation->leader);
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
-    out.push_back("the leader moves at up to " + number_text(top.speed, 6) + " m/s, faster than " + robot.id +
-                  " can (max_speed " + number_text(robot.max_speed, 6) + " m/s): the formation falls behind");
+    const auto [most, speed] = geometry::told_apart(robot.max_speed, top.speed, 6);
+    out.push_back("the leader moves at up to " + speed + " m/s, faster than " + robot.id + " can (max_speed " + most +
+                  " m/s): the formation falls behind");
     return;
   }
 }
 
 void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::string>& out) {
   const double speed = counted(s, robot.velocity);
-  if (exceeds(speed, robot.max_speed))
-    out.push_back(robot.id + " starts at " + number_text(speed, 6) + " m/s, beyond its max_speed of " +
-                  number_text(robot.max_speed, 6) + " m/s");
+  if (!exceeds(speed, robot.max_speed)) return;
+  const auto [most, start] = geometry::told_apart(robot.max_speed, speed, 6);
+  out.push_back(robot.id + " starts at " + start + " m/s, beyond its max_speed of " + most + " m/s");
 }
 
 /// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
@@ -218,9 +220,9 @@ void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std:
   const TopSpeed top = top_speed(s, o.motion);
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
-    out.push_back("moving obstacle '" + o.id + "' moves at up to " + number_text(top.speed, 6) + " m/s, faster than " +
-                  robot.id + " (max_speed " + number_text(robot.max_speed, 6) + " m/s): it can run " + robot.id +
-                  " over");
+    const auto [most, speed] = geometry::told_apart(robot.max_speed, top.speed, 6);
+    out.push_back("moving obstacle '" + o.id + "' moves at up to " + speed + " m/s, faster than " + robot.id +
+                  " (max_speed " + most + " m/s): it can run " + robot.id + " over");
     return;
   }
 }

@@ -164,8 +164,9 @@ std::string Reachability::words_of(const Separated& answer, double radius, const
   std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
                      (geometry::contains(geometry::Polygon{corners, {}}, place) ? goal : "the start");
   if (gaps == 0) return text;
-  return text + (gaps == 1 ? ", with a gap of " : ", with " + std::to_string(gaps) + " gaps of at most ") +
-         metres(widest) + " for a robot " + metres(2.0 * radius) + " wide";
+  const auto [width, needed] = geometry::told_apart(widest, 2.0 * radius);
+  return text + (gaps == 1 ? ", with a gap of " : ", with " + std::to_string(gaps) + " gaps of at most ") + width +
+         " m for a robot " + needed + " m wide";
 }
 
 }  // namespace exactvo::formation::detail

@@ -17,6 +17,7 @@
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/told_apart.h"
 #include "motion/leader.h"
 #include "runs/crowd_way.h"
 #include "scene/goals.h"
@@ -508,12 +509,13 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   require(!s.formation, "/formation", "a formation", "robots with goals, for a crowd");
   for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k)
     require(fastest(s.moving_obstacles[k]) <= kFastestBody, "/moving_obstacles/" + std::to_string(k),
-            detail::metres(fastest(s.moving_obstacles[k]), 6) + "/s",
+            geometry::lossless(fastest(s.moving_obstacles[k])) + " m/s",
             "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   const double step = position_step_for(s);
-  require(s.arrival_tolerance >= step, "/arrival_tolerance", detail::metres(s.arrival_tolerance, 6),
-          "at least " + detail::metres(step, 6) + ", the lattice of positions of a crowd of this extent and speed");
+  const auto [tolerance, least] = geometry::told_apart(s.arrival_tolerance, step, 6);
+  require(s.arrival_tolerance >= step, "/arrival_tolerance", tolerance + " m",
+          "at least " + least + " m, the lattice of positions of a crowd of this extent and speed");
   for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
     require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true, for a crowd");
   return problems;

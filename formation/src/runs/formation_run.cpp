@@ -318,9 +318,10 @@ class FormationRun {
   void note_divergence(double first, const Step& end, Recording& recording) const {
     const double last = formation_error(end, offsets_);
     recording.diverged = out_of_bounds() || has_diverged(first, error_of_moving(end, offsets_));
-    recording.outcome = recording.diverged
-                            ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
-                            : "formation error " + metres(last) + " at the end";
+    const auto [less, more] =
+        first < last ? geometry::told_apart(first, last) : std::pair(number_text(first, 3), number_text(last, 3));
+    recording.outcome = recording.diverged ? "diverged: the formation error grew from " + less + " m to " + more + " m"
+                                           : "formation error " + metres(last) + " at the end";
     if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
     add_note(recording.outcome, spec_.leader.why_short);

@@ -4,16 +4,15 @@
 /// \file
 /// Numbers as people read them, in warnings and outcomes.
 
-#include <cstdio>
 #include <string>
+
+#include "exactvo/geometry/told_apart.h"
 
 namespace exactvo::formation::detail {
 
 /// In at most so many significant digits.
 inline std::string number_text(double x, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, x);
-  return text;
+  return geometry::in_digits(x, digits);
 }
 
 /// "0.25 m".

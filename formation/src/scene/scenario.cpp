@@ -11,7 +11,9 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/told_apart.h"
 #include "scene/field_problems.h"
+#include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
 
 namespace exactvo::formation {
@@ -19,11 +21,9 @@ namespace {
 
 using Problems = std::vector<ScenarioProblem>;
 
+/// A number of the scenario: nothing of it is lost, so that two that are compared look as different as they are.
 std::string show(double x) {
-  std::string text = std::to_string(x);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
+  return geometry::lossless(x);
 }
 std::string show(Vec2 v) {
   return "[" + show(v.x) + ", " + show(v.y) + "]";
@@ -109,7 +109,7 @@ void check_robots(const Scenario& s, Checker& c) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
       c.require(false, at("/position")(),
-                show(r.position) + ", overlapping robot '" + s.robots[j].id + "' by " + show(-gap) + " m",
+                show(r.position) + ", overlapping robot '" + s.robots[j].id + "' by " + detail::metres(-gap),
                 "robots that do not overlap at the start");
     }
   }
@@ -123,7 +123,7 @@ void check_starts(const Scenario& s, Checker& c) {
       const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
       if (!(gap < 0.0)) return;
       c.require(false, "/robots/" + std::to_string(i) + "/position",
-                show(s.robots[i].position) + ", overlapping " + kind + " '" + id + "' by " + show(-gap) + " m",
+                show(s.robots[i].position) + ", overlapping " + kind + " '" + id + "' by " + detail::metres(-gap),
                 "a start that is clear of every obstacle");
     };
     for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))

@@ -9,6 +9,7 @@
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/told_apart.h"
 #include "support/escape.h"
 #include "support/robot_numbers.h"
 #include "support/route_certificates.h"
@@ -122,7 +123,7 @@ std::string words_of(const Separated& separated, const AskedMap& map, const geom
   const std::string begin = enclosed ? fmt::format("separated, the {} is enclosed: ", enclosed) : "separated: ";
   if (gaps.empty()) return begin + closed_by_obstacles(separated, map);
   const Gap& widest = widest_of(gaps);
-  const auto [width, needed] = widths_told_apart(widest.width, 2.0 * question.radius);
+  const auto [width, needed] = geometry::told_apart(widest.width, 2.0 * question.radius);
   const std::string text = gaps.size() == 1
                                ? begin + fmt::format("closed by 1 gap, {} m, {}, which would have to be {} m", width,
                                                      between(widest, map), needed)
@@ -148,7 +149,7 @@ std::string words_of(const Blocked& blocked, const AskedMap& map, const geometry
   if (blocked.inside) return fmt::format("blocked: the {} is inside {}", end_name(blocked), by);
   const double distance = distance_to(blocked, map, end_of(blocked, question));
   if (distance == 0.0) return fmt::format("blocked: the {} is on {}", end_name(blocked), by);
-  const auto [near, needed] = widths_told_apart(distance, question.radius);
+  const auto [near, needed] = geometry::told_apart(distance, question.radius);
   return fmt::format("blocked: the {} is {} m from {} and would have to be {} m", end_name(blocked), near, by, needed);
 }
 
@@ -240,15 +241,6 @@ std::vector<Gap> gaps_of(const Separated& separated) {
     gaps.push_back({from, to, chain[k].on.obstacle, next.on.obstacle, geometry::norm(to - from)});
   }
   return gaps;
-}
-
-std::pair<std::string, std::string> widths_told_apart(double width, double needed) {
-  constexpr int kLeastDigits = 3, kMostDigits = 17;
-  for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
-    std::string a = fmt::format("{:.{}g}", width, digits), b = fmt::format("{:.{}g}", needed, digits);
-    if (a != b) return {std::move(a), std::move(b)};
-  }
-  return {fmt::format("less than {}", width), fmt::format("{}", needed)};
 }
 
 std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in_full) {

@@ -67,9 +67,6 @@ struct Gap {
 };
 std::vector<Gap> gaps_of(const geometry::Separated& separated);
 
-/// The width of a gap and the width that it would need, with as many digits as tell them apart.
-std::pair<std::string, std::string> widths_told_apart(double width, double needed);
-
 /// One line; `in_full` adds one for every gap of a separation, for the points of a route, for the widest radius.
 std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in_full);
 

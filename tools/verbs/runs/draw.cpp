@@ -4,7 +4,6 @@
 
 #include "exactvo/datasets/recording_file.h"
 #include "figures/crowd_figures.h"
-#include "figures/run_figures.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/run_recorder.h"
@@ -27,6 +26,8 @@ struct DrawFlags {
 
 /// With the rows of a long run that `simulate` would have shown; no others are kept.
 datasets::RecordingFile read_shown(const fs::path& recording) {
+  ProgressLine line(0.0, "");
+  line.say("reading " + recording.string());
   ShownRows shown;
   datasets::RecordingFile file =
       datasets::read_recording(recording, [&](const datasets::RecordingFile&, const formation::Step& row,
@@ -42,7 +43,7 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
   const std::string name = recording.string();
   const bool is_device = name.rfind("/dev/", 0) == 0 || name.rfind("/proc/", 0) == 0;
   if (is_device || (fs::exists(recording, unknown) && !fs::is_regular_file(recording, unknown)))
-    throw UsageError("draw", recording.string() + " without --out", "--out FOLDER beside a pipe");
+    throw lacking("draw " + recording.string(), "--out FOLDER", "a pipe has no folder for the figures");
   return recording.parent_path() / "figures";
 }
 
@@ -50,11 +51,14 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
 bool draw_into(const fs::path& folder, const fs::path& recording) {
   const TerminateOnSignal terminate_on_signal;
   if (recording.extension() != ".evr") {
-    draw(write_figures(run_figures(read_shown(recording)), folder));
+    draw_figures_of(read_shown(recording), folder);
     return false;
   }
+  ProgressLine line(0.0, "");
+  line.say("reading " + recording.string());
   const CrowdCourse course = course_of(recording);
-  draw(write_figures(crowd_figures(course), folder));
+  line.clear();
+  draw(write_figures(crowd_figures(course), folder), course.name);
   return course.cut_off;
 }
 

@@ -66,7 +66,7 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
 void check_time(std::size_t rows, double end, double time_step, double time) {
   if (rows < 2) throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
   if (time > end + 0.5 * time_step)
-    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.6g} s, when the run ends", end));
+    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {} s, when the run ends", end));
 }
 
 /// The last row in which a decision was taken: the final row of a recording has none.

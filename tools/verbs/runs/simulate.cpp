@@ -12,7 +12,6 @@
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
 #include "explorer/page.h"
-#include "figures/run_figures.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/rank_watch.h"
@@ -159,9 +158,8 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
     const TerminateOnSignal terminate_on_signal;
+    draw_figures_of(finished.file, folder.path() / "figures");
     ProgressLine line(0.0, "");
-    line.say("drawing figures of " + read.scenario.name);
-    draw(write_figures(run_figures(finished.file), folder.path() / "figures"));
     line.say("making explorer.html of " + read.scenario.name);
     const std::string title = in_words(datasets::run_info(read.scenario, options, {}));
     write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <istream>
 
+#include "exactvo/geometry/told_apart.h"
 #include "exactvo/vo/lp/instances.h"
 
 namespace exactvo::lp {
@@ -76,7 +77,7 @@ Problem read_instance(Reader& reader) {
   const std::int32_t hard = reader.integer_within("m_hard", 0, m);
   problem.bound.disc = reader.number("v_max");
   if (problem.bound.disc < 0.0)
-    throw InstanceError(reader.place("v_max"), std::to_string(problem.bound.disc), "0 or more");
+    throw InstanceError(reader.place("v_max"), geometry::lossless(problem.bound.disc), "0 or more");
   problem.preferred.x = reader.number("v_pref x");
   problem.preferred.y = reader.number("v_pref y");
   for (std::int32_t k = 0; k < m; ++k)
