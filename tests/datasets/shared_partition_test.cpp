@@ -34,6 +34,7 @@ std::size_t split_all(const ManifestRow& row) {
   SCOPED_TRACE(row.path);
   ReadOptions options;
   options.keep_going = true;
+  options.units = Units::metres;  // rings as they stand, however far they reach
   std::size_t rings = 0;
   for (const formation::SceneObstacle& obstacle : read_obstacles(shared_data() / row.path, options).obstacles) {
     const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
@@ -61,7 +62,7 @@ TEST(SharedPartitions, EveryRingOfEveryVectorFile) {
     }
   }
   std::cout << rings << " rings split\n";
-  EXPECT_GT(rings, 140u);
+  EXPECT_GT(rings, built_with_gdal() ? 1800u : 140u);
 }
 
 }  // namespace

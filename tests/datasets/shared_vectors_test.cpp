@@ -32,6 +32,20 @@ void expect_books_balanced(const ObstacleFile& file) {
   EXPECT_EQ(n.rejected, file.rejected.size());
 }
 
+/// In metres on the earth, or, where a file reaches too far for that, its numbers as they stand.
+ObstacleFile read_or_count(const ManifestRow& row, std::size_t& too_far) {
+  try {
+    return read_all(row);
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.code(), DataCode::projection) << error.what();
+    ++too_far;
+    ReadOptions options;
+    options.keep_going = true;
+    options.units = Units::metres;
+    return read_obstacles(shared_data() / row.path, options);
+  }
+}
+
 TEST(SharedVectors, PolygonsCountAsInTheManifest) {
   EXACTVO_NEEDS_SHARED_DATA();
   std::vector<std::string> folders{"wkt-georust", "wkt-jts", "wkt-osm", "wkt-rvo2"};
@@ -39,10 +53,10 @@ TEST(SharedVectors, PolygonsCountAsInTheManifest) {
     for (const char* more : {"geojson-nasty", "geojson-naturalearth", "geojson-osm", "geojson-polyclip"})
       folders.push_back(more);
   }
-  std::size_t files = 0;
+  std::size_t files = 0, too_far = 0;
   for (const ManifestRow& row : manifest_of(folders)) {
     SCOPED_TRACE(row.path);
-    const ObstacleFile file = read_all(row);
+    const ObstacleFile file = read_or_count(row, too_far);
     expect_books_balanced(file);
     std::size_t polygons = 0;
     for (const formation::SceneObstacle& o : file.obstacles) polygons += geometry::has_interior(o.shape) ? 1 : 0;
@@ -57,6 +71,7 @@ TEST(SharedVectors, PolygonsCountAsInTheManifest) {
     ++files;
   }
   EXPECT_GT(files, built_with_gdal() ? 30u : 10u);
+  EXPECT_EQ(too_far, built_with_gdal() ? 9u : 0u);
 }
 
 TEST(SharedVectors, RefusalsNameFeatureRingAndVertex) {

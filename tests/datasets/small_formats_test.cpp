@@ -114,6 +114,31 @@ TEST_F(SmallFormats, MengeObstaclesAreClosedOrNot) {
   EXPECT_EQ(refused("c.xml", begin).code(), DataCode::format_syntax);
 }
 
+TEST_F(SmallFormats, ClockwiseObstaclesOfMengeAreRooms) {
+  const std::string text =
+      R"(<Experiment><ObstacleSet><Obstacle closed="1"><Vertex p_x="0" p_y="0"/><Vertex p_x="0" p_y="9"/>)"
+      R"(<Vertex p_x="9" p_y="9"/><Vertex p_x="9" p_y="0"/></Obstacle></ObstacleSet></Experiment>)";
+  const ObstacleFile file = read("a.xml", text);
+  ASSERT_EQ(file.obstacles.size(), 1u);
+  const auto& wall = std::get<Polyline>(file.obstacles[0].shape).points;
+  EXPECT_EQ(wall.size(), 5u);
+  EXPECT_EQ(wall.front(), wall.back());
+  EXPECT_TRUE(file.findings.empty());
+  EXPECT_EQ(file.notes.back().text.rfind("1 clockwise obstacle read as walls round rooms", 0), 0u);
+}
+
+TEST_F(SmallFormats, AWalkableAreaAsPlainWktIsHintedAt) {
+  const std::string area = "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 2, 2 2, 1 1))";
+  const ObstacleFile alone = read("a.wkt", area + "\n");
+  ASSERT_EQ(alone.notes.size(), 1u);
+  EXPECT_NE(alone.notes[0].text.find("jupedsim-wkt"), std::string::npos);
+  EXPECT_TRUE(read("b.wkt", area + "\n" + area + "\n").notes.empty());
+  EXPECT_TRUE(read("c.wkt", "POLYGON ((0 0, 9 0, 9 9, 0 0))\n").notes.empty());
+  ReadOptions options;
+  options.format = "jupedsim-wkt";
+  EXPECT_TRUE(read_obstacles(folder_ / "a.wkt", options).notes.empty());
+}
+
 TEST_F(SmallFormats, EntitiesAreRefused) {
   const std::string text =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE x [<!ENTITY a SYSTEM \"file:///etc/passwd\">]>\n"

@@ -89,7 +89,8 @@ TEST_F(VectorFile, DegreesRoundedBeyondTheirRangeAreDegrees) {
 
 TEST_F(VectorFile, NotesSayHowUnitsWereDecidedAndWhereTheFileLies) {
   const ObstacleFile file = read("a.geojson", collection("", kSquare));
-  ASSERT_EQ(file.notes.size(), 2u);
+  ASSERT_EQ(file.notes.size(), 3u);
+  EXPECT_EQ(file.notes[2].text.rfind("lengths and areas are at most ", 0), 0u) << file.notes[2].text;
   EXPECT_EQ(
       file.notes[0].text,
       "degrees: GeoJSON that says nothing of units (RFC 7946); brought to metres round longitude 13.001, latitude "

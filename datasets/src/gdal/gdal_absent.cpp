@@ -10,6 +10,13 @@ void read_vector_file(const std::filesystem::path& path, Collector&) {
                   "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
 }
 
+void read_in_system(int srid, const std::function<void(Collector&)>&, Collector& out) {
+  throw DataError(
+      DataCode::format_unavailable, out.file(), "",
+      "SRID=" + std::to_string(srid) + ", a reference system, and this build is without GDAL, which knows them",
+      "a build with EXACTVO_WITH_GDAL=ON, or metres");
+}
+
 Written to_gdal_file(const Obstacles&, const WriteOptions&, const std::string& driver, const std::string& file) {
   throw DataError(DataCode::format_unavailable, file, "", "a file that needs GDAL's driver " + driver,
                   "a build with EXACTVO_WITH_GDAL=ON, or another format");

@@ -12,20 +12,12 @@
 #include "gdal/geojson_file.h"
 #include "gdal/layer_plane.h"
 #include "gdal/properties.h"
+#include "gdal/shapefile_rings.h"
 #include "json/json_text.h"
 #include "readers/readers.h"
 
 namespace exactvo::datasets {
 namespace {
-
-/// Degrees that a coordinate may lie beyond 180 or 90 and still be one: writers round, and some files hold
-/// 180.00000000000014. A millionth of a degree is 0.1 m on the ground.
-constexpr double kDegreesBeyond = 1e-6;
-
-bool is_longitude_latitude(const geometry::Box& box) {
-  constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
-  return box.low.x >= -kEast && box.high.x <= kEast && box.low.y >= -kNorth && box.high.y <= kNorth;
-}
 
 /// Characters of a text that is no geometry.
 constexpr std::size_t kShownText = 40;
@@ -55,7 +47,7 @@ class VectorReader {
       settle_coordinates();
       for_each_feature([this](const Item& item) { add(item); });
     }
-    note_extent();
+    plane_.note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
   }
 
@@ -98,76 +90,78 @@ class VectorReader {
         call_wait_hook();
         action(Item{record.number, record.place, nullptr, &record});
       });
+    const std::optional<RingsAsTheyStand> as_they_stand =
+        is_shapefile_of_polygons() ? std::make_optional<RingsAsTheyStand>() : std::nullopt;
     layer_->ResetReading();
     std::size_t number = 0;
     while (const std::unique_ptr<OGRFeature> feature{layer_->GetNextFeature()}) {
       call_wait_hook();
       refuse_complaints("feature " + std::to_string(number));
+      if (is_csv()) take_ewkt(*feature);
+      if (as_they_stand) group_rings(*feature);
       action(Item{number, place_of(number), feature.get(), nullptr});
       ++number;
     }
     refuse_complaints("after feature " + std::to_string(number));
   }
 
-  geometry::Box bounding_box() {
-    if (geojson_ && geojson_->box()) return *geojson_->box();
-    geometry::Box box;
-    const Visitor visitor = taker_of_points(box);
+  void for_each_ring(const std::function<void(const geometry::Ring&)>& take) {
+    Visitor visitor;
+    visitor.other = [](const std::string&) {};
+    visitor.shape = [&](RawKind, const std::vector<geometry::Ring>& rings) {
+      for (const geometry::Ring& ring : rings) take(ring);
+    };
     for_each_feature([&](const Item& item) {
       if (!is_refused(item) && item.has_geometry()) item.visit(visitor);
     });
-    return box;
   }
 
   /// What the numbers of this layer mean: sets `plane_`.
   void settle_coordinates() {
     plane_.reset();
-    const OGRSpatialReference* system = geojson_ ? system_of_geojson() : layer_->GetSpatialRef();
-    const Units units = units_of_layer();
-    if (units == Units::metres) return settle_metres("metres: " + reason_);
-    if (units == Units::automatic && system == nullptr)
-      return settle_metres("taken as metres: names no reference system");
-    if (units == Units::automatic && !system->IsGeographic()) return settle_projected(*system);
-    const geometry::Box box = bounding_box();
-    if (box.is_empty()) return;
-    if (!is_longitude_latitude(box)) return settle_impossible_degrees(units);
-    const bool names_degrees = system != nullptr && system->IsGeographic();
-    const bool is_projected = plane_.project_round(box, names_degrees ? *system : *OGRSpatialReference::GetWGS84SRS());
-    refuse_complaints(layer_name(), !is_projected);
-    out_.set_plane(plane_.plane());
-    const std::string where = plane_.is_named() ? "of the reference system that it names"
-                                                : "round longitude " + number_text(plane_.origin().longitude) +
-                                                      ", latitude " + number_text(plane_.origin().latitude);
-    note_units("degrees: " + reason_ + "; brought to metres " + where);
+    LayerNumbers layer;
+    layer.name = layer_name();
+    layer.system = system_of_layer();
+    layer.units = units_of_layer();
+    layer.reason = reason_;
+    layer.is_perhaps_metres = geojson_.has_value();
+    layer.for_each_ring = [this](const auto& take) { for_each_ring(take); };
+    if (geojson_) layer.box = geojson_->box();
+    note_units(plane_.settle(layer));
   }
 
-  void settle_metres(const std::string& words) {
-    out_.set_plane({});
-    note_units(words);
+  const OGRSpatialReference* system_of_layer() {
+    if (geojson_) return system_of_geojson();
+    const OGRSpatialReference* system = layer_->GetSpatialRef();
+    csv_srid_.reset();
+    if (!is_csv() || system != nullptr || out_.options().units != Units::automatic) return system;
+    for_each_feature([this](const Item& item) {
+      if (!csv_srid_ && item.has_geometry()) csv_srid_ = srid_of(text_of_geometry(*item.feature));
+    });
+    if (csv_srid_.value_or(0) == 0) return nullptr;
+    named_system_ = system_of_srid(*csv_srid_, path_.string(), complaints_);
+    return &named_system_;
   }
 
-  void settle_projected(const OGRSpatialReference& system) {
-    const double metres_a_unit = system.GetLinearUnits();
-    plane_.set_scale(metres_a_unit);
-    LocalPlane plane;
-    if (system.IsProjected()) {
-      OGRSpatialReference in_metres = system;
-      if (metres_a_unit != 1.0) in_metres.SetLinearUnitsAndUpdateParameters("metre", 1.0);
-      plane.reference_system = wkt_of(in_metres);
-    }
-    out_.set_plane(plane);
-    const char* name = system.GetName();
-    note_units(number_text(metres_a_unit) + " m a unit: by its reference system " +
-               (name != nullptr ? name : "without a name"));
+  /// The driver knows no SRID before WKT.
+  static void take_ewkt(OGRFeature& feature) {
+    if (feature.GetGeometryRef() != nullptr || feature.GetGeomFieldCount() == 0) return;
+    const std::string text = text_of_geometry(feature);
+    const std::size_t end = text.find(';');
+    if (!begins_with_srid(text) || end == std::string::npos) return;
+    OGRGeometry* geometry = nullptr;
+    if (OGRGeometryFactory::createFromWkt(text.c_str() + end + 1, nullptr, &geometry) == OGRERR_NONE)
+      feature.SetGeometryDirectly(geometry);
   }
 
-  void note_units(const std::string& words) { out_.note(layers() > 1 ? "layer " + layer_name() : "", words); }
+  /// Of a row of a CSV whose SRID is not that of the first geometry.
+  void refuse_other_srid(const OGRFeature& feature, const std::string& place) const {
+    const int srid = srid_of(text_of_geometry(feature));
+    if (srid != csv_srid_.value_or(srid)) throw other_system(srid, *csv_srid_, path_.string(), place);
+  }
 
-  void note_extent() {
-    if (!out_.extent()) return;
-    const auto [low, high] = *out_.extent();
-    out_.note("", "extent " + number_text(low.x) + " to " + number_text(high.x) + " m, " + number_text(low.y) + " to " +
-                      number_text(high.y) + " m");
+  void note_units(const std::string& words) {
+    if (!words.empty()) out_.note(layers() > 1 ? "layer " + layer_name() : "", words);
   }
 
   /// Sets `reason_` as well.
@@ -206,14 +200,6 @@ class VectorReader {
     return OGRSpatialReference::GetWGS84SRS();
   }
 
-  void settle_impossible_degrees(Units units) {
-    if (units == Units::degrees || !geojson_) {
-      throw DataError(DataCode::projection, path_.string(), layer_name(),
-                      "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
-    }
-    settle_metres("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
-  }
-
   static bool is_refused(const Item& item) { return item.record != nullptr && item.record->fault; }
 
   void add(const Item& item) {
@@ -221,6 +207,13 @@ class VectorReader {
     if (is_refused(item)) return out_.reject(*item.record->fault);
     if (const auto lost = geojson_ || !is_csv() ? std::nullopt : lost_from_csv(*item.feature, place))
       return out_.reject(*lost);
+    if (!geojson_ && is_csv() && item.has_geometry()) {
+      try {
+        refuse_other_srid(*item.feature, place);
+      } catch (const DataError& error) {
+        return out_.reject(error);
+      }
+    }
     if (!item.has_geometry()) return out_.pass_over(place, "a feature without geometry skipped");
     const FeatureProperties properties = properties_of(item);
     std::size_t part = 0;
@@ -236,6 +229,10 @@ class VectorReader {
     if (!out_.options().keep_properties) return {};
     if (geojson_) return datasets::properties_of(item.record->json);
     return datasets::properties_of(*item.feature, data_->GetDriverName() == std::string("GPKG"));
+  }
+
+  bool is_shapefile_of_polygons() const {
+    return data_->GetDriverName() == std::string("ESRI Shapefile") && wkbFlatten(layer_->GetGeomType()) == wkbPolygon;
   }
 
   bool is_csv() const { return data_->GetDriverName() == std::string("CSV"); }
@@ -260,6 +257,7 @@ class VectorReader {
     RawGeometry raw;
     raw.properties = properties;
     raw.kind = kind;
+    if (!geojson_ && is_shapefile_of_polygons()) raw.winding = Winding::clockwise;
     raw.id = std::to_string(number) + (part > 0 ? "." + std::to_string(part) : "");
     if (layers() > 1) raw.id = layer_name() + "/" + raw.id;
     raw.place = place + (part > 0 ? ", part " + std::to_string(part) : "");
@@ -280,7 +278,8 @@ class VectorReader {
   std::unique_ptr<GDALDataset> data_;
   OGRLayer* layer_ = nullptr;
   LayerPlane plane_;
-  OGRSpatialReference named_system_;  ///< by GeoJSON
+  OGRSpatialReference named_system_;  ///< by GeoJSON, or by the SRID of a CSV's geometries
+  std::optional<int> csv_srid_;       ///< of the first geometry, 0 where it names none; unset where it does not count
   std::string reason_;                ///< why the layer's units are what they are
 };
 

@@ -83,6 +83,9 @@ std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, con
 /// The azimuthal equidistant projection of `geographic` round `origin`.
 OGRSpatialReference plane_round(const OGRSpatialReference& geographic, const ProjectionOrigin& origin);
 
+/// EPSG:`srid`, longitudes and eastings first. Throws DataError (E_PROJECTION) where PROJ does not know it.
+OGRSpatialReference system_of_srid(int srid, const std::string& file, GdalComplaints& complaints);
+
 /// On one line (WKT 2:2019); empty where it can't be told.
 std::string wkt_of(const OGRSpatialReference& system);
 

@@ -255,8 +255,8 @@ bool is_sequence_name(const std::filesystem::path& path) {
 GeoJsonFile::GeoJsonFile(const std::filesystem::path& path) : path_(path) {
   LenientJson bytes(path);
   if (bytes.sgetc() == kRecordSeparator) return;
-  geometry::Box box;
-  const Visitor box_taker = taker_of_points(box);
+  DegreeBox box;
+  const Visitor box_taker = taker_of_rings(box);
   const auto add = [&](const Json& entry) {
     const Json* geometry = fault_of_entry(entry) ? nullptr : geometry_of(entry);
     if (geometry) visit(*geometry, box_taker);

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "exactvo/datasets/data_error.h"
-#include "exactvo/geometry/box.h"
+#include "gdal/degree_box.h"
 #include "gdal/geojson_geometry.h"
 #include "json/json_text.h"
 
@@ -40,8 +40,8 @@ class GeoJsonFile {
 
   /// The members of the outermost object, without a collection's features; of a sequence none.
   const Json& members() const { return members_; }
-  /// Of the points of a collection.
-  const std::optional<geometry::Box>& box() const { return box_; }
+  /// Of the rings and lines of a collection, its numbers taken for degrees.
+  const std::optional<DegreeBox>& box() const { return box_; }
   /// Throws as the constructor does, if the file has changed.
   void for_each(const TakeRecord& take) const;
 
@@ -53,7 +53,7 @@ class GeoJsonFile {
   Json members_;
   enum class Layout { collection, one_record, sequence } layout_ = Layout::sequence;
   bool begins_with_record_ = false;
-  std::optional<geometry::Box> box_;
+  std::optional<DegreeBox> box_;
 };
 
 }  // namespace exactvo::datasets

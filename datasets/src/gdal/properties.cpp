@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gdal/properties.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "json/json_text.h"
@@ -83,11 +85,9 @@ double bounded(const JsonCursor& at, double largest) {
 
 }  // namespace
 
-Visitor taker_of_points(geometry::Box& box) {
+Visitor taker_of_rings(DegreeBox& box) {
   const auto take = [&box](RawKind, const std::vector<geometry::Ring>& rings) {
-    for (const geometry::Ring& ring : rings)
-      for (const geometry::Vec2 p : ring)
-        if (geometry::is_finite(p)) box.add(p);
+    for (const geometry::Ring& ring : rings) box.add(ring);
   };
   return {take, [](const std::string&) {}};
 }
@@ -143,6 +143,19 @@ std::string text_of_geometry(const OGRFeature& feature) {
   int column = feature.GetFieldIndex(name.empty() ? "WKT" : name.c_str());
   if (column < 0 && name.rfind("geom_", 0) == 0) column = feature.GetFieldIndex(name.c_str() + 5);
   return column < 0 ? "" : feature.GetFieldAsString(column);
+}
+
+bool begins_with_srid(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin != std::string::npos && EQUALN(text.c_str() + begin, "SRID=", 5);
+}
+
+int srid_of(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos) return 0;
+  if (begins_with_srid(text)) return std::max(0, std::atoi(text.c_str() + begin + 5));
+  const std::string_view rest = std::string_view(text).substr(begin);
+  return is_wkb_text(rest) ? srid_of_wkb_text(rest) : 0;
 }
 
 geometry::Vec2 GivenPlane::rounded(geometry::Vec2 p) const {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
-#include "exactvo/geometry/box.h"
+#include "gdal/degree_box.h"
 #include "json/json_text.h"
 #include "readers/raw_geometry.h"
 
@@ -25,8 +25,8 @@ struct Visitor {
   std::function<void(const std::string&)> other;
 };
 
-/// One that puts all finite points of shapes into `box`, which must outlive it.
-Visitor taker_of_points(geometry::Box& box);
+/// One that puts all rings and lines into `box`, which must outlive it.
+Visitor taker_of_rings(DegreeBox& box);
 
 void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
 
@@ -35,6 +35,11 @@ FeatureProperties properties_of(const OGRFeature& feature, bool with_id);
 
 /// What stands in the column that a CSV's geometries are taken from.
 std::string text_of_geometry(const OGRFeature& feature);
+
+/// What well-known text, or binary in hexadecimal digits, says of its reference system before the geometry; 0: nothing.
+int srid_of(const std::string& text);
+/// Well-known text that says something of it, be it 0.
+bool begins_with_srid(const std::string& text);
 
 /// GeoJSON's top-level member "local_metres" (obstacle_write.h).
 struct GivenPlane {

@@ -26,6 +26,7 @@ PlaneTransform make_plane_transform(LocalPlane plane, std::string file);
 
 struct VectorLibrary {
   decltype(&datasets::read_vector_file) read_vector_file;
+  decltype(&datasets::read_in_system) read_in_system;
   decltype(&datasets::to_gdal_file) to_gdal_file;
   decltype(&datasets::read_gdal_image) read_gdal_image;
   decltype(&batch::make_geopackage) make_geopackage;

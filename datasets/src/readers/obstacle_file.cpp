@@ -103,9 +103,7 @@ ObstacleFile read_regular(const std::filesystem::path& path, const std::string& 
   try {
     refuse_nothing(path, options);
     const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
-    Collector out(name, reader.name, options, stream);
-    reader.read(path, out);
-    return out.take();
+    return read_in_its_system(name, reader.name, options, stream, [&](Collector& out) { reader.read(path, out); });
   } catch (const DataError& error) {
     if (error.file() != path.string() || name == path.string()) throw;
     throw DataError(error.code(), name, error.place(), error.found(), error.expected());
@@ -132,6 +130,19 @@ bool parse(const std::string& text, Units& out) {
 
 std::vector<std::string> unit_names() {
   return geometry::words_in(kUnits);
+}
+
+ObstacleFile read_in_its_system(const std::string& name, const std::string& format, const ReadOptions& options,
+                                const ObstacleStream* stream, const std::function<void(Collector&)>& read) {
+  Collector out(name, format, options, stream);
+  try {
+    read(out);
+    return out.take();
+  } catch (const ReferenceSystemMet& met) {
+    Collector placed(name, format, options, stream);
+    vector_library().read_in_system(met.srid, read, placed);
+    return placed.take();
+  }
 }
 
 const std::vector<Reader>& readers() {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
@@ -112,6 +113,31 @@ RingFinding finding_at(DataCode code, const RawGeometry& raw, const geometry::Ri
   return finding;
 }
 
+/// `normalize` expects outer rings counter-clockwise. Of a format that winds them clockwise those rings are wrong that
+/// it found right.
+std::vector<geometry::RingProblem> judged_by_format(std::vector<geometry::RingProblem> problems,
+                                                    const RawGeometry& raw) {
+  if (raw.winding == Winding::counter_clockwise || raw.kind != RawKind::polygon) return problems;
+  using geometry::RingProblem;
+  const auto is_turned = [](const RingProblem& p) { return p.code == geometry::RingProblemCode::clockwise; };
+  std::vector<bool> is_right(raw.rings.size());  // or encloses nothing
+  for (const RingProblem& p : problems) {
+    const bool is_spoilt = !p.repaired && p.code != geometry::RingProblemCode::hole_outside;
+    if (is_turned(p) || is_spoilt) is_right[p.ring] = true;
+  }
+  std::vector<RingProblem> wrong;
+  for (std::size_t ring = 0; ring < raw.rings.size(); ++ring) {
+    if (is_right[ring] || raw.rings[ring].empty()) continue;
+    wrong.push_back({geometry::RingProblemCode::clockwise, ring, 0, raw.rings[ring].front(), true});
+  }
+  problems.erase(std::remove_if(problems.begin(), problems.end(), is_turned), problems.end());
+  problems.insert(problems.end(), wrong.begin(), wrong.end());
+  std::stable_sort(problems.begin(), problems.end(), [](const RingProblem& a, const RingProblem& b) {
+    return std::tie(a.ring, a.vertex, a.code) < std::tie(b.ring, b.vertex, b.code);
+  });
+  return problems;
+}
+
 ValidationResult validation_of(geometry::Obstacle shape, const std::vector<geometry::RingProblem>& problems,
                                const RawGeometry& raw) {
   ValidationResult checked{std::move(shape), {}, {}};
@@ -188,7 +214,7 @@ ValidationResult validate(const RawGeometry& raw) {
   }
   try {
     geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-    return validation_of(std::move(normal.polygon), normal.problems, raw);
+    return validation_of(std::move(normal.polygon), judged_by_format(std::move(normal.problems), raw), raw);
   } catch (const geometry::TooManyContacts&) {
     geometry::RingProblem at{};
     at.where = raw.rings[0].empty() ? geometry::Vec2{} : raw.rings[0].front();
@@ -205,6 +231,13 @@ void refuse_unrepaired(const ValidationResult& checked, const std::string& file)
   for (const RingFinding& finding : checked.findings) {
     if (!finding.repaired) throw ring_refusal(finding, file);
   }
+}
+
+DataError other_system(int srid, int before, const std::string& file, const std::string& place) {
+  const auto words = [](int s) { return s == 0 ? std::string("no SRID") : "SRID=" + std::to_string(s); };
+  return {DataCode::projection, file, place, words(srid),
+          words(before) +
+              ", as the first geometry has: one reference system a file; units metres takes the numbers as they stand"};
 }
 
 Collector::Collector(std::string file, std::string format, const ReadOptions& options, const ObstacleStream* stream)
@@ -238,6 +271,7 @@ bool Collector::reject_far(const RawGeometry& raw) {
 
 void Collector::add_repaired(const RawGeometry& raw) {
   Repair repaired = repair(raw.rings);
+  repaired.problems = judged_by_format(std::move(repaired.problems), raw);
   const ValidationResult checked = validation_of(geometry::Polygon{}, repaired.problems, raw);
   take_findings(checked.findings, checked.unlisted);
   if (repaired.changed() && stream_ == nullptr) {
@@ -277,7 +311,7 @@ void Collector::count(const std::vector<RingFinding>& findings) {
   if (stream_ != nullptr) return;
   for (const RingFinding& repaired : findings) {
     if (notes_of_findings_++ >= kMostFindings) return;
-    result_.notes.push_back({repaired.code, repaired.place, words_for(repaired.code).repair});
+    result_.notes.push_back({repaired.code, repaired.place, words_for(repaired.code).repair, true});
   }
 }
 
@@ -318,7 +352,15 @@ void Collector::pass_over(std::string place, std::string text) {
   call_wait_hook();
   ++result_.counts.read;
   ++result_.counts.passed_over;
-  note(std::move(place), std::move(text));
+  if (stream_ == nullptr) result_.notes.push_back({std::nullopt, std::move(place), std::move(text), true});
+}
+
+void Collector::reference_system(int srid, const std::string& place) {
+  if (options_.units != Units::automatic) return;
+  const bool is_first = !srid_;
+  if (is_first) srid_ = srid;
+  if (is_first && srid != 0) throw ReferenceSystemMet{srid};
+  if (srid != *srid_) throw other_system(srid, *srid_, result_.file, place);
 }
 
 void Collector::progress(double share) const {
@@ -326,7 +368,6 @@ void Collector::progress(double share) const {
 }
 
 void Collector::note(std::string place, std::string text) {
-  if (stream_ != nullptr && !place.empty()) return;
   result_.notes.push_back({std::nullopt, std::move(place), std::move(text)});
 }
 

@@ -16,6 +16,14 @@ namespace exactvo::datasets {
 
 enum class RawKind { polyline, polygon };
 
+/// How a format winds outer rings; holes run the other way.
+enum class Winding { counter_clockwise, clockwise };
+
+/// A geometry names a reference system, EPSG:`srid`, and nothing was read before it: to be read anew in that.
+struct ReferenceSystemMet {
+  int srid;
+};
+
 /// The numbers of a file that is not in metres.
 struct AsWritten {
   std::vector<geometry::Ring> rings;
@@ -26,12 +34,13 @@ struct AsWritten {
 /// One geometry of a file. A polyline has one ring.
 struct RawGeometry {
   RawKind kind = RawKind::polygon;
-  std::string id;                            ///< becomes the obstacle's
-  std::string place;                         ///< "feature 3", "line 12", "/obstacles/4"
-  std::vector<geometry::Ring> rings;         ///< closed or not, any winding
-  std::vector<std::string> ring_pointers{};  ///< JSON pointers of the rings; empty for other formats
-  std::optional<AsWritten> as_written{};     ///< none where `rings` stand in the file
-  FeatureProperties properties{};            ///< only where `ReadOptions::keep_properties` asks for them
+  std::string id;                                ///< becomes the obstacle's
+  std::string place;                             ///< "feature 3", "line 12", "/obstacles/4"
+  std::vector<geometry::Ring> rings;             ///< closed or not, any winding
+  std::vector<std::string> ring_pointers{};      ///< JSON pointers of the rings; empty for other formats
+  std::optional<AsWritten> as_written{};         ///< none where `rings` stand in the file
+  FeatureProperties properties{};                ///< only where `ReadOptions::keep_properties` asks for them
+  Winding winding = Winding::counter_clockwise;  ///< as the format demands it
 };
 
 /// Part `number`, from 0, of a geometry; the second and later ones have it behind their ids and places.
@@ -55,6 +64,9 @@ DataError ring_refusal(const RingFinding& finding, const std::string& file);
 /// Throws DataError for the first finding that was not repaired.
 void refuse_unrepaired(const ValidationResult& checked, const std::string& file);
 
+/// E_PROJECTION: a geometry of another reference system than those before it; 0: none.
+DataError other_system(int srid, int before, const std::string& file, const std::string& place);
+
 /// Gathers a file's geometries into an ObstacleFile and keeps the books. Virtual, so that a reader in a module that is
 /// loaded (vector_library.h) runs the program's copy of the geometry behind it, not one of its own.
 class Collector {
@@ -67,10 +79,19 @@ class Collector {
 
   virtual void add(const RawGeometry& raw);
   virtual void pass_over(std::string place, std::string text);
+  /// Of the file, or of a layer.
   virtual void note(std::string place, std::string text);
+  /// Before a geometry that may name a reference system: 0 where it names none. Throws ReferenceSystemMet, or DataError
+  /// (E_PROJECTION) where an earlier geometry of the file names another.
+  virtual void reference_system(int srid, const std::string& place);
   /// Counts it, and throws it unless reading goes on.
   virtual void reject(DataError error);
-  void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
+  /// `from`: what was projected round it.
+  void set_origin(ProjectionOrigin origin, std::string from) {
+    result_.origin = origin;
+    result_.projected_from = std::move(from);
+  }
+  void set_distortion(const Distortion& distortion) { result_.distortion = distortion; }
   /// Of what is added from now on.
   void set_plane(const LocalPlane& plane);
   /// Grows the file's extent.
@@ -99,6 +120,7 @@ class Collector {
   const ObstacleStream* stream_;
   std::size_t notes_of_findings_ = 0;
   bool has_plane_ = false;
+  std::optional<int> srid_;  ///< of the first geometry
 };
 
 }  // namespace exactvo::datasets

@@ -80,6 +80,8 @@ geometry::Ring polygon_round(geometry::Vec2 center, double radius);
 
 // wkb_text.cpp, within another file: places and ids begin with those given
 bool is_wkb_text(std::string_view text);
+/// Of the geometry, 0 where it names none.
+int srid_of_wkb_text(std::string_view text);
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
 // json_formats.cpp
@@ -100,6 +102,15 @@ void read_sumo_poly(const std::filesystem::path& path, Collector& out);
 void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
+
+/// What `read` hands to a collector; where its first geometry names a reference system, brought to metres.
+ObstacleFile read_in_its_system(const std::string& name, const std::string& format, const ReadOptions& options,
+                                const ObstacleStream* stream, const std::function<void(Collector&)>& read);
+
+/// Calls `read` with collectors that bring what they take from EPSG:`srid` to metres and hand it on to `out`: once or
+/// more for a look at all of it, then once more. gdal/ewkt_reader.cpp, or gdal_absent.cpp; called through
+/// vector_library.h. Throws DataError (E_PROJECTION).
+void read_in_system(int srid, const std::function<void(Collector&)>& read, Collector& out);
 
 /// Pictures of maps as brightness. PGM is read in ros_map.cpp; PNG, BMP and JPEG by GDAL.
 struct GreyImage {

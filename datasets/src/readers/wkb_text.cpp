@@ -59,7 +59,9 @@ class WkbReader {
     little_endian_ = take(1)[0] != 0;
     const std::uint32_t word = integer();
     constexpr std::uint32_t kZ = 0x80000000U, kM = 0x40000000U, kSrid = 0x20000000U;
-    if ((word & kSrid) != 0) integer();
+    const std::uint32_t srid = (word & kSrid) != 0 ? integer() : 0;
+    if (is_first_) out_.reference_system(static_cast<int>(srid), place_);
+    is_first_ = false;
     const std::uint32_t iso = word & 0x1fffffffU;
     const std::uint32_t dimension = iso / 1000;  // 1: Z, 2: M, 3: both
     const std::size_t by_iso = dimension == 3 ? 2 : dimension == 0 ? 0 : 1;
@@ -133,6 +135,7 @@ class WkbReader {
   std::size_t at_ = 0;
   std::size_t part_ = 0;
   bool little_endian_ = true;
+  bool is_first_ = true;  ///< the parts of a geometry have no system of their own
 };
 
 }  // namespace
@@ -143,12 +146,26 @@ bool is_wkb_text(std::string_view text) {
   return has_byte_order && text.find_first_not_of("0123456789abcdefABCDEF \t\r\n") == std::string_view::npos;
 }
 
+int srid_of_wkb_text(std::string_view text) {
+  constexpr std::size_t kHead = 9, kDigits = 2 * kHead;  // byte order, type, SRID
+  constexpr std::uint32_t kSrid = 0x20000000U;
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  const std::string bytes = bytes_of(text.substr(0, kDigits));
+  if (bytes.size() < kHead) return 0;
+  const auto number_at = [&](std::size_t at) {
+    const auto* place = reinterpret_cast<const unsigned char*>(bytes.data() + at);
+    return bytes[0] != 0 ? boost::endian::load_little_u32(place) : boost::endian::load_big_u32(place);
+  };
+  return (number_at(1) & kSrid) != 0 ? static_cast<int>(number_at(5)) : 0;
+}
+
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out) {
   try {
     WkbReader(bytes_of(text), place, id, out).geometry();
   } catch (const DataError& error) {
     // Collector::add throws for a bad ring as well; only what breaks the bytes themselves is met again here.
-    if (error.code() != DataCode::format_syntax && error.code() != DataCode::size && error.code() != DataCode::nesting)
+    if (error.code() != DataCode::format_syntax && error.code() != DataCode::size &&
+        error.code() != DataCode::nesting && error.code() != DataCode::projection)
       throw;
     out.reject(error);
   }

@@ -4,11 +4,13 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <utility>
 
+#include "exactvo/geometry/counted.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
 #include "readers/readers.h"
@@ -97,6 +99,7 @@ class WktScanner {
   }
 
   std::size_t position() const { return at_; }
+  void back_to(std::size_t position) { at_ = position; }
   std::string place() const {
     const std::size_t here = std::min(at_, text_.size());
     if (here < counted_to_) counted_to_ = newlines_ = line_start_ = 0;
@@ -240,6 +243,7 @@ class WktReader {
         before_(std::move(before)),
         geometry_(before_.geometries) {}
 
+  std::size_t holes() const { return holes_; }
   /// Met so far, those before it included.
   std::size_t geometries() const { return geometry_; }
 
@@ -254,12 +258,12 @@ class WktReader {
     const std::size_t start = scan_.position();
     try {
       where_ = before_.place.empty() ? scan_.place() : before_.place;
-      skip_reference_system();
+      reference_system();
       geometry(0);
     } catch (const DataError& error) {
       // Collector::add throws for a bad ring as well; only what breaks the text itself is met again here.
       if (error.code() != DataCode::format_syntax && error.code() != DataCode::number &&
-          error.code() != DataCode::nesting) {
+          error.code() != DataCode::nesting && error.code() != DataCode::projection) {
         throw;
       }
       out_.reject(before_.place.empty()
@@ -269,13 +273,28 @@ class WktReader {
     }
   }
 
-  /// "SRID=28992;" as PostGIS prints it. Units are the caller's to tell.
-  void skip_reference_system() {
-    if (scan_.peek_word() != "SRID") return;
-    scan_.word();
-    scan_.need_sign('=');
-    scan_.number();
-    scan_.need_sign(';');
+  /// "SRID=28992;" as PostGIS prints it.
+  void reference_system() {
+    int srid = 0;
+    if (scan_.peek_word() == "SRID") {
+      scan_.word();
+      scan_.need_sign('=');
+      srid = this->srid();
+      scan_.need_sign(';');
+    }
+    out_.reference_system(srid, where_);
+  }
+
+  /// 0, and -1 of old dumps: not known.
+  int srid() {
+    constexpr double kLargest = 1e9;
+    const std::size_t start = scan_.position();
+    const double number = scan_.number();
+    if (!(number >= -1.0 && number <= kLargest && std::trunc(number) == number)) {
+      scan_.back_to(start);
+      scan_.refuse("SRID=N, the EPSG code of a reference system");
+    }
+    return std::max(0, static_cast<int>(number));
   }
 
   void geometry(int depth) {
@@ -340,6 +359,7 @@ class WktReader {
   void polygon() {
     std::vector<geometry::Ring> rings;
     list([&] { rings.push_back(ring()); });
+    holes_ += rings.empty() ? 0 : rings.size() - 1;
     if (inside_ == Inside::solid || rings.empty()) return hand_on(RawKind::polygon, std::move(rings));
     hand_on(RawKind::polyline, {rings.front()});
     for (std::size_t k = 1; k < rings.size(); ++k) hand_on(RawKind::polygon, {counter_clockwise(rings[k])});
@@ -388,6 +408,7 @@ class WktReader {
   std::string where_;     ///< the geometry's first character
   std::size_t geometry_;  ///< from 1
   std::size_t part_ = 0;  ///< obstacles of this geometry so far
+  std::size_t holes_ = 0;
 };
 
 void refuse_degrees(const Collector& out) {
@@ -401,13 +422,18 @@ void read_in_blocks(const std::filesystem::path& path, WktReader::Inside inside,
   refuse_degrees(out);
   WktBlocks blocks(path);
   TextPlace place;
+  std::size_t holes = 0;
   while (blocks.next()) {
     WktReader reader(blocks.text(), inside, out, place);
     reader.read_all();
     place.geometries = reader.geometries();
+    holes += reader.holes();
     place.lines += static_cast<std::size_t>(std::count(blocks.text().begin(), blocks.text().end(), '\n'));
     out.progress(blocks.share_read());
   }
+  if (inside == WktReader::Inside::solid && place.geometries == 1 && holes > 0)
+    out.note("", "its only geometry is read as solid, with " + geometry::counted(holes, "hole") +
+                     "; if it is the walkable area of JuPedSim, name the format jupedsim-wkt");
 }
 
 }  // namespace
@@ -416,8 +442,9 @@ bool looks_like_wkt(const FormatProbe& probe) {
   const std::string name = "";
   WktScanner scan(probe.beginning, name);
   scan.skip_between_geometries();
-  const std::string word = without_dimension(scan.peek_word());
-  return word == "SRID" || std::find(kGeometryWords.begin(), kGeometryWords.end(), word) != kGeometryWords.end();
+  const std::string word = without_dimension(scan.word());
+  return (word == "SRID" && scan.try_sign('=')) ||
+         std::find(kGeometryWords.begin(), kGeometryWords.end(), word) != kGeometryWords.end();
 }
 
 void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out) {
@@ -433,10 +460,10 @@ void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out) {
 }
 
 ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options) {
-  Collector out(file_name, "wkt", options);
-  refuse_degrees(out);
-  WktReader(text, WktReader::Inside::solid, out).read_all();
-  return out.take();
+  return read_in_its_system(file_name, "wkt", options, nullptr, [&](Collector& out) {
+    refuse_degrees(out);
+    WktReader(text, WktReader::Inside::solid, out).read_all();
+  });
 }
 
 }  // namespace exactvo::datasets

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The formats in XML whose elements are obstacles.
+#include <utility>
+
+#include "exactvo/geometry/counted.h"
+#include "obstacles/courses.h"
 #include "readers/line_reader.h"
 #include "readers/xml_file.h"
 
@@ -41,6 +45,14 @@ RawGeometry to_raw(const XmlFile& xml, const pugi::xml_node& poly, const std::st
   return {solid ? RawKind::polygon : RawKind::polyline, id, xml.place_of(poly) + ", poly " + id, {ring}};
 }
 
+/// Of Menge. Rounding may misjudge a sliver.
+bool runs_clockwise(const geometry::Ring& ring) {
+  double doubled_area = 0.0;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    doubled_area += cross(ring[k] - ring[0], ring[(k + 1) % ring.size()] - ring[0]);
+  return doubled_area < 0.0;
+}
+
 /// Of BARN.
 geometry::Vec2 position_of(const XmlFile& xml, const pugi::xml_node& model) {
   const pugi::xml_node pose = model.child("pose");
@@ -62,16 +74,24 @@ void add_model(const XmlFile& xml, const pugi::xml_node& model, Collector& out) 
 
 }  // namespace
 
-/// Menge scenes: <Experiment> <ObstacleSet> <Obstacle closed="1"> <Vertex p_x p_y/>; rings unclosed, either winding.
+/// Menge scenes: <Experiment> <ObstacleSet> <Obstacle closed="1"> <Vertex p_x p_y/>; rings unclosed. What is closed and
+/// runs counter-clockwise is solid; clockwise it is a wall round a room, whose inside is free.
 void read_menge_xml(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());
-  std::size_t number = 0;
+  std::size_t number = 0, rooms = 0;
   for (const pugi::xml_node set : xml.document().child("Experiment").children("ObstacleSet")) {
     for (const pugi::xml_node obstacle : set.children("Obstacle")) {
-      const RawKind kind = obstacle.attribute("closed").as_bool(true) ? RawKind::polygon : RawKind::polyline;
-      xml.add(kind, number++, obstacle, xml.points(obstacle.children("Vertex"), "p_x", "p_y"), out);
+      const bool is_closed = obstacle.attribute("closed").as_bool(true);
+      geometry::Ring points = xml.points(obstacle.children("Vertex"), "p_x", "p_y");
+      const bool is_room = is_closed && runs_clockwise(points);
+      if (is_room) points = closed(std::move(points));
+      rooms += is_room ? 1 : 0;
+      xml.add(is_closed && !is_room ? RawKind::polygon : RawKind::polyline, number++, obstacle, std::move(points), out);
     }
   }
+  if (rooms > 0)
+    out.note("", geometry::counted(rooms, "clockwise obstacle") +
+                     " read as walls round rooms: in Menge the inside of a clockwise obstacle is free");
 }
 
 /// JuPedSim geometries: <geometry> <rooms> <room> <subroom> with <polygon> walls and <obstacle>s, vertices px, py in

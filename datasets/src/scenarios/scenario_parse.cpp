@@ -240,8 +240,7 @@ class ScenarioReader {
   void add_notes(const ObstacleFile& file) {
     const std::string name = file.file + ": ";
     for (const DataNote& note : file.notes) {
-      const bool is_of_the_file = !note.code && note.place.rfind("feature", 0) != 0 && note.place.rfind("line", 0) != 0;
-      if (is_of_the_file) notes_.push_back(name + (note.place.empty() ? "" : note.place + ": ") + note.text);
+      if (!note.of_feature) notes_.push_back(name + (note.place.empty() ? "" : note.place + ": ") + note.text);
     }
     const auto count = [&](std::size_t n, const char* words) {
       if (n > 0) notes_.push_back(name + std::to_string(n) + words);

@@ -37,9 +37,6 @@ std::string wkt_points(const std::vector<geometry::Vec2>& points) {
 // --- GeoJSON ---
 
 using Points = std::vector<geometry::Vec2>;
-/// What is written of points: the same, or degrees.
-using Placement = std::function<Points(Points)>;
-
 /// Longitudes and latitudes are rounded, and neighbours may become one: a point twice running is left out, unless too
 /// few would stay for a line or a ring.
 Points without_repeats(Points points) {
@@ -59,12 +56,13 @@ std::string members_of(const formation::SceneObstacle& obstacle, const FeaturePr
 }
 
 void append_feature(JsonWriter& json, const formation::SceneObstacle& obstacle, const FeatureProperties& properties,
-                    const Placement& place) {
+                    const Placement& place, bool drops_repeats) {
   json.begin_inline_object().member("type", "Feature");
   if (!properties.id.empty()) json.key("id").raw(properties.id);
   json.key("properties").raw(members_of(obstacle, properties));
-  std::vector<geometry::Ring> courses = courses_of(obstacle.shape);
-  for (geometry::Ring& course : courses) course = place(std::move(course));
+  std::vector<geometry::Ring> courses = placed(courses_of(obstacle.shape), place);
+  if (drops_repeats)
+    for (geometry::Ring& course : courses) course = without_repeats(std::move(course));
   json.key("geometry").begin_object();
   append_geojson(json, geometry::has_interior(obstacle.shape), courses);
   json.end_object().end_object();
@@ -118,9 +116,7 @@ Written geojson(const Obstacles& obstacles, const WriteOptions& options, const s
   const LocalPlane plane = plane_for(obstacles, options.plane);
   std::optional<MetresToDegrees> to_degrees;
   if (!options.metres) to_degrees.emplace(plane, file);
-  const Placement place = [&](Points points) {
-    return to_degrees ? without_repeats((*to_degrees)(std::move(points))) : points;
-  };
+  const Placement place = [&](Points points) { return to_degrees ? (*to_degrees)(std::move(points)) : points; };
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object().member("type", "FeatureCollection");
   if (options.metres) {
@@ -130,7 +126,7 @@ Written geojson(const Obstacles& obstacles, const WriteOptions& options, const s
   }
   json.key("features").begin_array();
   for (std::size_t k = 0; k < obstacles.size(); ++k)
-    append_feature(json, obstacles[k], properties_of(options, k), place);
+    append_feature(json, obstacles[k], properties_of(options, k), place, to_degrees.has_value());
   json.end_array();
   return {json.end_object().take() + "\n", {}};
 }
@@ -204,6 +200,19 @@ const Writer& writer_for(const std::filesystem::path& path, const std::string& f
 }
 
 }  // namespace
+
+std::vector<geometry::Ring> placed(std::vector<geometry::Ring> rings, const Placement& place) {
+  std::vector<geometry::Vec2> all;
+  for (const geometry::Ring& ring : rings) all.insert(all.end(), ring.begin(), ring.end());
+  all = place(std::move(all));
+  auto at = all.begin();
+  for (geometry::Ring& ring : rings) {
+    const auto end = at + static_cast<std::ptrdiff_t>(ring.size());
+    ring.assign(at, end);
+    at = end;
+  }
+  return rings;
+}
 
 void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses) {
   json.member("type", is_polygon ? "Polygon" : "LineString").key("coordinates");

@@ -4,6 +4,7 @@
 /// \file
 /// The writers of this room: obstacles to the bytes of a file, and what of them did not go in.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ void add_plane_losses(const WriteOptions& options, const char* format, std::vect
 /// The same, after "3 properties (name, height, use) of 12 obstacles: WKT has no place for them", and the like of
 /// feature ids.
 void add_losses(const WriteOptions& options, const char* format, std::vector<std::string>& losses);
+
+/// What is written of points: the same, or degrees.
+using Placement = std::function<std::vector<geometry::Vec2>(std::vector<geometry::Vec2>)>;
+
+/// All rings of a shape at once: where it crosses the antimeridian they lie on the same side.
+std::vector<geometry::Ring> placed(std::vector<geometry::Ring> rings, const Placement& place);
 
 /// The members "type" and "coordinates" of GeoJSON.
 void append_geojson(JsonWriter& json, bool is_polygon, const std::vector<geometry::Ring>& courses);

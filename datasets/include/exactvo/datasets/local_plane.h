@@ -39,8 +39,9 @@ class MetresToDegrees {
   /// Throws DataError: E_FORMAT_UNAVAILABLE in a build without GDAL, E_PROJECTION for a reference system that PROJ does
   /// not bring to degrees. `file` is what errors name.
   MetresToDegrees(LocalPlane plane, std::string file);
-  /// x is longitude, y latitude, rounded to 13 decimals: 5 nm on the ground. Throws DataError (E_PROJECTION) for points
-  /// without a place, and beyond kLargestUnplaced.
+  /// x is longitude, y latitude, rounded to 13 decimals: 5 nm on the ground. The points are one shape: longitudes are
+  /// within [-180, 180] where it does not cross the antimeridian, else they go on beyond 180. Throws DataError
+  /// (E_PROJECTION) for points without a place, and beyond kLargestUnplaced.
   std::vector<geometry::Vec2> operator()(std::vector<geometry::Vec2> points) const;
 
  private:

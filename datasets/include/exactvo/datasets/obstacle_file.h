@@ -6,10 +6,13 @@
 /// clockwise, first point not repeated, every ring simple (geometry/validity.h, `normalize`). What has one right answer
 /// is repaired and noted; what has not is refused with a code, the feature, the ring, the vertex and its coordinates.
 ///
-/// Coordinates. A file in a projected reference system is scaled to metres and otherwise left where it is. One in
-/// degrees (a geographic reference system; GeoJSON unless told otherwise, RFC 7946) is brought to local metres by the
-/// azimuthal equidistant projection on its ellipsoid round the middle of its bounding box; that centre is recorded. A
-/// GeoJSON file says that it is in metres by a top-level member `"units": "m"`; a caller says so by
+/// Coordinates. A file in a projected reference system is scaled to metres and otherwise left where it is, if its
+/// lengths are those on the ground within kMostDistortion. One in degrees (a geographic reference system; GeoJSON
+/// unless told otherwise, RFC 7946), or in a reference system that does not keep lengths (Web Mercator), is brought to
+/// local metres by the azimuthal equidistant projection on its ellipsoid round the middle of its bounding box, on the
+/// circle of longitudes; that centre is recorded, and how far lengths and areas are from those on the ground. A file
+/// that reaches too far for kMostDistortion is refused (E_PROJECTION). SRID=N; before WKT names the reference system
+/// EPSG:N. A GeoJSON file says that it is in metres by a top-level member `"units": "m"`; a caller says so by
 /// `ReadOptions::units`. One that `write_obstacles` wrote in degrees names its plane in `"local_metres"`
 /// (obstacle_write.h) and is brought to that. A GeoJSON file that says nothing and has a coordinate beyond +-180 or
 /// +-90 degrees, by more than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL
@@ -70,6 +73,7 @@ struct DataNote {
   std::optional<DataCode> code;  ///< of a repair; none where something was merely skipped
   std::string place;             ///< "feature 3, ring 0, vertex 17"
   std::string text;              ///< "ring closed", "point skipped"
+  bool of_feature = false;       ///< of one feature or line; else of the file or a layer
 };
 
 /// Numbers that stand in a file and are no metres, so that a finding can be searched for there.
@@ -140,6 +144,19 @@ struct Coverage {
   double cell_area = 0.0;    ///< m^2; times `occupied` is the polygons' area
 };
 
+/// How far lengths and areas on the plane are from those on the ground, as shares of them, at most. Of the azimuthal
+/// equidistant projection both are too large, never too small, between any two points of the file (certified: derived
+/// in gdal/ground_scale.h). Of a reference system of the file's own it is measured at 289 places over its extent.
+struct Distortion {
+  double length = 0.0;     ///< of lengths
+  double area = 0.0;       ///< of areas
+  bool certified = false;  ///< whether these are bounds
+};
+
+/// Where lengths would be farther than that from those on the ground a file is refused. 1 %: of degrees some 1551 km
+/// from their middle.
+inline constexpr double kMostDistortion = 0.01;
+
 /// What was read of a file, and what was found in it.
 struct ObstacleFile {
   std::string file;                                 ///< its path, as the caller named it
@@ -153,10 +170,12 @@ struct ObstacleFile {
   std::map<DataCode, std::size_t> unlisted;  ///< findings that are not listed, by code
   std::vector<DataError> rejected;           ///< only with `keep_going`
   std::vector<RepairRecord> repairs;         ///< only with `repair`: of every polygon that had a problem
-  std::optional<ProjectionOrigin> origin;    ///< where degrees were projected
-  std::optional<Extent> extent;              ///< none without obstacles
-  std::optional<Coverage> coverage;          ///< of grids and scans
-  ReadCounts counts;                         ///< how many inputs there were and how they ended
+  std::optional<ProjectionOrigin> origin;    ///< where degrees, or what `projected_from` names, were projected
+  std::string projected_from;            ///< "degrees", or the name of the file's reference system; empty: no origin
+  std::optional<Distortion> distortion;  ///< where the place on earth is known
+  std::optional<Extent> extent;          ///< none without obstacles
+  std::optional<Coverage> coverage;      ///< of grids and scans
+  ReadCounts counts;                     ///< how many inputs there were and how they ended
 };
 
 /// Reads a whole file. Throws DataError: for the file, and (unless `keep_going`) for its first bad obstacle.

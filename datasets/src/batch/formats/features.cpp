@@ -161,13 +161,8 @@ void append_geometry(JsonWriter& json, const Feature& feature, const Place& plac
   json.key("geometry");
   std::vector<Ring> rings;
   try {
-    for (const Ring& ring : feature.rings) {
-      Ring points;
-      points.reserve(ring.size() + 1);  // so that it is closed where it stands
-      points.assign(ring.begin(), ring.end());
-      points = place(std::move(points));
+    for (Ring& points : placed(feature.rings, place))
       rings.push_back(feature.is_polygon ? closed(std::move(points)) : std::move(points));
-    }
   } catch (const DataError&) {
     json.null();
     return;
