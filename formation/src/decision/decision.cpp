@@ -7,6 +7,7 @@
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "scene/moment.h"
 #include "scene/moving.h"
 #include "scene/near_pairs.h"
 
@@ -225,7 +226,7 @@ std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>
 }
 
 double contact_time(const Scenario& scenario) {
-  return std::max(scenario.time_step, vo::ReciprocalOptions{}.contact_time);
+  return std::max(scenario.time_step, vo::ReciprocalOptions{}.contact_time * moment(scenario.horizons));
 }
 
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "runs/own_decision.h"
 
+#include "scene/moment.h"
 #include "steering/goals.h"
 
 namespace exactvo::formation::detail {
@@ -38,8 +39,8 @@ Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   if (options_.method == Method::orca) return preferred;
   if (options_.method != Method::ivo) return ties_broken(way, preferred, decision);
   const BoundaryFollower::Answer answer =
-      way.follower.steer({errand.time, scenario_.time_step, here, errand.goal,
-                          here.max_speed * scenario_.horizons.least, preferred, &*way.field},
+      way.follower.steer({errand.time, scenario_.time_step, moment(scenario_.horizons), here, errand.goal,
+                          following_reach(scenario_, here.max_speed), preferred, &*way.field},
                          following_);
   decision.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
   decision.side = answer.side;
