@@ -126,6 +126,8 @@ constexpr double kStallProgress = 0.1;  // of max_speed * kStallTime
 constexpr double kLeaveGain = 0.05;  // m
 /// Walked at least this far and back within reach of where it began: a full circle.
 constexpr double kCircleReach = 0.5;  // m
+/// The way is measured in legs of at least this length: the noise of a robot's place adds up to no way.
+constexpr double kLeastLeg = 0.25;  // m
 /// Where no direction is free at full speed, slower ones are tried, halving, down to this share.
 constexpr double kLeastFollowing = 0.05;
 
@@ -309,8 +311,10 @@ BoundaryFollower::Answer BoundaryFollower::begin(const Situation& s, Memory& mem
 }
 
 BoundaryFollower::Answer BoundaryFollower::follow(const Situation& s, NearConstraints& near) {
-  walked_ += norm(s.robot.position - last_position_);
-  last_position_ = s.robot.position;
+  if (const double leg = norm(s.robot.position - last_position_); leg >= kLeastLeg) {
+    walked_ += leg;
+    last_position_ = s.robot.position;
+  }
   Answer answer{s.preferred, Mode::following, side_};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
   const Constraint* followed = near.of_body(followed_);
