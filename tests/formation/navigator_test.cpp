@@ -15,9 +15,11 @@
 
 #include "counted_allocations.h"
 #include "exactvo/datasets/audit.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/shapes.h"
 #include "paper_scenes.h"
+#include "support/seeded_random.h"
 
 namespace exactvo::formation {
 namespace {
@@ -261,6 +263,74 @@ TEST(Navigator, WhatItDecidesIsAuditedLikeARun) {
     EXPECT_GT(report.half_planes, 20u) << name;
     EXPECT_EQ(report[datasets::AuditPoint::choices].refuted, 0u) << name;
   }
+}
+
+// --- Robots that do not drive exactly what is chosen ---
+
+/// What a real robot makes of a chosen velocity, and what is known of where it is.
+struct Plant {
+  double reached = 1.0;  ///< share of a change of velocity that a tenth of a second reaches
+  double noise = 0.0;    ///< m, of each coordinate of the place that the navigator hears of
+  double quantum = 0.0;  ///< m/s, the wheels take multiples of it; 0: any velocity
+  std::uint64_t seed = 1;
+};
+
+/// How a drive with a plant ended.
+struct Drive {
+  bool arrived = false;
+  double time = 0.0;       ///< s
+  double clearance = 1e9;  ///< m, the least, of the robot where it is
+  std::string notes;
+};
+
+Drive drive(const NavigatorSetup& setup, Vec2 from, Vec2 goal, const Plant& plant, double time_limit) {
+  test::SeededRandom random(plant.seed);
+  Navigator navigator(setup, {goal});
+  const auto rounded = [&](double x) {
+    return plant.quantum > 0.0 ? plant.quantum * std::round(x / plant.quantum) : x;
+  };
+  Drive result;
+  const double in_a_step = 1.0 - std::pow(1.0 - plant.reached, setup.time_step / 0.1);
+  Vec2 position = from, velocity{};
+  for (; result.time < time_limit && !result.arrived; result.time += setup.time_step) {
+    const Vec2 heard = position + random.in_box(plant.noise);
+    const Decision& decision = navigator.decide({result.time, heard, velocity});
+    if (!decision.note.empty()) result.notes += decision.note + "; ";
+    velocity += in_a_step * (Vec2{rounded(decision.chosen.x), rounded(decision.chosen.y)} - velocity);
+    position += setup.time_step * velocity;
+    result.arrived = navigator.has_arrived();
+    for (const SceneObstacle& o : setup.obstacles)
+      result.clearance = std::min(result.clearance, geometry::signed_distance(o.shape, position) - setup.radius);
+  }
+  return result;
+}
+
+/// A small robot with two wheels before a wall.
+NavigatorSetup before_a_wall(double half_width, double time_step) {
+  NavigatorSetup setup;
+  setup.radius = 0.18;
+  setup.max_speed = 0.22;
+  setup.time_step = time_step;
+  setup.obstacles = {{"wall", geometry::Polyline{{{2.0, -half_width}, {2.0, half_width}}}}};
+  return setup;
+}
+
+TEST(Navigator, PassesAWallInSpiteOfLagNoiseAndQuantisedVelocities) {
+  constexpr std::pair<double, double> kDrives[] = {{-0.3, 0.1}, {0.0, 0.1}, {0.1, 0.02}, {0.5, 0.02}};  // m, s
+  std::size_t judged = 0;
+  for (const double reached : {1.0, 0.6, 0.3})
+    for (const double noise : {0.0, 0.01, 0.02})
+      for (const double quantum : {0.0, 0.01, 0.02})
+        for (const auto& [y, time_step] : kDrives) {
+          const Plant plant{reached, noise, quantum, ++judged};
+          const Drive d = drive(before_a_wall(0.8, time_step), {0.0, y}, {4.0, y}, plant, 120.0);
+          const std::string what = "reached " + std::to_string(reached) + ", noise " + std::to_string(noise) +
+                                   " m, quantum " + std::to_string(quantum) + " m/s, y " + std::to_string(y);
+          EXPECT_TRUE(d.arrived) << what << ": " << d.notes;
+          EXPECT_GT(d.clearance, 0.0) << what;
+          EXPECT_EQ(d.notes.find("circuit"), std::string::npos) << what << ": " << d.notes;
+        }
+  EXPECT_EQ(judged, 108u);
 }
 
 // --- Bad input ---

@@ -180,7 +180,10 @@ Scenario line_of(std::vector<double> offsets) {
 
 bool rests_at_the_end(const SlotRun& r) {
   const std::vector<RobotStep>& last = r.recording.steps.back().robots;
-  return std::all_of(last.begin(), last.end(), [](const RobotStep& x) { return geometry::norm(x.velocity) < kAtRest; });
+  return std::all_of(last.begin(), last.end(), [](const RobotStep& x) {
+    constexpr double kFastest = 1.5;  // m/s
+    return geometry::norm(x.velocity) < kAtRestShare * kFastest;
+  });
 }
 
 /// Robots that were plans' goals moved in and out of each other's slots until the time limit, or drove round the

@@ -92,7 +92,7 @@ vo::ReciprocalOptions pair_rule(const DecisionRules& rules) {
   vo::ReciprocalOptions rule;
   const bool baseline = rules.method == Method::orca;
   rule.time_horizon = baseline ? rules.horizons.orca : rules.horizons.robots;
-  rule.contact_time = contact_time(rules.time_step);
+  rule.contact_time = contact_time(rules.time_step, rules.horizons);
   rule.margin = std::max(kContactSkin, baseline ? 0.0 : rules.margins.robot);
   return rule;
 }
@@ -164,7 +164,7 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
   Constraint* mine = against(j, now.scene, constraints[i]);
   Constraint* theirs = against(i, now.scene, constraints[j]);
   if (!mine || !theirs) return;
-  const PairConstraints pair = at_rest(now, i, j, contact_time(now.rules.time_step), gap);
+  const PairConstraints pair = at_rest(now, i, j, contact_time(now.rules.time_step, now.rules.horizons), gap);
   *mine = pair.of_a;
   *theirs = pair.of_b;
 }

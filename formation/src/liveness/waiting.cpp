@@ -171,7 +171,7 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 }
 
 bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const RecordedConstraint& constraint) {
-  const double at_rest = detail::contact_time(scenario.time_step);
+  const double at_rest = detail::contact_time(scenario.time_step, scenario.horizons);
   if (constraint.source != ConstraintSource::robot || constraint.time_horizon != at_rest) return false;
   const auto has_plan = [&](std::size_t i) {
     return row.robots[i].mode == Mode::by_plan || row.robots[i].mode == Mode::going_back;

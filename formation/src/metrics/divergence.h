@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "exactvo/formation/recording.h"
-#include "exactvo/formation/stuck.h"
 
 namespace exactvo::formation::detail {
 
@@ -31,14 +30,18 @@ inline double formation_error(const Step& row, const std::vector<Vec2>& offsets)
   return worst;
 }
 
+/// m: what moves less in a time step rests.
+inline constexpr double kRestsWithin = 2e-4;
+
 /// m: of the robots that a formation can still lose. Who rests while the leader rests is where it stays: beside a slot
 /// that cannot be filled, in a trap or in a deadlock.
-inline double error_of_moving(const Step& row, const std::vector<Vec2>& offsets) {
-  const bool leader_rests = geometry::norm(row.leader_velocity) < kAtRest;
+/// `time_step`: s, of the run.
+inline double error_of_moving(const Step& row, const std::vector<Vec2>& offsets, double time_step) {
+  const auto rests = [time_step](Vec2 velocity) { return time_step * geometry::norm(velocity) < kRestsWithin; };
+  const bool leader_rests = rests(row.leader_velocity);
   double worst = 0.0;
   for (std::size_t i = 0; i < row.robots.size(); ++i)
-    if (!leader_rests || !(geometry::norm(row.robots[i].velocity) < kAtRest))
-      worst = std::max(worst, slot_error(row, offsets, i));
+    if (!leader_rests || !rests(row.robots[i].velocity)) worst = std::max(worst, slot_error(row, offsets, i));
   return worst;
 }
 

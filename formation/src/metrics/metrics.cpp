@@ -175,7 +175,7 @@ bool has_diverged(const Recording& recording) {
   const bool is_out = std::any_of(last.robots.begin(), last.robots.end(),
                                   [](const RobotStep& r) { return detail::is_out_of_bounds(r.position, r.velocity); });
   return is_out || detail::has_diverged(detail::formation_error(first, recording.offsets),
-                                        detail::error_of_moving(last, recording.offsets));
+                                        detail::error_of_moving(last, recording.offsets, recording.time_step));
 }
 
 bool touched(const std::optional<double>& clearance) {

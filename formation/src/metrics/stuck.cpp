@@ -27,6 +27,14 @@ struct RunEnd {
   WaitForGraph waits;   ///< of that row
 };
 
+bool is_at_rest(const Scenario& scenario, std::size_t robot, double speed) {
+  return speed < kAtRestShare * scenario.robots[robot].max_speed;
+}
+
+bool is_at_rest(const RunEnd& end, const StuckReport& r) {
+  return is_at_rest(end.scenario, r.robot, r.speed);
+}
+
 Vec2 target_of(const RunEnd& end, std::size_t i) {
   if (!end.scenario.formation) return end.scenario.robots[i].goals.back();
   return end.last.leader_position + end.run.offsets[i];
@@ -114,7 +122,7 @@ std::string length(double x) {
 
 std::string motion_words(const RunEnd& run, const StuckReport& r) {
   const std::string speed = printed("%.2g m/s", r.speed);
-  if (r.speed < kAtRest)
+  if (is_at_rest(run, r))
     return "at rest" + (r.rest_time > 0.0 ? printed(" for %.3g s", r.rest_time) : "") + " (" + speed + ")";
   const double end = run.last.time;
   const bool ran_out = end + 0.5 * run.run.time_step >= run.scenario.time_limit;
@@ -127,8 +135,8 @@ std::string curvature_words(const Equilibrium& e) {
          length(e.radius_of_curvature) + (e.stable ? ", more" : ", less") + " than the distance to the goal)";
 }
 
-std::string equilibrium_words(const StuckReport& r) {
-  const bool rests = r.speed < kAtRest;
+std::string equilibrium_words(const RunEnd& end, const StuckReport& r) {
+  const bool rests = is_at_rest(end, r);
   const Equilibrium& e = *r.equilibrium;
   if (e.stable) return (rests ? ": a stable trap " : ", heading into a stable trap ") + curvature_words(e);
   return (rests ? ": an unstable equilibrium " : ", sliding off an unstable equilibrium ") + curvature_words(e);
@@ -139,7 +147,7 @@ std::string other_words(const RunEnd& end, const RecordedConstraint& by) {
   const RobotStep& other = end.last.robots.at(by.index);
   if (norm(target_of(end, by.index) - other.position) <= end.scenario.arrival_tolerance)
     return end.scenario.formation ? ", which is at its slot" : ", which is at its goal";
-  return norm(other.velocity) >= kAtRest ? ", which is moving" : ", which is at rest";
+  return is_at_rest(end.scenario, by.index, norm(other.velocity)) ? ", which is at rest" : ", which is moving";
 }
 
 /// Whom it waits for, or what the one robot that presses, and that waits for nobody, does; else the equilibrium.
@@ -148,8 +156,8 @@ std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const s
   const bool waits = !end.waits.empty() && !end.waits[r.robot].empty();
   if (waits && !(is_one_robot && end.waits[end.waits[r.robot].front()].empty()))
     return "; " + waiting_words(end.scenario, *end.decided, end.waits, r.robot);
-  if (is_one_robot && (waits || r.speed < kAtRest)) return other_words(end, by.front());
-  return r.equilibrium ? equilibrium_words(r) : "";
+  if (is_one_robot && (waits || is_at_rest(end, r))) return other_words(end, by.front());
+  return r.equilibrium ? equilibrium_words(end, r) : "";
 }
 
 std::string blocked_words(const RunEnd& end, const StuckReport& r) {
@@ -175,10 +183,10 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
   const RobotStep* decision = last_decision(end, r.robot);
   if (!decision) return "no decision was taken";
   if (decision->mode == Mode::staying)
-    return (r.speed < kAtRest ? "it stays, since " : "it stops, since ") +
+    return (is_at_rest(end, r) ? "it stays, since " : "it stops, since ") +
            why_it_stays(end.scenario, *end.decided, r.robot);
   std::string text;
-  if (r.speed >= kAtRest) {
+  if (!is_at_rest(end, r)) {
     text = r.binding.empty() && decision->mode != Mode::following ? "no active constraint"
                                                                   : moving_words(end, *decision, r);
   } else if (r.binding.empty()) {
@@ -227,7 +235,7 @@ StuckReport report_on(const RunEnd& end, std::size_t robot, std::optional<double
 void StuckWatch::add(std::shared_ptr<const Step> row) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     OfRobot& r = robots_[i];
-    if (!(norm(row->robots[i].velocity) < kAtRest)) {
+    if (!is_at_rest(scenario_, i, norm(row->robots[i].velocity))) {
       r.at_rest_since.reset();
     } else if (!r.at_rest_since) {
       r.at_rest_since = row->time;
@@ -253,7 +261,7 @@ std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
     if (norm(target - last_->robots[i].position) <= scenario_.arrival_tolerance) continue;
     const OfRobot& before = robots_[i];
     StuckReport& r = reports.emplace_back(report_on(end, i, before.at_rest_since, target));
-    if (r.speed >= kAtRest && before.nearest < r.goal_distance)
+    if (!is_at_rest(end, r) && before.nearest < r.goal_distance)
       r.text += printed("; it was nearest at %.4g s, ", before.nearest_at) + length(before.nearest) + " away";
   }
   return reports;
@@ -264,7 +272,8 @@ std::vector<std::size_t> StuckWatch::deadlock(const Recording& run) const {
   const RunEnd end{scenario_, run, *last_, decided_.get(), waiting_in(scenario_, *decided_)};
   const auto stands_elsewhere = [&](std::size_t i) {
     const RobotStep& r = last_->robots[i];
-    return norm(r.velocity) < kAtRest && norm(target_of(end, i) - r.position) > scenario_.arrival_tolerance;
+    return is_at_rest(scenario_, i, norm(r.velocity)) &&
+           norm(target_of(end, i) - r.position) > scenario_.arrival_tolerance;
   };
   for (std::vector<std::size_t>& cycle : deadlocks_in(end.waits))
     if (std::all_of(cycle.begin(), cycle.end(), stands_elsewhere)) return std::move(cycle);

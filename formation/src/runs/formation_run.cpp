@@ -16,6 +16,7 @@
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
 #include "runs/slot_plans.h"
+#include "scene/moment.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "scene/static_field.h"
@@ -183,6 +184,7 @@ class FormationRun {
     statics_.look(robots_[i].field, here, reach_of_step(rules_.time_step, here.max_speed));
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
+                                           moment(scenario_.horizons),
                                            norm(relative_.position[i]),
                                            scenario_.arrival_tolerance,
                                            spec_.catch_up_speed,
@@ -317,7 +319,7 @@ class FormationRun {
 
   void note_divergence(double first, const Step& end, Recording& recording) const {
     const double last = formation_error(end, offsets_);
-    recording.diverged = out_of_bounds() || has_diverged(first, error_of_moving(end, offsets_));
+    recording.diverged = out_of_bounds() || has_diverged(first, error_of_moving(end, offsets_, scenario_.time_step));
     const auto [less, more] =
         first < last ? geometry::told_apart(first, last) : std::pair(number_text(first, 3), number_text(last, 3));
     recording.outcome = recording.diverged ? "diverged: the formation error grew from " + less + " m to " + more + " m"

@@ -15,6 +15,7 @@
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
 #include "scene/goals.h"
+#include "scene/moment.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
 #include "steering/goal_claims.h"
@@ -235,14 +236,14 @@ class KinematicRun {
 
   /// Where something that stands now cuts its route and there is a way round. Else it waits before it, and looks again.
   void go_round(std::size_t i) {
-    constexpr double kLooksAgainAfter = 1.0;  // s
+    constexpr double kLooksAgainAfter = 1.0;  // moments
     KinematicRobot& r = robots_[i];
     const double radius = scenario_.robots[i].radius;
     const std::optional<std::size_t> by = standing_->in_the_way(*r.course, r.position, radius);
     const bool is_known = by == r.cut_by;
     r.has_new_course = false;
     r.cut_by = by;
-    r.looks_again = now_ + kLooksAgainAfter;
+    r.looks_again = now_ + kLooksAgainAfter * moment(scenario_.horizons);
     if (!by) return;
     std::shared_ptr<Guide> detour = standing_->guide();
     CourseAnswer answer = detour->course(radius, r.position, destination(i));
@@ -258,10 +259,10 @@ class KinematicRun {
   }
 
   void look_whether_it_waits(std::size_t i) {
-    constexpr double kForGood = 2.0;  // s
+    constexpr double kForGood = 2.0;  // moments
     KinematicRobot& r = robots_[i];
     if (!r.cut_by || now_ < moving_until_ || !is_at_rest(i) || goes_by_plan(i)) r.waits_since = now_;
-    r.waits_for_good = now_ - r.waits_since >= kForGood;
+    r.waits_for_good = now_ - r.waits_since >= kForGood * moment(scenario_.horizons);
   }
 
   // --- Robots that go by plan ---

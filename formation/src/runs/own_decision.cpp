@@ -2,6 +2,7 @@
 #include "runs/own_decision.h"
 
 #include "scene/goals.h"
+#include "scene/moment.h"
 #include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
@@ -39,8 +40,8 @@ Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   if (rules_.method == Method::orca) return preferred;
   if (rules_.method != Method::ivo) return ties_broken(way, preferred, decision);
   const BoundaryFollower::Answer answer =
-      way.follower.steer({errand.time, rules_.time_step, here, errand.goal, here.max_speed * rules_.horizons.least,
-                          preferred, &*way.field},
+      way.follower.steer({errand.time, rules_.time_step, moment(rules_.horizons), here, errand.goal,
+                          following_reach(rules_, here.max_speed), preferred, &*way.field},
                          following_);
   decision.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
   decision.side = answer.side;

@@ -29,7 +29,7 @@ void add_moving_constraint(const DecisionRules& rules, const Viewpoint& from, vo
   vo::ClearancePolicy policy;
   policy.time_horizon = rules.horizons.robots;
   policy.room = std::max(kContactSkin, rules.margins.robot);
-  policy.push_out_time = contact_time(rules.time_step);
+  policy.push_out_time = contact_time(rules.time_step, rules.horizons);
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
   Constraint& c = out.emplace_back();
   c.half_plane = vo::shifted_by(found.half_plane, u);

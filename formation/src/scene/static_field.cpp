@@ -10,6 +10,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "scene/moment.h"
 #include "scene/step_limits.h"
 
 namespace exactvo::formation::detail {
@@ -21,7 +22,7 @@ using vo::BodyKind;
 using vo::BodyTable;
 
 /// In real overlap nothing can be certified; the robot is asked to leave within this time, at a share of its speed.
-constexpr double kPushOutTime = 0.2;   // s
+constexpr double kPushOutTime = 0.2;   // moments
 constexpr double kPushOutShare = 0.3;  // of max_speed
 
 constexpr double kLiteralHorizonAtRest = 1e6;  // s: the printed tau divides by |v| = 0
@@ -160,7 +161,7 @@ void StaticField::build(const Shape& shape, const Viewpoint& from, std::vector<C
   if (is_beyond_reach(nearest.distance, from, policy.time_horizon)) return;
   // An ellipse has its margin inside; a bare piece gets it here.
   policy.room = shape.grade == EnclosureGrade::tight ? margin_ + kContactSkin : kContactSkin;
-  policy.push_out_time = kPushOutTime;
+  policy.push_out_time = kPushOutTime * moment(rules_->horizons);
   policy.push_out_speed = kPushOutShare * from.max_speed;
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);
   Constraint& c = out.emplace_back();

@@ -9,6 +9,7 @@
 
 #include "exactvo/vo/reciprocal.h"
 #include "scene/decision_rules.h"
+#include "scene/moment.h"
 
 namespace exactvo::formation::detail {
 
@@ -32,8 +33,8 @@ inline double reach_of_pair(double time_step, double max_speed, double other_max
 }
 
 /// s: within this a robot in contact is asked to part: never less than a step.
-inline double contact_time(double time_step) {
-  return std::max(time_step, vo::ReciprocalOptions{}.contact_time);
+inline double contact_time(double time_step, const Horizons& horizons) {
+  return std::max(time_step, vo::ReciprocalOptions{}.contact_time * moment(horizons));
 }
 
 /// m: `neighbour_distance`, or, if that is more, the distance of centres within which two can meet in a time step whose

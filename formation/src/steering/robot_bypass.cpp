@@ -5,7 +5,7 @@ namespace exactvo::formation::detail {
 namespace {
 
 /// A robot stalls when for this long it has come nearer by less than the share of what its pace would do.
-constexpr double kSlotStallTime = 2.0;      // s: a pair that passes each other may need one
+constexpr double kSlotStallTime = 2.0;      // moments: a pair that passes each other may need one
 constexpr double kSlotStallProgress = 0.1;  // of pace * kSlotStallTime
 /// Going round ends this much nearer than it began.
 constexpr double kSlotLeaveGain = 0.05;  // m
@@ -22,11 +22,12 @@ std::vector<Constraint> all_lines(const std::vector<Constraint>& statics, const 
 }  // namespace
 
 bool RobotBypass::stalled(const Situation& s) {
-  if (best_distance_ < 0.0 || s.distance < best_distance_ - kSlotStallProgress * kSlotStallTime * s.pace) {
+  const double stall_time = kSlotStallTime * s.moment;
+  if (best_distance_ < 0.0 || s.distance < best_distance_ - kSlotStallProgress * stall_time * s.pace) {
     best_distance_ = s.distance;
     best_time_ = s.time;
   }
-  return s.time - best_time_ > kSlotStallTime && s.distance > s.tolerance;
+  return s.time - best_time_ > stall_time && s.distance > s.tolerance;
 }
 
 std::optional<Vec2> RobotBypass::steer(const Situation& s, NeededConstraints& statics,

@@ -21,6 +21,7 @@ class RobotBypass {
  public:
   struct Situation {
     double time = 0.0;          ///< s
+    double moment = 1.0;        ///< s, `detail::moment`
     double distance = 0.0;      ///< m, to the slot or goal
     double tolerance = 0.0;     ///< m: within this there is nothing to go round for
     double pace = 0.0;          ///< m/s: what closing in at full effort would be

@@ -2,11 +2,12 @@
 #include "steering/standing.h"
 
 #include "exactvo/geometry/distance.h"
+#include "scene/moment.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-/// s: what has stood for so long counts as standing. A moment at a corner of a path does not.
+/// Moments: what has stood for so long counts as standing. A moment at a corner of a path does not.
 constexpr double kStands = 1.0;
 
 /// The convex hull, as which robots avoid it.
@@ -30,7 +31,7 @@ void StandingObstacles::look(double time, const std::vector<MovedObstacle>& movi
   for (std::size_t k = 0; k < moving.size(); ++k) {
     if (!(moving[k].displacement == displacement_[k]) || !(moving[k].velocity == Vec2{})) since_[k] = time;
     displacement_[k] = moving[k].displacement;
-    if (time - since_[k] >= kStands) standing.emplace_back(k, displacement_[k]);
+    if (time - since_[k] >= kStands * moment(scenario_.horizons)) standing.emplace_back(k, displacement_[k]);
   }
   if (standing == now_) return;
   now_ = std::move(standing);

@@ -120,16 +120,22 @@ namespace {
 
 /// A robot stalls when for this long its distance to the goal has shrunk by less than the share of what full speed
 /// would do.
-constexpr double kStallTime = 1.0;      // s
+constexpr double kStallTime = 1.0;      // moments
 constexpr double kStallProgress = 0.1;  // of max_speed * kStallTime
 /// Following ends this much nearer to the goal than it began.
 constexpr double kLeaveGain = 0.05;  // m
 /// Walked at least this far and back within reach of where it began: a full circle.
 constexpr double kCircleReach = 0.5;  // m
+/// The way is measured in legs of at least this length: the noise of a robot's place adds up to no way.
+constexpr double kLeastLeg = 0.25;  // m
 /// Where no direction is free at full speed, slower ones are tried, halving, down to this share.
 constexpr double kLeastFollowing = 0.05;
 
 }  // namespace
+
+double following_reach(const DecisionRules& rules, double max_speed) {
+  return rules.margins.obstacle + kContactSkin + max_speed * rules.horizons.least;
+}
 
 void BoundaryFollower::reset() {
   *this = BoundaryFollower{};
@@ -137,12 +143,12 @@ void BoundaryFollower::reset() {
 
 bool BoundaryFollower::stalled(const Situation& s) {
   const double goal_distance = norm(s.goal - s.robot.position);
-  const double step = kStallProgress * kStallTime * s.robot.max_speed;
+  const double stall_time = kStallTime * s.moment, step = kStallProgress * stall_time * s.robot.max_speed;
   if (best_distance_ < 0.0 || goal_distance < best_distance_ - step) {
     best_distance_ = goal_distance;
     best_time_ = s.time;
   }
-  return s.time - best_time_ > kStallTime;
+  return s.time - best_time_ > stall_time;
 }
 
 bool BoundaryFollower::may_leave(const Situation& s, NearConstraints& near) const {
@@ -174,7 +180,7 @@ void BoundaryFollower::commit(const Situation& s, int side, std::size_t followed
   followed_ = followed;
 }
 
-constexpr double kTrialRunHorizon = 60.0;  ///< s: a boundary longer than that ranks by how far the goal is then
+constexpr double kTrialRunHorizon = 60.0;  ///< moments: a boundary longer than that ranks by how far the goal is then
 
 /// One side of a boundary in the static scene alone: the time until it can be left plus the straight way from there.
 ///
@@ -192,7 +198,7 @@ class BoundaryFollower::TrialRun {
   double time() const { return time_; }
 
   void step() {
-    if (!(s_.time - start_ < kTrialRunHorizon)) return end();
+    if (!(s_.time - start_ < kTrialRunHorizon * s_.moment)) return end();
     const Vec2 to_goal = s_.goal - s_.robot.position;
     s_.preferred = s_.robot.max_speed * geometry::normalized(to_goal);
     near_.look(*s_.field, s_.robot, s_.reach);
@@ -238,15 +244,16 @@ struct Seconds {
 /// s: by how much the time of a trial run can fall by rounding.
 ///
 /// A step rounds a velocity and its length (8 u of max_speed), a position and the distance to the goal (8 u of the
-/// largest coordinate) and a time (4 u). The bound leaves a factor of two, and is never less than a microsecond.
+/// largest coordinate) and a time (4 u). The bound leaves a factor of two, and is never less than a millionth of a
+/// moment.
 double trial_run_rounding(const BoundaryFollower::Situation& s) {
   constexpr double kUnit = 0x1p-53, kLeast = 1e-6;
   const auto largest = [](Vec2 p) { return std::max(std::fabs(p.x), std::fabs(p.y)); };
-  const double fastest = s.robot.max_speed;
-  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * kTrialRunHorizon;
-  const double steps = kTrialRunHorizon / s.time_step + 2.0;
-  const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + kTrialRunHorizon));
-  return std::max(kLeast, 2.0 * steps * a_step);
+  const double fastest = s.robot.max_speed, horizon = kTrialRunHorizon * s.moment;
+  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * horizon;
+  const double steps = horizon / s.time_step + 2.0;
+  const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + horizon));
+  return std::max(kLeast * s.moment, 2.0 * steps * a_step);
 }
 
 /// Whether the left is taken: within a time step of the right or faster. Steps the side that may be faster. Stops when
@@ -304,8 +311,10 @@ BoundaryFollower::Answer BoundaryFollower::begin(const Situation& s, Memory& mem
 }
 
 BoundaryFollower::Answer BoundaryFollower::follow(const Situation& s, NearConstraints& near) {
-  walked_ += norm(s.robot.position - last_position_);
-  last_position_ = s.robot.position;
+  if (const double leg = norm(s.robot.position - last_position_); leg >= kLeastLeg) {
+    walked_ += leg;
+    last_position_ = s.robot.position;
+  }
   Answer answer{s.preferred, Mode::following, side_};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
   const Constraint* followed = near.of_body(followed_);

@@ -48,6 +48,10 @@ Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v);
 /// The same for one half-plane, given by its normal of any length. REQUIRES: v violates it.
 Vec2 with_tie_broken(Vec2 normal, Vec2 v);
 
+/// m: `Situation::reach` of a robot that is kept `margin` (m) from obstacles. Beyond that margin a half-plane stops
+/// full speed within the least horizon; nearer than the margin the robot does not come.
+double following_reach(const DecisionRules& rules, double max_speed);
+
 /// Follows a boundary after a stall: state of one robot. The side is the one on which a trial run of the static scene
 /// leaves the boundary with the shorter way to go; ties go left.
 class BoundaryFollower {
@@ -83,10 +87,11 @@ class BoundaryFollower {
   struct Situation {
     double time = 0.0;       ///< s
     double time_step = 0.0;  ///< s
+    double moment = 1.0;     ///< s, `detail::moment`
     Viewpoint robot;         ///< where it is
     Vec2 goal;               ///< m
     /// m: shapes farther than this neither stop the robot nor are followed. A far shape's half-plane grazes every fast
-    /// velocity towards it (tau = dist / |v|); only near ones block.
+    /// velocity towards it (tau = dist / |v|); only near ones block. More than the margin, at which the robot stops.
     double reach = 0.0;
     Vec2 preferred;  ///< m/s, straight for the goal
     const StaticField* field = nullptr;

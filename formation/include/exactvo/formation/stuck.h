@@ -15,8 +15,9 @@
 
 namespace exactvo::formation {
 
-/// m/s: a slower robot counts as at rest. (In a flat trap or a corner the tie-break leaves it a creeping speed.)
-inline constexpr double kAtRest = 0.01;
+/// Of its max_speed: a slower robot counts as at rest. (In a flat trap or a corner the tie-break leaves it a creeping
+/// speed, a thousandth.)
+inline constexpr double kAtRestShare = 1.0 / 300.0;
 
 /// Of the push |chosen - preferred|: a smaller multiplier is rounding. (Multipliers round by far less. A share of 5e-4
 /// decides where the tie-break turns a robot that would slide off against another boundary.)
@@ -44,8 +45,9 @@ struct StuckReport {
   /// Where one static shape presses, the goal lies straight behind it and the robot is at its boundary: position, rho,
   /// D, stability. Nothing against robots and moving obstacles: what moves has no boundary to slide along.
   std::optional<Equilibrium> equilibrium;
-  std::string text;        ///< all of it in a sentence or two
-  double rest_time = 0.0;  ///< s, for how long it had been slower than kAtRest when the run ended; 0 while it moves
+  std::string text;  ///< all of it in a sentence or two
+  double rest_time =
+      0.0;  ///< s, for how long it had been slower than kAtRestShare says when the run ended; 0 while it moves
 };
 
 /// A report for every robot that is not at its goal or slot in the last row; none of a formation that diverged or whose
