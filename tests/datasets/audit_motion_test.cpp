@@ -23,10 +23,10 @@ using exactvo::test::random_motion;
 using exactvo::test::robot;
 using exactvo::test::SeededRandom;
 using exactvo::test::square;
-using formation::Leader;
 using formation::MotionLaw;
 using formation::MovingObstacle;
 using formation::Robot;
+using formation::TimedPath;
 using geometry::Vec2;
 
 /// Of motions alone: the recordings here are made by hand and have no half-planes.
@@ -75,7 +75,7 @@ TEST(AuditMotion, AnObstacleThatIsBackAtEveryRowIsSeenBetween) {
   s.liveness = formation::Liveness::off;
   s.time_step = 0.5;
   s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
-  Leader round{{{0, 0}}, 44.0};
+  TimedPath round{{{0, 0}}, 44.0};
   for (int k = 0; k < 10; ++k)
     for (const Vec2 p : {Vec2{-1, 0}, Vec2{10, 0}, Vec2{0, 0}}) round.path.push_back(p);
   s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, round)};
@@ -306,7 +306,7 @@ TEST(AuditMotion, NumbersThatAreNoneAreInconsistent) {
 TEST(AuditMotion, TheWayOfAnObstacleIsWhatTheRunGoesBy) {
   SeededRandom random(exactvo::test::seed_of_run(94));
   for (int round = 0; round < 100; ++round) {
-    const Leader motion = random_motion(random);
+    const TimedPath motion = random_motion(random);
     const exact::ExactWay way(motion);
     const MovingObstacle obstacle{"", geometry::Polyline{{{0, 0}, {1, 0}}}, motion};
     const double start = random.uniform(0.0, 8.0), end = start + random.uniform(0.01, 2.0);
@@ -349,7 +349,7 @@ Vec2 place_of_robot(const formation::Recording& rec, double s) {
   return place;
 }
 
-double top_speed(const Leader& motion) {
+double top_speed(const TimedPath& motion) {
   double top = motion.profile.empty() ? motion.speed : 0.0;
   for (const formation::SpeedKnot& knot : motion.profile) top = std::max(top, knot.speed);
   return top;

@@ -75,7 +75,7 @@ void add_formation(Scenario& s, SeededRandom& random) {
   spec.topology = {{{0, w, 1}, {w, 0, w}, {1, w, 0}}, {1, 0, w}};
   spec.offsets = {near({1, 1}, random), near({-1, 1}, random), near({1, -1}, random)};
   spec.recentre = random.integer(0, 1) == 1;
-  spec.leader = {{near({0, 0}, random), near({25, 25}, random)}, random.uniform(1, 4)};
+  spec.leader = {{{near({0, 0}, random), near({25, 25}, random)}, random.uniform(1, 4)}};
   spec.gains = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(10, 40), random.uniform(1, 2)};
   spec.catch_up_speed = random.uniform(1, 4);
   s.formation = spec;

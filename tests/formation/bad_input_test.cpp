@@ -60,7 +60,7 @@ TEST(BadInput, AStartInsideAnObstacleIsRefused) {
   expect_refused(s, "/robots/0/position");
 }
 
-Scenario with_cart(Leader motion) {
+Scenario with_cart(TimedPath motion) {
   Scenario s = paper_scene("A0");
   s.obstacles.clear();
   const Vec2 start = s.robots[0].position;
@@ -114,10 +114,10 @@ TEST(BadInput, WhatMovesFasterThanARobotIsSaidBeforeTheRun) {
 
 TEST(BadInput, SpeedsAfterTheEndOfThePathOrTheRunDoNotCount) {
   // 20 m at 2 m/s take 10 s; what the profile says of later never happens.
-  const Leader late{{{0, 0}, {20, 0}}, 0.0, {{0, 2}, {11, 2}, {12, 9}}};
+  const TimedPath late{{{0, 0}, {20, 0}}, 0.0, {{0, 2}, {11, 2}, {12, 9}}};
   EXPECT_EQ(warnings_of(with_cart(late)), "");
   Scenario s = paper_scene("B1");
-  s.formation->leader = late;
+  s.formation->leader = {late};
   EXPECT_EQ(warnings_of(s), "");
   s.formation->leader.profile[1].time = s.formation->leader.profile[2].time = 9.0;  // the last 2 m at 9 m/s
   EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to "));

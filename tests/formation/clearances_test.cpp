@@ -36,8 +36,8 @@ Recording resting(const Scenario& s, std::size_t steps) {
 }
 
 /// Over and over: (0, 0) -> (-1, 0) -> (10, 0) -> (0, 0), 22 m a round.
-Leader shuttle(double speed, int rounds) {
-  Leader motion{{{0, 0}}, speed};
+TimedPath shuttle(double speed, int rounds) {
+  TimedPath motion{{{0, 0}}, speed};
   for (int k = 0; k < rounds; ++k) {
     for (const Vec2 p : {Vec2{-1, 0}, Vec2{10, 0}, Vec2{0, 0}}) motion.path.push_back(p);
   }
@@ -98,7 +98,7 @@ TEST(MovingClearance, AShortRampOfSpeedIsNotCarriedOnToTheEndOfTheStep) {
 /// The displacement of a motion, summed in long doubles: the stretches of speed first, then the legs.
 class PreciseWay {
  public:
-  explicit PreciseWay(const Leader& motion) : motion_(motion) {}
+  explicit PreciseWay(const TimedPath& motion) : motion_(motion) {}
 
   /// m, so that `at` is off by no more than this (x87 and binary128 have at least eleven bits more than a double).
   double rounding() const { return rounding_; }
@@ -140,7 +140,7 @@ class PreciseWay {
     return sum;
   }
 
-  const Leader& motion_;
+  const TimedPath& motion_;
   mutable double rounding_ = 0.0;
 };
 
@@ -148,7 +148,7 @@ TEST(MovingWay, ThePiecesAreTheWay) {
   SeededRandom random(exactvo::test::seed_of_run(91));
   double most = 0.0;
   for (int round = 0; round < 500; ++round) {
-    const Leader motion = random_motion(random);
+    const TimedPath motion = random_motion(random);
     const std::vector<detail::WayPiece> way = detail::way_of(motion, 10.0);
     const PreciseWay precise(motion);
     const auto check = [&](const detail::WayPiece& piece, double time) {
@@ -374,7 +374,7 @@ TEST(FormationCourse, TheLargestErrorAndWhenTheFormationHoldsAgain) {
     s.robots.back().goals.clear();
   }
   s.formation.emplace();
-  s.formation->leader = {{{0, 0}, {6, 0}}, 1.0};
+  s.formation->leader = {{{{0, 0}, {6, 0}}, 1.0}};
   s.formation->topology = {{{0, 1}, {1, 0}}, {1, 1}};
   Recording rec;
   rec.time_step = 1.0;

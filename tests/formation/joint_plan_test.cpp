@@ -332,7 +332,7 @@ TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
     RobotStep& step = row.robots.emplace_back();
     step.position = r.position;
     step.preferred = {1.0, 0.0};
-    RecordedConstraint& c = step.constraints.emplace_back();
+    DecisionConstraint& c = step.constraints.emplace_back();
     c.source = vo::BodyKind::robot;
     c.index = (i + 1) % kCount;
     c.half_plane = {{-1.0, 0.0}, 0.0};

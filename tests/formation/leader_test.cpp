@@ -19,7 +19,7 @@ using detail::LeaderState;
 const std::vector<Vec2> kCorner{{0, 0}, {6, 0}, {6, 4}};  // 10 m
 
 TEST(SpeedProfile, ATrapezoidCoversThePathAndRestsAtItsEnd) {
-  Leader leader{kCorner, 0.0, trapezoid(kCorner, 2.0, 1.0)};
+  TimedPath leader{kCorner, 0.0, trapezoid(kCorner, 2.0, 1.0)};
   // 2 s up (2 m), 3 s at 2 m/s (6 m), 2 s down (2 m).
   EXPECT_NEAR(leader_arrival(leader), 7.0, 1e-5);
   EXPECT_EQ(leader_at(leader, 0.0).velocity, (Vec2{0, 0}));
@@ -33,14 +33,14 @@ TEST(SpeedProfile, ATrapezoidCoversThePathAndRestsAtItsEnd) {
 
 TEST(SpeedProfile, AShortPathMakesATriangle) {
   const std::vector<Vec2> path{{0, 0}, {1, 0}};
-  const Leader leader{path, 0.0, trapezoid(path, 5.0, 1.0)};
+  const TimedPath leader{path, 0.0, trapezoid(path, 5.0, 1.0)};
   EXPECT_NEAR(leader_arrival(leader), 2.0, 1e-5);
   EXPECT_NEAR(leader_at(leader, 1.0).velocity.x, 1.0, 1e-12);
   EXPECT_NEAR(leader_at(leader, 1.0).position.x, 0.5, 1e-12);
 }
 
 TEST(SpeedProfile, EachLegAtASpeedOfItsOwn) {
-  const Leader leader{kCorner, 0.0, speed_of_legs(kCorner, {3.0, 0.5})};
+  const TimedPath leader{kCorner, 0.0, speed_of_legs(kCorner, {3.0, 0.5})};
   EXPECT_NEAR(leader_at(leader, 1.0).position.x, 3.0, 1e-12);
   EXPECT_NEAR(leader_at(leader, 1.999).velocity.x, 3.0, 1e-12);
   EXPECT_NEAR(leader_at(leader, 4.0).position.y, 1.0, 1e-12);
@@ -49,7 +49,7 @@ TEST(SpeedProfile, EachLegAtASpeedOfItsOwn) {
 }
 
 TEST(SpeedProfile, VelocityIsTheDerivativeOfPosition) {
-  const Leader leader{{{0, 0}, {100, 0}}, 0.0, {{1, 0.5}, {2, 3}, {2, 1}, {4, 1}, {5, 0}, {6, 0}, {8, 2}}};
+  const TimedPath leader{{{0, 0}, {100, 0}}, 0.0, {{1, 0.5}, {2, 3}, {2, 1}, {4, 1}, {5, 0}, {6, 0}, {8, 2}}};
   constexpr double kStep = 1e-4;
   for (double t = 0.05; t < 12.0; t += 0.1) {
     const LeaderState now = leader_at(leader, t), next = leader_at(leader, t + kStep);

@@ -58,10 +58,10 @@ TEST(Lemmas, Lemma1_HalvesOfAPairAddUpAndNothingIsRelaxed) {
     const double at_rest = detail::contact_time(s.time_step);
     for (std::size_t row = 0; row + 1 < run.steps.size(); ++row) {
       const Step& step = run.steps[row];
-      std::map<std::pair<std::size_t, std::size_t>, const RecordedConstraint*> half;
+      std::map<std::pair<std::size_t, std::size_t>, const DecisionConstraint*> half;
       for (std::size_t i = 0; i < step.robots.size(); ++i) {
         ASSERT_EQ(step.robots[i].status, lp::Status::optimal) << step.time << " " << i;
-        for (const RecordedConstraint& c : step.robots[i].constraints)
+        for (const DecisionConstraint& c : step.robots[i].constraints)
           if (c.source == vo::BodyKind::robot) half[{i, c.index}] = &c;
       }
       for (const auto& [key, mine] : half) {

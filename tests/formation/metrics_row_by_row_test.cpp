@@ -170,7 +170,7 @@ std::size_t reversals_of(const Recording& recording, std::size_t i, double at_re
 using ActiveSet = std::vector<std::tuple<ConstraintSource, std::size_t, std::size_t>>;
 ActiveSet active_set(const RobotStep& step) {
   ActiveSet active;
-  for (const RecordedConstraint& c : step.constraints)
+  for (const DecisionConstraint& c : step.constraints)
     if (c.active) active.emplace_back(c.source, c.index, c.piece);
   std::sort(active.begin(), active.end());
   return active;
@@ -308,7 +308,7 @@ class Order : public RunSink {
     EXPECT_GT(row.time, time_);
     time_ = row.time;
     for (const RobotStep& robot : row.robots)
-      for (const RecordedConstraint& c : robot.constraints) EXPECT_LT(c.body, bodies_);
+      for (const DecisionConstraint& c : robot.constraints) EXPECT_LT(c.body, bodies_);
     if (++rows_ == throws_at) throw std::runtime_error("full");
   }
 

@@ -38,6 +38,7 @@ constexpr double kRoundingTaken = 1e-11;
 Recording recording_of(const std::vector<std::vector<RobotStep>>& rows) {
   Recording rec;
   rec.time_step = 1.0;
+  rec.bodies = {{vo::BodyKind::enclosure, geometry::Disc{{20.0, 0.0}, 1.0}, {}, {0}}};  // of all half-planes
   for (std::size_t k = 0; k < rows.size(); ++k) {
     Step row;
     row.time = static_cast<double>(k);
@@ -144,7 +145,7 @@ TEST(Metrics, HeadingReversalsLeaveOutRobotsAtRest) {
 RobotStep with_active(std::vector<std::size_t> indices) {
   RobotStep r = at({0, 0});
   for (std::size_t i : indices) {
-    RecordedConstraint c;
+    DecisionConstraint c;
     c.index = i;
     c.active = true;
     r.constraints.push_back(c);
@@ -165,8 +166,10 @@ TEST(Metrics, ASlideFromOneEdgeToTheNextIsASwitch) {
   const Recording rec = simulate(s, orca);
   std::map<std::size_t, std::string> edges;
   for (const Step& row : rec.steps)
-    for (const RecordedConstraint& c : row.robots[0].constraints)
-      EXPECT_EQ(edges.emplace(c.index, geometry::to_string(c.shape)).first->second, geometry::to_string(c.shape));
+    for (const DecisionConstraint& c : row.robots[0].constraints) {
+      const std::string edge = geometry::to_string(rec.bodies.at(c.body).shape);
+      EXPECT_EQ(edges.emplace(c.index, edge).first->second, edge);
+    }
   EXPECT_GE(edges.size(), 2u);
   EXPECT_GE(measure(s, rec).active_set_switches, 2u);
 }
@@ -215,7 +218,7 @@ TEST(Metrics, FormationErrorIsMeasuredFromTheOffsetsInUse) {
   Scenario s = scene_of({{0.0, 0.0}});
   s.robots[0].goals.clear();
   s.formation.emplace();
-  s.formation->leader = {{{0.0, 0.0}, {2.0, 0.0}}, 1.0};
+  s.formation->leader = {{{{0.0, 0.0}, {2.0, 0.0}}, 1.0}};
   s.formation->topology = {{{0.0}}, {1.0}};
   Recording rec = recording_of({{at({1, 1}, {1, 0})}, {at({2, 1}, {1, 0})}, {at({3, 1.5}, {0.25, 0})}});
   for (std::size_t k = 0; k < 3; ++k) rec.steps[k].leader_position = {static_cast<double>(k), 0.0};

@@ -13,7 +13,7 @@
 namespace exactvo::test {
 
 inline formation::MovingObstacle square(const std::string& id, geometry::Vec2 middle, double half,
-                                        formation::Leader motion) {
+                                        formation::TimedPath motion) {
   using geometry::Vec2;
   return {id,
           geometry::Polygon{{middle + Vec2{-half, -half}, middle + Vec2{half, -half}, middle + Vec2{half, half},
@@ -32,8 +32,8 @@ inline formation::Robot robot(const std::string& id, geometry::Vec2 position, ge
 
 /// A path of random legs, some of which go back, repeat a point or are very short, at a speed or with a profile that
 /// has jumps and rests.
-inline formation::Leader random_motion(SeededRandom& random) {
-  formation::Leader motion{{random.in_box(5)}, random.uniform(0.0, 9.0)};
+inline formation::TimedPath random_motion(SeededRandom& random) {
+  formation::TimedPath motion{{random.in_box(5)}, random.uniform(0.0, 9.0)};
   for (int legs = random.integer(0, 8); legs > 0; --legs) {
     const int kind = random.integer(0, 5);
     const geometry::Vec2 last = motion.path.back();

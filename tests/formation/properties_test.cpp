@@ -40,7 +40,7 @@ TEST(Notes, ARowKeepsBoth) {
 }
 
 bool a_robot_binds(const RobotStep& step) {
-  for (const RecordedConstraint& c : step.constraints)
+  for (const DecisionConstraint& c : step.constraints)
     if (c.active && c.source == ConstraintSource::robot) return true;
   return false;
 }
@@ -78,54 +78,56 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PureTwelve, testing::ValuesIn(kStaticScenes),
                          [](const auto& row) { return std::string(row.param); });
 
 /// Exactly: the half-plane excludes the velocity obstacle that it was built on.
-bool proven(const RecordedConstraint& c) {
-  return geometry::half_plane_is_safe({c.shape, c.position, c.radius}, c.time_horizon, c.half_plane);
+bool proven(const DecisionConstraint& c, const SeenBody& seen) {
+  return geometry::half_plane_is_safe({seen.shape, seen.position, seen.radius}, c.time_horizon, c.half_plane);
 }
 
 struct Audit {
   std::size_t statics = 0, pairs = 0;
 };
 
-void audit_statics(const RobotStep& step, Audit& audit) {
-  for (const RecordedConstraint& c : step.constraints) {
+void audit_statics(const Scenario& s, const Recording& run, const Step& row, std::size_t robot, Audit& audit) {
+  for (const DecisionConstraint& c : row.robots[robot].constraints) {
     if (c.source == ConstraintSource::robot) continue;
     ASSERT_TRUE(c.certified);
-    ASSERT_TRUE(proven(c)) << geometry::to_string(c.shape);
+    const SeenBody seen = seen_body(s, run.bodies, row, robot, c);
+    ASSERT_TRUE(proven(c, seen)) << geometry::to_string(seen.shape);
     ASSERT_LE(c.half_plane.offset, 0.0) << "v = 0 is not admitted";
     ++audit.statics;
   }
 }
 
-const RecordedConstraint* against(const RobotStep& step, std::size_t other) {
-  for (const RecordedConstraint& c : step.constraints)
+const DecisionConstraint* against(const RobotStep& step, std::size_t other) {
+  for (const DecisionConstraint& c : step.constraints)
     if (c.source == ConstraintSource::robot && c.index == other) return &c;
   return nullptr;
 }
 
-void audit_pairs(const Step& row, Audit& audit) {
+void audit_pairs(const Scenario& s, const Recording& run, const Step& row, Audit& audit) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     for (std::size_t j = i + 1; j < row.robots.size(); ++j) {
-      const RecordedConstraint* a = against(row.robots[i], j);
-      const RecordedConstraint* b = against(row.robots[j], i);
+      const DecisionConstraint* a = against(row.robots[i], j);
+      const DecisionConstraint* b = against(row.robots[j], i);
       ASSERT_EQ(a == nullptr, b == nullptr);
       if (!a) continue;
       ASSERT_EQ(a->half_plane.normal, -b->half_plane.normal);
       // The sum rounded down: what the relative velocity is certain to keep.
       const double sum =
           std::nextafter(a->half_plane.offset + b->half_plane.offset, -std::numeric_limits<double>::max());
-      RecordedConstraint both = *a;
+      DecisionConstraint both = *a;
       both.half_plane.offset = sum;
-      ASSERT_TRUE(proven(both));
+      ASSERT_TRUE(proven(both, seen_body(s, run.bodies, row, i, both)));
       ++audit.pairs;
     }
   }
 }
 
-Audit audited(const Recording& recording) {
+Audit audited(const Scenario& s, const Recording& recording) {
   Audit audit;
   for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k) {
-    for (const RobotStep& step : recording.steps[k].robots) audit_statics(step, audit);
-    audit_pairs(recording.steps[k], audit);
+    const Step& row = recording.steps[k];
+    for (std::size_t i = 0; i < row.robots.size(); ++i) audit_statics(s, recording, row, i, audit);
+    audit_pairs(s, recording, row, audit);
     if (testing::Test::HasFatalFailure()) break;
   }
   return audit;
@@ -136,7 +138,7 @@ TEST(Recorded, EveryHalfPlaneOfTheKinematicRunsIsProven) {
     for (const Method method : {Method::ivo_edge, Method::ivo_cluster, Method::ivo}) {
       Scenario s = paper_scene(scene);
       s.time_limit = 20.0;
-      const Audit audit = audited(simulate(s, everything_of(method)));
+      const Audit audit = audited(s, simulate(s, everything_of(method)));
       EXPECT_GT(audit.statics, 100u) << scene << " " << name(method);
     }
   }
@@ -146,13 +148,14 @@ TEST(Recorded, EveryHalfPlaneOfOrcaIsProven) {
   for (const char* scene : kStaticScenes) {
     Scenario s = paper_scene(scene);
     s.time_limit = 20.0;
-    EXPECT_GT(audited(simulate(s, everything_of(Method::orca))).statics, 20u) << scene;
+    EXPECT_GT(audited(s, simulate(s, everything_of(Method::orca))).statics, 20u) << scene;
   }
 }
 
 TEST(Recorded, TheHalvesOfEveryPairAddUp) {
   for (const char* scene : {"A7", "B0", "B1", "B2", "B3"}) {
-    const Audit audit = audited(simulate(paper_scene(scene), everything_of(Method::ivo)));
+    const Scenario s = paper_scene(scene);
+    const Audit audit = audited(s, simulate(s, everything_of(Method::ivo)));
     EXPECT_GT(audit.pairs, 100u) << scene;
   }
 }
@@ -163,7 +166,7 @@ TEST(Recorded, ActiveHalfPlanesBind) {
   std::size_t active = 0;
   for (std::size_t k = 0; k + 1 < r.steps.size(); ++k) {
     for (const RobotStep& step : r.steps[k].robots) {
-      for (const RecordedConstraint& c : step.constraints) {
+      for (const DecisionConstraint& c : step.constraints) {
         ASSERT_LE(geometry::violation(c.half_plane, step.chosen), 0.0);
         if (!c.active) continue;
         ++active;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/formation/speed_profile.h"
 #include "paper_scenes.h"
 
 namespace exactvo::formation {
@@ -30,7 +31,7 @@ TEST_P(RecordAll, TheAuditProvesTheWholeRun) {
   const std::size_t decisions = file.recording.steps.size() - 1;
   for (const Step& row : file.recording.steps)
     for (const RobotStep& robot : row.robots)
-      for (const RecordedConstraint& c : robot.constraints) {
+      for (const DecisionConstraint& c : robot.constraints) {
         EXPECT_TRUE(c.certified);
         of_obstacles += c.source != ConstraintSource::robot;
       }
@@ -90,7 +91,7 @@ TEST(RecordAllKept, OfARelaxedDecisionAnOrdinaryRecordingHasWhatIsViolated) {
   all.record_all = true;
   const Recording ordinary = simulate(s), whole = simulate(s, all);
   const auto violated = [](const RobotStep& r) {
-    return std::count_if(r.constraints.begin(), r.constraints.end(), [&](const RecordedConstraint& c) {
+    return std::count_if(r.constraints.begin(), r.constraints.end(), [&](const DecisionConstraint& c) {
       return geometry::violation(c.half_plane, r.chosen) > 1e-9;
     });
   };
@@ -131,22 +132,46 @@ TEST(Bodies, AConstraintNamesTheShapeItWasBuiltOn) {
       std::size_t named = 0;
       for (const Step& row : rec.steps)
         for (std::size_t i = 0; i < row.robots.size(); ++i)
-          for (const RecordedConstraint& c : row.robots[i].constraints) {
+          for (const DecisionConstraint& c : row.robots[i].constraints) {
             const vo::Body& body = rec.bodies.at(c.body);
             ASSERT_EQ(body.kind, c.source);
-            ASSERT_EQ(c.position, row.robots[i].anchor);
+            const SeenBody seen = seen_body(s, rec.bodies, row, i, c);
+            ASSERT_EQ(seen.position, row.robots[i].anchor);
+            ASSERT_EQ(seen.radius, s.robots[i].radius);
             if (c.source == ConstraintSource::robot) {
               ASSERT_EQ(body.owners, std::vector<std::size_t>{c.index});
-              ASSERT_EQ(std::get<geometry::Disc>(c.shape).center, row.robots[c.index].anchor);
-              ASSERT_EQ(c.shape_velocity, row.robots[c.index].anchor_velocity);
+              ASSERT_EQ(std::get<geometry::Disc>(seen.shape).center, row.robots[c.index].anchor);
+              ASSERT_EQ(seen.velocity, row.robots[c.index].anchor_velocity);
             } else {
-              ASSERT_EQ(geometry::to_string(body.shape), geometry::to_string(c.shape));
+              ASSERT_EQ(geometry::to_string(body.shape), geometry::to_string(seen.shape));
             }
             ++named;
           }
       EXPECT_GT(named, 100u) << scene << " " << name(method);
     }
   }
+}
+
+TEST(Bodies, AMovingObstacleIsSeenWhereItsRowHasIt) {
+  Scenario s = test::paper_scene("A2");
+  s.moving_obstacles = {
+      {"cart", geometry::Polygon{{{9, 2}, {10, 2}, {10, 3}, {9, 3}}, {}}, {{{0, 0}, {0, 6}, {3, 6}}, 0.8}}};
+  SimulationOptions options;
+  options.record_all = true;
+  const Recording rec = simulate(s, options);
+  std::size_t seen_moving = 0;
+  for (const Step& row : rec.steps)
+    for (std::size_t i = 0; i < row.robots.size(); ++i)
+      for (const DecisionConstraint& c : row.robots[i].constraints) {
+        if (c.source != ConstraintSource::moving_obstacle) continue;
+        const SeenBody seen = seen_body(s, rec.bodies, row, i, c);
+        ASSERT_EQ(
+            geometry::to_string(seen.shape),
+            geometry::to_string(hull_of(s.moving_obstacles[0], displacement_at(s.moving_obstacles[0], row.time))));
+        ASSERT_EQ(seen.velocity, row.moving[0].velocity);
+        ++seen_moving;
+      }
+  EXPECT_GT(seen_moving, 50u);
 }
 
 TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
@@ -158,7 +183,7 @@ TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
       for (const RobotStep& r : row.robots) {
         if (r.status != lp::Status::optimal) continue;
         Vec2 sum{};
-        for (const RecordedConstraint& c : r.constraints) {
+        for (const DecisionConstraint& c : r.constraints) {
           ASSERT_GE(c.multiplier, 0.0);
           sum += c.multiplier * c.half_plane.normal;
         }

@@ -74,12 +74,17 @@ constexpr double kStep = 0.05;   // s
 constexpr double kEnd = 55.0;    // s
 constexpr double kRadius = 0.5;  // m
 
+/// A half-plane with the shape of its body.
+struct OfShape : DecisionConstraint {
+  geometry::ConvexShape shape;
+};
+
 struct End {
   Vec2 position;
   Vec2 goal;
   Vec2 velocity;
   Vec2 preferred;
-  std::vector<RecordedConstraint> constraints;
+  std::vector<OfShape> constraints;
   Mode mode = Mode::direct;
   lp::Status status = lp::Status::optimal;
   double violation = 0.0;
@@ -108,10 +113,10 @@ Recording unchanged(const std::vector<End>& ends) {
   Step row;
   for (const End& end : ends) {
     RobotStep step;
-    step.position = end.position;
-    step.velocity = step.chosen = end.velocity;
+    step.position = step.anchor = end.position;
+    step.velocity = step.anchor_velocity = step.chosen = end.velocity;
     step.preferred = end.preferred;
-    for (RecordedConstraint c : end.constraints) {
+    for (OfShape c : end.constraints) {
       c.body = r.bodies.size();
       r.bodies.push_back({c.source, c.shape, {}, {c.index}});
       step.constraints.push_back(c);
@@ -129,15 +134,14 @@ Recording unchanged(const std::vector<End>& ends) {
   return r;
 }
 
-RecordedConstraint constraint(ConstraintSource source, std::size_t index, geometry::ConvexShape shape, Vec2 normal,
-                              double multiplier) {
-  RecordedConstraint c;
+OfShape constraint(ConstraintSource source, std::size_t index, geometry::ConvexShape shape, Vec2 normal,
+                   double multiplier) {
+  OfShape c;
   c.multiplier = multiplier;
   c.source = source;
   c.index = index;
   c.shape = std::move(shape);
   c.half_plane = {normal, 0.0};
-  c.radius = kRadius;
   c.time_horizon = 2.0;
   c.hard = source == ConstraintSource::enclosure || source == ConstraintSource::obstacle_edge;
   c.active = true;
@@ -332,7 +336,7 @@ TEST(Stuck, WhatIsActiveWithoutPushingBlocksNothing) {
   // The goal behind both: each of them is needed.
   ends[0].goal = {8, 8};
   ends[0].preferred = {2, 2};
-  for (RecordedConstraint& c : ends[0].constraints) c.multiplier = 2.0;
+  for (OfShape& c : ends[0].constraints) c.multiplier = 2.0;
   s.robots[0].goals = {ends[0].goal};
   EXPECT_THAT(text_of(s, unchanged(ends)),
               HasSubstr("blocked between the edge (-2, 0.5)-(1, 0.5) of obstacle beside and "

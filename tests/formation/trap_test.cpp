@@ -413,9 +413,9 @@ TEST(Trap, SlideTimesAreThoseOfTheRun) {
   const Recording run = simulate(s, options);
   double sliding = 0.0;
   for (const Step& row : run.steps)
-    for (const RecordedConstraint& c : row.robots[0].constraints)
-      if (c.active &&
-          geometry::locate({c.shape, {}, r.radius + 0.05}, row.robots[0].position) == geometry::Place::inside)
+    for (const DecisionConstraint& c : row.robots[0].constraints)
+      if (c.active && geometry::locate({run.bodies.at(c.body).shape, {}, r.radius + 0.05}, row.robots[0].position) ==
+                          geometry::Place::inside)
         sliding += s.time_step;
   EXPECT_NEAR(sliding, *found[0].slide_time, 0.1 * *found[0].slide_time);
 }

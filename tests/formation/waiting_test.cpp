@@ -26,7 +26,7 @@ struct Row {
       RobotStep& r = step.robots.emplace_back();
       r.preferred = {1.0, 0.0};
       for (const std::size_t j : edges[i]) {
-        RecordedConstraint& c = r.constraints.emplace_back();
+        DecisionConstraint& c = r.constraints.emplace_back();
         c.source = ConstraintSource::robot;
         c.index = j;
         c.half_plane = {{-1.0, 0.0}, 0.0};
@@ -47,7 +47,7 @@ TEST(Waiting, ACycleIsADeadlockThatEachOfItsRobotsNames) {
 
 TEST(Waiting, APairThatFellBackIsKnownByItsHorizon) {
   Row row({{1}, {0}});
-  RecordedConstraint& c = row.step.robots[0].constraints[0];
+  DecisionConstraint& c = row.step.robots[0].constraints[0];
   const auto fell = [&] { return fell_back(row.scenario, row.step, 0, c); };
   c.time_horizon = row.scenario.horizons.robots;
   EXPECT_FALSE(fell());

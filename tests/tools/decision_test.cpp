@@ -14,7 +14,7 @@ namespace exactvo::tools {
 namespace {
 
 using formation::ConstraintSource;
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using testing::HasSubstr;
 
 /// kDirections of explanation.cpp on shapes of a few metres.
@@ -31,14 +31,13 @@ Decision with_two_walls() {
   d.step.chosen = {0.5, 0.5};
   const auto wall = [&](geometry::Segment s, std::size_t index, geometry::HalfPlane h, double multiplier) {
     d.bodies.push_back({ConstraintSource::obstacle_edge, s, {}, {index}});
-    RecordedConstraint c;
+    DecisionConstraint c;
     c.body = index;
     c.multiplier = multiplier;
-    c.shape = s;
     c.index = index;
     c.source = ConstraintSource::obstacle_edge;
     c.half_plane = h;
-    c.radius = 0.5;
+    d.seen.push_back({s, {0.0, 0.0}, 0.5, {}});
     c.time_horizon = 2.0;
     c.active = true;
     return c;
@@ -105,11 +104,11 @@ TEST(Decision, NamesWhatAConstraintStandsFor) {
   const Decision d = with_two_walls();
   EXPECT_EQ(formation::name_of(d.step.constraints[0], d.scenario, d.bodies),
             "the edge (1.5, -2)-(1.5, 2) of obstacle east");
-  RecordedConstraint enclosure = d.step.constraints[0];
+  DecisionConstraint enclosure = d.step.constraints[0];
   enclosure.source = ConstraintSource::enclosure;
   enclosure.body = 1;
   EXPECT_EQ(formation::name_of(enclosure, d.scenario, d.bodies), "enclosure 0 of obstacle north");
-  RecordedConstraint robot = d.step.constraints[0];
+  DecisionConstraint robot = d.step.constraints[0];
   robot.source = ConstraintSource::robot;
   EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "robot R1");
 }
@@ -126,12 +125,12 @@ TEST(Explanation, NamesBindingConstraintsAndTheirPush) {
 Decision before_a_cart() {
   Decision d = with_two_walls();
   d.scenario.moving_obstacles = {{"cart", geometry::Polyline{{{2.0, -1.0}, {2.0, 1.0}}}, {{{0, 0}, {-8, 0}}, 4.0}}};
-  RecordedConstraint cart = d.step.constraints[0];
+  DecisionConstraint cart = d.step.constraints[0];
   cart.source = ConstraintSource::moving_obstacle;
   cart.index = 0;
   cart.hard = false;
   cart.half_plane = {{-1.0, 0.0}, 3.35};
-  RecordedConstraint satisfied = d.step.constraints[1];
+  DecisionConstraint satisfied = d.step.constraints[1];
   satisfied.active = false;
   d.step.constraints = {cart, satisfied};
   d.step.chosen = {-0.5, 0.0};
@@ -201,7 +200,7 @@ TEST(VelocitySpace, SaysWhereHalfPlanesWereNotRecorded) {
 // What the robot overlaps has no cone; its shape stood in the legend without the heading that it belongs to.
 TEST(VelocitySpace, WhatIsOverlappedHasNoShapeInTheLegend) {
   Decision d = with_two_walls();
-  for (auto& c : d.step.constraints) c.radius = 2.0;
+  for (formation::SeenBody& seen : d.seen) seen.radius = 2.0;
   EXPECT_THAT(velocity_space_figure(d).body, testing::Not(HasSubstr("its shape")));
 }
 
@@ -222,7 +221,7 @@ TEST(Decision, NamesAtMostThreeObstacles) {
   Decision d = with_two_walls();
   for (const char* id : {"a", "b", "c"})
     d.scenario.obstacles.push_back({id, geometry::Polyline{{{0.0, 1.5}, {0.0, 1.6}}}});
-  RecordedConstraint all = d.step.constraints[0];
+  DecisionConstraint all = d.step.constraints[0];
   all.source = ConstraintSource::enclosure;
   d.bodies[0].owners = {0, 1, 2, 3, 4};
   EXPECT_EQ(formation::name_of(all, d.scenario, d.bodies), "enclosure 0 of obstacles east, north, a and 2 more");

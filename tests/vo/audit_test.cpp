@@ -60,7 +60,7 @@ TEST(Audit, AHalfPlaneThatCutsIntoItsVelocityObstacleIsUnsafe) {
   std::size_t changed = 0;
   for (formation::Step& step : file.recording.steps) {
     for (formation::RobotStep& robot : step.robots) {
-      for (formation::RecordedConstraint& c : robot.constraints) {
+      for (formation::DecisionConstraint& c : robot.constraints) {
         if (c.source == ConstraintSource::robot || !c.certified) continue;
         c.half_plane.offset -= 1.0;
         ++changed;
@@ -140,7 +140,7 @@ TEST_F(AuditOfAFile, AHalfPlaneShiftedByAnUlpInwardIsCaught) {
   RecordingFile file = clean();
   for (formation::Step& step : file.recording.steps) {
     for (formation::RobotStep& robot : step.robots) {
-      for (formation::RecordedConstraint& c : robot.constraints) {
+      for (formation::DecisionConstraint& c : robot.constraints) {
         if (c.half_plane.offset == 0.0) continue;
         const std::string good = text();
         c.half_plane.offset = std::nextafter(c.half_plane.offset, -std::numeric_limits<double>::infinity());

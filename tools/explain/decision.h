@@ -29,9 +29,10 @@ struct Decision {
   std::vector<vo::Body> bodies;  ///< of the run
   /// False: of what neither binds nor is violated, only half-planes against what could be met within a step.
   bool has_all_half_planes = true;
-  std::vector<std::size_t> waits_for = {};  ///< robots (formation/waiting.h)
-  std::string waiting = {};                 ///< the same in words; empty where it waits for nobody
-  std::vector<char> fell_back = {};         ///< of each half-plane, whether it is of a pair that fell back
+  std::vector<std::size_t> waits_for = {};     ///< robots (formation/waiting.h)
+  std::string waiting = {};                    ///< the same in words; empty where it waits for nobody
+  std::vector<formation::SeenBody> seen = {};  ///< of each half-plane, what it keeps clear of
+  std::vector<char> fell_back = {};            ///< of each half-plane, whether it is of a pair that fell back
 
   const formation::Robot& who() const { return scenario.robots[robot]; }
   bool is_of_fallen_pair(std::size_t half_plane) const {
@@ -44,16 +45,16 @@ Decision decision_of(const formation::Scenario& scenario, const std::string& met
                      const formation::Step& row, const std::vector<vo::Body>& bodies, bool has_all_half_planes);
 
 /// The convex set that the robot must not reach, seen from it.
-geometry::GrownShape grown_shape(const formation::RecordedConstraint& constraint);
+geometry::GrownShape grown_shape(const formation::SeenBody& seen);
 
 /// m/s by which v lies on the forbidden side of the half-plane's line; negative on the allowed side.
-double violation_of(const formation::RecordedConstraint& constraint, Vec2 v);
+double violation_of(const formation::DecisionConstraint& constraint, Vec2 v);
 
 /// What the chosen velocity does to a half-plane. That a linear program counts it as active says nothing of the line
 /// itself: where half-planes contradict each other, the active ones are those that are violated most.
 enum class Effect { slack, binding, violated };
 
-Effect effect_of(const Decision& decision, const formation::RecordedConstraint& constraint);
+Effect effect_of(const Decision& decision, const formation::DecisionConstraint& constraint);
 
 /// "slack", "binding", "violated".
 std::string name(Effect effect);

@@ -18,7 +18,7 @@
 namespace exactvo::tools {
 
 using formation::Balance;
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using geometry::GrownShape;
 
 namespace {
@@ -69,8 +69,8 @@ std::string numbered(const std::vector<std::size_t>& constraints) {
 }
 
 std::string violated_words(const Decision& d) {
-  std::vector<RecordedConstraint> violated;
-  for (const RecordedConstraint& c : d.step.constraints)
+  std::vector<DecisionConstraint> violated;
+  for (const DecisionConstraint& c : d.step.constraints)
     if (effect_of(d, c) == Effect::violated) violated.push_back(c);
   return violated.empty() ? "" : ": " + formation::name_of(violated, d.scenario, d.bodies);
 }
@@ -119,12 +119,13 @@ bool takes_preferred(const Decision& d) {
   return norm(d.step.chosen - d.step.preferred) < kNotSeen;
 }
 
-std::string contact_words(const Decision& d, const RecordedConstraint& c) {
+std::string contact_words(const Decision& d, std::size_t i) {
+  const DecisionConstraint& c = d.step.constraints[i];
   const Vec2 preferred = d.step.preferred;
-  const geometry::GrownShape s = grown_shape(c);
+  const geometry::GrownShape s = grown_shape(d.seen[i]);
   const double distance = distance_to(s);
   if (distance < 0.0) return fmt::format("the robot overlaps it by {} m: no cone exists", number(-distance));
-  const std::optional<double> contact = time_to_contact(s, preferred - c.shape_velocity);
+  const std::optional<double> contact = time_to_contact(s, preferred - d.seen[i].velocity);
   const std::string away = fmt::format("{} m from the robot's rim", number(distance));
   // A velocity on the line of a half-plane just misses: boost and following aim there.
   if (!contact && takes_preferred(d) && effect_of(d, c) == Effect::binding)
@@ -135,26 +136,26 @@ std::string contact_words(const Decision& d, const RecordedConstraint& c) {
   return fmt::format("{}, reached in {} at the preferred velocity, horizon {} s", away, in, number(c.time_horizon));
 }
 
-std::string proof_words(const RecordedConstraint& c) {
+std::string proof_words(const DecisionConstraint& c) {
   if (!c.certified) return "not certified";
   return c.source == formation::ConstraintSource::robot ? "proven safe together with the other robot's half"
                                                         : "proven to exclude the velocity obstacle";
 }
 
-std::string line_words(const RecordedConstraint& c) {
+std::string line_words(const DecisionConstraint& c) {
   return fmt::format("{:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}", c.half_plane.normal.x, c.half_plane.normal.y,
                      c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(c));
 }
 
-std::string effect_words(const Decision& d, const RecordedConstraint& c) {
+std::string effect_words(const Decision& d, const DecisionConstraint& c) {
   const Effect effect = effect_of(d, c);
   return effect == Effect::violated ? "violated by " + amount(violation_of(c, d.step.chosen)) + " m/s" : name(effect);
 }
 
 std::string constraint_words(const Decision& d, std::size_t i) {
-  const RecordedConstraint& c = d.step.constraints[i];
+  const DecisionConstraint& c = d.step.constraints[i];
   return fmt::format("  [{}] {}{}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies),
-                     d.is_of_fallen_pair(i) ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, c),
+                     d.is_of_fallen_pair(i) ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, i),
                      line_words(c));
 }
 
@@ -193,7 +194,7 @@ bool is_held(const Decision& d) {
 }
 
 std::string held_words(const Decision& d, const Balance& b) {
-  std::vector<RecordedConstraint> by;
+  std::vector<DecisionConstraint> by;
   for (const auto& force : b.forces)
     if (force.constraint && force.factor >= kNotSeen) by.push_back(d.step.constraints[*force.constraint]);
   if (by.empty()) return "";
@@ -293,16 +294,18 @@ Decision decision_of(const formation::Scenario& scenario, const std::string& met
   const formation::WaitForGraph waits = formation::waiting_in(scenario, row);
   d.waits_for = waits[robot];
   d.waiting = formation::waiting_words(scenario, row, waits, robot);
-  for (const RecordedConstraint& c : d.step.constraints)
+  for (const DecisionConstraint& c : d.step.constraints) {
+    d.seen.push_back(formation::seen_body(scenario, bodies, row, robot, c));
     d.fell_back.push_back(formation::fell_back(scenario, row, robot, c));
+  }
   return d;
 }
 
-double violation_of(const RecordedConstraint& constraint, Vec2 v) {
+double violation_of(const DecisionConstraint& constraint, Vec2 v) {
   return geometry::violation(constraint.half_plane, v) / norm(constraint.half_plane.normal);
 }
 
-Effect effect_of(const Decision& decision, const RecordedConstraint& constraint) {
+Effect effect_of(const Decision& decision, const DecisionConstraint& constraint) {
   const double violation = violation_of(constraint, decision.step.chosen);
   if (violation > kOnLine) return Effect::violated;
   return constraint.active && violation >= -kNotSeen ? Effect::binding : Effect::slack;
@@ -312,8 +315,8 @@ std::string name(Effect effect) {
   return effect == Effect::slack ? "slack" : effect == Effect::binding ? "binding" : "violated";
 }
 
-GrownShape grown_shape(const RecordedConstraint& constraint) {
-  return {constraint.shape, constraint.position, constraint.radius};
+GrownShape grown_shape(const formation::SeenBody& seen) {
+  return {seen.shape, seen.position, seen.radius};
 }
 
 double distance_to(const GrownShape& s) {

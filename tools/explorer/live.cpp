@@ -23,7 +23,7 @@ namespace exactvo::tools {
 
 using datasets::DataCode;
 using datasets::DataError;
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using formation::RobotStep;
 using geometry::norm;
 using geometry::Vec2;
@@ -43,19 +43,19 @@ constexpr double kFastest = 1e6;               // m/s
 
 // --- What moves by itself, at a later time ---
 
-formation::Leader advanced(const formation::Leader& leader, double time) {
-  double left = leader.profile.empty() ? leader.speed * time : formation::distance_at(leader.profile, time);
+formation::TimedPath advanced(const formation::TimedPath& motion, double time) {
+  double left = motion.profile.empty() ? motion.speed * time : formation::distance_at(motion.profile, time);
   std::size_t k = 0;
-  while (k + 1 < leader.path.size() && left >= norm(leader.path[k + 1] - leader.path[k]))
-    left -= norm(leader.path[k + 1] - leader.path[k]), ++k;
-  formation::Leader rest{{leader.path[k]}, leader.speed, {}};
-  if (k + 1 < leader.path.size()) {
-    const Vec2 leg = leader.path[k + 1] - leader.path[k];
+  while (k + 1 < motion.path.size() && left >= norm(motion.path[k + 1] - motion.path[k]))
+    left -= norm(motion.path[k + 1] - motion.path[k]), ++k;
+  formation::TimedPath rest{{motion.path[k]}, motion.speed, {}};
+  if (k + 1 < motion.path.size()) {
+    const Vec2 leg = motion.path[k + 1] - motion.path[k];
     rest.path.front() += (left / norm(leg)) * leg;
   }
-  rest.path.insert(rest.path.end(), leader.path.begin() + static_cast<std::ptrdiff_t>(k) + 1, leader.path.end());
-  if (!leader.profile.empty()) rest.profile.push_back({0.0, formation::speed_at(leader.profile, time)});
-  for (const formation::SpeedKnot& knot : leader.profile)
+  rest.path.insert(rest.path.end(), motion.path.begin() + static_cast<std::ptrdiff_t>(k) + 1, motion.path.end());
+  if (!motion.profile.empty()) rest.profile.push_back({0.0, formation::speed_at(motion.profile, time)});
+  for (const formation::SpeedKnot& knot : motion.profile)
     if (knot.time > time) rest.profile.push_back({knot.time - time, knot.speed});
   return rest;
 }
@@ -67,7 +67,7 @@ void advance(formation::Scenario& scenario, double time) {
     obstacle.motion = advanced(obstacle.motion, time);
     geometry::shift(obstacle.shape, obstacle.motion.path.front() - before);
   }
-  if (scenario.formation) scenario.formation->leader = advanced(scenario.formation->leader, time);
+  if (scenario.formation) scenario.formation->leader = {advanced(scenario.formation->leader, time)};
 }
 
 // --- Questions ---
@@ -163,7 +163,7 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   } else {
     problem.bound.box_x = problem.bound.box_y = max_speed;
   }
-  for (const RecordedConstraint& c : step.constraints)
+  for (const DecisionConstraint& c : step.constraints)
     problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
   const lp::Proven proven = lp::solve_certified(problem);
   const lp::Solution& solution = proven.solution;
@@ -174,7 +174,7 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   step.exact_multipliers = proven.exact_stage && solution.status != lp::Status::no_interior &&
                            lp::check(problem, lp::claim_of(problem, solution)) != lp::CertificateError::none;
   step.bound.clear();
-  for (RecordedConstraint& c : step.constraints) {
+  for (DecisionConstraint& c : step.constraints) {
     c.active = false;
     c.multiplier = 0.0;
   }
@@ -197,11 +197,11 @@ void keep_what_is_shown(std::size_t robot, formation::Step& row) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     if (i == robot) continue;
     const Vec2 preferred = row.robots[i].preferred;
-    const auto is_not_shown = [&](const RecordedConstraint& c) {
+    const auto is_not_shown = [&](const DecisionConstraint& c) {
       const bool holds_it = c.active || geometry::violation(c.half_plane, preferred) > 0.0;
       return !holds_it && (c.source != vo::BodyKind::robot || c.index != robot);
     };
-    std::vector<RecordedConstraint>& all = row.robots[i].constraints;
+    std::vector<DecisionConstraint>& all = row.robots[i].constraints;
     all.erase(std::remove_if(all.begin(), all.end(), is_not_shown), all.end());
   }
 }
@@ -230,17 +230,21 @@ Json json(const geometry::Bracket& b) {
 }
 
 /// The velocity obstacles that the robot's half-planes exclude.
-std::vector<vo::ShiftedCone> cones_of(const RobotStep& step) {
+std::vector<vo::ShiftedCone> cones_of(const LiveQuestion& question, const formation::Recording& moment) {
   std::vector<vo::ShiftedCone> cones;
-  for (const RecordedConstraint& c : step.constraints)
-    cones.push_back(
-        {vo::VelocityObstacle(c.shape, c.position, c.radius, c.time_horizon), {{-c.shape_velocity}}, c.shape_velocity});
+  const formation::Step& row = moment.steps.front();
+  for (const DecisionConstraint& c : row.robots[question.robot].constraints) {
+    const formation::SeenBody seen = formation::seen_body(question.scenario, moment.bodies, row, question.robot, c);
+    cones.push_back({vo::VelocityObstacle(seen.shape, seen.position, seen.radius, c.time_horizon),
+                     {{-seen.velocity}},
+                     seen.velocity});
+  }
   return cones;
 }
 
 std::vector<geometry::HalfPlane> half_planes_of(const RobotStep& step) {
   std::vector<geometry::HalfPlane> all;
-  for (const RecordedConstraint& c : step.constraints) all.push_back(c.half_plane);
+  for (const DecisionConstraint& c : step.constraints) all.push_back(c.half_plane);
   return all;
 }
 
@@ -285,7 +289,7 @@ std::string live_free_velocities(const LiveQuestion& question) {
     return Json{{"why_not", "the speed bound is a box, and free velocities are counted within a disc"}}.dump();
   const formation::Recording moment = moment_of(question);
   const RobotStep& step = moment.steps.front().robots[question.robot];
-  std::vector<vo::ShiftedCone> cones = cones_of(step);
+  std::vector<vo::ShiftedCone> cones = cones_of(question, moment);
   const bool overlaps = std::any_of(cones.begin(), cones.end(), [](const auto& c) { return c.cone.overlaps(); });
   if (overlaps) return Json{{"why_not", "the robot touches or overlaps what it must avoid: no cone exists"}}.dump();
   const vo::FreeVelocities free(std::move(cones), {max_speed, kOfSpeed});

@@ -14,7 +14,7 @@
 
 namespace exactvo::tools {
 
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
@@ -130,13 +130,7 @@ std::size_t numbers_in(const Step& row) {
   return count;
 }
 
-Step without_shapes(Step row) {
-  for (RobotStep& robot : row.robots)
-    for (RecordedConstraint& c : robot.constraints) c.shape = geometry::Disc{};
-  return row;
-}
-
-std::uint8_t flags_of(const RecordedConstraint& c, bool fell_back) {
+std::uint8_t flags_of(const DecisionConstraint& c, bool fell_back) {
   return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0) | (fell_back ? 8 : 0));
 }
 
@@ -159,7 +153,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   std::vector<std::uint8_t> flags;
   std::vector<const RobotStep*> robots;
   std::vector<const lp::ActiveConstraint*> parts;
-  std::vector<const RecordedConstraint*> half_planes;
+  std::vector<const DecisionConstraint*> half_planes;
   for (const Step& row : rows) {
     time.push_back(row.time);
     // Of each robot the one that holds it most, by its number from 1 on.
@@ -171,7 +165,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
       for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen})
         append(state, v);
       for (const lp::ActiveConstraint& part : r.bound) parts.push_back(&part);
-      for (const RecordedConstraint& c : r.constraints) {
+      for (const DecisionConstraint& c : r.constraints) {
         half_planes.push_back(&c);
         flags.push_back(flags_of(c, formation::fell_back(scenario, row, i, c)));
         append(line, c.half_plane.normal);
@@ -193,14 +187,14 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("decision.waits", waits);
   columns.add("part.kind", each<std::uint8_t>(parts, [](const auto& part) { return part.binding.kind; }), 0);
   columns.add("part.multiplier", each<double>(parts, &lp::ActiveConstraint::multiplier), 0);
-  columns.add("half_plane.body", each<std::uint32_t>(half_planes, &RecordedConstraint::body));
-  columns.add("half_plane.index", each<std::uint32_t>(half_planes, &RecordedConstraint::index));
-  columns.add("half_plane.piece", each<std::uint32_t>(half_planes, &RecordedConstraint::piece));
+  columns.add("half_plane.body", each<std::uint32_t>(half_planes, &DecisionConstraint::body));
+  columns.add("half_plane.index", each<std::uint32_t>(half_planes, &DecisionConstraint::index));
+  columns.add("half_plane.piece", each<std::uint32_t>(half_planes, &DecisionConstraint::piece));
   columns.add("half_plane.flags", flags, 0);
   columns.add("half_plane.line", line, 0);
-  columns.add("half_plane.time_horizon", each<double>(half_planes, &RecordedConstraint::time_horizon), 0);
-  columns.add("half_plane.clearance", each<double>(half_planes, &RecordedConstraint::clearance), 0);
-  columns.add("half_plane.multiplier", each<double>(half_planes, &RecordedConstraint::multiplier), 0);
+  columns.add("half_plane.time_horizon", each<double>(half_planes, &DecisionConstraint::time_horizon), 0);
+  columns.add("half_plane.clearance", each<double>(half_planes, &DecisionConstraint::clearance), 0);
+  columns.add("half_plane.multiplier", each<double>(half_planes, &DecisionConstraint::multiplier), 0);
 }
 
 /// In zlib's format (RFC 1950), which ends in a checksum.
@@ -281,7 +275,7 @@ void RunPacker::keep_row(const Step& row) {
 /// The final row of a run has no decisions, and is kept all the same until it is known to be the final one.
 void RunPacker::keep_decisions(const Step& row) {
   if (count_ % every_decision_ != 0) return;
-  decisions_.push_back(without_shapes(row));
+  decisions_.push_back(row);
   decision_numbers_ += numbers_in(row);
   while (decision_numbers_ > limits_.decision_numbers && decisions_.size() > 1) {
     keep_every_second(decisions_);

@@ -13,7 +13,7 @@
 namespace exactvo::tools {
 
 using formation::ConstraintSource;
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 
 namespace {
 
@@ -58,7 +58,14 @@ class VelocitySpace {
   const Box& box() const { return view_; }
 
  private:
-  const std::vector<RecordedConstraint>& constraints() const { return d_.step.constraints; }
+  /// A velocity obstacle.
+  struct Cone {
+    geometry::GrownShape shape;  ///< seen from the robot
+    double time_horizon = 0.0;   ///< s
+    Vec2 velocity;               ///< m/s
+  };
+
+  const std::vector<DecisionConstraint>& constraints() const { return d_.step.constraints; }
   double limit() const { return d_.who().max_speed; }
 
   Box view() const {
@@ -69,7 +76,7 @@ class VelocitySpace {
     }
     // The line of a half-plane that the chosen velocity violates: without it all that is seen is forbidden.
     constexpr double kFarthestLine = 40.0;  // of the speed bound
-    for (const RecordedConstraint& c : constraints()) {
+    for (const DecisionConstraint& c : constraints()) {
       if (effect_of(d_, c) != Effect::violated) continue;
       const Vec2 foot = (c.half_plane.offset / squared_norm(c.half_plane.normal)) * c.half_plane.normal;
       if (norm(foot) <= kFarthestLine * limit()) box.add(1.1 * foot);
@@ -86,7 +93,7 @@ class VelocitySpace {
 
   void add_allowed() {
     Points ring = speed_bound_ring();
-    for (const RecordedConstraint& c : constraints()) ring = clipped(ring, c.half_plane);
+    for (const DecisionConstraint& c : constraints()) ring = clipped(ring, c.half_plane);
     if (ring.size() < 3) return;
     const int index = data_.begin("allowed velocities", "v_x [m/s], v_y [m/s]");
     data_.ring(ring);
@@ -95,20 +102,21 @@ class VelocitySpace {
   }
 
   /// Those that have a cone: what the robot overlaps has none.
-  std::vector<const RecordedConstraint*> of_kind(bool robots) const {
-    std::vector<const RecordedConstraint*> result;
-    for (const RecordedConstraint& c : constraints()) {
-      if ((c.source == ConstraintSource::robot) == robots && leg_normals(grown_shape(c))) result.push_back(&c);
+  std::vector<Cone> of_kind(bool robots) const {
+    std::vector<Cone> result;
+    for (std::size_t i = 0; i < constraints().size(); ++i) {
+      const DecisionConstraint& c = constraints()[i];
+      const Cone cone{grown_shape(d_.seen[i]), c.time_horizon, d_.seen[i].velocity};
+      if ((c.source == ConstraintSource::robot) == robots && leg_normals(cone.shape)) result.push_back(cone);
     }
     return result;
   }
 
   void add_cones_of(bool robots, const char* colour, const std::string& title) {
-    const std::vector<const RecordedConstraint*> all = of_kind(robots);
+    const std::vector<Cone> all = of_kind(robots);
     if (all.empty()) return;
     std::vector<Points> rings;
-    for (const RecordedConstraint* c : all)
-      rings.push_back(velocity_obstacle_in(view_, grown_shape(*c), c->time_horizon, c->shape_velocity));
+    for (const Cone& c : all) rings.push_back(velocity_obstacle_in(view_, c.shape, c.time_horizon, c.velocity));
     // Many on top of each other would hide what lies below.
     const double opacity = 0.3 * std::min(1.0, kFewCones / static_cast<double>(all.size()));
     add_curves(rings, title,
@@ -137,14 +145,14 @@ class VelocitySpace {
     plot_.data(index, style, title);
   }
 
-  void add_cone_lines(const std::vector<const RecordedConstraint*>& all, const char* colour) {
+  void add_cone_lines(const std::vector<Cone>& all, const char* colour) {
     std::vector<Points> legs;
     std::vector<Points> cut_offs;
     std::vector<Points> shapes;
-    for (const RecordedConstraint* c : all) {
-      add_legs(*c, legs);
-      add_cut_off(*c, cut_offs);
-      add_shape(*c, shapes);
+    for (const Cone& c : all) {
+      add_legs(c, legs);
+      add_cut_off(c, cut_offs);
+      add_shape(c, shapes);
     }
     const double thinner = all.size() > kFewCones ? 0.6 : 1.0;
     const auto lines = [&](double width, const char* dash) {
@@ -156,12 +164,12 @@ class VelocitySpace {
                "  its shape divided by τ");
   }
 
-  Vec2 tangent_point(const RecordedConstraint& c, Vec2 normal) const {
-    return support_point(grown_shape(c), normal) / c.time_horizon + c.shape_velocity;
+  Vec2 tangent_point(const Cone& c, Vec2 normal) const {
+    return support_point(c.shape, normal) / c.time_horizon + c.velocity;
   }
 
-  void add_legs(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    const auto legs = leg_normals(grown_shape(c));
+  void add_legs(const Cone& c, std::vector<Points>& curves) const {
+    const auto legs = leg_normals(c.shape);
     const Vec2 left = tangent_point(c, legs->first), right = tangent_point(c, legs->second);
     // Beyond any corner of the view, wherever in it or near it the leg starts.
     const double length = 4.0 * view_.diagonal() + norm(left) + norm(right);
@@ -169,24 +177,24 @@ class VelocitySpace {
     curves.push_back({right, right + length * perp(legs->second)});
   }
 
-  void add_cut_off(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    const auto [from, to] = *leg_normals(grown_shape(c));
+  void add_cut_off(const Cone& c, std::vector<Points>& curves) const {
+    const auto [from, to] = *leg_normals(c.shape);
     const double turn = std::atan2(cross(from, to), dot(from, to));
     Points arc;
     for (int i = 0; i <= kArcPoints; ++i) arc.push_back(tangent_point(c, rotated(from, turn * i / kArcPoints)));
     curves.push_back(arc);
   }
 
-  void add_shape(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    Points ring = scaled_outline(grown_shape(c), c.time_horizon);
-    for (Vec2& p : ring) p += c.shape_velocity;
+  void add_shape(const Cone& c, std::vector<Points>& curves) const {
+    Points ring = scaled_outline(c.shape, c.time_horizon);
+    for (Vec2& p : ring) p += c.velocity;
     if (!ring.empty()) ring.push_back(ring.front());
     curves.push_back(ring);
   }
 
   void add_half_planes(Effect effect, const std::string& line_style, const char* colour) {
     std::vector<std::pair<Points, Vec2>> lines;
-    for (const RecordedConstraint& c : constraints()) {
+    for (const DecisionConstraint& c : constraints()) {
       const Points line = effect_of(d_, c) == effect ? boundary_within(view_, c.half_plane) : Points{};
       if (!line.empty()) lines.emplace_back(line, c.half_plane.normal);
     }

@@ -198,7 +198,7 @@ formation::FormationSpec table_two() {
   f.topology.adjacency = {{0, 1, 1}, {1, 0, 1}, {1, 1, 0}};
   f.topology.pinning = {1, 1, 1};
   f.offsets = {{1, 1}, {-1, 1}, {1, -1}};
-  f.leader = {{{0, 0}, {25, 25}}, 3.0 * std::sqrt(2.0)};
+  f.leader = {{{{0, 0}, {25, 25}}, 3.0 * std::sqrt(2.0)}};
   return f;
 }
 

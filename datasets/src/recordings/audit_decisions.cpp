@@ -25,14 +25,14 @@ using exact::exactly;
 using exact::Point;
 using exact::Rational;
 using exact::Verdict;
+using formation::DecisionConstraint;
 using formation::GoalBodies;
-using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
 using vo::BodyKind;
 
-bool is_static(const RecordedConstraint& c) {
+bool is_static(const DecisionConstraint& c) {
   return c.source == BodyKind::enclosure || c.source == BodyKind::obstacle_edge;
 }
 
@@ -41,8 +41,8 @@ bool has_numbers(const geometry::HalfPlane& h) {
 }
 
 /// The robot's half against the other; nothing where the row has none.
-const RecordedConstraint* half_against(const RobotStep& robot, std::size_t other) {
-  for (const RecordedConstraint& c : robot.constraints)
+const DecisionConstraint* half_against(const RobotStep& robot, std::size_t other) {
+  for (const DecisionConstraint& c : robot.constraints)
     if (c.source == BodyKind::robot && c.index == other && has_numbers(c.half_plane)) return &c;
   return nullptr;
 }
@@ -200,7 +200,7 @@ class DecisionAudit : public RowAudit {
 
   bool is_excluded(const Seen& s, const geometry::Segment& edge) const {
     const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
-    return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+    return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const DecisionConstraint& c) {
       return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});
     });
   }
@@ -215,7 +215,7 @@ class DecisionAudit : public RowAudit {
     if (!exact::is_clear(moved_[k], s.at, s.radius)) return Verdict::unknown;
     const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
     const bool excluded =
-        std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+        std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const DecisionConstraint& c) {
           return c.source == BodyKind::moving_obstacle && c.index == k &&
                  vo::is_true({moved_[k], s.state->anchor, radius, step, moved.velocity, c.half_plane});
         });
@@ -241,12 +241,12 @@ class DecisionAudit : public RowAudit {
     if (exact::dot(apart, apart) < reach * reach) return Verdict::unknown;
     const bool a_yields = run_.scenario.robots[a.robot].cooperates;
     const bool b_yields = run_.scenario.robots[b.robot].cooperates;
-    const RecordedConstraint* of_a = a_yields ? half_against(*a.state, b.robot) : nullptr;
-    const RecordedConstraint* of_b = b_yields ? half_against(*b.state, a.robot) : nullptr;
+    const DecisionConstraint* of_a = a_yields ? half_against(*a.state, b.robot) : nullptr;
+    const DecisionConstraint* of_b = b_yields ? half_against(*b.state, a.robot) : nullptr;
     if ((a_yields && !of_a) || (b_yields && !of_b)) return Verdict::meets;
     if (of_a && of_b && of_a->half_plane.normal != -of_b->half_plane.normal) return Verdict::meets;
     const Point n = of_a ? exactly(of_a->half_plane.normal) : exactly(-of_b->half_plane.normal);
-    const auto at_least = [](const RecordedConstraint* half, const Point& normal, const RobotStep& robot) {
+    const auto at_least = [](const DecisionConstraint* half, const Point& normal, const RobotStep& robot) {
       return half ? Rational(half->half_plane.offset) : Rational(exact::dot(normal, exactly(robot.anchor_velocity)));
     };
     const Point m{Rational(-n.x), Rational(-n.y)};
@@ -258,7 +258,7 @@ class DecisionAudit : public RowAudit {
 
   void half_planes_hold(const Seen& s) {
     std::size_t uncertified = 0;
-    for (const RecordedConstraint& c : s.state->constraints) {
+    for (const DecisionConstraint& c : s.state->constraints) {
       const std::string wrong = misnamed(s, c);
       if (!wrong.empty()) {
         run_.tally.refuted(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + wrong));
@@ -286,7 +286,7 @@ class DecisionAudit : public RowAudit {
   }
 
   /// What is wrong with the names of a half-plane; empty where nothing is.
-  std::string misnamed(const Seen& s, const RecordedConstraint& c) const {
+  std::string misnamed(const Seen& s, const DecisionConstraint& c) const {
     const std::vector<vo::Body>& bodies = run_.file.recording.bodies;
     if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
       return " names no body that stands for something";
@@ -317,7 +317,7 @@ class DecisionAudit : public RowAudit {
   }
 
   /// By more than rounding: then a half-plane can be certified, and one that is said to be uncertified was forged.
-  bool is_clear_of(const Seen& s, const RecordedConstraint& c) const {
+  bool is_clear_of(const Seen& s, const DecisionConstraint& c) const {
     constexpr double kRounding = 0x1p-40;  // of the coordinates
     const Vec2 at = s.state->anchor;
     double radius = run_.scenario.robots[s.robot].radius;
@@ -330,7 +330,7 @@ class DecisionAudit : public RowAudit {
     return is_outside(geometry::Disc{s.step->robots[c.index].anchor, run_.scenario.robots[c.index].radius});
   }
 
-  bool holds(const Seen& s, const RecordedConstraint& c) const {
+  bool holds(const Seen& s, const DecisionConstraint& c) const {
     const double radius = run_.scenario.robots[s.robot].radius;
     const Vec2 at = s.state->anchor;
     if (c.source == BodyKind::moving_obstacle)
@@ -348,7 +348,7 @@ class DecisionAudit : public RowAudit {
   /// change, which is 2 offset - n.(v_a + v_b): where both take as much, they do not collide within tau. Or it adds up
   /// with the half-plane that the other robot has against this one, of the opposite normal: any two velocities that
   /// keep both do not collide within tau. So do pairs that fell back (liveness).
-  bool keeps_pair_apart(const Seen& s, const RecordedConstraint& c) const {
+  bool keeps_pair_apart(const Seen& s, const DecisionConstraint& c) const {
     if (!has_numbers(c.half_plane) || !(c.time_horizon > 0.0) || !std::isfinite(c.time_horizon)) return false;
     const RobotStep& them = s.step->robots[c.index];
     const Point n = exactly(c.half_plane.normal), apart = exactly(them.anchor) - s.at;
@@ -358,7 +358,7 @@ class DecisionAudit : public RowAudit {
     };
     if (excludes(2 * offset - exact::dot(n, exactly(s.state->anchor_velocity) + exactly(them.anchor_velocity))))
       return true;
-    return std::any_of(them.constraints.begin(), them.constraints.end(), [&](const RecordedConstraint& theirs) {
+    return std::any_of(them.constraints.begin(), them.constraints.end(), [&](const DecisionConstraint& theirs) {
       return theirs.source == BodyKind::robot && theirs.index == s.robot && has_numbers(theirs.half_plane) &&
              theirs.half_plane.normal == -c.half_plane.normal && excludes(offset + Rational(theirs.half_plane.offset));
     });
@@ -375,7 +375,7 @@ class DecisionAudit : public RowAudit {
     };
     if (!geometry::is_finite(r.preferred) || !geometry::is_finite(r.chosen) || !std::isfinite(r.violation) ||
         !std::all_of(r.constraints.begin(), r.constraints.end(),
-                     [](const RecordedConstraint& c) { return has_numbers(c.half_plane); }))
+                     [](const DecisionConstraint& c) { return has_numbers(c.half_plane); }))
       return answer(" is without numbers", false);
     const Violations most = violations(s);
     run_.tally.report.largest_violation =
@@ -411,7 +411,7 @@ class DecisionAudit : public RowAudit {
     const bool no_room = r.status == lp::Status::no_interior, infeasible = r.status == lp::Status::infeasible;
     const Point chosen = exactly(r.chosen);
     Violations most{Rational(0), Rational(0)};
-    for (const RecordedConstraint& c : r.constraints) {
+    for (const DecisionConstraint& c : r.constraints) {
       const Rational violation = violation_at(c.half_plane, chosen);
       const bool may_give = infeasible || (!c.hard && (no_room || r.status == lp::Status::relaxed));
       if (!may_give) most.forbidden = std::max(most.forbidden, violation);
@@ -433,7 +433,7 @@ class DecisionAudit : public RowAudit {
     if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
     for (const lp::ActiveConstraint& part : r.bound)
       if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
-    for (const RecordedConstraint& c : r.constraints) {
+    for (const DecisionConstraint& c : r.constraints) {
       if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
       if (!c.active && c.multiplier != 0.0) return " has a multiplier for an inactive half-plane";
       if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
@@ -459,7 +459,7 @@ class DecisionAudit : public RowAudit {
       fits = fits && solution.active_count < solution.active.size() && multiplier >= 0.0 && std::isfinite(multiplier);
       if (fits) solution.active[solution.active_count++] = {binding, multiplier};
     };
-    for (const RecordedConstraint& c : r.constraints) {
+    for (const DecisionConstraint& c : r.constraints) {
       problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
       if (c.active) take(lp::constraint_at(problem.constraints.size() - 1), c.multiplier);
     }

@@ -17,9 +17,9 @@ using exact::Interval;
 using exact::length_at_most;
 using exact::Point;
 using exact::Rational;
-using formation::Leader;
 using formation::RobotStep;
 using formation::Step;
+using formation::TimedPath;
 using geometry::Vec2;
 
 /// A step's results are sums of terms that passed fewer than this many roundings (rk4, the longest, 40).
@@ -37,7 +37,7 @@ constexpr double kShareOfWay = 0x1p-37;
 constexpr double kRestsEarlier = 0x1p-12;
 constexpr double kShareOfSpeed = 0x1p-44;
 
-Rational length_of(const Leader& motion) {
+Rational length_of(const TimedPath& motion) {
   Rational length(0);
   for (std::size_t i = 0; i < motion.path.size(); ++i) {
     length += length_at_most(exactly(motion.path[i]));
@@ -46,7 +46,7 @@ Rational length_of(const Leader& motion) {
   return length;
 }
 
-Rational top_speed(const Leader& motion) {
+Rational top_speed(const TimedPath& motion) {
   Rational speed(motion.speed);
   for (const formation::SpeedKnot& knot : motion.profile) speed = std::max(speed, Rational(knot.speed));
   return speed;
@@ -87,7 +87,7 @@ class SequenceAudit : public RowAudit {
     ask(step.time == static_cast<double>(row) * run_.file.recording.time_step, row,
         "its time is not its number of time steps");
     if (leader_) {
-      const Leader& motion = run_.scenario.formation->leader;
+      const TimedPath& motion = run_.scenario.formation->leader;
       const Vec2 start = motion.path.front();
       ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
           "the leader is not where its path has it");
@@ -115,7 +115,7 @@ class SequenceAudit : public RowAudit {
     holds ? run_.tally.proven(AuditPoint::sequence) : run_.tally.refuted(AuditPoint::sequence, at_row(row, what));
   }
 
-  bool is_on_way(const ExactWay& way, const Leader& motion, double time, Vec2 displacement, Vec2 velocity) const {
+  bool is_on_way(const ExactWay& way, const TimedPath& motion, double time, Vec2 displacement, Vec2 velocity) const {
     if (!(time >= 0.0) || !geometry::is_finite(displacement) || !geometry::is_finite(velocity)) return false;
     const Rational t(time), speed = top_speed(motion);
     const exact::Chord at = way.within(t, t);

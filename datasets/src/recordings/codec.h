@@ -53,9 +53,9 @@ void members(Codec& json, For<Codec, lp::ActiveConstraint>& part) {
   json.member("part", part.binding.kind).member("multiplier", part.multiplier);
 }
 
-/// Source, shape, position, radius and velocity are not here: the reader takes them from the body and the row.
+/// The source is not here: the reader takes it from the body.
 template <class Codec>
-void members(Codec& json, For<Codec, formation::RecordedConstraint>& c) {
+void members(Codec& json, For<Codec, formation::DecisionConstraint>& c) {
   json.member("body", c.body).member("index", c.index).member_if(c.piece != 0, "piece", c.piece);
   json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
   json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);

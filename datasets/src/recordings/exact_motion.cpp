@@ -99,7 +99,7 @@ Rational ExactWay::Stretch::distance(const Rational& time) const {
   return covered + passed * (speed + rate * passed / 2);
 }
 
-void ExactWay::read_profile(const formation::Leader& motion) {
+void ExactWay::read_profile(const formation::TimedPath& motion) {
   if (motion.profile.empty()) {
     stretches_.push_back({Rational(0), std::nullopt, Rational(motion.speed), Rational(0), Rational(0)});
     return;
@@ -148,7 +148,7 @@ void ExactWay::add_leg(const Piece& leg, const Rational& from, const std::option
   }
 }
 
-ExactWay::ExactWay(const formation::Leader& motion) {
+ExactWay::ExactWay(const formation::TimedPath& motion) {
   read_profile(motion);
   const Interval none = exactly_that(Rational(0)), one = exactly_that(Rational(1));
   const Point start = exactly(motion.path.front());

@@ -76,7 +76,7 @@ class StepMotion {
 class ExactWay {
  public:
   /// REQUIRES: at least one point in the path, profile times that do not fall.
-  explicit ExactWay(const formation::Leader& motion);
+  explicit ExactWay(const formation::TimedPath& motion);
 
   /// The displacement over [start, end] piece by piece; s.
   struct TimedChord {
@@ -109,7 +109,7 @@ class ExactWay {
     Rational stray;  ///< in a corner's piece: what it goes while the corner is passed
   };
 
-  void read_profile(const formation::Leader& motion);
+  void read_profile(const formation::TimedPath& motion);
   /// From the last time at which no more than `distance` is known to be covered to the first at which no less is.
   std::optional<Interval> time_at(const Rational& distance) const;
   void add_leg(const Piece& leg, const Rational& from, const std::optional<Rational>& to);

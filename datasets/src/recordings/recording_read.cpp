@@ -16,7 +16,7 @@ namespace exactvo::datasets {
 
 namespace {
 
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using formation::RobotStep;
 using formation::Step;
 
@@ -172,7 +172,7 @@ class RecordReader {
     read_value(robots, step.robots);
     for (std::size_t i = 0; i < robots.size(); ++i)
       for (std::size_t k = 0; k < step.robots[i].constraints.size(); ++k)
-        place(robots.at(i).at("constraints").at(k), i, step, step.robots[i].constraints[k]);
+        take_source(robots.at(i).at("constraints").at(k), step, step.robots[i].constraints[k]);
     std::optional<formation::LyapunovRow> lyapunov;
     at.optional("lyapunov", lyapunov);
     at.end_of_object();
@@ -182,24 +182,11 @@ class RecordReader {
     take_(file_, std::move(step), lyapunov ? &*lyapunov : nullptr);
   }
 
-  /// What a half-plane shares with others: its body's shape, and who was where in this row.
-  void place(const JsonCursor& at, std::size_t robot, const Step& step, RecordedConstraint& c) const {
-    const vo::Body& body = bodies_[known_body(at.at("body"))];
-    c.source = body.kind;
-    c.position = step.robots[robot].anchor;
-    c.radius = file_.scenario.robots[robot].radius;
-    c.shape = body.shape;
-    if (body.kind == vo::BodyKind::robot) {
-      const RobotStep& other = step.robots[body.owners.front()];
-      c.shape = geometry::Disc{other.anchor, file_.scenario.robots[body.owners.front()].radius};
-      c.shape_velocity = other.anchor_velocity;
-    }
-    if (body.kind == vo::BodyKind::moving_obstacle) {
-      if (step.moving.empty()) at.refuse("no half-plane against what moves in a row without its place");
-      const std::size_t obstacle = body.owners.front();
-      c.shape = hull_of(file_.scenario.moving_obstacles[obstacle], step.moving[obstacle].displacement);
-      c.shape_velocity = step.moving[obstacle].velocity;
-    }
+  /// From its body, which must have a place in the row.
+  void take_source(const JsonCursor& at, const Step& step, DecisionConstraint& c) const {
+    c.source = bodies_[known_body(at.at("body"))].kind;
+    if (c.source == vo::BodyKind::moving_obstacle && step.moving.empty())
+      at.refuse("no half-plane against what moves in a row without its place");
   }
 
   RecordingFile& file_;

@@ -19,8 +19,8 @@ namespace exactvo::datasets {
 
 namespace {
 
+using formation::DecisionConstraint;
 using formation::GoalBodies;
-using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 
@@ -195,7 +195,7 @@ void RecordingWriter::add(const formation::JointPlan& plan) {
 void RecordingWriter::add(const Step& row, const std::vector<vo::Body>& bodies,
                           const formation::LyapunovRow* lyapunov) {
   for (const RobotStep& robot : row.robots)
-    for (const RecordedConstraint& c : robot.constraints) state_->name_body(c.body, bodies);
+    for (const DecisionConstraint& c : robot.constraints) state_->name_body(c.body, bodies);
   state_->line("row", [&] { append_row(state_->json, row, state_->has_leader, lyapunov); });
   ++state_->rows;
 }

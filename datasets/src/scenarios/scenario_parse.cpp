@@ -182,7 +182,7 @@ class ScenarioReader {
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       ValidationResult checked = validate(to_raw(list[k], id, pointer));
       refuse_unrepaired(checked, file_);
-      formation::Leader motion{list[k].at("path").get<std::vector<Vec2>>()};
+      formation::TimedPath motion{list[k].at("path").get<std::vector<Vec2>>()};
       motion.speed = list[k].value("speed", 0.0);
       if (list[k].contains("profile"))
         motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");

@@ -30,7 +30,7 @@ void append_profile(JsonWriter& json, const std::vector<formation::SpeedKnot>& p
 }
 
 /// The profile where there is one, else the speed.
-void append_speed(JsonWriter& json, const formation::Leader& leader) {
+void append_speed(JsonWriter& json, const formation::TimedPath& leader) {
   if (leader.profile.empty()) {
     json.member("speed", leader.speed);
   } else {

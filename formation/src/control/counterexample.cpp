@@ -20,7 +20,7 @@ Scenario three_robots() {
   s.formation.emplace();
   s.formation->topology = complete_topology(kRobots);
   s.formation->offsets.assign(kRobots, {});
-  s.formation->leader = {{{0.0, 0.0}}, 0.0};
+  s.formation->leader = {{{{0.0, 0.0}}, 0.0}};
   return s;
 }
 

@@ -39,7 +39,7 @@ Balance balance_of(const RobotStep& decision) {
   Vec2 rest = decision.chosen - decision.preferred;
   if (decision.status == lp::Status::optimal) {
     for (std::size_t i = 0; i < decision.constraints.size(); ++i) {
-      const RecordedConstraint& c = decision.constraints[i];
+      const DecisionConstraint& c = decision.constraints[i];
       if (c.active) add_force(balance, i, c.half_plane.normal, c.multiplier);
     }
     for (const lp::ActiveConstraint& bound : decision.bound)

@@ -30,7 +30,7 @@ std::string id_at(const Items& items, std::size_t index) {
   return index < items.size() ? items[index].id : std::to_string(index);
 }
 
-Named named(const RecordedConstraint& c, const Scenario& scenario, const std::vector<vo::Body>& bodies) {
+Named named(const DecisionConstraint& c, const Scenario& scenario, const std::vector<vo::Body>& bodies) {
   if (c.source == ConstraintSource::robot) return {"robot", "robots", {id_at(scenario.robots, c.index)}, ""};
   if (c.source == ConstraintSource::moving_obstacle)
     return {"moving obstacle", "moving obstacles", {id_at(scenario.moving_obstacles, c.index)}, ""};
@@ -39,16 +39,16 @@ Named named(const RecordedConstraint& c, const Scenario& scenario, const std::ve
     const std::string piece = c.piece > 0 ? ", piece " + std::to_string(c.piece) + "," : "";
     return {"enclosure", "enclosures", {std::to_string(c.index) + piece}, owner};
   }
-  const auto* edge = std::get_if<Segment>(&c.shape);
+  const auto* edge = c.body < bodies.size() ? std::get_if<Segment>(&bodies[c.body].shape) : nullptr;
   return {"the edge", "the edges", {edge ? ends_of(*edge) : std::to_string(c.index)}, owner};
 }
 
 }  // namespace
 
-std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario,
+std::string name_of(const std::vector<DecisionConstraint>& constraints, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies) {
   std::vector<Named> groups;  // of one kind and owner each
-  for (const RecordedConstraint& c : constraints) {
+  for (const DecisionConstraint& c : constraints) {
     Named item = named(c, scenario, bodies);
     const auto same = std::find_if(groups.begin(), groups.end(),
                                    [&](const Named& g) { return g.kind == item.kind && g.owner == item.owner; });
@@ -64,9 +64,9 @@ std::string name_of(const std::vector<RecordedConstraint>& constraints, const Sc
   return enumerated(words);
 }
 
-std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario,
+std::string name_of(const DecisionConstraint& constraint, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies) {
-  return name_of(std::vector<RecordedConstraint>{constraint}, scenario, bodies);
+  return name_of(std::vector<DecisionConstraint>{constraint}, scenario, bodies);
 }
 
 std::string names_of_obstacles(const Scenario& scenario, const std::vector<std::size_t>& which) {

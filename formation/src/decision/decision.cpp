@@ -239,12 +239,6 @@ DecisionConstraint Decider::named(const Kept& kept) const {
   return r;
 }
 
-RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies,
-                              const Viewpoint& from) {
-  const vo::Body& body = bodies[constraint.body];
-  return {constraint, body.shape, from.position, from.radius, body.velocity};
-}
-
 void Decider::reserve(std::size_t constraints) {
   problem_.constraints.reserve(constraints);
   pricing_.at.reserve(constraints);  // a search of more rounds than there are lines was never seen
@@ -318,14 +312,13 @@ void Decider::decide(const DecisionInput& in, Decision& decision) {
 
 void Decider::kept(std::vector<DecisionConstraint>& out) const {
   out.clear();
+  out.reserve(kept_.size());
   for (const Kept& one : kept_) out.push_back(named(one));
 }
 
 void Decider::decide(const DecisionInput& in, RobotStep& step) {
   decide(in, static_cast<Decision&>(step));
-  step.constraints.clear();
-  step.constraints.reserve(kept_.size());
-  for (const Kept& one : kept_) step.constraints.push_back(with_shape(named(one), *bodies_, in.from));
+  kept(step.constraints);
 }
 
 }  // namespace exactvo::formation::detail

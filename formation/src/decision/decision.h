@@ -98,9 +98,6 @@ std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>
 
 lp::SpeedBound speed_bound(SpeedBoundKind kind, double max_speed);
 
-/// The half-plane with the shape, place and radius that prove it again, as seen from `from`.
-RecordedConstraint with_shape(const DecisionConstraint& constraint, const vo::BodyTable& bodies, const Viewpoint& from);
-
 struct DecisionInput {
   Vec2 preferred;  ///< m/s
   Viewpoint from;
@@ -126,13 +123,11 @@ class Decider {
   /// What the last decision kept. REQUIRES: what it was made from is still there.
   void kept(std::vector<DecisionConstraint>& out) const;
 
-  /// Both, with the shapes.
+  /// Both.
   void decide(const DecisionInput& in, RobotStep& step);
 
   /// A half-plane that does not bind, as `decide` would keep it.
-  RecordedConstraint idle(const Constraint& c, const Viewpoint& from) const {
-    return with_shape(named({&c, nullptr}), *bodies_, from);
-  }
+  DecisionConstraint idle(const Constraint& c) const { return named({&c, nullptr}); }
 
  private:
   using Kept = std::pair<const Constraint*, const lp::ActiveConstraint*>;

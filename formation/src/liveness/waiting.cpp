@@ -34,7 +34,7 @@ double near_enough(const Scenario& scenario, std::size_t robot) {
 }
 
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
-bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
+bool holds(const DecisionConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
   return c.source == ConstraintSource::robot && c.clearance < near_enough(scenario, robot) &&
          (c.active || c.clearance <= detail::reach_of_pair(scenario.time_step, scenario.robots[robot].max_speed,
                                                            scenario.robots[c.index].max_speed)) &&
@@ -42,13 +42,13 @@ bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scen
 }
 
 std::vector<std::size_t> held_by(const RobotStep& r, const Scenario& scenario, std::size_t robot) {
-  std::vector<const RecordedConstraint*> by;
+  std::vector<const DecisionConstraint*> by;
   if (is_held_up(r, scenario.robots[robot]))
-    for (const RecordedConstraint& c : r.constraints)
+    for (const DecisionConstraint& c : r.constraints)
       if (holds(c, r, scenario, robot)) by.push_back(&c);
   std::stable_sort(by.begin(), by.end(), [](const auto* a, const auto* b) { return a->multiplier > b->multiplier; });
   std::vector<std::size_t> robots;
-  for (const RecordedConstraint* c : by) robots.push_back(c->index);
+  for (const DecisionConstraint* c : by) robots.push_back(c->index);
   return robots;
 }
 
@@ -170,7 +170,7 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
   return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
 }
 
-bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const RecordedConstraint& constraint) {
+bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const DecisionConstraint& constraint) {
   const double at_rest = detail::contact_time(scenario.time_step, scenario.horizons);
   if (constraint.source != ConstraintSource::robot || constraint.time_horizon != at_rest) return false;
   const auto has_plan = [&](std::size_t i) {

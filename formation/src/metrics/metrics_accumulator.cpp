@@ -72,7 +72,7 @@ void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity, double at_rest) con
 
 MetricsAccumulator::ActiveSet MetricsAccumulator::active_set(const RobotStep& step) {
   ActiveSet active;
-  for (const RecordedConstraint& c : step.constraints)
+  for (const DecisionConstraint& c : step.constraints)
     if (c.active) active.emplace_back(c.source, c.index, c.piece);
   std::sort(active.begin(), active.end());
   return active;

@@ -44,36 +44,39 @@ const RobotStep* last_decision(const RunEnd& end, std::size_t robot) {
   return end.decided ? &end.decided->robots[robot] : nullptr;
 }
 
-bool is_static(const RecordedConstraint& c) {
+bool is_static(const DecisionConstraint& c) {
   return c.source == ConstraintSource::enclosure || c.source == ConstraintSource::obstacle_edge;
 }
 
 // --- What blocks ---
 
-BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
-  const vo::VelocityObstacle vo(c.shape, robot, c.radius, c.time_horizon > 0.0 ? c.time_horizon : 1.0);
+BindingConstraint binding_of(const DecisionConstraint& c, const SeenBody& seen, Vec2 robot) {
+  const vo::VelocityObstacle vo(seen.shape, robot, seen.radius, c.time_horizon > 0.0 ? c.time_horizon : 1.0);
   const vo::VelocityObstacle::Nearest nearest = vo.nearest();
-  const double rho = detail::Boundary(c.shape, c.radius).radius_of_curvature(nearest.normal);
+  const double rho = detail::Boundary(seen.shape, seen.radius).radius_of_curvature(nearest.normal);
   return {c, nearest.normal, nearest.distance, rho};
 }
 
 /// What is active in the decision, and which of it pushes: by the recorded multipliers, beside which those of the speed
 /// bound stand. All of it where the decision was a compromise between half-planes that contradict each other.
-std::vector<BindingConstraint> binding_in(const RobotStep& decision, Vec2 robot) {
+std::vector<BindingConstraint> binding_in(const RunEnd& end, std::size_t robot) {
+  const RobotStep& decision = end.decided->robots[robot];
   const Balance balance = balance_of(decision);
   const double least = kLeastShare * norm(decision.chosen - decision.preferred);
   std::vector<BindingConstraint> binding;
   for (std::size_t i = 0; i < decision.constraints.size(); ++i) {
-    if (!decision.constraints[i].active) continue;
-    BindingConstraint& b = binding.emplace_back(binding_of(decision.constraints[i], robot));
+    const DecisionConstraint& c = decision.constraints[i];
+    if (!c.active) continue;
+    const SeenBody seen = seen_body(end.scenario, end.run.bodies, *end.decided, robot, c);
+    BindingConstraint& b = binding.emplace_back(binding_of(c, seen, end.last.robots[robot].position));
     const double factor = balance.factor_of(i);
     b.pressing = decision.status != lp::Status::optimal || (factor > 0.0 && factor >= least);
   }
   return binding;
 }
 
-std::vector<RecordedConstraint> pressing_of(const StuckReport& r) {
-  std::vector<RecordedConstraint> out;
+std::vector<DecisionConstraint> pressing_of(const StuckReport& r) {
+  std::vector<DecisionConstraint> out;
   for (const BindingConstraint& b : r.binding)
     if (b.pressing) out.push_back(b.constraint);
   return out;
@@ -143,7 +146,7 @@ std::string equilibrium_words(const RunEnd& end, const StuckReport& r) {
 }
 
 /// What the one robot that is in the way does itself.
-std::string other_words(const RunEnd& end, const RecordedConstraint& by) {
+std::string other_words(const RunEnd& end, const DecisionConstraint& by) {
   const RobotStep& other = end.last.robots.at(by.index);
   if (norm(target_of(end, by.index) - other.position) <= end.scenario.arrival_tolerance)
     return end.scenario.formation ? ", which is at its slot" : ", which is at its goal";
@@ -151,7 +154,7 @@ std::string other_words(const RunEnd& end, const RecordedConstraint& by) {
 }
 
 /// Whom it waits for, or what the one robot that presses, and that waits for nobody, does; else the equilibrium.
-std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const std::vector<RecordedConstraint>& by) {
+std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const std::vector<DecisionConstraint>& by) {
   const bool is_one_robot = by.size() == 1 && by.front().source == ConstraintSource::robot;
   const bool waits = !end.waits.empty() && !end.waits[r.robot].empty();
   if (waits && !(is_one_robot && end.waits[end.waits[r.robot].front()].empty()))
@@ -161,16 +164,16 @@ std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const s
 }
 
 std::string blocked_words(const RunEnd& end, const StuckReport& r) {
-  const std::vector<RecordedConstraint> by = pressing_of(r);
+  const std::vector<DecisionConstraint> by = pressing_of(r);
   const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
   return (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario, end.run.bodies) +
          beyond_what_presses(end, r, by);
 }
 
 std::string moving_words(const RunEnd& end, const RobotStep& decision, const StuckReport& r) {
-  const std::vector<RecordedConstraint> by = pressing_of(r);
+  const std::vector<DecisionConstraint> by = pressing_of(r);
   if (decision.mode == Mode::following) {
-    std::vector<RecordedConstraint> all;
+    std::vector<DecisionConstraint> all;
     for (const BindingConstraint& b : r.binding) all.push_back(b.constraint);
     return all.empty() ? "following a boundary"
                        : "following the boundary of " + name_of(all, end.scenario, end.run.bodies);
@@ -224,7 +227,7 @@ StuckReport report_on(const RunEnd& end, std::size_t robot, std::optional<double
   r.goal_distance = norm(target - state.position);
   r.speed = norm(state.velocity);
   if (at_rest_since) r.rest_time = end.last.time - *at_rest_since;
-  if (const RobotStep* decision = last_decision(end, robot)) r.binding = binding_in(*decision, state.position);
+  if (end.decided) r.binding = binding_in(end, robot);
   r.equilibrium = equilibrium_of(r, target);
   r.text = sentence(end, r);
   return r;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kWholePath = 1e-12;
 
 /// `covered` along the path, m, at `speed`.
-LeaderState on_path(const Leader& leader, double covered, double speed) {
+LeaderState on_path(const TimedPath& leader, double covered, double speed) {
   for (std::size_t i = 1; i < leader.path.size(); ++i) {
     const Vec2 leg = leader.path[i] - leader.path[i - 1];
     const double length = norm(leg);
@@ -28,20 +28,20 @@ LeaderState on_path(const Leader& leader, double covered, double speed) {
 
 }  // namespace
 
-LeaderState leader_at(const Leader& leader, double time) {
+LeaderState leader_at(const TimedPath& leader, double time) {
   if (leader.profile.empty()) return on_path(leader, leader.speed * time, leader.speed);
   if (time >= leader_arrival(leader)) return {leader.path.back(), {}};
   return on_path(leader, distance_at(leader.profile, time), speed_at(leader.profile, time));
 }
 
-double leader_arrival(const Leader& leader) {
+double leader_arrival(const TimedPath& leader) {
   const double length = length_of(leader.path);
   if (!(length > 0.0)) return 0.0;
   if (!leader.profile.empty()) return time_to_cover(leader.profile, length * (1.0 - kWholePath));
   return leader.speed > 0.0 ? length / leader.speed : std::numeric_limits<double>::infinity();
 }
 
-double rests_from(const Leader& leader) {
+double rests_from(const TimedPath& leader) {
   const double arrival = leader_arrival(leader);
   if (leader.profile.empty()) return leader.speed > 0.0 ? arrival : 0.0;
   return leader.profile.back().speed > 0.0 ? arrival : std::min(arrival, leader.profile.back().time);

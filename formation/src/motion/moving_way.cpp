@@ -45,7 +45,7 @@ class CompensatedSum {
 /// Walks the stretches of speed along the legs of the path.
 class Walk {
  public:
-  Walk(const Leader& motion, double end) : path_(motion.path), end_(end) {
+  Walk(const TimedPath& motion, double end) : path_(motion.path), end_(end) {
     for (Vec2 p : path_) largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
     skip_empty_legs();
     const auto take = [this](const SpeedStretch& s) { return follow(s); };
@@ -132,7 +132,7 @@ double WayPiece::speed_bound(double until) const {
   return std::max(std::fabs(speed + rate * (from - origin)), std::fabs(speed + rate * (until - origin)));
 }
 
-std::vector<WayPiece> way_of(const Leader& motion, double end) {
+std::vector<WayPiece> way_of(const TimedPath& motion, double end) {
   return Walk(motion, end).pieces();
 }
 

@@ -29,7 +29,7 @@ struct WayPiece {
 
 /// The pieces from t = 0 on, each beginning where the one before it ends; of the last, `to` > `end` (s).
 /// REQUIRES: a path of at least one point.
-std::vector<WayPiece> way_of(const Leader& motion, double end);
+std::vector<WayPiece> way_of(const TimedPath& motion, double end);
 
 /// The index of the first piece that ends after `time`. REQUIRES: 0 <= time <= end of `way_of`.
 std::size_t piece_at(const std::vector<WayPiece>& way, double time);

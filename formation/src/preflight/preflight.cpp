@@ -177,7 +177,7 @@ struct TopSpeed {
 constexpr double kInstant = 1e-9;
 
 /// Over the part of the motion that happens: up to the path's end and the time limit.
-TopSpeed top_speed(const Scenario& s, const Leader& motion) {
+TopSpeed top_speed(const Scenario& s, const TimedPath& motion) {
   const double end = std::min(leader_arrival(motion), s.time_limit);
   TopSpeed top;
   for (const WayPiece& piece : way_of(motion, end)) {

@@ -98,16 +98,16 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
 /// bind.
 void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const {
   const auto is_against = [&](std::size_t robot) {
-    return [robot](const RecordedConstraint& c) { return c.source == ConstraintSource::robot && c.index == robot; };
+    return [robot](const DecisionConstraint& c) { return c.source == ConstraintSource::robot && c.index == robot; };
   };
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
-    for (const RecordedConstraint& c : row.robots[i].constraints) {
+    for (const DecisionConstraint& c : row.robots[i].constraints) {
       const std::size_t j = c.index;
       if (!is_against(j)(c) || std::find(fallen[i].begin(), fallen[i].end(), j) == fallen[i].end()) continue;
-      std::vector<RecordedConstraint>& theirs = row.robots[j].constraints;
+      std::vector<DecisionConstraint>& theirs = row.robots[j].constraints;
       if (std::any_of(theirs.begin(), theirs.end(), is_against(i))) continue;
       for (const Constraint& half : others[j])
-        if (is_of_robot(scene_, half) && half.index == i) theirs.push_back(decider_.idle(half, viewpoint_(j)));
+        if (is_of_robot(scene_, half) && half.index == i) theirs.push_back(decider_.idle(half));
     }
   }
 }

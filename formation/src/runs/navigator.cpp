@@ -209,7 +209,7 @@ class Navigator::Core {
   RobotStep recorded() const {
     RobotStep step = undecided(now_.position, now_.velocity);
     static_cast<Decision&>(step) = decision_;
-    for (const DecisionConstraint& c : kept_) step.constraints.push_back(with_shape(c, bodies(), here()));
+    step.constraints = kept_;
     return step;
   }
 

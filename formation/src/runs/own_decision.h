@@ -67,7 +67,7 @@ class OwnDecision {
               RobotStep& step) {
     decider_.decide(input(preferred, here, others, keep_all), step);
   }
-  /// The same without the shapes.
+  /// The same into a list.
   void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, Decision& decision,
               std::vector<DecisionConstraint>& kept) {
     decider_.decide(input(preferred, here, others, false), decision);

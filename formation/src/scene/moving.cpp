@@ -2,9 +2,11 @@
 #include "scene/moving.h"
 
 #include <algorithm>
+#include <string>
 
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/require.h"
 #include "motion/leader.h"
 #include "scene/static_field.h"
 #include "scene/step_limits.h"
@@ -57,6 +59,23 @@ geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement)
   std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
   for (Vec2& p : points) p += displacement;
   return geometry::convex_hull(points);
+}
+
+SeenBody seen_body(const Scenario& scenario, const std::vector<vo::Body>& bodies, const Step& row, std::size_t robot,
+                   const DecisionConstraint& constraint) {
+  EXACTVO_REQUIRE(constraint.body < bodies.size(), "body " + std::to_string(constraint.body));
+  const vo::Body& body = bodies[constraint.body];
+  SeenBody seen{body.shape, row.robots[robot].anchor, scenario.robots[robot].radius, {}};
+  if (body.kind == vo::BodyKind::robot) {
+    const RobotStep& other = row.robots[body.owners.front()];
+    seen.shape = geometry::Disc{other.anchor, scenario.robots[body.owners.front()].radius};
+    seen.velocity = other.anchor_velocity;
+  } else if (body.kind == vo::BodyKind::moving_obstacle) {
+    const MovedObstacle& moved = row.moving[body.owners.front()];
+    seen.shape = hull_of(scenario.moving_obstacles[body.owners.front()], moved.displacement);
+    seen.velocity = moved.velocity;
+  }
+  return seen;
 }
 
 Vec2 displacement_at(const MovingObstacle& obstacle, double time) {

@@ -132,7 +132,7 @@ void check_starts(const Scenario& s, Checker& c) {
   }
 }
 
-void check_profile(const Leader& leader, const std::string& at, Checker& c) {
+void check_profile(const TimedPath& leader, const std::string& at, Checker& c) {
   for (std::size_t k = 0; k < leader.profile.size(); ++k) {
     const SpeedKnot& knot = leader.profile[k];
     const std::string pointer = at + "/profile/" + std::to_string(k);

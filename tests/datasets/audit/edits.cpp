@@ -142,7 +142,7 @@ Scenario three(const std::string& name) {
   s.formation.emplace();
   s.formation->topology = {{{0, 1, 1}, {1, 0, 0}, {1, 0, 0}}, {1, 1, 1}};
   s.formation->offsets = {{0, 0}, {1, 0}, {0, 1}};
-  s.formation->leader = {{{0.5, 0.5}, {0.6, 0.5}, {9, 3}}, 1.5};
+  s.formation->leader = {{{{0.5, 0.5}, {0.6, 0.5}, {9, 3}}, 1.5}};
   s.obstacles = {{"post", box({1.62, -0.3}, {1.9, 0.2})}, {"wall", geometry::Polyline{{{-0.6, 2.0}, {-0.6, -2.0}}}}};
   return s;
 }

@@ -16,7 +16,7 @@ namespace {
 
 using exactvo::test::SeededRandom;
 using formation::ConstraintSource;
-using formation::RecordedConstraint;
+using formation::DecisionConstraint;
 using formation::RobotStep;
 using formation::Scenario;
 using formation::Step;
@@ -68,7 +68,7 @@ Scenario formation_scene() {
   s.formation.emplace();
   s.formation->topology = {{{0, 1}, {1, 0}}, {1, 1}};
   s.formation->offsets = {{0, 0}, {0, 1.3}};
-  s.formation->leader = {{{0.5, 0.5}, {9, 3}}, 1.5};
+  s.formation->leader = {{{{0.5, 0.5}, {9, 3}}, 1.5}};
   s.obstacles = {{"post", geometry::Polygon{{{0.9, -0.2}, {1.2, -0.2}, {1.2, 0.3}, {0.9, 0.3}}, {}}}};
   return s;
 }
@@ -84,7 +84,7 @@ AuditReport forged_constraint(const Which& which, const How& how) {
   RecordingFile file = clean();
   for (Step& row : file.recording.steps)
     for (RobotStep& robot : row.robots)
-      for (RecordedConstraint& c : robot.constraints)
+      for (DecisionConstraint& c : robot.constraints)
         if (which(c)) {
           how(robot, c);
           return audit(file);
@@ -92,10 +92,10 @@ AuditReport forged_constraint(const Which& which, const How& how) {
   ADD_FAILURE() << "nothing to forge";
   return {};
 }
-bool is_hard(const RecordedConstraint& c) {
+bool is_hard(const DecisionConstraint& c) {
   return c.hard;
 }
-bool is_of_pair(const RecordedConstraint& c) {
+bool is_of_pair(const DecisionConstraint& c) {
   return c.source == ConstraintSource::robot;
 }
 
@@ -152,13 +152,13 @@ TEST(AuditPoints, ChoicesOfRobotsInContactAreProven) {
 
 TEST(AuditPoints, MultipliersThatAreSaidToBeExactAreNotWritten) {
   const AuditReport report =
-      forged_constraint([](const RecordedConstraint& c) { return c.multiplier > 1e-3; },
-                        [](RobotStep& robot, RecordedConstraint&) { robot.exact_multipliers = true; });
+      forged_constraint([](const DecisionConstraint& c) { return c.multiplier > 1e-3; },
+                        [](RobotStep& robot, DecisionConstraint&) { robot.exact_multipliers = true; });
   EXPECT_EQ(report[AuditPoint::choices].refuted, 1u);
   RecordingFile file = clean();
   RobotStep& robot = file.recording.steps[3].robots[0];
   robot.exact_multipliers = true;
-  for (RecordedConstraint& c : robot.constraints) c.multiplier = 0.0;
+  for (DecisionConstraint& c : robot.constraints) c.multiplier = 0.0;
   for (lp::ActiveConstraint& part : robot.bound) part.multiplier = 0.0;
   EXPECT_TRUE(audit(file).clean()) << "they follow from the half-planes";
   robot.chosen = 0.999 * robot.chosen;
@@ -228,11 +228,11 @@ TEST(AuditPoints, AHalfPlaneThatIsMissingIsNoticedThoughItDoesNotBind) {
   std::size_t noticed = 0;
   for (std::size_t k = 0; k < clean().recording.steps.size(); ++k)
     for (std::size_t i = 0; i < 2; ++i) {
-      const std::vector<RecordedConstraint>& all = clean().recording.steps[k].robots[i].constraints;
+      const std::vector<DecisionConstraint>& all = clean().recording.steps[k].robots[i].constraints;
       for (std::size_t c = 0; c < all.size(); ++c) {
         if (all[c].active) continue;
         RecordingFile file = clean();
-        std::vector<RecordedConstraint>& left = file.recording.steps[k].robots[i].constraints;
+        std::vector<DecisionConstraint>& left = file.recording.steps[k].robots[i].constraints;
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(c));
         noticed += audit(file)[AuditPoint::completeness].refuted;
       }
@@ -251,23 +251,23 @@ TEST(AuditPoints, AnObstacleThatNobodySawIsMissing) {
 
 TEST(AuditPoints, AHorizonBelowTheTimeStepIsRefused) {
   const AuditReport report =
-      forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.time_horizon = 0.049; });
+      forged_constraint(is_hard, [](RobotStep&, DecisionConstraint& c) { c.time_horizon = 0.049; });
   EXPECT_EQ(report[AuditPoint::half_planes].refuted, 1u);
 }
 
 TEST(AuditPoints, AHalfPlaneThatIsSaidToBeSoftIsRefused) {
-  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.hard = false; });
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, DecisionConstraint& c) { c.hard = false; });
   EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
 }
 
 TEST(AuditPoints, AHalfPlaneOfAnotherBodyIsRefused) {
-  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.body = 1000; });
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, DecisionConstraint& c) { c.body = 1000; });
   EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
 }
 
 TEST(AuditPoints, ARobotsHalfThatTakesLessThanItsShareIsRefused) {
   const AuditReport report =
-      forged_constraint(is_of_pair, [](RobotStep&, RecordedConstraint& c) { c.half_plane.offset -= 0.1; });
+      forged_constraint(is_of_pair, [](RobotStep&, DecisionConstraint& c) { c.half_plane.offset -= 0.1; });
   EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
 }
 
@@ -287,8 +287,8 @@ TEST(AuditPoints, APairWhoseNormalsAreNotOppositeIsNotKeptApart) {
 
 TEST(AuditPoints, AChoiceBeyondAHalfPlaneOrTheSpeedLimitIsRefused) {
   const AuditReport beyond =
-      forged_constraint([](const RecordedConstraint& c) { return c.active; },
-                        [](RobotStep& robot, RecordedConstraint& c) { robot.chosen -= 1e-6 * c.half_plane.normal; });
+      forged_constraint([](const DecisionConstraint& c) { return c.active; },
+                        [](RobotStep& robot, DecisionConstraint& c) { robot.chosen -= 1e-6 * c.half_plane.normal; });
   EXPECT_GT(beyond[AuditPoint::choices].refuted, 0u);
   EXPECT_NEAR(beyond.largest_violation, 1e-6, 1e-9);
   RecordingFile file = clean();
@@ -336,9 +336,9 @@ TEST(AuditPoints, AChoiceWithoutRoomIsDecidedAgain) {
 }
 
 TEST(AuditPoints, AChoiceWithRoomThatIsSaidToHaveNoneIsRefused) {
-  const auto binds = [](const RecordedConstraint& c) { return c.active && c.hard; };
+  const auto binds = [](const DecisionConstraint& c) { return c.active && c.hard; };
   const AuditReport one =
-      forged_constraint(binds, [](RobotStep& robot, RecordedConstraint&) { robot.status = lp::Status::no_interior; });
+      forged_constraint(binds, [](RobotStep& robot, DecisionConstraint&) { robot.status = lp::Status::no_interior; });
   EXPECT_EQ(one[AuditPoint::choices].refuted, 1u);
   RecordingFile all = clean();
   for (Step& row : all.recording.steps)
@@ -352,11 +352,11 @@ TEST(AuditPoints, HalfPlanesThatAreSaidToBeUncertifiedArePutToTheProof) {
   for (Step& row : file.recording.steps)
     for (RobotStep& robot : row.robots) {
       robot.uncertified = robot.constraints.size();
-      for (RecordedConstraint& c : robot.constraints) c.certified = false;
+      for (DecisionConstraint& c : robot.constraints) c.certified = false;
     }
   const PointCount half_planes = audit(file)[AuditPoint::half_planes];
   EXPECT_EQ(half_planes.proven, half_planes.asked()) << "they are true, whatever is said of them";
-  const AuditReport report = forged_constraint(is_hard, [](RobotStep& robot, RecordedConstraint& c) {
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep& robot, DecisionConstraint& c) {
     c.certified = false;
     robot.uncertified = 1;
     c.half_plane.offset -= 0.1;
@@ -372,10 +372,10 @@ TEST(AuditPoints, AChoiceThatIsNotTheBestIsRefused) {
 }
 
 TEST(AuditPoints, MultipliersThatDoNotProveTheChoiceAreRefused) {
-  const auto presses = [](const RecordedConstraint& c) { return c.multiplier > 1e-3; };
+  const auto presses = [](const DecisionConstraint& c) { return c.multiplier > 1e-3; };
   for (const double factor : {0.0, 0.9, 1.1, -1.0}) {
     const AuditReport report =
-        forged_constraint(presses, [&](RobotStep&, RecordedConstraint& c) { c.multiplier *= factor; });
+        forged_constraint(presses, [&](RobotStep&, DecisionConstraint& c) { c.multiplier *= factor; });
     EXPECT_EQ(report[AuditPoint::choices].refuted, 1u) << factor;
   }
 }
@@ -413,7 +413,7 @@ TEST(AuditPoints, AreProvenOfRunsByPlan) {
   for (Step& step : forged.recording.steps)
     for (RobotStep& r : step.robots)
       if (r.mode == formation::Mode::by_plan)
-        for (RecordedConstraint& c : r.constraints)
+        for (DecisionConstraint& c : r.constraints)
           if (c.source == ConstraintSource::robot) c.half_plane.offset -= 1.0;
   EXPECT_GT(audit(forged)[AuditPoint::half_planes].refuted, 0u);
   EXPECT_GT(audit(forged)[AuditPoint::completeness].refuted, 0u);
@@ -557,7 +557,7 @@ void make_a_formation_of(Scenario& s, SeededRandom& random) {
     s.formation->offsets.push_back(random.in_box(2.0));
     s.robots[i].goals.clear();
   }
-  s.formation->leader = {{random.in_box(3.0), random.in_box(5.0), random.in_box(5.0)}, random.uniform(0.0, 3.0)};
+  s.formation->leader = {{{random.in_box(3.0), random.in_box(5.0), random.in_box(5.0)}, random.uniform(0.0, 3.0)}};
   if (random.integer(0, 1))
     s.formation->leader.profile = {{0.1, 0.0}, {0.4, 2.0}, {0.4, random.uniform(0.0, 3.0)}, {0.7, 0.0}};
 }

@@ -123,7 +123,7 @@ py::list half_planes(const Run& run, std::size_t step, std::size_t robot) {
     throw py::index_error("no step " + std::to_string(step) + ": there are " + std::to_string(steps.size()));
   if (robot >= steps[step].robots.size()) throw py::index_error("no robot " + std::to_string(robot));
   py::list result;
-  for (const formation::RecordedConstraint& c : steps[step].robots[robot].constraints)
+  for (const formation::DecisionConstraint& c : steps[step].robots[robot].constraints)
     result.append(py::make_tuple(as_tuple(c.half_plane), static_cast<int>(c.source), c.index, c.certified, c.hard,
                                  c.active, c.multiplier, c.clearance));
   return result;

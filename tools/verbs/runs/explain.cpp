@@ -266,7 +266,7 @@ std::string words_of(const Explained& explained) {
 }
 
 OrderedJson json_of(const Decision& d, std::size_t half_plane) {
-  const formation::RecordedConstraint& c = d.step.constraints[half_plane];
+  const formation::DecisionConstraint& c = d.step.constraints[half_plane];
   return {{"number", half_plane + 1},
           {"of", formation::name_of(c, d.scenario, d.bodies)},
           {"effect", name(effect_of(d, c))},

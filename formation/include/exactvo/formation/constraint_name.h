@@ -15,11 +15,11 @@ namespace exactvo::formation {
 /// "enclosure 1 of obstacle wall", "enclosure 1, piece 2, of obstacles wall and desk", "robot R2", "the edge
 /// (1, 2)-(3, 4) of obstacle wall", "moving obstacle cart"; of more than three obstacles "a, b, c and 2 more".
 /// `bodies`: those of the recording.
-std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario,
+std::string name_of(const DecisionConstraint& constraint, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies);
 
 /// The same of several, those of one kind and obstacle together: "enclosures 4 and 5 of obstacle U and robot R2".
-std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario,
+std::string name_of(const std::vector<DecisionConstraint>& constraints, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies);
 
 /// "obstacle wall", "obstacles wall and desk"; of no obstacle nothing.

@@ -36,16 +36,6 @@ struct DecisionConstraint {
   double multiplier = 0.0;
 };
 
-/// The same with enough beside it to prove it again: the convex shape (grown by `radius`, seen from `position`, horizon
-/// `time_horizon`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and place and
-/// velocity in the row.
-struct RecordedConstraint : DecisionConstraint {
-  geometry::ConvexShape shape;  ///< m
-  Vec2 position;                ///< m: the robot's anchor
-  double radius = 0.0;          ///< m
-  Vec2 shape_velocity;          ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
-};
-
 /// How the preferred velocity was formed.
 enum class Mode {
   direct,       ///< straight for the goal or slot
@@ -86,7 +76,7 @@ struct RobotStep : Decision {
   Vec2 anchor;           ///< m
   Vec2 anchor_velocity;  ///< m/s
   /// The active ones and those against what could be met within a step; all of them where asked for.
-  std::vector<RecordedConstraint> constraints;
+  std::vector<DecisionConstraint> constraints;
 };
 
 /// Where a moving obstacle is, from where it was at t = 0, and how it moves.
@@ -114,12 +104,27 @@ enum class MotionLaw {
 /// The convex hull of a moving obstacle that was carried so far: the shape that robots keep clear of.
 geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement);
 
+/// What a half-plane keeps clear of, as its robot saw it: enough to prove it again. The half-plane excludes the
+/// velocity obstacle of `shape`, grown by `radius`, seen from `position` and shifted by `velocity`, within its
+/// `time_horizon`.
+struct SeenBody {
+  geometry::ConvexShape shape;  ///< m
+  Vec2 position;                ///< m: the robot's anchor
+  double radius = 0.0;          ///< m, of the robot
+  Vec2 velocity;                ///< m/s, of the body; 0 for static obstacles
+};
+
+/// The body of a half-plane of `row.robots[robot]`, where the row has it. `bodies`: of the run. REQUIRES: a row of a
+/// run of this scenario, not its last; the half-plane's body is one of `bodies`.
+SeenBody seen_body(const Scenario& scenario, const std::vector<vo::Body>& bodies, const Step& row, std::size_t robot,
+                   const DecisionConstraint& constraint);
+
 /// The bodies that stand for the obstacles on one robot's way to one of its goals: enclosures, or edges and pieces.
 struct GoalBodies {
   double time = 0.0;                ///< s, from then on
   std::size_t robot = 0;            ///< in the order of the scenario
   std::size_t goal = 0;             ///< which of its goals, from 0
-  std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `RecordedConstraint::index` counts them
+  std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `DecisionConstraint::index` counts them
 };
 
 /// One robot of a joint plan goes straight to a place while the others stand.

@@ -90,14 +90,18 @@ struct SpeedKnot {
   double speed = 0.0;  ///< m/s, >= 0
 };
 
-/// The virtual leader: along the polyline `path` at `speed`, or as `profile` says where that is not empty
-/// (speed_profile.h makes some), then at rest at its end.
-struct Leader {
+/// A motion along the polyline `path` at `speed`, or as `profile` says where that is not empty (speed_profile.h makes
+/// some), then at rest at its end.
+struct TimedPath {
   std::vector<Vec2> path;               ///< m, at least one point
   double speed = 0.0;                   ///< m/s, >= 0
   std::vector<SpeedKnot> profile = {};  ///< times not falling
-  std::string why_short = {};           ///< of a planned path (leader_route.h): why it does not lead where it should
-  std::string note = {};                ///< of a planned path: what else is to be said of it
+};
+
+/// The virtual leader of a formation: how it moves, and what is to be said of a path that was planned (leader_route.h).
+struct Leader : TimedPath {
+  std::string why_short = {};  ///< why a planned path does not lead where it should
+  std::string note = {};       ///< what else is to be said of a planned path
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
@@ -105,7 +109,7 @@ struct Leader {
 struct MovingObstacle {
   std::string id;            ///< its name in results and messages
   geometry::Obstacle shape;  ///< m, at t = 0
-  Leader motion;             ///< its path's first point is the origin of the displacement
+  TimedPath motion;          ///< its path's first point is the origin of the displacement
 };
 
 /// Gains of equations (14), (15) and (17).

@@ -25,7 +25,7 @@ inline constexpr double kLeastShare = 1e-6;
 
 /// A half-plane that is active in the last decision.
 struct BindingConstraint {
-  RecordedConstraint constraint;   ///< as it was recorded
+  DecisionConstraint constraint;   ///< as it was recorded
   Vec2 normal;                     ///< unit, out of the shape at the point nearest the robot
   double clearance = 0.0;          ///< m, rim to shape
   double radius_of_curvature = 0;  ///< m, of the shape grown by the robot, at that normal; infinite on a flat edge

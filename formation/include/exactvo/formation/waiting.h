@@ -48,7 +48,7 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 
 /// Whether a half-plane of the robot is that of a pair which fell back: as if both rested (liveness, rule R0). Known by
 /// its horizon, so that it is false where another rule has the same one. REQUIRES: a row of a run of this scenario.
-bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const RecordedConstraint& constraint);
+bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const DecisionConstraint& constraint);
 
 /// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 was first at its goal, 0.3 m from that of
 /// R1", "its goal is out of reach or taken" where the row does not tell which, "its slot cannot be filled". REQUIRES: a
