@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "motions/real_roots.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace exactvo::geometry::motions {
+namespace {
+
+void trim(IntegerPolynomial& p) {
+  while (!p.empty() && sgn(p.back()) == 0) p.pop_back();
+}
+
+/// Divides by the greatest common divisor of the coefficients.
+void make_primitive(IntegerPolynomial& p) {
+  trim(p);
+  mpz_class common;
+  for (const mpz_class& c : p) common = gcd(common, c);
+  if (common > 1)
+    for (mpz_class& c : p) mpz_divexact(c.get_mpz_t(), c.get_mpz_t(), common.get_mpz_t());
+}
+
+IntegerPolynomial derivative(const IntegerPolynomial& p) {
+  IntegerPolynomial d;
+  for (std::size_t k = 1; k < p.size(); ++k) d.push_back(p[k] * static_cast<unsigned long>(k));
+  return d;
+}
+
+/// A positive multiple of the remainder of a by b, primitive.
+IntegerPolynomial remainder(IntegerPolynomial a, const IntegerPolynomial& b) {
+  const mpz_class& lead = b.back();
+  const mpz_class positive = abs(lead);
+  while (a.size() >= b.size()) {
+    const mpz_class factor = sgn(lead) > 0 ? a.back() : mpz_class(-a.back());
+    const std::size_t by = a.size() - b.size();
+    for (mpz_class& c : a) c *= positive;
+    for (std::size_t k = 0; k < b.size(); ++k) a[k + by] -= factor * b[k];
+    a.pop_back();  // its leading term has become 0
+    trim(a);
+  }
+  make_primitive(a);
+  return a;
+}
+
+IntegerPolynomial common_divisor(IntegerPolynomial a, IntegerPolynomial b) {
+  while (!b.empty()) {
+    IntegerPolynomial rest = remainder(std::move(a), b);
+    a = std::move(b);
+    b = std::move(rest);
+  }
+  make_primitive(a);
+  return a;
+}
+
+/// a / b up to a positive factor. REQUIRES: b divides a over the rationals, and has a positive leading coefficient.
+IntegerPolynomial quotient(IntegerPolynomial a, const IntegerPolynomial& b) {
+  IntegerPolynomial q(a.size() - b.size() + 1);
+  while (a.size() >= b.size()) {
+    const std::size_t by = a.size() - b.size();
+    // a := lead(b) a - lead(a) x^by b, and so q := lead(b) q + lead(a) x^by.
+    const mpz_class lead = a.back();
+    for (mpz_class& c : q) c *= b.back();
+    q[by] += lead;
+    for (mpz_class& c : a) c *= b.back();
+    for (std::size_t k = 0; k < b.size(); ++k) a[k + by] -= lead * b[k];
+    trim(a);
+  }
+  make_primitive(q);
+  return q;
+}
+
+/// The same distinct roots, each simple.
+IntegerPolynomial square_free(const IntegerPolynomial& p) {
+  IntegerPolynomial repeated = common_divisor(p, derivative(p));
+  if (repeated.size() <= 1) return p;
+  if (sgn(repeated.back()) < 0)
+    for (mpz_class& c : repeated) c = -c;
+  return quotient(p, repeated);
+}
+
+/// The sign of p(x): Horner on the numerator and denominator.
+int sign_at(const IntegerPolynomial& p, const mpq_class& x) {
+  mpz_class value, power = 1;
+  for (std::size_t k = p.size(); k-- > 0;) {
+    value = value * x.get_num() + p[k] * power;
+    power *= x.get_den();
+  }
+  return sgn(value);
+}
+
+/// A Sturm sequence: how many distinct roots lie in (low, high] is the loss of sign changes.
+class SturmSequence {
+ public:
+  explicit SturmSequence(const IntegerPolynomial& p) {
+    sequence_.push_back(p);
+    IntegerPolynomial next = derivative(p);
+    while (!next.empty()) {
+      sequence_.push_back(std::move(next));
+      const std::size_t n = sequence_.size();
+      next = remainder(sequence_[n - 2], sequence_[n - 1]);
+      for (mpz_class& c : next) c = -c;
+    }
+  }
+  int changes_at(const mpq_class& x) const {
+    int changes = 0, last = 0;
+    for (const IntegerPolynomial& p : sequence_) {
+      const int sign = sign_at(p, x);
+      if (sign == 0) continue;
+      if (last != 0 && sign != last) ++changes;
+      last = sign;
+    }
+    return changes;
+  }
+
+ private:
+  std::vector<IntegerPolynomial> sequence_;
+};
+
+/// Isolates the roots in (low, high] of a square-free polynomial.
+class Isolation {
+ public:
+  explicit Isolation(const IntegerPolynomial& p) : p_(std::make_shared<const IntegerPolynomial>(p)), sturm_(p) {}
+
+  std::vector<RealNumber> in_unit() {
+    if (sign_at(*p_, 0) == 0) roots_.emplace_back(mpq_class(0));
+    isolate(0, sturm_.changes_at(0), 1, sturm_.changes_at(1));
+    return std::move(roots_);
+  }
+
+ private:
+  void isolate(const mpq_class& low, int changes_low, const mpq_class& high, int changes_high) {
+    const int count = changes_low - changes_high;
+    if (count == 0) return;
+    if (count == 1) {
+      if (sign_at(*p_, high) == 0) {
+        roots_.emplace_back(high);
+        return;
+      }
+      if (sign_at(*p_, low) != 0) {
+        roots_.emplace_back(p_, low, high);
+        return;
+      }
+    }
+    const mpq_class middle = (low + high) / 2;
+    const int changes = sturm_.changes_at(middle);
+    isolate(low, changes_low, middle, changes);
+    isolate(middle, changes, high, changes_high);
+  }
+
+  std::shared_ptr<const IntegerPolynomial> p_;
+  SturmSequence sturm_;
+  std::vector<RealNumber> roots_;
+};
+
+/// Whether p has a root in [low, high].
+bool has_root(const IntegerPolynomial& p, const mpq_class& low, const mpq_class& high) {
+  if (p.size() <= 1) return false;
+  if (sign_at(p, low) == 0) return true;
+  const SturmSequence sturm(p);
+  return sturm.changes_at(low) != sturm.changes_at(high);
+}
+
+/// A point of each gap between 0, the roots and 1; a gap without length has its end.
+std::vector<mpq_class> points_of_gaps(const std::vector<RealNumber>& roots) {
+  std::vector<mpq_class> points{roots.front().low() / 2};
+  for (std::size_t i = 0; i + 1 < roots.size(); ++i) points.emplace_back((roots[i].high() + roots[i + 1].low()) / 2);
+  points.emplace_back((roots.back().high() + 1) / 2);
+  return points;
+}
+
+}  // namespace
+
+IntegerPolynomial primitive(const std::vector<mpq_class>& coefficients) {
+  mpz_class denominator = 1;
+  for (const mpq_class& c : coefficients) denominator = lcm(denominator, c.get_den());
+  IntegerPolynomial p;
+  for (const mpq_class& c : coefficients) p.emplace_back(c.get_num() * (denominator / c.get_den()));
+  make_primitive(p);
+  return p;
+}
+
+void RealNumber::refine() {
+  if (is_rational()) return;
+  mpq_class middle = (low_ + high_) / 2;
+  const int sign = sign_at(*polynomial_, middle);
+  if (sign == 0) {
+    low_ = high_ = std::move(middle);
+  } else if (sign == sign_at(*polynomial_, low_)) {
+    low_ = std::move(middle);
+  } else {
+    high_ = std::move(middle);
+  }
+}
+
+int compare(RealNumber& x, RealNumber& y) {
+  bool equality_tried = false;
+  for (;;) {
+    if (x.high_ < y.low_) return -1;
+    if (y.high_ < x.low_) return 1;
+    if (x.is_rational() && y.is_rational()) return 0;
+    if (!equality_tried) {
+      equality_tried = true;
+      // Ends of intervals are no roots, so a common root in both intervals is the root of each.
+      if (x.is_rational() || y.is_rational()) {
+        const RealNumber& rational = x.is_rational() ? x : y;
+        const RealNumber& other = x.is_rational() ? y : x;
+        if (sign_at(*other.polynomial_, rational.low_) == 0) return 0;
+      } else if (x.polynomial_ == y.polynomial_) {
+        if (x.low_ == y.low_ && x.high_ == y.high_) return 0;
+        if (has_root(*x.polynomial_, std::max(x.low_, y.low_), std::min(x.high_, y.high_))) return 0;
+      } else if (has_root(common_divisor(*x.polynomial_, *y.polynomial_), std::max(x.low_, y.low_),
+                          std::min(x.high_, y.high_))) {
+        return 0;
+      }
+    }
+    x.refine();
+    y.refine();
+  }
+}
+
+std::vector<RealNumber> roots_in_unit(const IntegerPolynomial& p) {
+  if (p.size() <= 1) return {};
+  std::vector<RealNumber> roots = Isolation(square_free(p)).in_unit();
+  for (std::size_t i = 0; i + 1 < roots.size(); ++i) {
+    while (roots[i].high() >= roots[i + 1].low()) {
+      roots[i].refine();
+      roots[i + 1].refine();
+    }
+  }
+  return roots;
+}
+
+TimeSet times_below_zero(const IntegerPolynomial& p, Ends ends) {
+  if (p.empty()) return ends == Ends::closed ? TimeSet{{mpq_class(0), mpq_class(1)}} : TimeSet{};
+  const std::vector<RealNumber> roots = roots_in_unit(p);
+  if (roots.empty()) return sgn(p.front()) < 0 ? TimeSet{{mpq_class(0), mpq_class(1)}} : TimeSet{};
+  const std::vector<mpq_class> points = points_of_gaps(roots);
+  const std::size_t gaps = points.size();
+  TimeSet times;
+  std::vector<bool> below(gaps, false);
+  for (std::size_t i = 0; i < gaps; ++i) {
+    const RealNumber from = i == 0 ? RealNumber(mpq_class(0)) : roots[i - 1];
+    const RealNumber to = i + 1 == gaps ? RealNumber(mpq_class(1)) : roots[i];
+    const bool has_length = !(from.is_rational() && to.is_rational() && from.low() == to.low());
+    below[i] = has_length && sign_at(p, points[i]) < 0;
+    if (below[i]) times.push_back({from, to});
+    if (ends == Ends::closed && i > 0 && !below[i - 1] && !below[i]) times.push_back({from, from});
+  }
+  return times;
+}
+
+TimeSet common_times(TimeSet a, TimeSet b, Ends ends) {
+  TimeSet both;
+  for (TimeSpan& x : a) {
+    for (TimeSpan& y : b) {
+      const RealNumber& from = compare(x.from, y.from) >= 0 ? x.from : y.from;
+      const RealNumber& to = compare(x.to, y.to) <= 0 ? x.to : y.to;
+      TimeSpan common{from, to};
+      const int order = compare(common.from, common.to);
+      if (order < 0 || (order == 0 && ends == Ends::closed)) both.push_back(std::move(common));
+    }
+  }
+  return both;
+}
+
+}  // namespace exactvo::geometry::motions
