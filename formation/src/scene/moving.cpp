@@ -71,6 +71,7 @@ SeenBody seen_body(const Scenario& scenario, const std::vector<vo::Body>& bodies
     seen.shape = geometry::Disc{other.anchor, scenario.robots[body.owners.front()].radius};
     seen.velocity = other.anchor_velocity;
   } else if (body.kind == vo::BodyKind::moving_obstacle) {
+    EXACTVO_REQUIRE(body.owners.front() < row.moving.size(), "a row with the places of moving obstacles");
     const MovedObstacle& moved = row.moving[body.owners.front()];
     seen.shape = hull_of(scenario.moving_obstacles[body.owners.front()], moved.displacement);
     seen.velocity = moved.velocity;
