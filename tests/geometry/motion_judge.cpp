@@ -48,7 +48,7 @@ class Judgement {
       return;
     }
     judge_clearance(verdict);
-    if (expected == Encounter::overlap) judge_moments(verdict);
+    if (expected != Encounter::clear) judge_moments(verdict);
   }
 
  private:
@@ -92,10 +92,10 @@ class Judgement {
     const Q &from = oracle_.from(), &to = oracle_.to();
     const Q first_low(v.first.low), first_high(v.first.high), last_low(v.last.low), last_high(v.last.high);
     if (first_low < from || first_high > to || last_low < from || last_high > to) return wrong("moments not in common");
-    if (first_low > from && oracle_.encounter(from, first_low) == Encounter::overlap) wrong("overlaps before `first`");
-    if (oracle_.encounter(from, first_high) != Encounter::overlap) wrong("does not overlap by the end of `first`");
-    if (last_high < to && oracle_.encounter(last_high, to) == Encounter::overlap) wrong("overlaps after `last`");
-    if (oracle_.encounter(last_low, to) != Encounter::overlap) wrong("does not overlap from the begin of `last` on");
+    if (first_low > from && oracle_.encounter(from, first_low) >= v.encounter) wrong("meets before `first`");
+    if (oracle_.encounter(from, first_high) < v.encounter) wrong("does not meet by the end of `first`");
+    if (last_high < to && oracle_.encounter(last_high, to) >= v.encounter) wrong("meets after `last`");
+    if (oracle_.encounter(last_low, to) < v.encounter) wrong("does not meet from the begin of `last` on");
     const double wide = 0x1p-35 * (static_cast<double>(to) - static_cast<double>(from));
     const auto is_loose = [&](const Bounds& b) {
       return b.high - b.low > wide && std::nextafter(b.low, b.high) < b.high;

@@ -52,7 +52,7 @@ double stray_of(const std::vector<Filtered>& b) {
   return most / static_cast<double>(d) * (1.0 + 0x1p-40);
 }
 
-struct Piece {
+struct CurvePiece {
   std::vector<Filtered> points;
   int halvings;
 };
@@ -152,15 +152,15 @@ std::optional<Encounter> curved_by_filter(const std::vector<Filtered>& control_p
   const Known reach = sign_of(hull.reach);
   if (reach == Known::negative) return Encounter::clear;
   if (reach == Known::unknown) return std::nullopt;
-  std::vector<Piece> open{{control_points, 0}};
+  std::vector<CurvePiece> open{{control_points, 0}};
   for (int looked_at = 0; !open.empty(); ++looked_at) {
-    const Piece piece = std::move(open.back());
+    const CurvePiece piece = std::move(open.back());
     open.pop_back();
     const std::optional<Encounter> verdict = verdict_of(piece.points, hull);
     if (verdict == Encounter::overlap) return verdict;
     if (verdict == Encounter::clear) continue;
     if (looked_at >= kMostPieces || piece.halvings >= kMostHalvings || piece.points.size() <= 2) return std::nullopt;
-    Piece first{{}, piece.halvings + 1}, second{{}, piece.halvings + 1};
+    CurvePiece first{{}, piece.halvings + 1}, second{{}, piece.halvings + 1};
     halve(piece.points, first.points, second.points);
     open.push_back(std::move(second));
     open.push_back(std::move(first));

@@ -22,39 +22,42 @@ constexpr double kMomentShare = 0x1p-36;
 /// on.
 constexpr double kClearanceShare = 0x1p-44;
 
-bool overlaps(const Question& q, Window w) {
-  return q.decide(w) == Encounter::overlap;
-}
+/// Whether a part of the window has the whole's verdict.
+struct Meets {
+  const Question& question;
+  Encounter encounter;
+  bool operator()(Window w) const { return question.decide(w) >= encounter; }
+};
 
 /// A double strictly between two, or one of them where there is none.
 double middle_of(double low, double high) {
   return low + 0.5 * (high - low);
 }
 
-/// The first moment of overlap. `met` is a moment by which there has been one.
-Bounds first_moment(const Question& q, double met) {
-  const Window whole = q.window();
-  if (overlaps(q, {whole.from, whole.from})) return {whole.from, whole.from};
+/// The first moment that meets. `met` is a moment by which there has been one.
+Bounds first_moment(const Meets& meets, double met) {
+  const Window whole = meets.question.window();
+  if (meets({whole.from, whole.from})) return {whole.from, whole.from};
   const double fine = kMomentShare * (whole.to - whole.from);
   double low = whole.from, high = met;
   while (high - low > fine) {
     const double middle = middle_of(low, high);
     if (!(low < middle && middle < high)) break;
-    (overlaps(q, {low, middle}) ? high : low) = middle;
+    (meets({low, middle}) ? high : low) = middle;
   }
   return {low, high};
 }
 
-/// The last moment of overlap. `met` is a moment after which there has been one.
-Bounds last_moment(const Question& q, double met) {
-  const Window whole = q.window();
-  if (overlaps(q, {whole.to, whole.to})) return {whole.to, whole.to};
+/// The last moment that meets. `met` is a moment from which on there has been one.
+Bounds last_moment(const Meets& meets, double met) {
+  const Window whole = meets.question.window();
+  if (meets({whole.to, whole.to})) return {whole.to, whole.to};
   const double fine = kMomentShare * (whole.to - whole.from);
   double low = met, high = whole.to;
   while (high - low > fine) {
     const double middle = middle_of(low, high);
     if (!(low < middle && middle < high)) break;
-    (overlaps(q, {middle, high}) ? low : high) = middle;
+    (meets({middle, high}) ? low : high) = middle;
   }
   return {low, high};
 }
@@ -92,17 +95,18 @@ MotionVerdict examined(const Question& q) {
   const motions::Nearest nearest = motions::nearest_of(q);
   verdict.nearest_time = nearest.time;
   verdict.place = nearest.place;
-  if (verdict.encounter == Encounter::contact) return verdict;
-  verdict.clearance = clearance_of(q, nearest.clearance, nearest.size, nearest.reach);
+  if (verdict.encounter != Encounter::contact)
+    verdict.clearance = clearance_of(q, nearest.clearance, nearest.size, nearest.reach);
   if (verdict.encounter == Encounter::clear) {
     verdict.clearance.low = std::max(verdict.clearance.low, 0.0);
     return verdict;
   }
   verdict.clearance.high = std::min(verdict.clearance.high, 0.0);
+  const Meets meets{q, verdict.encounter};
   const double t = nearest.time;
-  const bool there = overlaps(q, {t, t});
-  verdict.first = first_moment(q, there || overlaps(q, {whole.from, t}) ? t : whole.to);
-  verdict.last = last_moment(q, there || overlaps(q, {t, whole.to}) ? t : whole.from);
+  const bool there = meets({t, t});
+  verdict.first = first_moment(meets, there || meets({whole.from, t}) ? t : whole.to);
+  verdict.last = last_moment(meets, there || meets({t, whole.to}) ? t : whole.from);
   return verdict;
 }
 

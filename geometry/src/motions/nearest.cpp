@@ -13,7 +13,7 @@ namespace {
 
 /// The search ends when its bounds are this share of the lengths apart, or after this many pieces.
 constexpr double kSearchShare = 0x1p-42;
-constexpr int kMostPieces = 2000;
+constexpr int kMostSearchPieces = 2000;
 
 struct Hull {
   std::vector<Vec2> vertices;
@@ -78,11 +78,11 @@ OnWay nearest_on_way(const Hull& hull, Vec2 a, Vec2 b) {
 }
 
 /// The way over a part of the window, as control points, and bounds of its clearance.
-struct Piece {
+struct WayPiece {
   std::vector<Vec2> points;
   double from = 0.0, to = 1.0;  ///< shares of the window
   double at_least = 0.0;
-  friend bool operator<(const Piece& a, const Piece& b) { return a.at_least > b.at_least; }
+  friend bool operator<(const WayPiece& a, const WayPiece& b) { return a.at_least > b.at_least; }
 };
 
 class Search {
@@ -118,7 +118,7 @@ class Search {
 
  private:
   /// Looks along the chord: an actual clearance from above, and a bound from below by how far the curve strays.
-  void look_at(Piece& piece) {
+  void look_at(WayPiece& piece) {
     const std::vector<Vec2>& p = piece.points;
     const std::size_t d = p.size() - 1;
     double stray = 0.0;
@@ -141,20 +141,20 @@ class Search {
   }
 
   void search() {
-    std::priority_queue<Piece> open;
+    std::priority_queue<WayPiece> open;
     look_at(whole_);
     open.push(whole_);
-    for (int looked_at = 0; looked_at < kMostPieces && !open.empty(); ++looked_at) {
-      const Piece piece = open.top();
+    for (int looked_at = 0; looked_at < kMostSearchPieces && !open.empty(); ++looked_at) {
+      const WayPiece piece = open.top();
       open.pop();
       if (piece.at_least >= best_.clearance - kSearchShare * size_ || piece.points.size() <= 2) break;
-      Piece first{{}, piece.from, 0.5 * (piece.from + piece.to)}, second{piece.points, first.to, piece.to};
+      WayPiece first{{}, piece.from, 0.5 * (piece.from + piece.to)}, second{piece.points, first.to, piece.to};
       for (std::size_t k = 0; k < piece.points.size(); ++k) {
         first.points.push_back(second.points[0]);
         for (std::size_t i = 0; i + 1 < piece.points.size() - k; ++i)
           second.points[i] = 0.5 * (second.points[i] + second.points[i + 1]);
       }
-      for (Piece* half : {&first, &second}) {
+      for (WayPiece* half : {&first, &second}) {
         look_at(*half);
         open.push(*half);
       }
@@ -189,7 +189,8 @@ class Search {
     nearest.size = size_;
     nearest.reach = reach_;
     const Window w = q_.window();
-    nearest.time = std::clamp(w.from + best_share_ * (w.to - w.from), w.from, w.to);
+    const double time = w.from + best_share_ * (w.to - w.from);
+    nearest.time = std::isfinite(time) ? std::clamp(time, w.from, w.to) : w.from;
     nearest.place = position_at(q_.motion(), nearest.time);
     if (!best_hull_) return nearest;
     // From the body's own nearest corner on, halfway into the gap or the overlap.
@@ -207,7 +208,7 @@ class Search {
 
   const Question& q_;
   std::vector<Hull> hulls_;
-  Piece whole_;
+  WayPiece whole_;
   Nearest best_;
   double best_share_ = 0.0;
   const Hull* best_hull_ = nullptr;

@@ -114,8 +114,8 @@ struct MotionVerdict {
   /// two sets (corners, obstacles) that overlap counts as 0, so no depth exceeds the sum of the radii. Infinite where
   /// the two have no moment in common.
   Bounds clearance;
-  Bounds first;               ///< s, certified: the first moment of overlap (its infimum); only for `overlap`
-  Bounds last;                ///< s, certified: the last moment of overlap (its supremum); only for `overlap`
+  Bounds first;               ///< s, certified: the first moment of overlap, or of contact (an infimum); 0 if clear
+  Bounds last;                ///< s, certified: the last moment of overlap, or of contact (a supremum); 0 if clear
   double nearest_time = 0.0;  ///< s, rounded: a moment of least clearance
   Vec2 place;                 ///< m, rounded: where the two are nearest, or deepest, at that moment
 };

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many moving discs at once, and proofs that moving bodies stay clear.
+#include "exactvo/geometry/motion_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include "exactvo/geometry/motion_certificate.h"
+#include "geometry/motion_case.h"
+
+namespace exactvo::test {
+namespace {
+
+using geometry::Between;
+using geometry::check_motions;
+using geometry::Encounter;
+using geometry::MotionCertificate;
+using geometry::MotionCheck;
+using geometry::MotionEvent;
+using geometry::MotionVerdict;
+using geometry::Obstacle;
+using geometry::Polygon;
+using geometry::Polyline;
+using geometry::StraightMotion;
+using geometry::TimedPoint;
+using geometry::Trajectory;
+using geometry::Vec2;
+
+using Key = std::tuple<std::size_t, bool, std::size_t>;
+
+std::vector<StraightMotion> pieces_of(const Trajectory& t, Between between) {
+  std::vector<StraightMotion> pieces;
+  for (std::size_t i = 0; i + 1 < t.points.size(); ++i)
+    pieces.push_back(between == Between::hold ? geometry::held(t.points[i], t.points[i + 1].time)
+                                              : StraightMotion{t.points[i], t.points[i + 1]});
+  if (between == Between::hold || pieces.empty()) pieces.push_back({t.points.back(), t.points.back()});
+  return pieces;
+}
+
+/// Every piece against every other and every obstacle; what may be one event is joined.
+std::vector<MotionEvent> all_against_all(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& map,
+                                         Between between) {
+  std::map<Key, std::vector<MotionEvent>> by_pair;
+  const auto add = [&](const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
+    if (v.encounter == Encounter::clear) return;
+    by_pair[{body, with_obstacle, other}].push_back(
+        {v.encounter, body, with_obstacle, other, v.first, v.last, v.clearance, v.nearest_time, v.place});
+  };
+  for (std::size_t i = 0; i < trajectories.size(); ++i)
+    for (const StraightMotion& m : pieces_of(trajectories[i], between)) {
+      const auto body = geometry::disc_body(trajectories[i].radius);
+      for (std::size_t k = 0; k < map.size(); ++k) add(examine(m, body, map[k]), i, true, k);
+      for (std::size_t j = i + 1; j < trajectories.size(); ++j)
+        for (const StraightMotion& n : pieces_of(trajectories[j], between))
+          add(examine(m, body, n, geometry::disc_body(trajectories[j].radius)), i, false, j);
+    }
+  std::vector<MotionEvent> events;
+  for (auto& [key, all] : by_pair) {
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.low < b.first.low; });
+    bool first = true;
+    for (const MotionEvent& e : all) {
+      if (first || e.first.low > events.back().last.high) {
+        events.push_back(e);
+      } else {
+        MotionEvent& open = events.back();
+        open.last.high = std::max(open.last.high, e.last.high);
+        open.encounter = std::max(open.encounter, e.encounter);
+        open.clearance.low = std::min(open.clearance.low, e.clearance.low);
+      }
+      first = false;
+    }
+  }
+  std::sort(events.begin(), events.end(), [](const MotionEvent& a, const MotionEvent& b) {
+    return std::tie(a.last.high, a.body, a.with_obstacle, a.other) <
+           std::tie(b.last.high, b.body, b.with_obstacle, b.other);
+  });
+  return events;
+}
+
+std::vector<Trajectory> random_trajectories(SeededRandom& random, std::size_t bodies, bool whole_numbers) {
+  std::vector<Trajectory> all;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    Trajectory t;
+    t.radius = random.integer(0, 5) == 0 ? 0.0 : whole_numbers ? 0.5 : random.uniform(0.1, 0.6);
+    double time = whole_numbers ? random.integer(0, 2) : random.uniform(0.0, 2.0);
+    Vec2 at = random.in_box(6.0);
+    const int points = random.integer(1, 12);
+    for (int k = 0; k < points; ++k) {
+      if (whole_numbers) at = {std::nearbyint(at.x), std::nearbyint(at.y)};
+      t.points.push_back({time, at});
+      time += whole_numbers ? random.integer(0, 2) : random.uniform(0.0, 1.0);
+      at += random.integer(0, 5) == 0 ? Vec2{} : random.in_box(random.integer(0, 9) == 0 ? 40.0 : 2.0);
+    }
+    all.push_back(t);
+  }
+  return all;
+}
+
+const std::vector<Obstacle> kMap{Polygon{{{-4, -4}, {-1, -4}, {-1, -1}, {-4, -1}}, {}}, Polyline{{{0, 0}, {5, 5}}},
+                                 Polyline{{{-5, 3}, {-2, 3}, {-2, 6}}},
+                                 Polygon{{{1, -6}, {6, -6}, {6, -1}, {1, -1}}, {{{2, -5}, {2, -2}, {5, -2}, {5, -5}}}}};
+
+TEST(MotionCheck, FindsWhatAllAgainstAllFinds) {
+  SeededRandom random(seed_of_run(51));
+  std::size_t judged = 0, overlaps = 0, contacts = 0;
+  for (int round = 0; round < 60; ++round) {
+    const auto trajectories = random_trajectories(random, 8, round % 2 == 0);
+    const Between between = round % 3 == 0 ? Between::hold : Between::straight;
+    std::vector<MotionEvent> found;
+    const MotionCheck check =
+        check_motions(trajectories, kMap, {between, 0.0}, [&](const MotionEvent& e) { found.push_back(e); });
+    const std::vector<MotionEvent> expected = all_against_all(trajectories, kMap, between);
+    ASSERT_EQ(found.size(), expected.size()) << "round " << round;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(std::tie(found[i].body, found[i].with_obstacle, found[i].other, found[i].encounter),
+                std::tie(expected[i].body, expected[i].with_obstacle, expected[i].other, expected[i].encounter))
+          << "round " << round;
+      ASSERT_EQ(found[i].first.low, expected[i].first.low);
+      ASSERT_EQ(found[i].last.high, expected[i].last.high);
+      ASSERT_EQ(found[i].clearance.low, expected[i].clearance.low);
+    }
+    judged += found.size();
+    overlaps += check.overlaps;
+    contacts += check.contacts;
+  }
+  EXPECT_EQ(overlaps + contacts, judged);
+  EXPECT_GE(overlaps, 500u);
+  EXPECT_GE(contacts, 10u);
+}
+
+TEST(MotionCheck, AnOverlapOverSeveralPiecesIsOneEvent) {
+  Trajectory moving{{}, 0.5};
+  for (int k = 0; k <= 20; ++k) moving.points.push_back({0.5 * k, {-5.0 + 0.5 * k, 0.0}});
+  const Trajectory standing{{{0, {0, 0}}, {10, {0, 0}}}, 0.5};
+  std::vector<MotionEvent> events;
+  check_motions({moving, standing}, {}, {}, [&](const MotionEvent& e) { events.push_back(e); });
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_NEAR(events[0].first.low, 4.0, 1e-9);
+  EXPECT_NEAR(events[0].last.high, 6.0, 1e-9);
+  EXPECT_LE(events[0].clearance.low, -1.0);
+}
+
+TEST(MotionCheck, ListsAllPairsThatComeNear) {
+  SeededRandom random(seed_of_run(54));
+  std::size_t judged = 0;
+  for (int round = 0; round < 40; ++round) {
+    const double near = random.uniform(0.05, 1.5);
+    const auto all = random_trajectories(random, 12, round % 2 == 0);
+    const MotionCheck check = check_motions(all, {}, {Between::straight, near}, [](const MotionEvent&) {});
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        geometry::Bounds least{INFINITY, INFINITY};
+        for (const StraightMotion& m : pieces_of(all[i], Between::straight))
+          for (const StraightMotion& n : pieces_of(all[j], Between::straight)) {
+            const auto v = examine(m, geometry::disc_body(all[i].radius), n, geometry::disc_body(all[j].radius));
+            least = {std::min(least.low, v.clearance.low), std::min(least.high, v.clearance.high)};
+          }
+        if (least.low >= near) continue;
+        ASSERT_LT(next, check.approaches.size());
+        const geometry::Approach& found = check.approaches[next++];
+        ASSERT_EQ(std::tie(found.body, found.other), std::tie(i, j));
+        ASSERT_EQ(found.clearance.low, least.low);
+        ASSERT_EQ(found.clearance.high, least.high);
+      }
+    ASSERT_EQ(next, check.approaches.size());
+    judged += next;
+  }
+  EXPECT_GE(judged, 100u);
+}
+
+TEST(MotionCheck, LooksAtWhatIsNearOnly) {
+  // A crowd on a lattice, 3 m apart, walking together: no pair of pieces meets but in time.
+  std::vector<Trajectory> crowd;
+  for (int x = 0; x < 30; ++x)
+    for (int y = 0; y < 30; ++y) {
+      Trajectory t{{}, 0.3};
+      for (int k = 0; k <= 10; ++k) t.points.push_back({0.1 * k, {3.0 * x + 0.1 * k, 3.0 * y}});
+      crowd.push_back(t);
+    }
+  const MotionCheck check = check_motions(crowd, {}, {}, [](const MotionEvent&) { FAIL(); });
+  EXPECT_EQ(check.pieces, 9000u);
+  EXPECT_EQ(check.pairs, 0u);
+}
+
+TEST(MotionCheck, MistakesAreNamed) {
+  const auto check = [](const Trajectory& t) { check_motions({t}, {}, {}, [](const MotionEvent&) {}); };
+  EXPECT_THROW(check({{}, 0.5}), std::logic_error);
+  EXPECT_THROW(check({{{1, {0, 0}}, {0, {0, 0}}}, 0.5}), std::logic_error);
+  EXPECT_THROW(check({{{0, {0, 0}}}, -0.5}), std::logic_error);
+  EXPECT_THROW(check({{{0, {NAN, 0}}}, 0.5}), std::logic_error);
+}
+
+// --- Certificates ---
+
+std::optional<MotionCertificate> certify(const MotionCase& c) {
+  return c.b ? geometry::certify(c.a, c.body_a, *c.b, c.body_b) : geometry::certify(c.a, c.body_a, *c.obstacle);
+}
+bool proves_clear(const MotionCertificate& p, const MotionCase& c) {
+  return c.b ? geometry::proves_clear(p, c.a, c.body_a, *c.b, c.body_b)
+             : geometry::proves_clear(p, c.a, c.body_a, *c.obstacle);
+}
+
+TEST(MotionCertificate, ClearMotionsAreProven) {
+  SeededRandom random(seed_of_run(52));
+  std::size_t clear = 0, proven = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const MotionCase c = random_motion_case(random, kMotionKinds[i % 5]);
+    const auto certificate = certify(c);
+    if (encounter(c) != Encounter::clear) {
+      ASSERT_FALSE(certificate) << corpus_line(c);
+      continue;
+    }
+    ++clear;
+    if (!certificate) continue;
+    ++proven;
+    ASSERT_TRUE(proves_clear(*certificate, c)) << corpus_line(c);
+  }
+  EXPECT_GE(clear, 1200u);
+  // What is clear by an ulp has none.
+  EXPECT_GE(proven * 100, clear * 80);
+}
+
+TEST(MotionCertificate, ProvesNothingThatIsNotTrue) {
+  SeededRandom random(seed_of_run(53));
+  std::size_t changed = 0, refused = 0, untrue = 0;
+  for (int i = 0; i < 3000; ++i) {
+    MotionCase c = random_motion_case(random, kMotionKinds[i % 5]);
+    const auto certificate = certify(c);
+    if (!certificate || certificate->separations.empty()) continue;
+    MotionCertificate other = *certificate;
+    auto& s =
+        other.separations[static_cast<std::size_t>(random.integer(0, static_cast<int>(other.separations.size()) - 1))];
+    switch (i % 6) {
+      case 0:
+        s.direction = -s.direction;
+        break;
+      case 1:
+        s.margin = std::nextafter(1.001 * s.margin + 1e-300, 1e300) + norm(s.direction);
+        break;
+      case 2:
+        s.to = s.from + 0.5 * (s.to - s.from);
+        break;
+      case 3:
+        other.separations.pop_back();
+        break;
+      case 4:
+        s.other += 1;
+        break;
+      case 5: {
+        // The proof of a smaller body: false where the larger one is not clear.
+        for (auto& part : c.body_a) part.radius = 4.0 * part.radius + 1.0;
+        break;
+      }
+    }
+    ++changed;
+    const bool accepted = proves_clear(other, c);
+    refused += accepted ? 0 : 1;
+    if (i % 6 == 5) {
+      if (encounter(c) != Encounter::clear) {
+        ++untrue;
+        ASSERT_FALSE(accepted) << corpus_line(c);
+      }
+    } else if (i % 6 != 1 && i % 6 != 2) {
+      ASSERT_FALSE(accepted) << corpus_line(c);
+    }
+  }
+  EXPECT_GE(changed, 800u);
+  EXPECT_GE(refused * 100, changed * 70);
+  EXPECT_GE(untrue, 50u);
+}
+
+TEST(MotionCertificate, TouchingIsNotProven) {
+  const geometry::Motion along = StraightMotion{{0, {-2, 1}}, {1, {2, 1}}};
+  const Obstacle wall = Polyline{{{-3, 0}, {3, 0}}};
+  EXPECT_FALSE(geometry::certify(along, geometry::disc_body(1.0), wall));
+  MotionCertificate touching{{{0, 0, 0.0, 1.0, {0, 1}, 0.0}}};
+  EXPECT_FALSE(geometry::proves_clear(touching, along, geometry::disc_body(1.0), wall));
+  EXPECT_TRUE(geometry::proves_clear(touching, along, geometry::disc_body(0.5), wall));
+}
+
+TEST(MotionCertificate, InsideAPolygonIsNotProvenByItsEdges) {
+  const geometry::Motion rest = geometry::held({0, {0, 0}}, 1);
+  const Obstacle room = Polygon{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, {}};
+  MotionCertificate edges{
+      {{0, 0, 0, 1, {0, 1}, 1}, {0, 1, 0, 1, {-1, 0}, 1}, {0, 2, 0, 1, {0, -1}, 1}, {0, 3, 0, 1, {1, 0}, 1}}};
+  EXPECT_FALSE(geometry::proves_clear(edges, rest, geometry::disc_body(0.5), room));
+  const Obstacle walls = Polyline{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}, {-5, -5}}};
+  EXPECT_TRUE(geometry::proves_clear(edges, rest, geometry::disc_body(0.5), walls));
+}
+
+}  // namespace
+}  // namespace exactvo::test
