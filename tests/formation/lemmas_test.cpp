@@ -55,7 +55,7 @@ TEST(Lemmas, Lemma1_HalvesOfAPairAddUpAndNothingIsRelaxed) {
     SimulationOptions options;
     options.record_all = true;
     const Recording run = simulate(s, options);
-    const double at_rest = detail::contact_time(s.time_step);
+    const double at_rest = detail::contact_time(s.time_step, s.horizons);
     for (std::size_t row = 0; row + 1 < run.steps.size(); ++row) {
       const Step& step = run.steps[row];
       std::map<std::pair<std::size_t, std::size_t>, const DecisionConstraint*> half;

@@ -19,7 +19,7 @@ namespace {
 
 // --- A scene in another time ---
 
-void slow_down(Leader& motion, double by) {
+void slow_down(TimedPath& motion, double by) {
   motion.speed /= by;
   for (SpeedKnot& knot : motion.profile) knot = {knot.time * by, knot.speed / by};
 }
