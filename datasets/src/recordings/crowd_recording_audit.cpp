@@ -80,8 +80,9 @@ class CrowdAuditor {
 
   void find(std::size_t i, const std::string& words) {
     if (report.findings.size() < kMostCrowdFindings)
-      report.findings.push_back("step " + std::to_string(to_->step) + ": robot " + std::to_string(i) + words);
+      report.findings.push_back("step " + std::to_string(to_->step) + ": " + name(i) + words);
   }
+  std::string name(std::size_t i) const { return "robot " + head_.name_of(i); }
 
   /// Robots of the first row by cells as wide as two can be apart that could meet.
   void lay_out() {
@@ -218,7 +219,7 @@ class CrowdAuditor {
       ++report.pairs;
       if (!meets(other, {}, relative, kind(i).radius)) return;
       ++report.pairs_met;
-      find(i, " overlaps robot " + std::to_string(j));
+      find(i, " overlaps " + name(j));
     });
   }
 
@@ -227,7 +228,7 @@ class CrowdAuditor {
     ++report.touching_pairs;
     if (!overlap_at_end) return;
     ++report.pairs_not_parted;
-    find(i, " touched robot " + std::to_string(j) + ", and still overlaps it");
+    find(i, " touched " + name(j) + ", and still overlaps it");
   }
 
   const CrowdRecordingHead& head_;
