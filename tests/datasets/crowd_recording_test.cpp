@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -222,7 +224,7 @@ TEST_F(PutRobots, AnOverlapFailsWhateverWasPromised) {
     EXPECT_GT(stay.pairs_overlapping, 2U);
     EXPECT_FALSE(stay.clean());
     ASSERT_FALSE(stay.findings.empty());
-    EXPECT_NE(stay.findings.back().find("overlaps robot 1 already at the row before"), std::string::npos);
+    EXPECT_NE(stay.findings.back().find("overlaps robot b already at the row before"), std::string::npos);
   }
   // In turns overlapping and apart.
   const CrowdAuditReport turns = audit_of([](double k) {
@@ -372,7 +374,81 @@ TEST_F(CrowdRecordings, ATableHasALineARobotAndRow) {
   table.commit();
   const std::string text = content_of(folder_ / "c.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), 1 + 120 * rows);
-  EXPECT_EQ(text.find("step,time,robot,x,y,kept\n0,0,0,-14,-6,1\n"), 0U);
+  EXPECT_EQ(text.find("step,time,robot,x,y,kept,id\n0,0,0,-14,-6,1,\"G1/1\"\n"), 0U);
+  EXPECT_NE(text.find(",\"G2/60\"\n"), std::string::npos);
+}
+
+std::uint64_t number_at(const std::string& bytes, std::size_t at) {
+  std::uint64_t number = 0;
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
+
+std::string in_bytes(std::uint64_t number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
+std::uint64_t fnv1a(const std::string& bytes) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+/// The same recording as an earlier version wrote it: the first `head_size` bytes of the head, and another mark.
+std::string in_earlier_version(const std::string& whole, const std::string& mark, std::size_t head_size) {
+  std::size_t at = 24 + number_at(whole, 8);
+  const std::string head = whole.substr(24, head_size);
+  std::uint64_t sum = fnv1a(head);
+  std::string out = mark + in_bytes(head.size()) + in_bytes(sum) + head;
+  for (; whole.at(at) == 'R'; at += 17 + number_at(whole, at + 1)) {
+    out += whole.substr(at, 17 + number_at(whole, at + 1));
+    sum = fnv1a(in_bytes(sum) + in_bytes(number_at(whole, at + 9)));
+  }
+  const std::string seal = whole.substr(at + 17, 8) + in_bytes(sum);
+  return out + "E" + in_bytes(seal.size()) + in_bytes(fnv1a(seal)) + seal;
+}
+
+TEST_F(CrowdRecordings, RobotsKeepTheirIds) {
+  Scenario scenario = crossing();
+  const std::string odd[] = {"", "R, \"1\"", "robot", "robot/1", "\xc3\xa4rm", std::string(200, 'x')};
+  for (std::size_t k = 0; k < std::size(odd); ++k) scenario.robots[7 * k].id = odd[k];
+  record(scenario, 40);
+  const CrowdRecordingReader reader(folder_ / "c.evr");
+  ASSERT_EQ(reader.head().ids.size(), scenario.robots.size());
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    EXPECT_EQ(reader.head().ids[i], scenario.robots[i].id);
+    EXPECT_EQ(reader.head().name_of(i), scenario.robots[i].id);
+  }
+  AtomicFile table(folder_ / "c.csv");
+  write_crowd_csv(folder_ / "c.evr", table);
+  table.commit();
+  EXPECT_NE(content_of(folder_ / "c.csv").find(",\"R, \"\"1\"\"\"\n"), std::string::npos);
+}
+
+TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {
+  record(crossing(), 25);
+  const std::string whole = content_of(folder_ / "c.evr");
+  ASSERT_EQ(whole.substr(0, 8), "EXACTVR3");
+  // Name, three numbers, two kinds, 120 robots, six edges; then bodies, of which there are none.
+  const std::size_t before_bodies = 4 + 8 + 8 + 8 + 4 + 4 + 2 * 16 + 4 + 120 * 2 + 4 + 6 * 32;
+  for (const auto& [mark, size] : {std::pair("EXACTVR1", before_bodies), std::pair("EXACTVR2", before_bodies + 4)}) {
+    const std::filesystem::path old = put("old.evr", in_earlier_version(whole, mark, size));
+    EXPECT_EQ(rows_of(old), rows_of(folder_ / "c.evr")) << mark;
+    CrowdRecordingReader then(old), now(folder_ / "c.evr");
+    EXPECT_TRUE(then.head().ids.empty());
+    EXPECT_EQ(then.head().name_of(3), "#4");
+    CrowdRow a, b;
+    while (then.next(a) && now.next(b)) EXPECT_TRUE(a.x == b.x && a.y == b.y && a.kept == b.kept);
+    EXPECT_TRUE(audit_crowd_recording(old).clean());
+    AtomicFile table(folder_ / "old.csv");
+    write_crowd_csv(old, table);
+    table.commit();
+    EXPECT_EQ(content_of(folder_ / "old.csv").find("step,time,robot,x,y,kept\n0,0,0,-14,-6,1\n"), 0U) << mark;
+  }
+  for (const char* mark : {"EXACTVR1", "EXACTVR2"})  // with a head of the present version
+    EXPECT_EQ(refusal_of([&] { rows_of(put("b.evr", mark + whole.substr(8))); }).code(), DataCode::format_syntax);
+  expect_refusal(refusal_of([&] { rows_of(put("b.evr", "EXACTVR4" + whole.substr(8))); }), DataCode::format_syntax,
+                 "byte 0");
 }
 
 TEST(CrowdProblems, WhatACrowdCannotRunIsNamed) {

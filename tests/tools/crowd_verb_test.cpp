@@ -37,7 +37,7 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
   EXPECT_EQ(json::parse(audit.out)["motions"], 40 * metrics["steps"].get<int>());
   EXPECT_EQ(here.run("audit ring.evr --sample 100").status, 0);
   EXPECT_EQ(here.run("convert ring.evr ring.csv").status, 0);
-  EXPECT_THAT(here.read("ring.csv"), HasSubstr("\n0,0,0,20,0,1\n"));
+  EXPECT_THAT(here.read("ring.csv"), HasSubstr("\n0,0,0,20,0,1,\"G1/1\"\n"));
 
   const std::string whole = here.read("ring.evr");
   here.write("cut.evr", whole.substr(0, whole.size() / 2));
@@ -125,12 +125,13 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate ring.json --engine crwd", "one of standard crowd; did you mean 'crowd'?"},
       {"simulate ring.json --record out.evr",
-       "--record: found 'out.evr', expected - for stdout, or a pipe; or --engine crowd beside it"},
-      {"simulate ring.json --record out.jsonl --out out", "--record: found 'out.jsonl', expected no --out beside it"},
+       "--record: found 'out.evr', expected - for stdout, or a pipe; --out DIR writes a recording to disk"},
+      {"simulate ring.json --record out.jsonl --out out", "--record cannot be combined with --out: --out DIR already"},
       {"simulate ring.json --engine crowd --method ivo", "--method: found 'ivo', expected orca"},
-      {"simulate ring.json --engine crowd --out out", "--out: found 'out', expected --record FILE.evr in its place"},
-      {"simulate ring.json --engine crowd --no-figures", "--engine: found 'crowd', expected no --no-figures beside it"},
-      {"simulate ring.json --every 3", "--every: found '--every without --engine crowd', expected --engine crowd"},
+      {"simulate ring.json --engine crowd --out out", "--out cannot be combined with --engine crowd: a crowd is"},
+      {"simulate ring.json --engine crowd --record-all",
+       "--record-all cannot be combined with --engine crowd: only the standard engine has that option"},
+      {"simulate ring.json --every 3", "--every needs --engine crowd: only that engine has the option"},
       {"simulate ring.json --engine crowd --record ring.json",
        "--record: found 'ring.json', expected a name that ends in .evr"},
       {"simulate ring.json --engine crowd --precision half", "float or double"},
@@ -261,10 +262,10 @@ TEST(CrowdVerb, OptionsOfSnapshotsNeedEachOther) {
   here.write("ring.json", kRing);
   const Outcome alone = here.run("simulate ring.json --engine crowd --snapshot-every 5");
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("--record FILE.evr beside it"));
+  EXPECT_THAT(alone.err, HasSubstr("--snapshot-every needs --record FILE.evr: a snapshot"));
   const Outcome resume = here.run("simulate ring.json --engine crowd --record ring.evr --resume");
   EXPECT_EQ(resume.status, 2);
-  EXPECT_THAT(resume.err, HasSubstr("--snapshot-every N beside it"));
+  EXPECT_THAT(resume.err, HasSubstr("--resume needs --snapshot-every N: "));
   EXPECT_EQ(here.run("simulate ring.json --resume").status, 2) << "of the standard engine";
 }
 

@@ -79,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"--quiet=no simulate s.json", "--quiet: found 'no', expected no value"},
         Mistake{"simulate -h=3", "found '3', expected no value"},
         Mistake{"simulate ''", "scenario: found '', expected a value: JSON file"},
-        Mistake{"paper", "missing option --out: "}, Mistake{"audit", "found 'neither a path nor --certificate'"}),
+        Mistake{"paper", "missing option --out: "},
+        Mistake{"audit", "audit needs a recording (or a folder of them), or --certificate FILE"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

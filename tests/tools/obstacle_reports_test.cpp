@@ -50,6 +50,19 @@ TEST(Validate, NamesPlacesOfAFileInFeetByItsFeet) {
               AllOf(HasSubstr("vertex 0: (1968.5"), HasSubstr("m), on an edge at vertex (0, 0): ")));
 }
 
+TEST(Validate, SaysWhatWouldBeRepairedAndWhichCommandRepairsTheRest) {
+  const Workplace here;
+  here.write("turned.wkt", "POLYGON ((0 0, 0 4, 6 4, 6 0, 0 0))\n");
+  here.write("bow.wkt", "POLYGON ((0 0, 0 4, 6 4, 6 0, 0 0))\nPOLYGON ((10 0, 12 2, 12 0, 10 2, 10 0))\n");
+  const Outcome turned = here.run("validate turned.wkt"), bow = here.run("validate bow.wkt");
+  EXPECT_THAT(turned.out, HasSubstr("[E_CLOCKWISE], would be repaired\n"));
+  EXPECT_THAT(turned.err, AllOf(HasSubstr("1 would be repaired"), Not(HasSubstr("exactvo repair"))));
+  EXPECT_THAT(bow.err, HasSubstr("exactvo repair bow.wkt --out FILE can cut its rings at their crossings"));
+  EXPECT_EQ(here.run("repair bow.wkt --out whole.wkt").status, 0);
+  EXPECT_EQ(here.run("validate whole.wkt").status, 0);
+  EXPECT_THAT(here.run("segment bow.wkt").err, HasSubstr("exactvo repair cuts rings that cross"));
+}
+
 TEST(Validate, NamesTheVertexBesideACrossing) {
   const Workplace here;
   here.write("bad.wkt", "POLYGON ((10 0, 12 2, 12 0, 10 2, 10 0))\n");

@@ -42,8 +42,8 @@ TEST(VerbVo, WordsNameTheLegs) {
     const std::size_t line = words.find(leg.at("side").get<std::string>() + " leg ");
     ASSERT_NE(line, std::string::npos) << words;
     Vec2 direction, touch;
-    ASSERT_EQ(std::sscanf(words.c_str() + words.find('(', line), "(%lf, %lf), touches at (%lf, %lf) m", &direction.x,
-                          &direction.y, &touch.x, &touch.y),
+    ASSERT_EQ(std::sscanf(words.c_str() + words.find('(', line), "(%lf, %lf), touches at (%lf, %lf) m from the robot",
+                          &direction.x, &direction.y, &touch.x, &touch.y),
               4)
         << words;
     EXPECT_NEAR(direction.x, leg.at("direction")[0].get<double>(), 1e-5);
@@ -51,6 +51,31 @@ TEST(VerbVo, WordsNameTheLegs) {
     EXPECT_NEAR(touch.x, leg.at("touch")[0].get<double>(), 1e-4);
     EXPECT_NEAR(touch.y, leg.at("touch")[1].get<double>(), 1e-4);
   }
+}
+
+TEST(VerbVo, PointsMayBeTwoWords) {
+  const auto answer = [](const std::string& points) {
+    return Workplace().run("vo --obstacle '" + kSquare + "' --radius 0.3 --time-horizon 3 " + points);
+  };
+  const Outcome one = answer("--position=-1,0.5 --velocity 1,0.2");
+  ASSERT_EQ(one.status, 0) << one.err;
+  for (const char* points : {"--position -1 0.5 --velocity 1 0.2", "--position -1, 0.5 --velocity 1,0.2",
+                             "--position=-1,0.5 --velocity 1e0 +0.2"}) {
+    const Outcome two = answer(points);
+    EXPECT_EQ(two.status, 0) << points << two.err;
+    EXPECT_EQ(two.out, one.out) << points;
+  }
+  for (const char* points : {"--position 0 --velocity 1,0", "--position 0 0 0 --velocity 1,0",
+                             "--position 0,0 0 --velocity 1,0", "--position 0 x --velocity 1,0"})
+    EXPECT_EQ(answer(points).status, 2) << points;
+}
+
+TEST(VerbVo, ACrossingRingIsRefusedWithAHintAtRepair) {
+  const Outcome outcome = Workplace().run(
+      "vo --obstacle 'POLYGON ((3 0, 5 2, 5 0, 3 2, 3 0))' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon "
+      "3");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("expected a simple ring; exactvo repair cuts rings that cross [E_"));
 }
 
 TEST(VerbVo, WordsOfEveryPieceNameItsLegsAndThoseInContactNone) {
@@ -186,7 +211,8 @@ TEST(VerbVo, VelocitiesGoWithNothingThatWouldBeIgnored) {
                                   "--responsibility 0.5", "--figure x.svg"}) {
     const Outcome run = here.run(kSquareAhead + "--velocities v " + other);
     EXPECT_EQ(run.status, 2) << other;
-    EXPECT_THAT(run.err, HasSubstr("--velocities beside " + other.substr(0, other.find(' '))));
+    EXPECT_THAT(run.err,
+                HasSubstr("--velocities cannot be combined with " + other.substr(0, other.find(' ')) + ": give"));
   }
   const Outcome rule = here.run("vo --obstacle '" + kSquare +
                                 "' --position 0,0 --radius 0.3 --time-horizon paper "

@@ -83,7 +83,7 @@ datasets::RecordingFile about_crowd(const CrowdRecordingHead& head) {
   add_bodies(head, about.scenario);
   for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
     formation::Robot robot;
-    robot.id = fmt::format("#{}", i + 1);
+    robot.id = head.name_of(i);
     robot.radius = head.kinds[head.kind_of[i]].radius;
     robot.max_speed = head.kinds[head.kind_of[i]].max_speed;
     about.scenario.robots.push_back(std::move(robot));

@@ -35,7 +35,8 @@ struct FindingWords {
   const char* repair;
 };
 constexpr FindingWords kHoles{DataCode::hole_outside, "a hole that is not inside its polygon or meets another ring",
-                              "holes inside their polygon, apart from each other", kCut};
+                              "holes inside their polygon, apart from each other; exactvo repair cuts rings that cross",
+                              kCut};
 constexpr FindingWords kFindings[] = {
     {DataCode::not_finite, "a coordinate that is no finite number", "finite coordinates", kCut},
     {DataCode::too_few_points, "too few distinct points", "at least three distinct points in a ring, two in a polyline",
@@ -44,7 +45,8 @@ constexpr FindingWords kFindings[] = {
     {DataCode::repeated_vertex, "the same point twice running", kHoles.expected, "repeated vertex dropped"},
     {DataCode::clockwise, "the wrong winding", kHoles.expected, "winding reversed"},
     {DataCode::zero_area, "a ring without area", "a ring that encloses some area", kHoleDropped},
-    {DataCode::self_intersection, "a ring that crosses or touches itself", "a simple ring", kCut},
+    {DataCode::self_intersection, "a ring that crosses or touches itself",
+     "a simple ring; exactvo repair cuts rings that cross", kCut},
     {DataCode::out_of_range, "a coordinate beyond 2^100 m", "coordinates within 2^100 m, 1.27e30 m, of (0, 0)", kCut},
     {DataCode::size, "rings that touch or cross too often",
      "rings whose edges' boxes meet in at most 2^26 pairs, and fewer or smaller holes", kCut}};

@@ -80,8 +80,9 @@ class CrowdAuditor {
 
   void find(std::size_t i, const std::string& words) {
     if (report.findings.size() < kMostCrowdFindings)
-      report.findings.push_back("step " + std::to_string(to_->step) + ": robot " + std::to_string(i) + words);
+      report.findings.push_back("step " + std::to_string(to_->step) + ": " + name(i) + words);
   }
+  std::string name(std::size_t i) const { return "robot " + head_.name_of(i); }
 
   /// Robots of the first row by cells as wide as two can be apart that could meet.
   void lay_out() {
@@ -214,11 +215,11 @@ class CrowdAuditor {
       const Disc other{d, kind(j).radius};
       if (is_within(other, {}, kind(i).radius)) {
         ++report.pairs_overlapping;
-        return find(i, " overlaps robot " + std::to_string(j) + " already at the row before");
+        return find(i, " overlaps " + name(j) + " already at the row before");
       }
       if (!meets(other, {}, relative, kind(i).radius) || !overlap(d, relative, i, j)) return;
       ++report.pairs_met;
-      find(i, " overlaps robot " + std::to_string(j));
+      find(i, " overlaps " + name(j));
     });
   }
 

@@ -14,8 +14,13 @@
 
 namespace exactvo::datasets {
 
-/// Of recordings without bodies, and with.
-inline constexpr std::string_view kCrowdMark = "EXACTVR1", kCrowdMarkOfBodies = "EXACTVR2";
+/// EXACTVR1 has no bodies, EXACTVR2 no ids. EXACTVR1 is read, and no longer written.
+inline constexpr std::string_view kCrowdMarks[] = {"EXACTVR1", "EXACTVR2", "EXACTVR3"};
+inline constexpr std::size_t kCrowdMarkSize = kCrowdMarks[0].size();
+
+/// The version that a mark is of, from 1; 0 where it is none.
+unsigned crowd_version(std::string_view mark);
+
 inline constexpr char kCrowdRow = 'R', kCrowdEnd = 'E';
 
 std::uint64_t checksum(std::string_view bytes);
@@ -85,9 +90,14 @@ class CrowdBytes {
   std::uint64_t at_;
 };
 
-std::string to_bytes(const CrowdRecordingHead& head);
+/// Appends a robot's id behind another's, as how many bytes it shares with that from the beginning, and the rest: few
+/// bytes where ids have a prefix and a number.
+void append_id(std::string& to, std::string_view id, std::string_view before);
 
-/// Throws DataError (E_FORMAT_SYNTAX) where it is not as `to_bytes` writes it.
-CrowdRecordingHead to_head(CrowdBytes in, bool has_bodies);
+/// `ids`: those of all robots, as `append_id` writes them, or none; head.ids is not looked at.
+std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids);
+
+/// Throws DataError (E_FORMAT_SYNTAX) where it is not as `to_bytes` writes it, or did in an earlier version.
+CrowdRecordingHead to_head(CrowdBytes in, unsigned version);
 
 }  // namespace exactvo::datasets

@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <vector>
 
 #include "exactvo/geometry/shape_numbers.h"
+#include "files/text_file.h"
 
 namespace exactvo::datasets {
 
@@ -68,7 +70,20 @@ void CrowdBytes::refuse(const std::string& found) const {
                   "what simulate --record has written");
 }
 
-std::string to_bytes(const CrowdRecordingHead& head) {
+unsigned crowd_version(std::string_view mark) {
+  const auto* found = std::find(std::begin(kCrowdMarks), std::end(kCrowdMarks), mark);
+  return found == std::end(kCrowdMarks) ? 0 : static_cast<unsigned>(found - std::begin(kCrowdMarks)) + 1;
+}
+
+void append_id(std::string& to, std::string_view id, std::string_view before) {
+  const auto ends = std::mismatch(id.begin(), id.end(), before.begin(), before.end());
+  const auto shared = static_cast<std::size_t>(ends.first - id.begin());
+  append_difference(to, static_cast<std::int64_t>(shared));
+  append_difference(to, static_cast<std::int64_t>(id.size() - shared));
+  to += id.substr(shared);
+}
+
+std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
   std::string out;
   append(out, static_cast<std::uint32_t>(head.scenario.size()));
   out += head.scenario;
@@ -82,7 +97,6 @@ std::string to_bytes(const CrowdRecordingHead& head) {
   append(out, static_cast<std::uint32_t>(head.edges.size()));
   for (const geometry::Segment& e : head.edges)
     for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y}) append(out, v);
-  if (head.bodies.empty()) return out;
   append(out, static_cast<std::uint32_t>(head.bodies.size()));
   for (const CrowdBodyRecord& body : head.bodies) {
     append(out, static_cast<std::uint8_t>(body.moves));
@@ -91,10 +105,32 @@ std::string to_bytes(const CrowdRecordingHead& head) {
     append(out, static_cast<std::uint32_t>(numbers.size()));
     for (const double v : numbers) append(out, v);
   }
-  return out;
+  return out += ids;
 }
 
-CrowdRecordingHead to_head(CrowdBytes in, bool has_bodies) {
+namespace {
+
+void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
+  constexpr std::int64_t kLongest = 1 << 16;
+  std::string id;
+  head.ids.reserve(head.kind_of.size());
+  while (head.ids.size() < head.kind_of.size()) {
+    const std::int64_t shared = in.difference(), rest = in.difference();
+    in.require(shared >= 0 && shared <= static_cast<std::int64_t>(id.size()) && rest >= 0 && rest <= kLongest,
+               "an id of no length");
+    id = id.substr(0, static_cast<std::size_t>(shared)) + in.text(static_cast<std::size_t>(rest));
+    in.require(id.size() <= kLongest, "an id of more than 2^16 bytes");
+    head.ids.push_back(id);
+  }
+}
+
+}  // namespace
+
+std::string CrowdRecordingHead::name_of(std::size_t robot) const {
+  return ids.empty() ? "#" + std::to_string(robot + 1) : ids[robot];
+}
+
+CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
   CrowdRecordingHead head;
   const auto length = in.get<std::uint32_t>();
   in.require(length <= kLongestName, "a name of more than 1000 bytes");
@@ -127,11 +163,12 @@ CrowdRecordingHead to_head(CrowdBytes in, bool has_bodies) {
     }
     head.edges.push_back({{v[0], v[1]}, {v[2], v[3]}});
   }
-  if (has_bodies) {
+  if (version >= 2) {
     const auto bodies = in.get<std::uint32_t>();
     in.require(bodies <= kMostEdges, "more than 2^24 bodies");
     for (std::uint32_t k = 0; k < bodies; ++k) head.bodies.push_back(get_body(in));
   }
+  if (version >= 3) get_ids(in, head);
   in.require_end();
   return head;
 }
@@ -190,17 +227,17 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   p.in.open(path, std::ios::binary);
   if (!p.in)
     throw DataError(DataCode::file_unreadable, p.name, "", "a file that cannot be read", "a recording of a crowd");
-  char mark[kCrowdMark.size()] = {};
+  char mark[kCrowdMarkSize] = {};
   const bool whole = p.read(mark, sizeof mark);
   if (p.at == 0)
     throw DataError(DataCode::cut_off, p.name, "", "an empty file",
                     "a recording of a crowd, as simulate --record writes it");
-  const bool has_bodies = std::string_view(mark, sizeof mark) == kCrowdMarkOfBodies;
-  if (!whole || (!has_bodies && std::string_view(mark, sizeof mark) != kCrowdMark))
+  const unsigned version = whole ? crowd_version({mark, sizeof mark}) : 0;
+  if (version == 0)
     throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
-                    "\"EXACTVR1\" or \"EXACTVR2\", of a recording of a crowd");
+                    "\"EXACTVR1\", \"EXACTVR2\" or \"EXACTVR3\", of a recording of a crowd");
   if (!p.read_block()) p.bytes().refuse("its end within the head");
-  p.head = to_head(p.bytes(), has_bodies);
+  p.head = to_head(p.bytes(), version);
   p.sum = checksum(p.block);
   p.row.x.assign(p.head.kind_of.size(), 0);
   p.row.y = p.row.x;
@@ -261,22 +298,25 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
 }
 
 bool begins_crowd_recording(std::string_view bytes) {
-  return bytes.substr(0, kCrowdMark.size()) == kCrowdMark || bytes.substr(0, kCrowdMark.size()) == kCrowdMarkOfBodies;
+  return crowd_version(bytes.substr(0, kCrowdMarkSize)) > 0;
 }
 
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
   CrowdRecordingReader reader(from);
   const CrowdRecordingHead& head = reader.head();
-  to.write("step,time,robot,x,y,kept\n");
+  to.write(head.ids.empty() ? "step,time,robot,x,y,kept\n" : "step,time,robot,x,y,kept,id\n");
+  std::vector<std::string> ends;
+  for (const std::string& id : head.ids) ends.push_back("," + csv_quoted(id) + "\n");
   CrowdRow row;
   CrowdTable table;
   for (; reader.next(row); ++table.rows) {
     char line[160];
     for (std::size_t i = 0; i < row.x.size(); ++i) {
       const int size =
-          std::snprintf(line, sizeof line, "%u,%.17g,%zu,%.17g,%.17g,%u\n", row.step, row.step * head.time_step, i,
+          std::snprintf(line, sizeof line, "%u,%.17g,%zu,%.17g,%.17g,%u", row.step, row.step * head.time_step, i,
                         head.position_step * row.x[i], head.position_step * row.y[i], unsigned{row.kept[i]});
       to.write({line, static_cast<std::size_t>(size)});
+      to.write(ends.empty() ? std::string_view("\n") : std::string_view(ends[i]));
     }
   }
   table.cut_off = reader.is_cut_off();

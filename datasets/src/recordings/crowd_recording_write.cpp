@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <ostream>
+#include <string_view>
 #include <utility>
 
 #include "exactvo/geometry/require.h"
@@ -13,11 +14,17 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
                              std::uint32_t every, Unfinished unfinished)
     : file_(path, MissingFolder::is_made, unfinished) {
   EXACTVO_REQUIRE(every > 0, "every 0");
+  robots_ = scenario.robots.size();
   head_.scenario = scenario.name;
   head_.every = every;
   for (const formation::SceneObstacle& o : scenario.obstacles) {
     const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
+  }
+  std::string_view before;
+  for (const formation::Robot& robot : scenario.robots) {
+    append_id(ids_, robot.id, before);
+    before = robot.id;
   }
 }
 
@@ -51,8 +58,9 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   row_.y.assign(robots, 0);
   last_.x = last_.y = row_.x;
   row_.kept.assign(robots, 1);
-  const std::string head = to_bytes(head_);
-  std::string out(head_.bodies.empty() ? kCrowdMark : kCrowdMarkOfBodies);
+  const bool has_ids = robots == robots_;  // else the crowd is another one than the scenario's
+  const std::string head = to_bytes(head_, has_ids ? ids_ : std::string());
+  std::string out(kCrowdMarks[has_ids ? 2 : 1]);
   append(out, static_cast<std::uint64_t>(head.size()));
   head_sum_ = sum_ = checksum(head);
   append(out, sum_);

@@ -147,7 +147,7 @@ class Crowd:
     def _kind(self, kind: int | RobotKind | None, options: dict[str, Any]) -> int:
         if isinstance(kind, (int, np.integer)):
             if options:
-                raise ArgumentError("kind", f"the number of a kind beside {', '.join(options)}", "one or the other")
+                raise ArgumentError("kind", f"the number of a kind together with {', '.join(options)}", "one or the other")
             return index(kind)
         return self.add_kind(RobotKind(**options) if kind is None else kind)
 

@@ -220,7 +220,8 @@ std::string lines_of(const FileAnswer& answer) {
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
     text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
-                              datasets::words_of(f), datasets::code_name(f.code), f.repaired ? ", repaired" : "")) +
+                              datasets::words_of(f), datasets::code_name(f.code),
+                              f.repaired ? ", would be repaired" : "")) +
             "\n";
   }
   for (const DataError* error : other_refusals(*answer.content)) text += shown(error->what()) + "\n";
@@ -229,17 +230,27 @@ std::string lines_of(const FileAnswer& answer) {
   return text;
 }
 
-std::string counts_line(const FileAnswer& answer) {
+std::string counts_line(const FileAnswer& answer, const std::string& repaired) {
   if (!answer.content) return shown(answer.file) + ": refused";
   const datasets::ReadCounts& n = answer.content->counts;
   const std::string text =
-      fmt::format("{}: {}, {} read: {} valid, {} repaired, {} skipped, {} rejected", shown(answer.file),
-                  answer.content->format, n.read, n.done, n.repaired, n.passed_over, n.rejected);
+      fmt::format("{}: {}, {} read: {} valid, {} {}, {} skipped, {} rejected", shown(answer.file),
+                  answer.content->format, n.read, n.done, n.repaired, repaired, n.passed_over, n.rejected);
   // A table without geometry is what a list of points looks like.
   const bool is_table = answer.content->format == "gdal" && std::filesystem::path(answer.file).extension() == ".csv";
   if (!is_table || n.read == 0 || n.passed_over < n.read) return text;
   return text +
          "; it has no column of geometry: of points give two columns, x and y in metres, and --format points-csv";
+}
+
+std::string repair_hint(const FileAnswer& answer) {
+  using datasets::DataCode;
+  if (!answer.content) return "";
+  const auto& all = answer.content->findings;
+  const bool any = std::any_of(all.begin(), all.end(), [](const RingFinding& f) {
+    return !f.repaired && (f.code == DataCode::self_intersection || f.code == DataCode::hole_outside);
+  });
+  return any ? "exactvo repair " + shown(answer.file) + " --out FILE can cut its rings at their crossings" : "";
 }
 
 std::string text_of(const OrderedJson& json) {

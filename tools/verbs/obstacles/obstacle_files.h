@@ -90,11 +90,15 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict = false);
 /// "expected" and "repaired". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// One line per problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired".
+/// One line per problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], would be repaired": on reading,
+/// by any verb, for which it has one correct repair.
 std::string lines_of(const FileAnswer& answer);
 
-/// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 skipped, 0 rejected".
-std::string counts_line(const FileAnswer& answer);
+/// "FILE: wkt, 12 read: 10 valid, 1 repaired, 1 skipped, 0 rejected"; `repaired` is that word.
+std::string counts_line(const FileAnswer& answer, const std::string& repaired = "repaired");
+
+/// Which command can repair what is refused for its crossings; empty where nothing is.
+std::string repair_hint(const FileAnswer& answer);
 
 /// Text of `json`, whatever bytes are in its strings.
 std::string text_of(const OrderedJson& json);

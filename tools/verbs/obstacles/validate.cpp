@@ -30,7 +30,8 @@ ExitCode validate(const ValidateFlags& flags) {
   } else {
     for (const FileAnswer& answer : answers) {
       print(lines_of(answer));
-      if (answer.content) message(counts_line(answer));
+      if (answer.content) message(counts_line(answer, "would be repaired"));
+      if (const std::string hint = repair_hint(answer); !hint.empty()) message(hint);
     }
   }
   return exit_code(answers, flags.strict);
@@ -41,7 +42,7 @@ void declare_validate(CLI::App& app, ValidateFlags& flags) {
   declare_reading_flags(app, flags.reading);
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");
   app.add_flag("--strict", flags.strict,
-               "Status 1 also for what is repaired silently: winding, closure, repeated vertices");
+               "Status 1 also for what every verb repairs as it reads: winding, closure, repeated vertices");
 }
 
 }  // namespace

@@ -162,12 +162,13 @@ void check(const RouteFlags& flags) {
     require(!flags.from.empty(), "--from", "nothing", "the start, X,Y, or --queries FILE for many questions");
     require(!flags.to.empty(), "--to", "nothing", "the goal, X,Y");
   } else {
-    require(flags.from.empty() && flags.to.empty(), "--queries",
-            std::string("--queries beside ") + (flags.from.empty() ? "--to" : "--from"), "one of the two");
-    require(flags.figure.empty(), "--figure", "--figure beside --queries", "one question: --from and --to");
+    refuse_both(!flags.from.empty(), "--queries", "--from");
+    refuse_both(!flags.to.empty(), "--queries", "--to");
+    refuse_both(!flags.figure.empty(), "--figure", "--queries",
+                "a figure shows the answer to one question; give --from and --to");
   }
   check_radius(flags);
-  require(flags.figure.empty() || flags.radius, "--figure", "--figure without --radius", "the radius of the disc in m");
+  if (!flags.figure.empty() && !flags.radius) throw lacking("--figure", "--radius", "it draws the disc to scale");
   require_known("--cell-point", flags.cell_point, {std::begin(kCellPoints), std::end(kCellPoints)});
   if (flags.figure.empty()) return;
   check_figure_name("--figure", flags.figure, all_read_with({flags.map}, flags.reading.format));

@@ -212,11 +212,11 @@ ExitCode audit_certificates(const AuditFlags& flags) {
 }
 
 ExitCode audit(const AuditFlags& flags) {
-  if (flags.path.empty() == flags.certificates.empty())
-    throw UsageError("audit", flags.path.empty() ? "neither a path nor --certificate" : "a path and --certificate",
-                     "one of the two: a recording (or a folder of them), or --certificate FILE");
-  if (!flags.certificates.empty() && !flags.scenario.empty())
-    throw UsageError("--scenario", flags.scenario, "a recording to compare it with, not --certificate");
+  if (flags.path.empty() && flags.certificates.empty())
+    throw lacking("audit", "a recording (or a folder of them), or --certificate FILE");
+  refuse_both(!flags.path.empty() && !flags.certificates.empty(), "a path", "--certificate");
+  refuse_both(!flags.certificates.empty() && !flags.scenario.empty(), "--scenario", "--certificate",
+              "a scenario is compared with a recording");
   if (!flags.path.empty()) return audit_recordings(flags);
   if (flags.sample > 0) throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
   return audit_certificates(flags);

@@ -128,8 +128,8 @@ datasets::DataError refusal(const std::string& file, const formation::CrowdError
 
 /// An option that this engine does not have.
 UsageError only_with(const std::string& option, bool is_crowd) {
-  if (is_crowd) return {"--engine", "crowd", "no " + option + " beside it: only the standard engine has that option"};
-  return {option, option + " without --engine crowd", "--engine crowd beside it: only that engine has this option"};
+  if (is_crowd) return conflict(option, "--engine crowd", "only the standard engine has that option");
+  return lacking(option, "--engine crowd", "only that engine has the option");
 }
 
 // --- Snapshots ---
@@ -194,15 +194,16 @@ std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulati
 /// Of the standard engine.
 void check_record(const std::string& record, const std::string& out) {
   std::error_code unknown;
-  if (!out.empty()) throw UsageError("--record", record, "no --out beside it, which writes the recording");
+  refuse_both(!out.empty(), "--record", "--out", "--out DIR already writes the recording, DIR/recording.jsonl");
   if (is_stdout(record)) {
     if (::isatty(STDOUT_FILENO) == 1)
       throw UsageError("--record", record, "a reader of stdout, which is a terminal: --record - | exactvo audit -");
     return;
   }
   if (!std::filesystem::is_fifo(record, unknown))
-    throw UsageError("--record", record,
-                     "- for stdout, or a pipe; or --engine crowd beside it, or --out DIR, which writes the recording");
+    throw UsageError(
+        "--record", record,
+        "- for stdout, or a pipe; --out DIR writes a recording to disk, and --engine crowd takes FILE.evr");
 }
 
 }  // namespace
@@ -241,7 +242,7 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   flags.method = app.get_option("--method");
   for (const char* option : {"--every", "--snapshot-every", "--resume", "--precision"})
     flags.of_crowd.push_back(app.get_option(option));
-  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--no-figures", "--force"})
+  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--force"})
     flags.of_standard.push_back(app.get_option(option));
 }
 
@@ -256,13 +257,11 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
   if (is_crowd && !flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
     throw UsageError("--record", flags.record, "a name that ends in .evr");
   if (flags.snapshot_every > 0 && flags.record.empty())
-    throw UsageError("--snapshot-every", std::to_string(flags.snapshot_every),
-                     "--record FILE.evr beside it: the snapshot is of the run that is recorded");
+    throw lacking("--snapshot-every", "--record FILE.evr", "a snapshot is of the run that is recorded");
   if (flags.resume && flags.snapshot_every == 0)
-    throw UsageError("--resume", "--resume alone", "--snapshot-every N beside it, as in the run that was interrupted");
-  if (is_crowd && !out.empty())
-    throw UsageError("--out", out,
-                     "--record FILE.evr in its place: a crowd is recorded in one file, and --json prints its metrics");
+    throw lacking("--resume", "--snapshot-every N", "give the options of the run that was interrupted");
+  refuse_both(is_crowd && !out.empty(), "--out", "--engine crowd",
+              "a crowd is recorded in one file, --record FILE.evr, and --json prints its metrics");
   return is_crowd;
 }
 

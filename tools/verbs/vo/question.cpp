@@ -34,7 +34,7 @@ constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite,
 // --- The obstacles ---
 
 ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
-  if (flags.goal.empty()) throw UsageError("--enclose", "trap-free without --goal", "a goal, X,Y");
+  if (flags.goal.empty()) throw lacking("--enclose trap-free", "--goal X,Y", "the ellipse is fitted for a goal");
   const auto fitted = geometry::fit_trap_free(
       points, flags.radius.value_or(0.0), parse_point("--position", flags.position), parse_point("--goal", flags.goal));
   if (!fitted) throw UsageError("--enclose", "trap-free", "a robot and a goal farther from the obstacle");
@@ -132,33 +132,31 @@ std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
 /// Many velocities are answered by whether they collide, and by nothing else.
 void check_option_conflicts_of_velocities(const VoFlags& flags) {
   const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
-  require(!by_rule, "--time-horizon", flags.time_horizon + " beside --velocities",
-          "a time in s, or infinite: the rule gives each velocity its own");
+  refuse_both(by_rule, "--time-horizon " + flags.time_horizon, "--velocities",
+              "the rule gives each velocity a horizon of its own; give a time in s, or infinite");
   const std::pair<bool, const char*> others[] = {{!flags.velocity.empty(), "--velocity"},
                                                  {flags.free, "--free"},
                                                  {flags.exact_legs, "--exact-legs"},
                                                  {!flags.variants.empty(), "--variant"},
                                                  {flags.responsibility != 1.0, "--responsibility"},
                                                  {!flags.figure.empty(), "--figure"}};
-  for (const auto& [is_there, option] : others)
-    require(!is_there, "--velocities", fmt::format("--velocities beside {}", option), "one of the two");
+  for (const auto& [is_there, option] : others) refuse_both(is_there, "--velocities", option);
 }
 
 /// What goes with what, and what would be ignored.
 void check_option_conflicts(const VoFlags& flags) {
   require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
-  require(!flags.radius || flags.robot.empty(), "--radius", "--radius beside --robot", "one of the two");
+  refuse_both(flags.radius && !flags.robot.empty(), "--radius", "--robot");
   require(flags.max_speed || !flags.free, "--max-speed", "nothing", "a speed in m/s, which --free needs");
-  require(!flags.max_speed || flags.free, "--max-speed", "--max-speed without --free", "both or neither");
-  require(flags.goal.empty() || flags.enclose == "trap-free", "--goal", flags.goal, "--enclose trap-free beside it");
-  require(flags.enclose != "trap-free" || flags.robot.empty(), "--robot", "--robot beside --enclose trap-free",
-          "--radius, which the enclosure is fitted for");
+  if (flags.max_speed && !flags.free) throw lacking("--max-speed", "--free");
+  if (!flags.goal.empty() && flags.enclose != "trap-free") throw lacking("--goal", "--enclose trap-free");
+  refuse_both(flags.enclose == "trap-free" && !flags.robot.empty(), "--robot", "--enclose trap-free",
+              "the ellipse is fitted for a disc; give --radius");
   require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
           "X,Y in m/s, or --velocities FILE for many");
   if (!flags.velocities.empty()) check_option_conflicts_of_velocities(flags);
-  require(flags.responsibility == 1.0 || !flags.free, "--responsibility", "--responsibility beside --free",
-          "one of the two");
-  require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
+  refuse_both(flags.responsibility != 1.0 && flags.free, "--responsibility", "--free");
+  refuse_both(!flags.variants.empty() && flags.free, "--variant", "--free");
 }
 
 /// Of the obstacles and the robot, those that are files, with what is read with them.
@@ -173,7 +171,7 @@ std::vector<std::filesystem::path> files_named_in(const VoFlags& flags) {
 void check_words(const VoFlags& flags) {
   require_known("--enclose", flags.enclose, {"none", "ellipse", "trap-free"});
   if (!flags.pieces.empty()) require_known("--pieces", flags.pieces, {"convex", "hull"});
-  require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
+  refuse_both(!flags.pieces.empty() && flags.enclose != "none", "--pieces", "--enclose");
   if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, files_named_in(flags));
 }
 

@@ -73,7 +73,7 @@ std::string legs_words(const ConeAnswer& a) {
   const auto legs = a.overlaps ? std::nullopt : a.cone.legs();
   if (!legs) return "";
   const auto words = [](const char* side, const vo::Leg& leg) {
-    return fmt::format("{:<17} direction ({:.6g}, {:.6g}), touches at ({:.6g}, {:.6g}) m\n", side,
+    return fmt::format("{:<17} direction ({:.6g}, {:.6g}), touches at ({:.6g}, {:.6g}) m from the robot\n", side,
                        unsigned_zero(leg.direction.x), unsigned_zero(leg.direction.y), unsigned_zero(leg.touch.x),
                        unsigned_zero(leg.touch.y));
   };

@@ -48,6 +48,10 @@ struct CrowdRecordingHead {
   std::vector<std::uint16_t> kind_of;    ///< of each robot
   std::vector<geometry::Segment> edges;  ///< of obstacles
   std::vector<CrowdBodyRecord> bodies;   ///< those that the crowd had at the start
+  std::vector<std::string> ids;          ///< of each robot; empty in files of earlier versions
+
+  /// A robot's id; "#1" and so on where there are none. REQUIRES: a robot of the recording.
+  std::string name_of(std::size_t robot) const;
 };
 
 /// The robots at a time, in the order of the scenario.
@@ -65,7 +69,8 @@ struct CrowdRow {
 /// (formation/crowd_run.h) goes on writing behind the rows that the snapshot knows of: the file is the same.
 class CrowdRecorder : public formation::CrowdSink {
  public:
-  /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
+  /// The robots of the crowd have the ids of the scenario's, if there are as many. Throws DataError
+  /// (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
   CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every,
                 Unfinished unfinished = Unfinished::goes);
   void begin(const formation::Crowd& crowd) override;
@@ -87,8 +92,10 @@ class CrowdRecorder : public formation::CrowdSink {
   void write_row();
 
   AtomicFile file_;
-  CrowdRecordingHead head_;
-  CrowdRow row_, last_;  ///< the next one, and the one before it
+  CrowdRecordingHead head_;  ///< without ids
+  std::size_t robots_ = 0;   ///< of the scenario
+  std::string ids_;          ///< as they stand in the file
+  CrowdRow row_, last_;      ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
   std::vector<geometry::Vec2> body_start_;
   std::vector<geometry::Vec2> at_;
@@ -182,7 +189,8 @@ struct CrowdTable {
   bool cut_off = false;  ///< the recording was: these are the rows before
 };
 
-/// "step,time,robot,x,y,kept", one line per robot and row.
+/// "step,time,robot,x,y,kept,id", one line per robot and row; `robot` counts from 0, and `id` is left out where the
+/// recording has none.
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
 
 /// Whether these are the first bytes of a recording of a crowd.
