@@ -2,11 +2,13 @@
 // The numbered properties of velocity_obstacle.h, its legs and boundary, and what callers may get wrong.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
+#include "exactvo/vo/certificate.h"
 #include "exactvo/vo/orca_obstacle.h"
 #include "exactvo/vo/reciprocal.h"
 #include "vo/half_plane_audit.h"
@@ -227,6 +229,48 @@ TEST(VelocityObstacle, OverlapHasNoCone) {
     EXPECT_FALSE(obstacle.contact_half_plane());
     EXPECT_LT(obstacle.nearest().distance, 0.0);
   }
+}
+
+// In exact contact one direction alone is safe, and that of a 3-4-5 triangle is lost when it is divided by its length.
+TEST(VelocityObstacle, ExactContactInARationalDirectionIsProven) {
+  constexpr double kTriples[][3] = {{3, 4, 5},   {4, 3, 5},    {5, 12, 13}, {12, 5, 13},  {8, 15, 17},
+                                    {7, 24, 25}, {20, 21, 29}, {9, 40, 41}, {28, 45, 53}, {119, 120, 169}};
+  std::size_t judged = 0, rounded_away = 0;
+  for (const auto& [a, b, c] : kTriples) {
+    for (const double scale : {1.0, 0x1p-10, 0x1p10}) {
+      for (const Vec2 shift : {Vec2{0, 0}, Vec2{1e6, -3e6}}) {
+        for (const double sx : {1.0, -1.0}) {
+          for (const double sy : {1.0, -1.0}) {
+            const auto at = [&](double x, double y) { return scale * Vec2{sx * x + shift.x, sy * y + shift.y}; };
+            const Vec2 robot = at(a, b);
+            // A corner, two discs, an end of a wall, and a wall that runs square to the direction.
+            std::vector<Vec2> box{at(0, 0), at(-9, 0), at(-9, -9), at(0, -9)};
+            if (sx * sy < 0.0) std::reverse(box.begin(), box.end());
+            const std::pair<ConvexShape, double> contacts[] = {{ConvexPolygon{box}, c},
+                                                               {Disc{at(0, 0), scale * 1.0}, c - 1.0},
+                                                               {Segment{at(0, 0), at(-7, 0)}, c},
+                                                               {Segment{at(-b, a), at(b, -a)}, c}};
+            for (const auto& [shape, radius] : contacts) {
+              const VelocityObstacle obstacle(shape, robot, scale * radius, 2.0);
+              ASSERT_TRUE(obstacle.overlaps()) << "contact is exact";
+              const std::optional<HalfPlane> h = obstacle.contact_half_plane();
+              ASSERT_TRUE(h) << a << " " << b << " " << c << " scale " << scale << " at " << shift.x;
+              EXPECT_EQ(h->offset, 0.0);
+              EXPECT_GT(dot(h->normal, Vec2{sx * a, sy * b}), 0.0);
+              EXPECT_TRUE(vo::certify({shape, robot, scale * radius, 2.0, {}, *h}));
+              EXPECT_NEAR(norm(h->normal), 1.0, 0.415);
+              rounded_away += norm(h->normal) < 0.999 || norm(h->normal) > 1.001;
+              ++judged;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(judged, 960u);
+  EXPECT_GT(rounded_away, 100u);
+  const VelocityObstacle deeper(Segment{{0, 0}, {4, 0}}, {8, 3}, std::nextafter(5.0, 6.0), 2.0);
+  EXPECT_FALSE(deeper.contact_half_plane());
 }
 
 TEST(VelocityObstacle, PointsWithoutRadiusAreRays) {

@@ -213,14 +213,65 @@ bool is_about_unit(Vec2 n) {
   return length2 > 0.5 && length2 < 2.0;
 }
 
+/// d times a power of two, of a length between sqrt(1/2) and sqrt(2). Exact: no other digits than those of d. At the
+/// ends of the doubles' range nothing that is about unit.
+Vec2 of_about_unit_length(Vec2 d) {
+  int exponent = 0;
+  const double share = std::frexp(norm(d), &exponent);  // in [1/2, 1)
+  constexpr double kSquareRootOfHalf = 0.70710678118654757;
+  const int up = share < kSquareRootOfHalf ? 1 - exponent : -exponent;
+  return {std::ldexp(d.x, up), std::ldexp(d.y, up)};
+}
+
+/// The directions that contact may be in without being rounded: from corners to the robot, and square to edges. Calls
+/// visit(direction) until it is true.
+template <class Visit>
+void for_each_direction_of_contact(const GrownShape& s, const Visit& visit) {
+  const auto visit_round = [&](const Vec2* first, const Vec2* last) {
+    for (const Vec2* v = first; v != last; ++v) {
+      const Vec2 along = (v + 1 == last ? *first : v[1]) - *v;
+      if (visit(s.origin - *v) || visit(geometry::perp(along)) || visit(-geometry::perp(along))) return;
+    }
+  };
+  if (const auto* disc = std::get_if<Disc>(&s.shape)) {
+    visit(s.origin - disc->center);
+  } else if (const auto* ellipse = std::get_if<Ellipse>(&s.shape)) {
+    visit(s.origin - ellipse->center);  // of one that is a circle
+  } else if (const auto* segment = std::get_if<Segment>(&s.shape)) {
+    const Vec2 ends[2] = {segment->a, segment->b};
+    visit_round(ends, ends + 2);
+  } else {
+    const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
+    visit_round(v.data(), v.data() + v.size());
+  }
+}
+
 /// For a robot so near that nothing else could be certified.
 std::optional<HalfPlane> contact(const GrownShape& s) {
-  const Vec2 n = nearest_to(s, {}).normal;
-  if (!is_about_unit(n) || sign_of_support(s, n, 1.0, 0.0) == geometry::Sign::positive) return std::nullopt;
-  return HalfPlane{n, 0.0};
+  const std::optional<Vec2> n = contact_normal(s);
+  return n ? std::optional(HalfPlane{*n, 0.0}) : std::nullopt;
 }
 
 }  // namespace
+
+std::optional<Vec2> contact_normal(const GrownShape& s) {
+  const Vec2 nearest = nearest_to(s, {}).normal;
+  const auto is_proven = [&](Vec2 n) {
+    return is_about_unit(n) && sign_of_support(s, n, 1.0, 0.0) != geometry::Sign::positive;
+  };
+  if (is_proven(nearest)) return nearest;
+  // In exact contact one direction alone is safe. Where it has a rational slope, as that of a 3-4-5 triangle, dividing
+  // by the length has rounded it away.
+  constexpr double kAlmostTheNearest = 1.0 - 0x1p-20;
+  std::optional<Vec2> found;
+  for_each_direction_of_contact(s, [&](Vec2 d) {
+    if (!(dot(nearest, d) >= kAlmostTheNearest * norm(d))) return false;
+    const Vec2 n = of_about_unit_length(d);
+    if (is_proven(n)) found = n;
+    return found.has_value();
+  });
+  return found;
+}
 
 VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y) {
   return nearest_among(s, y);

@@ -34,6 +34,11 @@ std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n);
 /// The other way: certified h_S > 0.
 std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n);
 
+/// A normal n of the half-plane { v : n.v >= 0 } that a robot in contact may use, by an exact predicate: the unit
+/// normal of the nearest point as it is rounded, or one of exactly its direction, whose length is between sqrt(1/2) and
+/// sqrt(2). Nothing where none of them is safe.
+std::optional<Vec2> contact_normal(const GrownShape& s);
+
 // Of any shape, and of a segment (seen_segment.h): the same bits, in about half the time.
 
 /// The certified half-plane of VO nearest to v (responsibility 1). Nothing where none could be certified.

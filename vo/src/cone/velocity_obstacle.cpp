@@ -101,10 +101,9 @@ std::optional<HalfPlane> VelocityObstacle::half_plane(Vec2 v, double responsibil
 }
 
 std::optional<HalfPlane> VelocityObstacle::contact_half_plane() const {
-  const Nearest n0 = nearest();
-  if (n0.normal == Vec2{} || sign_of_support(grown_, n0.normal, 1.0, 0.0) == geometry::Sign::positive)
-    return std::nullopt;
-  return HalfPlane{n0.normal, 0.0};
+  const std::optional<Vec2> n = detail::contact_normal(grown_);
+  if (!n) return std::nullopt;
+  return HalfPlane{*n, 0.0};
 }
 
 }  // namespace exactvo::vo
