@@ -129,10 +129,9 @@ Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, doubl
       reserved_(robots, who == WhoReserves::all),
       places_(robots),
       preferred_(robots),
+      left_(robots),
       decided_(robots, 0),
-      is_pushing_(robots, 0),
-      cell_x_(robots),
-      cell_y_(robots) {
+      is_pushing_(robots, 0) {
   std::size_t buckets = 1;
   while (buckets < robots) buckets *= 2;
   begin_.resize(buckets + 1);
@@ -154,15 +153,12 @@ std::size_t Reservations::bucket(std::int64_t x, std::int64_t y) const {
 
 void Reservations::place_robots() {
   std::fill(begin_.begin(), begin_.end(), 0);
-  for (std::size_t i = 0; i < of_.size(); ++i) {
-    cell_x_[i] = cell(at(i).x);
-    cell_y_[i] = cell(at(i).y);
-    ++begin_[bucket(cell_x_[i], cell_y_[i])];
-  }
+  const auto bucket_of = [&](std::size_t i) { return bucket(cell(at(i).x), cell(at(i).y)); };
+  for (std::size_t i = 0; i < of_.size(); ++i) ++begin_[bucket_of(i)];
   std::uint32_t sum = 0;
   for (std::uint32_t& b : begin_) sum += b, b = sum;
   for (std::size_t i = of_.size(); i-- > 0;)
-    by_bucket_[--begin_[bucket(cell_x_[i], cell_y_[i])]] = static_cast<std::uint32_t>(i);
+    by_bucket_[--begin_[bucket_of(i)]] = {at(i), cell(at(i).x), cell(at(i).y), static_cast<std::uint32_t>(i)};
 }
 
 template <class Visit>
@@ -173,8 +169,8 @@ void Reservations::for_each_near(Vec2 here, double reach, const Visit& visit) co
     for (std::int64_t x = x0; x <= x1; ++x) {
       const std::size_t b = bucket(x, y);
       for (std::uint32_t k = begin_[b]; k < begin_[b + 1]; ++k) {
-        const std::uint32_t j = by_bucket_[k];
-        if (cell_x_[j] == x && cell_y_[j] == y && squared_norm(at(j) - here) <= reach * reach) visit(j);
+        const Placed& j = by_bucket_[k];
+        if (j.cell_x == x && j.cell_y == y && squared_norm(j.at - here) <= reach * reach) visit(j.robot);
       }
     }
 }
@@ -301,6 +297,7 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   }
   has_changed_ = has_changed_ || tickets_ != tickets;
   count_ = 0;
+  for (std::size_t i = 0; i < of_.size(); ++i) left_[i] = reserved_[i] ? norm(places_[i] - at(i)) : 0.0;
   for (std::size_t i = 0; i < of_.size(); ++i) {
     count_ += reserved_[i];
     preferred_[i] = reserved_[i] ? preferred_of(i) : Vec2{};
@@ -337,11 +334,12 @@ void Reservations::look_about(std::size_t i, Outlook& out) const {
   const Vec2 p = r.position;
   out.way = way_from(i, p);
   out.count = 0;
+  const bool is_in_sight = leads_on(i, p);  // else anything nearer will do
   const auto add = [&](Vec2 place, bool pushes_nobody = false) {
     if (!is_open(i, place, pushes_nobody ? kRouteMargin : kWallMargin * diameter_)) return;
     const double way = way_from(i, place);
-    out.places[out.count++] = {place, way, way < out.way - kLeastNearer * diameter_ && leads_on(i, place),
-                               pushes_nobody};
+    out.places[out.count++] = {
+        place, way, way < out.way - kLeastNearer * diameter_ && (!is_in_sight || leads_on(i, place)), pushes_nobody};
   };
   const double to_goal = norm(r.goal - p), to_next = norm(r.next() - p);
   if (to_goal < kLongestDrive * pitch_) add(r.goal);
@@ -478,12 +476,15 @@ double Reservations::share_allowed(std::size_t i) const {
   constexpr int kMostSteps = 8;
   constexpr double kClose = 1e-6;  // diameters
   const Vec2 p = at(i), way = places_[i] - p;
-  const double length = norm(way), radius = (*robots_)[i].radius;
+  const double length = left_[i], radius = (*robots_)[i].radius;
   double share = 1.0;
-  for_each_near(p, reach_, [&](std::size_t j) {
-    if (j == i || share == 0.0 || of_[j].ticket >= of_[i].ticket || !is_moving(j)) return;
+  const double reach = length + kLongestDrive * pitch_ + (1.0 + kDrivenMargin) * diameter_;
+  for_each_near(p, reach, [&](std::size_t j) {
+    if (left_[j] <= kPlaceReached * diameter_ || of_[j].ticket >= of_[i].ticket || j == i || share == 0.0) return;
     const double keep = radius + (*robots_)[j].radius + kDrivenMargin * diameter_;
-    if (squared_distance({p, places_[i]}, {at(j), places_[j]}) >= keep * keep) return;
+    if (squared_norm(at(j) - p) > squared(length + left_[j] + keep) ||
+        squared_distance({p, places_[i]}, {at(j), places_[j]}) >= squared(keep))
+      return;
     // Each step is as long as there is room all round.
     double t = 0.0;
     for (int n = 0; n < kMostSteps && t < share; ++n) {
@@ -498,7 +499,7 @@ double Reservations::share_allowed(std::size_t i) const {
 
 Vec2 Reservations::preferred_of(std::size_t i) const {
   const Vec2 way = places_[i] - at(i);
-  const double length = norm(way);
+  const double length = left_[i];
   if (length == 0.0) return {};
   const double share = is_moving(i) ? share_allowed(i) : 1.0;
   return std::min(share, (*robots_)[i].max_speed * time_step_ / length) / time_step_ * way;

@@ -190,6 +190,7 @@ class Reservations {
   std::vector<Vec2> preferred_;
   std::size_t count_ = 0;
   bool has_changed_ = false;
+  std::vector<double> left_;              ///< m, by robot: of its way
   std::vector<std::uint64_t> decided_;    ///< by robot: step of its last decision
   std::vector<std::uint8_t> is_pushing_;  ///< by robot: waits for a robot that it pushes
   std::vector<std::uint32_t> waiting_;    ///< robots that reserve, the oldest first
@@ -198,8 +199,13 @@ class Reservations {
   std::vector<Outlook> outlooks_;  ///< of robots that decided lately, by number
 
   // Robots by place: cells are spread over buckets by a hash.
-  std::vector<std::uint32_t> begin_, by_bucket_;
-  std::vector<std::int64_t> cell_x_, cell_y_;
+  struct Placed {
+    Vec2 at;
+    std::int64_t cell_x = 0, cell_y = 0;
+    std::uint32_t robot = 0;
+  };
+  std::vector<std::uint32_t> begin_;
+  std::vector<Placed> by_bucket_;
 };
 
 }  // namespace exactvo::formation::detail
