@@ -130,6 +130,7 @@ Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, doubl
       places_(robots),
       preferred_(robots),
       left_(robots),
+      clear_(robots, 0),
       decided_(robots, 0),
       is_pushing_(robots, 0) {
   std::size_t buckets = 1;
@@ -471,13 +472,16 @@ bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth
 
 // --- How far ---
 
-/// Of what is left of its way, what stays clear of the ways of all earlier tickets.
-double Reservations::share_allowed(std::size_t i) const {
+/// Of what is left of its way, what stays clear of the ways of all earlier tickets. These only get shorter: a way that
+/// is clear of them remains so.
+double Reservations::share_allowed(std::size_t i) {
+  if (clear_[i] == of_[i].ticket) return 1.0;
   constexpr int kMostSteps = 8;
   constexpr double kClose = 1e-6;  // diameters
   const Vec2 p = at(i), way = places_[i] - p;
   const double length = left_[i], radius = (*robots_)[i].radius;
   double share = 1.0;
+  bool is_clear = true;
   const double reach = length + kLongestDrive * pitch_ + (1.0 + kDrivenMargin) * diameter_;
   for_each_near(p, reach, [&](std::size_t j) {
     if (left_[j] <= kPlaceReached * diameter_ || of_[j].ticket >= of_[i].ticket || j == i || share == 0.0) return;
@@ -485,6 +489,7 @@ double Reservations::share_allowed(std::size_t i) const {
     if (squared_norm(at(j) - p) > squared(length + left_[j] + keep) ||
         squared_distance({p, places_[i]}, {at(j), places_[j]}) >= squared(keep))
       return;
+    is_clear = false;
     // Each step is as long as there is room all round.
     double t = 0.0;
     for (int n = 0; n < kMostSteps && t < share; ++n) {
@@ -494,10 +499,11 @@ double Reservations::share_allowed(std::size_t i) const {
     }
     share = std::min(share, t);
   });
+  if (is_clear) clear_[i] = of_[i].ticket;
   return share;
 }
 
-Vec2 Reservations::preferred_of(std::size_t i) const {
+Vec2 Reservations::preferred_of(std::size_t i) {
   const Vec2 way = places_[i] - at(i);
   const double length = left_[i];
   if (length == 0.0) return {};
@@ -521,6 +527,7 @@ void Reservations::get(crowd::SnapshotReader& from) {
     from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.has_way_then,
                 of.is_at_goal);
   std::fill(decided_.begin(), decided_.end(), 0);
+  std::fill(clear_.begin(), clear_.end(), 0);
 }
 
 }  // namespace exactvo::formation::detail

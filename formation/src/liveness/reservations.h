@@ -166,8 +166,8 @@ class Reservations {
   bool is_there_room(std::size_t i, const Option& to, std::size_t near, std::size_t near_end, std::size_t& pushed);
   bool try_place(std::size_t i, const Option& to, std::size_t near, std::size_t depth);
 
-  double share_allowed(std::size_t i) const;
-  Vec2 preferred_of(std::size_t i) const;
+  double share_allowed(std::size_t i);
+  Vec2 preferred_of(std::size_t i);
 
   void place_robots();
   template <class Visit>
@@ -191,6 +191,7 @@ class Reservations {
   std::size_t count_ = 0;
   bool has_changed_ = false;
   std::vector<double> left_;              ///< m, by robot: of its way
+  std::vector<std::uint64_t> clear_;      ///< by robot: ticket with which nothing earlier is in its way
   std::vector<std::uint64_t> decided_;    ///< by robot: step of its last decision
   std::vector<std::uint8_t> is_pushing_;  ///< by robot: waits for a robot that it pushes
   std::vector<std::uint32_t> waiting_;    ///< robots that reserve, the oldest first
