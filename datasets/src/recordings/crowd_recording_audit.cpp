@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of recordings of crowds (crowd_recording.h): shares nothing with the engine that made them.
 //
-// What it asks of robots that touch follows from the half-planes (formation/src/crowd/lines.cpp, edge_pack.cpp). A pair
-// that touches has a cut-off for one time step: n.(v_a - v_b) dt >= n.p + R|n|. So p - (v_a - v_b) dt, where the other
-// is afterwards, has -n.p' >= R|n|, and |p'| >= R. For an edge that is touched the half-plane is n.v >= 0 with n from
-// its nearest point q to the robot. The edge lies in n.(x - q) <= 0, so that no motion in the half-plane leads nearer.
+// Two robots must not overlap, whatever made them: contact is clear, less is a failed check. Of an edge or a body that
+// is touched, or all but, a robot must not come nearer to it than it is, up to rounding: for an edge the half-plane is
+// n.v >= 0 with n from its nearest point q to the robot, and the edge lies in n.(x - q) <= 0.
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +13,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "generators/counter_random.h"
+#include "recordings/exact_plane.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -23,7 +23,7 @@ using geometry::GrownShape;
 using geometry::Segment;
 using geometry::Vec2;
 
-/// Nearer than this share of the numbers involved, the engine may take two robots, or a robot and an edge, for touching
+/// Nearer than this share of the numbers involved, the engine may take a robot and an edge for touching
 /// (formation/crowd.h: 40 u in float). Of such an edge it promises less: a robot comes no nearer to it, up to this
 /// share again. There the normal of the half-plane is off by at most 2 u, and so is the distance of what is within a
 /// length L.
@@ -207,25 +207,25 @@ class CrowdAuditor {
       if (j == i || (one_of_ == 1 && j < i)) return;
       const Vec2 d = place(*from_, j) - at, relative = motion - (place(*to_, j) - place(*from_, j));
       const double sum = kind(i).radius + kind(j).radius;
-      const double rounding = kTouches * (one_norm(d) + sum), distance = norm(d);
-      if (distance > sum + norm(relative) + rounding) return;
-      const bool touches = distance < sum + rounding, both_kept = to_->kept[i] && to_->kept[j];
-      if (!both_kept) return void(++(touches ? report.touching_pairs_open : report.pairs_open));
-      const Disc other{d, kind(j).radius};
-      if (touches) return check_touching_pair(i, j, is_within(other, relative, kind(i).radius));
+      if (norm(d) > (sum + norm(relative)) * (1.0 + kTouches)) return;
       ++report.pairs;
-      if (!meets(other, {}, relative, kind(i).radius)) return;
+      const Disc other{d, kind(j).radius};
+      if (is_within(other, {}, kind(i).radius)) {
+        ++report.pairs_overlapping;
+        return find(i, " overlaps robot " + std::to_string(j) + " already at the row before");
+      }
+      if (!meets(other, {}, relative, kind(i).radius) || !overlap(d, relative, i, j)) return;
       ++report.pairs_met;
       find(i, " overlaps robot " + std::to_string(j));
     });
   }
 
-  /// Half-planes of a pair that touches lead apart within the step: both kept, it does not overlap at the end.
-  void check_touching_pair(std::size_t i, std::size_t j, bool overlap_at_end) {
-    ++report.touching_pairs;
-    if (!overlap_at_end) return;
-    ++report.pairs_not_parted;
-    find(i, " touched robot " + std::to_string(j) + ", and still overlaps it");
+  /// `meets` counts exact contact.
+  bool overlap(Vec2 d, Vec2 relative, std::size_t i, std::size_t j) const {
+    const exact::Point there = exact::exactly(d), to = exact::exactly(relative),
+                       from = steps_ == 1 ? exact::Point{} : to;
+    return exact::come_nearer_than({from, to}, {there, there},
+                                   exact::Rational(exact::Rational(kind(i).radius) + exact::Rational(kind(j).radius)));
   }
 
   const CrowdRecordingHead& head_;

@@ -110,6 +110,7 @@ CrowdBody::CrowdBody(const CrowdOptions& options) {
 }
 
 KindId CrowdBody::add_kind(const CrowdKind& kind) {
+  core->changed();
   if (core->kinds.size() == kMostKinds)
     throw CrowdError(CrowdProblem::too_many, "kinds: found one more than 2^14, expected 2^14 at most");
   require_valid(kind, core->options);
@@ -119,6 +120,7 @@ KindId CrowdBody::add_kind(const CrowdKind& kind) {
 }
 
 RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
+  core->changed();
   if (kind >= core->kinds.size())
     throw CrowdError(CrowdProblem::unknown_kind,
                      words("kind", kind, "below " + std::to_string(core->kinds.size()) + ", the number of kinds"));
@@ -175,12 +177,14 @@ std::size_t CrowdBody::place_of(RobotId robot) {
 }
 
 void CrowdBody::remove_robot(RobotId robot) {
+  core->changed();
   const std::size_t at = place_of(robot);
   const auto last = static_cast<RobotId>(core->robots.id[core->robots.size() - 1]);
   core->robots.remove(at);
   places[last] = static_cast<std::uint32_t>(at);
   places[robot] = kNowhere;
   free_ids.push_back(robot);
+  core->reservations.forget(static_cast<std::int32_t>(robot));
   unsorted = true;
 }
 
@@ -232,6 +236,7 @@ std::size_t CrowdBody::obstacle_size() const {
 }
 
 ObstacleId CrowdBody::add_obstacle(const geometry::Obstacle& obstacle) {
+  core->changed();
   std::vector<geometry::Segment> added = geometry::edges_of(obstacle);
   if (obstacle_size() + added.size() > kMostEdgesOfAll)
     throw CrowdError(CrowdProblem::too_many, "edges: found more than 2^24, expected 2^24 at most");
@@ -253,6 +258,7 @@ void require_valid(const geometry::ConvexShape& shape) {
 }
 
 ObstacleId CrowdBody::add_body(const geometry::ConvexShape& shape, bool moves, Vec2 velocity) {
+  core->changed();
   require_valid(shape);
   const auto [mx, my] = body_motion(velocity);
   if (obstacle_size() + kMostCornersRound + geometry::numbers_of(shape).size() > kMostEdgesOfAll)
@@ -273,6 +279,7 @@ std::pair<std::int32_t, std::int32_t> CrowdBody::body_motion(Vec2 velocity) cons
 }
 
 void CrowdBody::set_body_velocity(ObstacleId id, Vec2 velocity) {
+  core->changed();
   if (!body(id).moves)
     throw CrowdError(CrowdProblem::unknown_obstacle,
                      "body " + std::to_string(id) + ": found one at rest, expected one that moves");
@@ -289,6 +296,7 @@ const Body& CrowdBody::body(ObstacleId id) const {
 }
 
 void CrowdBody::remove_obstacle(ObstacleId obstacle) {
+  core->changed();
   if (core->bodies.remove(obstacle)) return;
   if (obstacles.erase(obstacle) == 0)
     throw CrowdError(CrowdProblem::unknown_obstacle,
@@ -354,6 +362,7 @@ StepReport CrowdBody::step() {
                                                          "from where it was added, expected fewer");
   core->robots.move(core->tasks);
   core->bodies.move();
+  core->changed();
   if (steps++ % kStepsPerStripHeight == 0) follow_density();
   unsorted = true;
   places.clear();
@@ -453,10 +462,25 @@ void Crowd::set_preferred(const std::vector<Vec2>& by_id) {
                                                       std::to_string(id_end()) + ", one for each id"));
   body_->core->set_preferred(by_id);
   body_->core->steering = nullptr;
+  body_->core->changed();
 }
 
 void Crowd::set_steering(Steering steering) {
   body_->core->steering = std::move(steering);
+  body_->core->changed();
+}
+
+void Crowd::set_reservations(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved) {
+  for (const std::size_t count : {place.size(), reserved.size()})
+    if (count < id_end())
+      throw CrowdError(CrowdProblem::wrong_count, words("reservations", static_cast<double>(count),
+                                                        std::to_string(id_end()) + ", one for each id"));
+  for (std::size_t id = 0; id < id_end(); ++id)
+    if (reserved[id] != 0 && !geometry::is_finite(place[id]))
+      throw CrowdError(CrowdProblem::not_finite, "reserved place of robot " + std::to_string(id) +
+                                                     ": found a coordinate that is no number, expected metres");
+  body_->core->reservations.set(place, reserved);
+  body_->core->changed();
 }
 
 StepReport Crowd::step() {
@@ -474,6 +498,11 @@ void Crowd::velocities(std::vector<Vec2>& by_id) const {
 void Crowd::kept(std::vector<std::uint8_t>& by_id) const {
   const Robots& r = body_->core->robots;
   body_->fill(by_id, [&](std::size_t i) { return (r.tag[i] & Robots::kKept) != 0; });
+}
+
+void Crowd::met(std::vector<std::uint8_t>& by_id) const {
+  const Robots& r = body_->core->robots;
+  body_->fill(by_id, [&](std::size_t i) { return (r.next_kept[i] & Robots::kHasMet) != 0; });
 }
 
 Vec2 Crowd::position(RobotId robot) const {

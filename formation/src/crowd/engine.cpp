@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "crowd/edge_pack.h"
+#include "crowd/hard_level.h"
 #include "crowd/one_robot.h"
 #include "crowd/packs.h"
 #include "exactvo/vo/lp/batch.h"
@@ -23,13 +24,13 @@ constexpr double kFastestPreference = 0x1p20;
 void add(StepReport& sum, const StepReport& more) {
   using R = StepReport;
   for (const auto count : {&R::robots, &R::neighbours, &R::relaxed, &R::touching, &R::widened, &R::nudged, &R::edges,
-                           &R::bodies, &R::stopped})
+                           &R::bodies, &R::stopped, &R::overlapping, &R::cut_short, &R::reserved})
     sum.*count += more.*count;
 }
 
 void add(CrowdPhases& sum, const CrowdPhases& more) {
   using P = CrowdPhases;
-  for (const auto phase : {&P::sort, &P::search, &P::edges, &P::lines, &P::solve, &P::finish})
+  for (const auto phase : {&P::sort, &P::search, &P::edges, &P::lines, &P::solve, &P::finish, &P::hard})
     sum.*phase += more.*phase;
 }
 
@@ -52,6 +53,7 @@ struct CrowdScratch {
   OneRobotBuffers<T> one;
   alignas(64) T edge_x[kRobotRows], edge_y[kRobotRows], edge_c[kRobotRows];  ///< of a group, by number and slot
   alignas(64) T moving_x[kMostMoving * kSlots], moving_y[kMostMoving * kSlots], moving_c[kMostMoving * kSlots];
+  HardBuffers hard_level;
   StepReport counts;
   CrowdPhases phases;
 };
@@ -61,7 +63,10 @@ class CrowdEngine final : public CrowdCore {
  public:
   explicit CrowdEngine(const CrowdOptions& given) : CrowdCore(given) { take_kinds(); }
 
-  void take_kinds() override { table_ = kind_table<T>(options, kinds); }
+  void take_kinds() override {
+    table_ = kind_table<T>(options, kinds);
+    hard_.take_kinds();
+  }
 
   void set_preferred(const std::vector<Vec2>& by_id) override {
     for (std::size_t i = 0; i < robots.size(); ++i)
@@ -86,25 +91,16 @@ class CrowdEngine final : public CrowdCore {
     return by_id;
   }
 
-  StepReport decide() override {
-    while (scratch_.size() < static_cast<std::size_t>(tasks.threads())) scratch_.push_back(std::make_unique<Scratch>());
-    for (const auto& s : scratch_) s->counts = {}, s->phases = {};
-    const std::vector<std::size_t> ends = share_ends(robots.size(), ranks() ? ranks()->size() : 1);
-    const std::size_t own = ranks() ? static_cast<std::size_t>(ranks()->rank()) : 0,
-                      begin = own > 0 ? ends[own - 1] : 0;
-    const std::size_t count = ends[own] - begin, share = count / (8 * static_cast<std::size_t>(tasks.threads()));
-    const std::size_t grain = range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
-    tasks.for_ranges(count, grain, [&](std::size_t first, std::size_t last, int thread) {
-      decide_range(begin + first, begin + last, *scratch_[static_cast<std::size_t>(thread)]);
-    });
-    StepReport report;
-    for (const auto& s : scratch_) add(report, s->counts), add(phases, s->phases);
-    if (ranks()) exchange(ends, report);
-    return report;
-  }
+  StepReport decide() override { return decide_as(ranks()); }
 
   CrowdExplanation explain(std::size_t robot) override {
-    if (scratch_.empty()) scratch_.push_back(std::make_unique<Scratch>());
+    if (!decided || steering) {  // not what a step finds out for the next one
+      const Array<std::int32_t> hints = robots.hint;
+      const CrowdPhases spent = phases;
+      decide_as(nullptr);
+      robots.hint = hints;
+      phases = spent;
+    }
     Scratch& s = *scratch_[0];
     const Vec2 preferred = preferred_of(robot, s);
     CrowdExplanation words;
@@ -113,10 +109,10 @@ class CrowdEngine final : public CrowdCore {
     words.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
     words.preferred = {static_cast<double>(static_cast<T>(preferred.x)),
                        static_cast<double>(static_cast<T>(preferred.y))};
-    const CrowdDecision d = one_.decide(robot, words.preferred, s.one, &words);
-    words.chosen = velocity_of(d.motion.mx, d.motion.my);
-    words.kept = d.motion.kept;
-    words.widened = d.counts.widened > 0;
+    words.widened = one_.decide(robot, words.preferred, s.one, &words).counts.widened > 0;
+    words.wish = velocity_of(robots.wish_mx[robot], robots.wish_my[robot]);
+    words.chosen = velocity_of(robots.next_mx[robot], robots.next_my[robot]);
+    words.kept = (robots.next_kept[robot] & Robots::kIsKept) != 0;
     return words;
   }
 
@@ -127,16 +123,84 @@ class CrowdEngine final : public CrowdCore {
 
   Ranks* ranks() const { return options.ranks; }
 
-  /// What the ranks decided, each for its share, to all of them.
-  void exchange(const std::vector<std::size_t>& ends, StepReport& report) {
+  /// `ranks`: null where this process decides for all robots.
+  StepReport decide_as(Ranks* ranks) {
+    while (scratch_.size() < static_cast<std::size_t>(tasks.threads())) scratch_.push_back(std::make_unique<Scratch>());
+    for (const auto& s : scratch_) s->counts = {}, s->phases = {};
+    const std::vector<std::size_t> ends = share_ends(robots.size(), ranks ? ranks->size() : 1);
+    const std::size_t own = ranks ? static_cast<std::size_t>(ranks->rank()) : 0, begin = own > 0 ? ends[own - 1] : 0;
+    lay_out_capsules();
+    for_own_ranges(begin, ends[own],
+                   [this](std::size_t first, std::size_t last, Scratch& s) { decide_range(first, last, s); });
+    share(ranks, ends, {&robots.wish_mx, &robots.wish_my, &robots.hint});
+    if (options.certified) {
+      certify(begin, ends[own], 0, robots.safe_mx, robots.safe_my);
+      share(ranks, ends, {&robots.safe_mx, &robots.safe_my});
+      certify(begin, ends[own], 1, robots.next_mx, robots.next_my);
+      for_own_ranges(begin, ends[own], [this](std::size_t first, std::size_t last, Scratch& s) {
+        for (std::size_t i = first; i < last; ++i) {
+          const bool whole = robots.next_mx[i] == robots.wish_mx[i] && robots.next_my[i] == robots.wish_my[i];
+          s.counts.cut_short += !whole;
+          if (!whole) robots.next_kept[i] &= static_cast<std::uint8_t>(~Robots::kIsKept);
+        }
+      });
+    } else {
+      robots.next_mx = robots.wish_mx;
+      robots.next_my = robots.wish_my;
+    }
+    StepReport report;
+    for (const auto& s : scratch_) add(report, s->counts), add(phases, s->phases);
+    share(ranks, ends, {&robots.next_mx, &robots.next_my});
+    if (ranks) share_report(*ranks, ends, report);
+    decided = true;
+    return report;
+  }
+
+  template <class Do>
+  void for_own_ranges(std::size_t begin, std::size_t end, const Do& what) {
+    const std::size_t count = end - begin, share = count / (8 * static_cast<std::size_t>(tasks.threads()));
+    const std::size_t grain = range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
+    tasks.for_ranges(count, grain, [&](std::size_t first, std::size_t last, int thread) {
+      what(begin + first, begin + last, *scratch_[static_cast<std::size_t>(thread)]);
+    });
+  }
+
+  /// A round of the second level.
+  void certify(std::size_t begin, std::size_t end, int round, Array<std::int32_t>& to_x, Array<std::int32_t>& to_y) {
+    for_own_ranges(begin, end, [&](std::size_t first, std::size_t last, Scratch& s) {
+      const Timed timed(options.time_phases, s.phases.hard);
+      for (std::size_t i = first; i < last; ++i) {
+        const Motion m = hard_.decide(i, round, s.hard_level, s.one, s.counts);
+        if (round == 0 && !s.hard_level.rows.empty()) robots.next_kept[i] |= Robots::kHasMet;
+        to_x[i] = m.x;
+        to_y[i] = m.y;
+      }
+    });
+  }
+
+  void lay_out_capsules() {
+    if (reservations.empty()) return;
+    std::vector<Reservations::Capsule> capsules;
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      if (reservations.holds(robots.id[i]))
+        capsules.push_back({{position_of(i), reservations.place(robots.id[i])}, kinds[robots.kind(i)].radius});
+    reservations.lay_out(std::move(capsules));
+  }
+
+  /// What each rank decided for its share, to all of them.
+  static void share(Ranks* ranks, const std::vector<std::size_t>& ends,
+                    std::initializer_list<Array<std::int32_t>*> columns) {
+    if (!ranks) return;
     std::vector<SharedArray> arrays;
-    for (auto* field : {&robots.next_mx, &robots.next_my, &robots.hint})
-      arrays.push_back({field->data(), in_bytes(ends, sizeof(std::int32_t))});
-    arrays.push_back({robots.next_kept.data(), ends});
+    for (auto* column : columns) arrays.push_back({column->data(), in_bytes(ends, sizeof(std::int32_t))});
+    ranks->share(arrays);
+  }
+
+  void share_report(Ranks& ranks, const std::vector<std::size_t>& ends, StepReport& report) {
     std::vector<StepReport> reports(ends.size());
-    reports[static_cast<std::size_t>(ranks()->rank())] = report;
-    arrays.push_back({reports.data(), in_bytes(share_ends(ends.size(), ranks()->size()), sizeof(StepReport))});
-    ranks()->share(arrays);
+    reports[static_cast<std::size_t>(ranks.rank())] = report;
+    ranks.share({{robots.next_kept.data(), ends},
+                 {reports.data(), in_bytes(share_ends(ends.size(), ranks.size()), sizeof(StepReport))}});
     report = {};
     for (const StepReport& r : reports) add(report, r);
   }
@@ -279,12 +343,12 @@ class CrowdEngine final : public CrowdCore {
   /// The half-planes of a group against edges and bodies at rest, in the last rows before those of robots; how many
   /// rows.
   std::size_t obstacles_of(Pack* packs, std::size_t count, Scratch& s) {
-    if (edges.empty() && bodies.empty()) return 0;
+    if (edges.empty() && !one_.has_bodies()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
     std::fill(s.hard, s.hard + count * kPack, 0);
     if (!edges.empty())
       for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
-    if (!bodies.empty())
+    if (one_.has_bodies())
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
     const std::size_t rows = most_of(s.hard, count);
@@ -331,7 +395,7 @@ class CrowdEngine final : public CrowdCore {
 
   /// The half-planes of a group against bodies that move, in the rows from `first` on; how many rows.
   std::size_t moving_of(std::size_t count, std::size_t first, Scratch& s) const {
-    if (bodies.empty()) return 0;
+    if (!one_.has_bodies()) return 0;
     const std::size_t rows = most_of(s.moving, count);
     put_rows({s.moving_x, s.moving_y, s.moving_c, kSlots}, s.moving, rows, first, count, s);
     return rows;
@@ -407,7 +471,8 @@ class CrowdEngine final : public CrowdCore {
       put_by_kind(pack, table_.allowed, T(0), allowed);
       const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at,        s.y + at, s.c + at,
                           lines,       kSlots,      s.status + slot, allowed};
-      const std::uint32_t kept = round_to_lattice(table_, in, rounded) & ~pack.alone;
+      const std::uint32_t reserved = reserved_lanes(pack);
+      const std::uint32_t kept = round_to_lattice(table_, in, rounded) & ~pack.alone & ~reserved;
       take_all(pack, rounded, kept);
       for (std::uint32_t rest = pack.lanes() & ~kept; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
@@ -415,6 +480,12 @@ class CrowdEngine final : public CrowdCore {
         if (pack.alone >> lane & 1U) {
           const Vec2 preferred{static_cast<double>(s.px[slot + lane]), static_cast<double>(s.py[slot + lane])};
           take(robot, one_.decide(robot, preferred, s.one, nullptr), s);
+          continue;
+        }
+        if (reserved >> lane & 1U) {
+          const Vec2 preferred{static_cast<double>(s.px[slot + lane]), static_cast<double>(s.py[slot + lane])};
+          const auto own = static_cast<std::size_t>(hard > 0 ? s.hard[slot + lane] : 0);
+          take(robot, one_.straight(robot, preferred, offset(in, lane), own), s);
           continue;
         }
         if (hard == 0 && s.status[slot + lane] != 0) {  // relaxed: there is nothing to try
@@ -428,20 +499,29 @@ class CrowdEngine final : public CrowdCore {
     }
   }
 
+  /// Bit `lane`: drives straight to a reserved place.
+  std::uint32_t reserved_lanes(const Pack& pack) const {
+    std::uint32_t lanes = 0;
+    for (std::size_t lane = 0; !reservations.empty() && lane < pack.size(); ++lane)
+      lanes |= std::uint32_t{reservations.holds(robots.id[pack.begin + lane])} << lane;
+    return lanes;
+  }
+
   /// The motions of a pack. Bits of `kept`: lanes.
   void take_all(const Pack& pack, const Rounded& motions, std::uint32_t kept) {
     const std::size_t size = pack.size();
-    std::memcpy(&robots.next_mx[pack.begin], motions.mx, size * sizeof(std::int32_t));
-    std::memcpy(&robots.next_my[pack.begin], motions.my, size * sizeof(std::int32_t));
+    std::memcpy(&robots.wish_mx[pack.begin], motions.mx, size * sizeof(std::int32_t));
+    std::memcpy(&robots.wish_my[pack.begin], motions.my, size * sizeof(std::int32_t));
     for (std::size_t lane = 0; lane < size; ++lane)
       robots.next_kept[pack.begin + lane] = static_cast<std::uint8_t>(kept >> lane & 1U);
   }
 
   void take(std::size_t robot, const CrowdMotion& m, Scratch& s) {
-    robots.next_mx[robot] = m.mx;
-    robots.next_my[robot] = m.my;
+    robots.wish_mx[robot] = m.mx;
+    robots.wish_my[robot] = m.my;
     robots.next_kept[robot] = m.kept;
-    s.counts.relaxed += !m.kept;
+    s.counts.relaxed += !m.kept && !m.reserved;
+    s.counts.reserved += m.reserved;
     s.counts.nudged += m.nudged;
     s.counts.stopped += m.stopped;
   }
@@ -459,6 +539,7 @@ class CrowdEngine final : public CrowdCore {
 
   KindTable<T> table_;
   const OneRobot<T> one_{*this, table_};
+  HardLevel<T> hard_{*this, table_, one_};
   Array<T> preferred_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };

@@ -2,12 +2,13 @@
 #pragma once
 
 /// \file
-/// One step of a crowd: sort, find neighbours, make half-planes, solve, round to the lattice, move.
+/// One step of a crowd: sort, find neighbours, make half-planes, solve, round to the lattice: that is what each robot
+/// wishes. Then the second level (hard_level.h) makes wishes into motions that keep all robots apart, and they move.
 ///
-/// A robot is decided in one of two ways that give the same bits: in a pack of sixteen that share their candidates, or
-/// alone, with any number of neighbours: where it stands too densely for a pack, where more can be met within the step
-/// than its kind has neighbours, where more half-planes against edges or bodies come up than a pack has room for, where
-/// another stands in its very place, and for `explain`.
+/// What a robot wishes is decided in one of two ways that give the same bits: in a pack of sixteen that share their
+/// candidates, or alone, with any number of neighbours: where it stands too densely for a pack, where more can be met
+/// within the step than its kind has neighbours, where more half-planes against edges or bodies come up than a pack has
+/// room for, where another stands in its very place, and for `explain`.
 
 #include <chrono>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "crowd/edges.h"
 #include "crowd/kinds.h"
 #include "crowd/lines.h"
+#include "crowd/reservations.h"
 #include "crowd/robots.h"
 #include "exactvo/formation/crowd.h"
 
@@ -35,6 +37,8 @@ class CrowdCore {
   virtual std::vector<Vec2> preferred() const = 0;
   /// Robots are sorted; writes next_mx, next_my, next_kept, hint. Of several ranks each decides for its share.
   virtual StepReport decide() = 0;
+  /// Something that a decision follows from has changed.
+  void changed() { decided = false; }
   virtual CrowdExplanation explain(std::size_t robot) = 0;
   virtual std::size_t bytes() const = 0;
 
@@ -50,12 +54,14 @@ class CrowdCore {
   CrowdOptions options;
   std::vector<CrowdKind> kinds;
   crowd::Robots robots;
-  crowd::EdgeGrid edges;  ///< laid out
-  crowd::Bodies bodies;   ///< laid out
+  crowd::EdgeGrid edges;             ///< laid out
+  crowd::Bodies bodies;              ///< laid out
+  crowd::Reservations reservations;  ///< laid out
   crowd::Tasks tasks;
   Steering steering;
   CrowdPhases phases;
-  std::size_t range = 0;  ///< robots a task; 0: as it thinks best. The results are the same.
+  std::size_t range = 0;  ///< robots a task; 0: chosen automatically. The results are the same.
+  bool decided = false;   ///< next_mx, next_my, next_kept are those of the present state, for `explain`
 };
 
 /// s

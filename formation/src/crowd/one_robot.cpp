@@ -116,20 +116,68 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
   counts.edges = lines_of_edges(robot, b);
   b.body_lines.clear();
   b.still = 0;
-  if (!crowd_.bodies.empty()) lines_of_bodies(robot, b);
+  if (has_bodies()) lines_of_bodies(robot, b);
   counts.bodies = b.body_lines.size();
   counts.neighbours = b.near.size();
   const std::size_t hard = counts.edges + b.still, lines = counts.edges + counts.bodies + counts.neighbours;
-  const std::size_t rows = std::max<std::size_t>(1, lines);
-  b.row_x.assign(rows * kPack, T(1));
-  b.row_y.assign(rows * kPack, T(0));
-  b.row_c.assign(rows * kPack, static_cast<T>(kNever));
+  lay_out_rows(lines, b);
   put_obstacles(robot, counts.edges, b, words);
   bool touches = false;
   for (std::size_t k = 0; k < b.near.size(); k += kPack) touches |= put_neighbours(robot, k, hard + k, b, words);
   counts.touching = touches;
-  d.motion = solve(robot, preferred, lines, static_cast<std::int32_t>(hard), b);
+  if (is_reserved(robot)) {
+    const Answers<T> rows{nullptr, nullptr, b.row_x.data(), b.row_y.data(), b.row_c.data(),
+                          lines,   kPack,   nullptr,        nullptr};
+    d.motion = straight(robot, preferred, rows, hard);
+  } else {
+    d.motion = solve(robot, preferred, lines, static_cast<std::int32_t>(hard), b);
+  }
   return d;
+}
+
+template <class T>
+void OneRobot<T>::lay_out_rows(std::size_t rows, Buffers& b) const {
+  const std::size_t room = std::max<std::size_t>(1, rows) * kPack;
+  b.row_x.assign(room, T(1));
+  b.row_y.assign(room, T(0));
+  b.row_c.assign(room, static_cast<T>(kNever));
+}
+
+template <class T>
+std::size_t OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b) const {
+  const std::size_t edges = lines_of_edges(robot, b);
+  b.near.clear();
+  b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
+  lay_out_rows(edges + b.body_lines.size(), b);
+  put_obstacles(robot, edges, b, nullptr);
+  return edges + b.still;
+}
+
+template <class T>
+bool OneRobot<T>::keeps_obstacles(std::size_t robot, std::size_t lines, const Buffers& b, double mx, double my) const {
+  Answers<T> rows{nullptr, nullptr, b.row_x.data(), b.row_y.data(), b.row_c.data(), lines, kPack, nullptr, nullptr};
+  return keeps(table_, rows, mx, my, kind_of(robot).max_speed);
+}
+
+template <class T>
+CrowdMotion OneRobot<T>::straight(std::size_t robot, Vec2 preferred, Answers<T> in, std::size_t hard) const {
+  constexpr double kShares[] = {1.0, 0.5, 0.25, 0.125, 0.0625};
+  const double unit = table_.velocity_step, length = norm(preferred), speed = kind_of(robot).max_speed;
+  const auto most = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]);
+  const double whole = length > most ? most / length : 1.0;
+  CrowdMotion m{};
+  m.reserved = true;
+  in.lines = hard;
+  for (const double share : kShares) {
+    const double x = std::nearbyint(whole * share * preferred.x / unit),
+                 y = std::nearbyint(whole * share * preferred.y / unit);
+    if (!keeps(table_, in, x, y, speed)) continue;
+    m.mx = static_cast<std::int32_t>(x);
+    m.my = static_cast<std::int32_t>(y);
+    return m;
+  }
+  m.stopped = true;
+  return m;
 }
 
 template <class T>
@@ -142,7 +190,7 @@ BodyQuery OneRobot<T>::query_of(std::size_t robot) const {
   query.position = crowd_.position_of(robot);
   query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
   query.radius = kind.radius;
-  query.still_horizon = edge_horizon(kind);
+  query.still_horizon = obstacle_horizon(robot);
   query.horizon = kind.time_horizon;
   query.max_speed = kind.max_speed;
   query.float_normals = sizeof(T) == 4;
@@ -170,6 +218,14 @@ std::size_t OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
 template <class T>
 void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
   b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
+  if (crowd_.reservations.empty() || is_reserved(robot)) return;
+  b.capsule_lines.clear();
+  const CrowdKind& kind = kind_of(robot);
+  crowd_.reservations.add_lines(crowd_.position_of(robot), kind.radius, kind.max_speed, crowd_.options.time_step,
+                                b.capsule_lines);
+  b.body_lines.insert(b.body_lines.begin() + static_cast<std::ptrdiff_t>(b.still), b.capsule_lines.begin(),
+                      b.capsule_lines.end());
+  b.still += b.capsule_lines.size();
 }
 
 /// The half-plane of a row, without what covers the rounding to the lattice.
@@ -193,7 +249,8 @@ void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b
     const BodyLine& line = b.body_lines[k];
     const std::size_t row = edges + k + (k < b.still ? 0 : b.near.size()), at = row * kPack;
     put(line, robot, b.row_x[at], b.row_y[at], b.row_c[at]);
-    if (words) words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});
+    if (words && line.obstacle != Reservations::kCapsule)
+      words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});
   }
 }
 

@@ -19,6 +19,7 @@ struct CrowdMotion {
   std::int32_t mx, my;  ///< lattice steps
   bool kept;            ///< all half-planes
   bool nudged = false, stopped = false;
+  bool reserved = false;  ///< drives straight to its reserved place
 };
 
 struct CrowdDecision {
@@ -40,7 +41,7 @@ struct OneRobotBuffers {
   std::vector<std::uint32_t> edge;         ///< their numbers
   std::vector<std::uint8_t> edge_touching;
   std::vector<std::uint32_t> near_bodies;
-  std::vector<crowd::BodyLine> body_lines;
+  std::vector<crowd::BodyLine> body_lines, capsule_lines;
   std::size_t still = 0;                ///< of body_lines, the first: against bodies at rest
   crowd::Array<T> row_x, row_y, row_c;  ///< half-planes of edges and bodies at rest, of robots, of bodies that move
 };
@@ -73,13 +74,21 @@ class OneRobot {
     query.vx[lane] = velocity.x;
     query.vy[lane] = velocity.y;
     query.radius[lane] = kind.radius;
-    query.horizon[lane] = edge_horizon(kind);
+    query.horizon[lane] = obstacle_horizon(robot);
     query.max_speed[lane] = kind.max_speed;
     query.least[lane] = table_.least_offset[crowd_.robots.kind(robot)];
   }
 
-  /// Into b.body_lines and b.still.
+  /// Into b.body_lines and b.still, those against capsules of reservations among them.
   void lines_of_bodies(std::size_t robot, Buffers& b) const;
+  bool has_bodies() const { return !crowd_.bodies.empty() || !crowd_.reservations.empty(); }
+
+  /// The half-planes against edges and bodies at rest, in the first rows of lane 0; how many.
+  std::size_t put_obstacles(std::size_t robot, Buffers& b) const;
+  /// Whether a motion of (mx, my) lattice steps keeps the first `lines` rows of `put_obstacles`.
+  bool keeps_obstacles(std::size_t robot, std::size_t lines, const Buffers& b, double mx, double my) const;
+  /// The longest part of a robot's preferred motion that keeps the first `hard` lines: for one that is never turned.
+  CrowdMotion straight(std::size_t robot, Vec2 preferred, crowd::Answers<T> in, std::size_t hard) const;
 
   /// Of a motion that does not keep all half-planes, another one nearby, or none. `hard`: so many of the first lines
   /// are of edges and bodies at rest.
@@ -96,8 +105,14 @@ class OneRobot {
 
  private:
   const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
+  bool is_reserved(std::size_t robot) const { return crowd_.reservations.holds(crowd_.robots.id[robot]); }
+  /// s: a robot that drives to a reserved place stops there, and looks no farther than the step.
+  double obstacle_horizon(std::size_t robot) const {
+    return is_reserved(robot) ? crowd_.options.time_step : edge_horizon(kind_of(robot));
+  }
   crowd::BodyQuery query_of(std::size_t robot) const;
   std::size_t lines_of_edges(std::size_t robot, Buffers& b) const;
+  void lay_out_rows(std::size_t rows, Buffers& b) const;
   void put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const;
   geometry::HalfPlane half_plane(std::size_t row, const Buffers& b) const;
   bool put_neighbours(std::size_t robot, std::size_t first, std::size_t row, Buffers& b, CrowdExplanation* words) const;

@@ -90,7 +90,7 @@ void Robots::move(Tasks& tasks) {
     for (std::size_t i = first; i < last; ++i) {
       x[i] += next_mx[i];
       y[i] += next_my[i];
-      tag[i] = static_cast<std::uint16_t>((tag[i] & kKind) | kSettled | (next_kept[i] ? kKept : 0U));
+      tag[i] = static_cast<std::uint16_t>((tag[i] & kKind) | kSettled | ((next_kept[i] & kIsKept) ? kKept : 0U));
     }
   });
   mx.swap(next_mx);

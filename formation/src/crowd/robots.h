@@ -47,8 +47,12 @@ class Robots {
   Array<std::int32_t> id;
   Array<std::int32_t> hint;  ///< lattice steps, distance of the last neighbour in the last step; 0: not known yet
   Array<std::uint16_t> tag;  ///< kind, kKept in the last step, kSettled: has made one
+  Array<std::int32_t> wish_mx, wish_my;  ///< of the first level of a step
+  Array<std::int32_t> safe_mx, safe_my;  ///< after the first round of the second
   Array<std::int32_t> next_mx, next_my;
-  Array<std::uint8_t> next_kept;
+  Array<std::uint8_t> next_kept;  ///< kIsKept, kHasMet
+
+  static constexpr std::uint8_t kIsKept = 1, kHasMet = 2;
 
   static constexpr std::uint16_t kKind = kKindBits, kKept = 0x4000, kSettled = 0x8000;
 
@@ -95,7 +99,9 @@ class Robots {
  private:
   template <class Do>
   void for_fields(const Do& what) {
-    for (auto* field : {&x, &y, &mx, &my, &id, &hint, &next_mx, &next_my, &order_}) what(*field);
+    for (auto* field :
+         {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my, &order_})
+      what(*field);
     what(tag), what(tags_scratch_), what(next_kept);
   }
   void find_bounds(Tasks& tasks);

@@ -15,7 +15,7 @@
 namespace exactvo::formation::crowd {
 namespace {
 
-constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '3'};
+constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '4'};
 
 constexpr const char* kExpected = "what Crowd::snapshot has written";
 
@@ -124,6 +124,8 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
   for (const auto* column : columns_of(r)) out.put_all(column->data(), r.size());
   out.put_all(r.tag.data(), r.size());
   put_counted(out, core.preferred());
+  put_counted(out, core.reservations.places());
+  put_counted(out, core.reservations.reserved());
   out.fields(body.next_obstacle, static_cast<std::uint32_t>(body.obstacles.size()));
   for (const auto& [id, edges] : body.obstacles) {
     out.put(id);
@@ -171,8 +173,14 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   in.get_some(r.tag, count);
   r.resize(count);
   r.shrink();
-  std::vector<Vec2> preferred;
+  std::vector<Vec2> preferred, places;
+  std::vector<std::uint8_t> reserved;
   get_counted(in, preferred);
+  get_counted(in, places);
+  get_counted(in, reserved);
+  require(places.size() == reserved.size() && (places.empty() || places.size() >= id_end), "a number of reservations");
+  for (std::size_t k = 0; k < places.size(); ++k)
+    require(reserved[k] == 0 || geometry::is_finite(places[k]), "a place");
   std::map<ObstacleId, std::vector<geometry::Segment>> obstacles;
   const auto next_obstacle = in.get<std::uint32_t>();
   for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
@@ -192,6 +200,7 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   body.id_end = id_end;
   r.set_strip(strip);
   if (preferred.size() >= id_end && !preferred.empty()) core.set_preferred(preferred);
+  core.reservations.set(places, reserved);
   body.unsorted = true;
   body.unchecked = false;
 }

@@ -252,8 +252,8 @@ class CrowdRun {
   /// What adds up from step to step.
   template <class Report, class Visit>
   static void for_each_count(Report& r, const Visit& visit) {
-    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.touching, &r.widened, &r.stopped,
-                        &r.half_planes, &r.edges, &r.bodies})
+    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.cut_short, &r.overlapping, &r.touching,
+                        &r.widened, &r.stopped, &r.half_planes, &r.edges, &r.bodies})
       visit(*count);
     for (auto* number : {&r.time, &r.path_length}) visit(*number);
   }
@@ -371,6 +371,17 @@ class CrowdRun {
     return is_taken(i) && !now_[i].is_there ? claims_->beside_taken_place(i, preferred) : preferred;
   }
 
+  /// Rule R1.
+  Vec2 kept_right(std::size_t i, Vec2 preferred) {
+    if (scenario_.liveness == Liveness::off) return preferred;
+    CrowdWay& way = ways_[i];
+    const double before = way.keep_right.held_up;
+    const Vec2 turned = way.keep_right.turned(preferred, velocity_[i], 0.0, KeepRight::kPatience,
+                                              norm(end_of(i) - at_[i]), scenario_.robots[i].radius);
+    if (way.keep_right.held_up != before) way.turned = report_.steps;
+    return turned;
+  }
+
   /// Straight on to where each is at the end of the step, up to half a step of the lattice.
   void set_out_obstacles() {
     const double end = static_cast<double>(report_.steps + 1) * scenario_.time_step;
@@ -384,13 +395,16 @@ class CrowdRun {
     set_out_obstacles();
     for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
     if (claims_) look_at_claims();
-    for (std::size_t i = own_begin(); i < own_end(); ++i) preferred_[i] = preferred_of(i);
+    crowd_.velocities(velocity_);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) preferred_[i] = kept_right(i, preferred_of(i));
     share_preferred();
     crowd_.set_preferred(preferred_);
     const StepReport s = crowd_.step();
     ++report_.steps;
     report_.time = static_cast<double>(report_.steps) * scenario_.time_step;
     report_.relaxed += s.relaxed;
+    report_.cut_short += s.cut_short;
+    report_.overlapping += s.overlapping;
     report_.touching += s.touching;
     report_.widened += s.widened;
     report_.stopped += s.stopped;
@@ -472,7 +486,7 @@ class CrowdRun {
   std::optional<Guide> guide_;
   std::vector<CrowdWay> ways_;
   std::vector<ObstacleId> moving_;
-  std::vector<Vec2> at_, before_, preferred_;
+  std::vector<Vec2> at_, before_, velocity_, preferred_;
   std::vector<Vec2> last_places_;  ///< empty: their last goals
   std::optional<GoalClaims> claims_;
   std::vector<EndNow> now_;    ///< with claims

@@ -19,7 +19,8 @@ void require(bool holds) {
 template <class Bytes, class Way>
 void fields_of_way(Bytes& bytes, Way& way) {
   bool has_course = way.course.has_value();
-  bytes.fields(way.goal, way.heading, way.arrived, way.stays, way.why_not, way.nearest, way.turned, has_course);
+  bytes.fields(way.goal, way.heading, way.arrived, way.stays, way.why_not, way.nearest, way.keep_right.held_up,
+               way.turned, has_course);
   if (!has_course) return;
   if constexpr (!std::is_const_v<Way>) way.course.emplace();
   bytes.fields(way.course->points, way.course->keeps, way.course->to, way.course->next);

@@ -13,6 +13,7 @@
 #include "exactvo/formation/scenario.h"
 #include "steering/goal_claims.h"
 #include "steering/guide.h"
+#include "steering/keep_right.h"
 
 namespace exactvo::formation {
 
@@ -34,6 +35,7 @@ struct CrowdWay {
   bool stays = false;
   std::string why_not;                  ///< it stays, or goes as near as it can
   std::optional<NearestPlace> nearest;  ///< as near as it can get
+  KeepRight keep_right;
   std::size_t turned = 0;               ///< step at which one of these changed last, but for `arrived` and `why_not`
 };
 

@@ -19,6 +19,7 @@
 #include "steering/goal_claims.h"
 #include "steering/goals.h"
 #include "steering/guide.h"
+#include "steering/keep_right.h"
 #include "steering/last_places.h"
 #include "steering/standing.h"
 #include "steering/steering.h"
@@ -47,7 +48,7 @@ struct KinematicRobot : OwnWay {
   bool has_come_nearest = false;             ///< it is there
   bool waits_for_room = false;               ///< it has to be pushed out before its course can be planned
   // With liveness.
-  double held_up = 0.0;  ///< 0 .. 1: how little of its preference it drove of late
+  KeepRight keep_right;
 };
 
 class KinematicRun {
@@ -339,15 +340,11 @@ class KinematicRun {
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
   /// Less near the goal: else it could go round and round it.
   Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
-    constexpr double kSmoothing = 0.2, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
-    constexpr double kNearGoal = 4.0;                               // radii
     const bool is_free = mode == Mode::direct || mode == Mode::guided;
     if (!is_free || preferred == Vec2{} || !meets_robots(i)) return preferred;
     KinematicRobot& r = robots_[i];
-    const double missing = 1.0 - dot(r.velocity, preferred) / squared_norm(preferred);
-    r.held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - r.held_up);
-    const double far = std::min(1.0, norm(end_of(i) - r.position) / (kNearGoal * scenario_.robots[i].radius));
-    return geometry::rotated(preferred, -far * (kLeast + kMost * r.held_up));
+    return r.keep_right.turned(preferred, r.velocity, KeepRight::kLeast, 0.0, norm(end_of(i) - r.position),
+                               scenario_.robots[i].radius);
   }
 
   Vec2 straight_for(std::size_t i, Vec2 place) const {

@@ -34,13 +34,14 @@ int run(std::uint64_t wanted, std::uint64_t robots) {
                  audit.pairs, audit.failures());
   }
   std::printf(
-      "pairs %zu\ntouching %zu\none_sided %zu\nboth_kept %zu\nunsafe %zu\nunequal %zu\nbroken %zu\nmet %zu\nfast %zu\n"
+      "pairs %zu\ntouching %zu\none_sided %zu\nnear %zu\noverlapping %zu\nunsafe %zu\nunequal %zu\nbroken %zu\nmet "
+      "%zu\nfast %zu\n"
       "edges %zu\nedges_touching %zu\nedges_open %zu\nedges_met %zu\n"
       "bodies %zu\nbodies_touching %zu\nbodies_open %zu\nbodies_met %zu\n"
       "differing %zu\n",
-      audit.pairs, audit.touching, audit.one_sided, audit.both_kept, audit.unsafe, audit.unequal, audit.broken,
-      audit.met, audit.fast, audit.edges, audit.edges_touching, audit.edges_open, audit.edges_met, audit.bodies,
-      audit.bodies_touching, audit.bodies_open, audit.bodies_met, audit.differing);
+      audit.pairs, audit.touching, audit.one_sided, audit.near, audit.overlapping, audit.unsafe, audit.unequal,
+      audit.broken, audit.met, audit.fast, audit.edges, audit.edges_touching, audit.edges_open, audit.edges_met,
+      audit.bodies, audit.bodies_touching, audit.bodies_open, audit.bodies_met, audit.differing);
   if (!audit.first.empty()) std::printf("first: %s\n", audit.first.c_str());
   return audit.failures() == 0 ? 0 : 1;
 }

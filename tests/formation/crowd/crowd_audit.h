@@ -22,13 +22,14 @@ namespace exactvo::formation {
 /// The numbers of the properties are those of crowd.h.
 struct CrowdAudit {
   std::size_t pairs = 0;            ///< looked at
-  std::size_t touching = 0;         ///< of them: nothing is promised
+  std::size_t touching = 0;         ///< of them
   std::size_t one_sided = 0;        ///< only one of the two has the other among its neighbours
-  std::size_t both_kept = 0;        ///< of those that do not touch
+  std::size_t near = 0;             ///< pairs that could meet within the step, neighbours or not
+  std::size_t overlapping = 0;      ///< of them, at the beginning of the step
   std::size_t unsafe = 0;           ///< (2): the halves leave a velocity that collides within the horizon
   std::size_t unequal = 0;          ///< (2): normals are not the negatives of each other
   std::size_t broken = 0;           ///< a kept robot violates a half-plane
-  std::size_t met = 0;              ///< (1): two kept robots touch within the step
+  std::size_t met = 0;              ///< (1): two robots that were apart overlap within the step
   std::size_t fast = 0;             ///< (3)
   std::size_t edges = 0;            ///< edges near robots that were looked at
   std::size_t edges_touching = 0;   ///< of them: nothing is promised
@@ -85,20 +86,21 @@ class CrowdAuditor {
       for (std::size_t k = 0; k < bodies_.size(); ++k) check_body(audit, e, k);
       for (const auto& n : e.neighbours) check_pair(audit, e, n);
     }
+    for (RobotId a = 0; a < crowd_.id_end(); ++a)
+      for (RobotId b = a + 1; b < crowd_.id_end(); ++b) check_motions(audit, before_[a], before_[b]);
   }
 
-  /// Two discs that move by whole steps of the lattice, at every moment between: apart, exactly?
-  static bool apart(Vec2 a, Vec2 a_to, Vec2 b, Vec2 b_to, double radius_a, double radius_b) {
-    const mpq_class radius = mpq_class(radius_a) + mpq_class(radius_b), limit = radius * radius;
+  /// Two discs that move straight by whole steps of the lattice: do they overlap at a moment between, exactly?
+  static bool overlap(Vec2 a, Vec2 a_to, Vec2 b, Vec2 b_to, const mpq_class& squared_radius) {
     const mpq_class px = mpq_class(b.x) - mpq_class(a.x), py = mpq_class(b.y) - mpq_class(a.y);
     const mpq_class mx = mpq_class(a_to.x) - mpq_class(a.x) - mpq_class(b_to.x) + mpq_class(b.x);
     const mpq_class my = mpq_class(a_to.y) - mpq_class(a.y) - mpq_class(b_to.y) + mpq_class(b.y);
     const mpq_class along = px * mx + py * my, squared = mx * mx + my * my;
     const mpq_class ex = px - mx, ey = py - my;
-    if (along <= 0) return px * px + py * py > limit;
-    if (along >= squared) return ex * ex + ey * ey > limit;
+    if (along <= 0) return px * px + py * py < squared_radius;
+    if (along >= squared) return ex * ex + ey * ey < squared_radius;
     const mpq_class across = px * my - py * mx;
-    return across * across > limit * squared;
+    return across * across < squared_radius * squared;
   }
 
  private:
@@ -228,10 +230,22 @@ class CrowdAuditor {
     const CrowdKind& kind_a = crowd_.kind(crowd_.kind_of(a.robot));
     const CrowdKind& kind_b = crowd_.kind(crowd_.kind_of(b.robot));
     if (back) check_halves(audit, a, n, *back, kind_a, kind_b);
-    if (!a.kept || !b.kept) return;
-    ++audit.both_kept;
-    if (!apart(a.position, moved_[a.robot], b.position, moved_[b.robot], kind_a.radius, kind_b.radius))
-      fail(audit, audit.met, a, &n);
+  }
+
+  void check_motions(CrowdAudit& audit, const CrowdExplanation& a, const CrowdExplanation& b) {
+    const CrowdKind& kind_a = crowd_.kind(crowd_.kind_of(a.robot));
+    const CrowdKind& kind_b = crowd_.kind(crowd_.kind_of(b.robot));
+    const double reach =
+        kind_a.radius + kind_b.radius + (kind_a.max_speed + kind_b.max_speed) * crowd_.options().time_step;
+    if (geometry::norm(a.position - b.position) > 1.001 * reach) return;
+    ++audit.near;
+    const mpq_class radius = mpq_class(kind_a.radius) + mpq_class(kind_b.radius);
+    const mpq_class dx = mpq_class(a.position.x) - mpq_class(b.position.x),
+                    dy = mpq_class(a.position.y) - mpq_class(b.position.y);
+    const bool overlaps = dx * dx + dy * dy < radius * radius;
+    audit.overlapping += overlaps;
+    if (!overlaps && overlap(a.position, moved_[a.robot], b.position, moved_[b.robot], radius * radius))
+      fail(audit, audit.met, a, nullptr);
   }
 
   void check_halves(CrowdAudit& audit, const CrowdExplanation& a, const CrowdExplanation::Neighbour& n,

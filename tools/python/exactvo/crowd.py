@@ -52,7 +52,9 @@ class StepReport(NamedTuple):
 
     robots: int
     neighbours: int  #: half-planes made between robots
-    relaxed: int  #: robots that are not kept: nothing is promised of them in that step
+    relaxed: int  #: robots whose wish violates half-planes, since these contradict each other
+    cut_short: int  #: robots that do not get their wish, since they would meet another within the step
+    overlapping: int  #: robots that overlapped another at the beginning of the step: 0 after a legal start
     touching: int  #: robots that touched another at the beginning of the step
     widened: int  #: robots that took more neighbours than their kind has
     edges: int  #: half-planes made against edges of obstacles
@@ -66,7 +68,7 @@ class NeighbourHalfPlane:
 
     robot: int
     half_plane: HalfPlane
-    touching: bool  #: nothing is promised of this pair
+    touching: bool  #: they touch
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class Explanation:
     position: tuple[float, float]  #: m, exact
     velocity: tuple[float, float]  #: m/s, now
     preferred: tuple[float, float]  #: m/s
-    chosen: tuple[float, float]  #: m/s: what `step` will choose
+    wish: tuple[float, float]  #: m/s: the answer to the half-planes below
+    chosen: tuple[float, float]  #: m/s: what `step` will choose: the wish, unless another would be met within the step
     kept: bool
     widened: bool
     neighbours: tuple[NeighbourHalfPlane, ...]  #: nearest first

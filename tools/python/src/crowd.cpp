@@ -179,7 +179,7 @@ class PythonCrowd {
     using R = formation::StepReport;
     sum.robots = step.robots;
     for (const auto count :
-         {&R::neighbours, &R::relaxed, &R::touching, &R::widened, &R::edges, &R::stopped, &R::nudged})
+         {&R::neighbours, &R::relaxed, &R::cut_short, &R::overlapping, &R::touching, &R::widened, &R::edges, &R::stopped, &R::nudged})
       sum.*count += step.*count;
   }
 
@@ -217,7 +217,7 @@ formation::KindId kind_id(const py::int_& id) {
 }
 
 py::tuple as_tuple(const formation::StepReport& r) {
-  return py::make_tuple(r.robots, r.neighbours, r.relaxed, r.touching, r.widened, r.edges, r.stopped, r.nudged);
+  return py::make_tuple(r.robots, r.neighbours, r.relaxed, r.cut_short, r.overlapping, r.touching, r.widened, r.edges, r.stopped, r.nudged);
 }
 
 py::dict as_dict(const formation::CrowdExplanation& e) {
@@ -229,7 +229,7 @@ py::dict as_dict(const formation::CrowdExplanation& e) {
                                 n.touching));
   return py::dict("robot"_a = e.robot, "position"_a = python::as_tuple(e.position),
                   "velocity"_a = python::as_tuple(e.velocity), "preferred"_a = python::as_tuple(e.preferred),
-                  "chosen"_a = python::as_tuple(e.chosen), "kept"_a = e.kept, "widened"_a = e.widened,
+                  "wish"_a = python::as_tuple(e.wish), "chosen"_a = python::as_tuple(e.chosen), "kept"_a = e.kept, "widened"_a = e.widened,
                   "neighbours"_a = neighbours, "edges"_a = edges);
 }
 

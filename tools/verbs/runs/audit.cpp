@@ -106,19 +106,14 @@ std::string summary(const datasets::AuditReport& report) {
 std::string summary(const datasets::CrowdAuditReport& r) {
   std::string text = fmt::format(
       "{} of {}, {} checked: {} too fast\n"
-      "pairs near each other, apart at the row before, that satisfied their half-planes: {}, {} overlapped; {} more "
-      "did "
-      "not (no guarantee)\n"
-      "pairs in contact at the row before that satisfied their half-planes: {}, {} still overlap; {} more did not (no "
-      "guarantee)\n"
+      "pairs of robots near each other: {}, {} came to overlap, {} overlapped already at the row before\n"
       "robots near edges that they did not touch at the row before: {}, {} overlapped\n"
       "robots that touched an edge at the row before: {}, {} came nearer; {} more stand on the edge, not proven\n"
       "robots near bodies that they did not touch at the row before: {}, {} overlapped; of those that touched {}, {} "
       "still overlap or came nearer; {} more did not satisfy their half-planes or were inside (no guarantee)\n",
       counted(r.rows, "row"), counted(r.robots, "robot"), counted(r.motions, "motion"), r.too_fast, r.pairs,
-      r.pairs_met, r.pairs_open, r.touching_pairs, r.pairs_not_parted, r.touching_pairs_open, r.near_edges, r.edges_met,
-      r.touching_edges, r.edges_neared, r.touching_edges_open, r.near_bodies, r.bodies_met, r.touching_bodies,
-      r.bodies_not_parted, r.bodies_open);
+      r.pairs_met, r.pairs_overlapping, r.near_edges, r.edges_met, r.touching_edges, r.edges_neared,
+      r.touching_edges_open, r.near_bodies, r.bodies_met, r.touching_bodies, r.bodies_not_parted, r.bodies_open);
   for (const std::string& finding : r.findings) text += "  " + finding + "\n";
   return text;
 }

@@ -128,12 +128,9 @@ struct CrowdAuditReport {
   std::size_t robots = 0;          ///< of the file
   std::size_t motions = 0;         ///< of robots from row to row that were looked at
   std::size_t too_fast = 0;        ///< longer than the speed limit allows
-  std::size_t pairs = 0;           ///< that both kept, came near and did not touch at the row before
-  std::size_t pairs_met = 0;       ///< of these: that overlap on the way (of rows of consecutive steps) or at its end
-  std::size_t pairs_open = 0;      ///< that were near, but one of them was not kept: nothing is promised
-  std::size_t touching_pairs = 0;  ///< that both kept, and touched at the row before: they must not overlap at its end
-  std::size_t pairs_not_parted = 0;     ///< of these: that do
-  std::size_t touching_pairs_open = 0;  ///< that touched, but one of them was not kept: nothing is promised
+  std::size_t pairs = 0;              ///< that were near enough to meet
+  std::size_t pairs_met = 0;          ///< of these: that overlap on the way (of consecutive steps) or at its end
+  std::size_t pairs_overlapping = 0;  ///< of these: that overlap already at the row before
   std::size_t near_edges = 0;           ///< robots and edges near enough to ask, that did not touch at the row before
   std::size_t edges_met = 0;            ///< of these: that overlap on the way or at its end
   std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer
@@ -148,7 +145,7 @@ struct CrowdAuditReport {
   std::vector<std::string> findings;  ///< the first few of what is wrong, in words
   /// Nothing is wrong with what was judged.
   bool clean() const {
-    return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared + bodies_met + bodies_not_parted == 0;
+    return too_fast + pairs_met + pairs_overlapping + edges_met + edges_neared + bodies_met + bodies_not_parted == 0;
   }
 };
 
@@ -160,10 +157,7 @@ inline constexpr std::pair<const char*, std::size_t CrowdAuditReport::*> kCrowdA
     {"too_fast", &CrowdAuditReport::too_fast},
     {"pairs", &CrowdAuditReport::pairs},
     {"pairs_met", &CrowdAuditReport::pairs_met},
-    {"pairs_open", &CrowdAuditReport::pairs_open},
-    {"touching_pairs", &CrowdAuditReport::touching_pairs},
-    {"pairs_not_parted", &CrowdAuditReport::pairs_not_parted},
-    {"touching_pairs_open", &CrowdAuditReport::touching_pairs_open},
+    {"pairs_overlapping", &CrowdAuditReport::pairs_overlapping},
     {"near_edges", &CrowdAuditReport::near_edges},
     {"edges_met", &CrowdAuditReport::edges_met},
     {"touching_edges", &CrowdAuditReport::touching_edges},

@@ -9,11 +9,16 @@
 /// in a time step: p' = p + m is exact, and m q / dt is the velocity that was decided on. What is certified is what is
 /// driven. "Float" and "double" name the arithmetic of half-planes and of the linear program only.
 ///
+/// A step has two levels. The first makes half-planes against neighbours and obstacles, and asks a linear program for the
+/// best velocity: the robot's *wish*. Half-planes between robots are relaxed there where they contradict each other. The
+/// second turns wishes into motions that keep all robots apart, in integers; rest is always one (hard_level.h).
+///
 /// Promises (tests quote the numbers). Let a robot be *kept* in a step if its velocity provably satisfies all its
 /// half-planes, and let two robots *touch* if they are nearer than the sum R of their radii and a rounding error:
 /// 40 u (|dx| + |dy| + R), u = 2^-24 (float) or 2^-53.
-///  (1) Two kept robots that do not touch at the beginning of a step are apart at every moment of it. Certified, for
-///      `CrowdOptions::certified`.
+///  (1) Two robots that do not overlap at the beginning of a step do not overlap at any moment of it, kept or not, at any
+///      density (exact contact is no overlap). Exact, for `CrowdOptions::certified`; radii are rounded up to whole
+///      lattice steps. Two that were put onto each other part, and nothing is promised of them until they are apart.
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
 ///      pair needs.
 ///  (3) |velocity| <= max_speed, exactly.
@@ -22,13 +27,13 @@
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
 ///  (7) A robot that no edge of an obstacle and no body at rest touches at the beginning of a step (nearer than the
 ///      radius and a rounding error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
-///  (8) Two kept robots that touch at the beginning of a step do not overlap at its end, and no robot comes nearer to
-///      an edge or a body at rest that touches it, up to the same rounding error. Certified, for
+///  (8) No robot comes nearer to an edge or a body at rest that touches it, up to the same rounding error. Certified, for
 ///      `CrowdOptions::certified`.
 ///  (9) A kept robot and a moving body that do not touch at the beginning of a step are apart at every moment of it; if
 ///      they touch, they do not overlap at its end. Certified, for `CrowdOptions::certified`.
-/// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
-/// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
+/// A robot that is not kept violates half-planes against other robots or moving bodies, since these contradict each other
+/// (`StepReport::relaxed`), or since another robot would be met within the step (`StepReport::cut_short`). Which velocity
+/// is best is heuristic in its last digits.
 ///
 /// Units are metres, seconds, metres per second. See also: vo/reciprocal.h is the rule for one pair in double.
 
@@ -129,13 +134,16 @@ class CrowdError : public std::invalid_argument {
 struct StepReport {
   std::size_t robots = 0;      ///< how many decided
   std::size_t neighbours = 0;  ///< half-planes made
-  std::size_t relaxed = 0;     ///< robots that are not kept: nothing is promised of them
+  std::size_t relaxed = 0;     ///< robots whose wish violates half-planes, as little as possible up to rounding
   std::size_t touching = 0;    ///< robots that touched another at the beginning of the step
   std::size_t widened = 0;     ///< robots with more in reach of the step than their kind's neighbours: took more, (5)
   std::size_t edges = 0;       ///< half-planes made against edges of obstacles
   std::size_t bodies = 0;      ///< half-planes made against bodies, at rest and in motion
   std::size_t stopped = 0;  ///< robots that stay where they are, since nothing else was found that leads onto no edge
   std::size_t nudged = 0;   ///< kept robots whose velocity had to be rounded to another place of the lattice
+  std::size_t overlapping = 0;  ///< robots that overlapped another at the beginning of the step: 0 after a legal start
+  std::size_t reserved = 0;     ///< robots that drive straight to a reserved place
+  std::size_t cut_short = 0;    ///< robots that do not get their wish, since they would meet another within the step
 };
 
 /// Seconds of threads in each phase, summed over the steps; only with CrowdOptions::time_phases.
@@ -145,6 +153,7 @@ struct CrowdPhases {
   double lines = 0.0;   ///< half-planes between robots
   double edges = 0.0;   ///< half-planes against obstacles and bodies
   double solve = 0.0;   ///< linear programs
+  double hard = 0.0;    ///< the second level: wishes into motions that keep robots apart
   double finish = 0.0;  ///< rounding to the lattice, moving
 };
 
@@ -194,7 +203,7 @@ struct CrowdExplanation {
   struct Neighbour {
     RobotId robot = 0;               ///< the other one
     geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
-    bool touching = false;           ///< what is promised of this pair is (8), not (1)
+    bool touching = false;           ///< they touch
   };
   /// A half-plane against an edge of an obstacle.
   struct Edge {
@@ -212,7 +221,8 @@ struct CrowdExplanation {
   Vec2 position;      ///< m, exact
   Vec2 velocity;      ///< m/s, now
   Vec2 preferred;     ///< m/s, as it was rounded for the linear program
-  Vec2 chosen;        ///< m/s, what `step` will choose: m q / dt
+  Vec2 wish;          ///< m/s, the answer to the half-planes below: m q / dt
+  Vec2 chosen;        ///< m/s, what `step` will choose, m q / dt: the wish, unless another would be met within the step
   bool kept = false;  ///< its velocity will provably satisfy all its half-planes
   /// More robots are in reach of the step than its kind's neighbours: all of them are listed, (5)
   bool widened = false;
@@ -279,6 +289,10 @@ class Crowd {
   void set_preferred(const std::vector<Vec2>& by_id);
   /// Asked at every step from now on. Not part of a snapshot.
   void set_steering(Steering steering);
+  /// Places (m) that robots have reserved, by id, until they are set again; `reserved`: 0 of robots without one. A
+  /// robot with a reservation drives straight in the direction that it prefers: half-planes against other robots do not
+  /// turn it, the second level of the step slows it down. Other robots keep out of its way to the place where they can.
+  void set_reservations(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved);
 
   /// Decides for all robots and moves them. Throws CrowdError where a robot would leave the lattice, where two are in
   /// one place and one of them is new, or where the steering function prefers what is not finite or too large; what the
@@ -291,6 +305,8 @@ class Crowd {
   void velocities(std::vector<Vec2>& by_id) const;
   /// 1: the robot was kept in the last step. 0: it was not, or is new.
   void kept(std::vector<std::uint8_t>& by_id) const;
+  /// 1: another robot could have been met within the last step. Of that step until robots are added or removed.
+  void met(std::vector<std::uint8_t>& by_id) const;
   /// m, exact.
   Vec2 position(RobotId robot) const;
   /// m/s, m q / dt.

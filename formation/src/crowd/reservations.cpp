@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/reservations.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exactvo::formation::crowd {
+namespace {
+
+/// m: by how much more than its radius a robot keeps off the capsules of others, where it has that room.
+constexpr double kCapsuleMargin = 0.0015;
+
+Vec2 nearest_of(const geometry::Segment& s, Vec2 p) {
+  const Vec2 along = s.b - s.a;
+  const double length = squared_norm(along);
+  if (!(length > 0.0)) return s.a;
+  return s.a + std::clamp(dot(p - s.a, along) / length, 0.0, 1.0) * along;
+}
+
+}  // namespace
+
+void Reservations::set(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved) {
+  place_ = place;
+  reserved_ = reserved;
+  holders_ = static_cast<std::size_t>(std::count_if(reserved.begin(), reserved.end(), [](auto r) { return r != 0; }));
+}
+
+void Reservations::forget(std::int32_t id) {
+  if (!holds(id)) return;
+  reserved_[static_cast<std::size_t>(id)] = 0;
+  --holders_;
+}
+
+void Reservations::lay_out(std::vector<Capsule> capsules) {
+  capsules_ = std::move(capsules);
+  std::vector<geometry::Box> boxes;
+  boxes.reserve(capsules_.size());
+  widest_ = 0.0;
+  for (const Capsule& c : capsules_) {
+    geometry::Box box;
+    box.low = {std::min(c.way.a.x, c.way.b.x), std::min(c.way.a.y, c.way.b.y)};
+    box.high = {std::max(c.way.a.x, c.way.b.x), std::max(c.way.a.y, c.way.b.y)};
+    boxes.push_back(box);
+    widest_ = std::max(widest_, c.radius);
+  }
+  grid_ = geometry::BoxGrid(std::move(boxes));
+}
+
+void Reservations::add_lines(Vec2 at, double radius, double max_speed, double horizon,
+                             std::vector<BodyLine>& out) const {
+  if (capsules_.empty()) return;
+  const double reach = radius + widest_ + kCapsuleMargin + max_speed * horizon;
+  grid_.for_each_within(at, reach, [&](std::size_t k) {
+    const Capsule& capsule = capsules_[k];
+    const Vec2 away = at - nearest_of(capsule.way, at);
+    const double distance = norm(away), together = radius + capsule.radius;
+    if (distance < together || distance > together + kCapsuleMargin + max_speed * horizon) return;
+    const double gap = std::max(0.0, distance - together - kCapsuleMargin);
+    out.push_back({away / distance, -gap / horizon, kCapsule, false});
+  });
+}
+
+}  // namespace exactvo::formation::crowd
