@@ -1,0 +1,533 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "liveness/reservations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "liveness/split_mix.h"
+#include "liveness/sweeps.h"
+
+namespace exactvo::formation::detail {
+
+namespace {
+
+// Found by measuring. Safety does not depend on them, liveness on the order of the first two and kPlaceReached only.
+
+// Diameters of the widest robot.
+/// What the way of a new reservation keeps beside the radii from others.
+constexpr double kMargin = 4e-3;
+/// The same, of robots that drive.
+constexpr double kDrivenMargin = 2e-3;
+static_assert(kPlaceReached < kMargin - kDrivenMargin, "who has all but reached its place is in nobody's way");
+/// What ways keep beside the radius from obstacles, unless they begin or end nearer to one.
+constexpr double kWallMargin = 5e-4;
+/// Between places.
+constexpr double kPlacePitch = 1.06;
+/// A place that is not as much nearer to the goal does not count as nearer.
+constexpr double kLeastNearer = 0.01;
+/// Without anything ahead as near as that a robot needs no reservation.
+constexpr double kAhead = 2.6;
+
+// m.
+/// What ways straight along a course keep beside the radius: courses keep little more.
+constexpr double kRouteMargin = 1e-6;
+/// What clearances are rounded by.
+constexpr double kWallRounding = 1e-7;
+
+// Pitches.
+constexpr double kLongestDrive = 1.61;
+constexpr double kWidestRows = 1.2;
+constexpr double kCostOfPushing = 0.2, kCostOfPushingOn = 0.6;
+constexpr int kMostRows = 5;
+/// Share of a pitch: nearer, the robot stands on the place.
+constexpr double kStandsOn = 0.01;
+
+/// s, and the share of the way at full speed that a robot must have come nearer to its goal in them, or has stalled.
+constexpr double kStall = 2.5, kProgress = 0.2;
+/// s without anything ahead, after which a robot needs no reservation.
+constexpr double kFree = 1.0;
+/// Share of its greatest speed: a faster robot without a reservation passes by itself.
+constexpr double kInMotion = 0.35;
+/// After so many tries in vain the places of pushed robots come in changing order.
+constexpr std::uint32_t kShakeAfter = 10;
+/// After as many in vain a robot goes anywhere.
+constexpr std::uint32_t kRestlessEvery = 32;
+/// Robots that push each other in a row.
+constexpr std::size_t kLongestRow = 200;
+/// Pushed by one.
+constexpr std::size_t kMostPushed = 8;
+
+double squared(double x) {
+  return x * x;
+}
+
+Vec2 left_of(Vec2 a) {
+  return {-a.y, a.x};
+}
+
+/// Whether the sweep from `p` to `q` comes within `keep` of a robot that stands at `o` until it has been left behind:
+/// who is nearer at first must not come nearer.
+bool comes_near_until_left(Vec2 p, Vec2 q, Vec2 o, double keep) {
+  if (squared_norm(p - o) < keep * keep) return dot(q - p, p - o) < 0.0;
+  return squared_distance(o, p, q) < keep * keep;
+}
+
+/// The same of a robot that stays.
+bool comes_near(Vec2 p, Vec2 q, Vec2 o, double keep) {
+  return comes_near_until_left(p, q, o, keep) || squared_norm(q - o) < keep * keep;
+}
+
+}  // namespace
+
+PlaceRows rows_about(const ObstacleSpace& space, Vec2 place, double radius, double pitch) {
+  constexpr int kMostLooks = 24;
+  constexpr double kOpposite = 0.98;   // cosine
+  constexpr double kRounding = 0.999;  // of steps that cross no wall
+  constexpr double kOffWall = 1e-3;    // pitches
+  PlaceRows open{{}, {1.0, 0.0}, {0.0, 1.0}, pitch, pitch, 0};
+  if (space.is_open()) return open;
+  const double widest = kMostRows * pitch, reach = 0.5 * widest + radius;
+  const Vec2 from_wall = space.from_nearest_edge(place, reach);
+  const double off = norm(from_wall);
+  if (off == 0.0) return open;
+  const Vec2 across = from_wall / off;
+  // On to the wall on the other side, never farther at once than there is room.
+  double ahead = 0.0, width = -1.0;
+  for (int k = 0; k < kMostLooks && ahead < widest; ++k) {
+    const Vec2 from = space.from_nearest_edge(place + ahead * across, reach);
+    const double room = norm(from);
+    if (room == 0.0) return open;
+    if (dot(from, across) < -kOpposite * room) {
+      width = off + ahead + room - 2.0 * radius - 2.0 * kOffWall * pitch;
+      break;
+    }
+    ahead += kRounding * room;
+  }
+  if (width < -2.0 * kOffWall * pitch || width >= widest) return open;
+  PlaceRows rows;
+  rows.across = across;
+  rows.along = -left_of(across);
+  rows.column = pitch;
+  rows.rows = static_cast<int>(std::max(width, 0.0) / pitch) + 1;
+  rows.row = rows.rows == 1 ? pitch : std::min(width / (rows.rows - 1), kWidestRows * pitch);
+  const Vec2 middle = place + (radius + kOffWall * pitch + 0.5 * width - off) * across;
+  rows.origin = middle - dot(middle, rows.along) * rows.along - 0.5 * (rows.rows - 1) * rows.row * across;
+  return rows;
+}
+
+Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, double time_step, double widest,
+                           WhoReserves who)
+    : space_(space),
+      time_step_(time_step),
+      diameter_(2.0 * widest),
+      pitch_(kPlacePitch * diameter_),
+      reach_(2.0 * kLongestDrive * pitch_ + (1.0 + kMargin) * diameter_),
+      who_(who),
+      of_(robots),
+      reserved_(robots, who == WhoReserves::all),
+      places_(robots),
+      preferred_(robots),
+      left_(robots),
+      clear_(robots, 0),
+      decided_(robots, 0),
+      is_pushing_(robots, 0) {
+  std::size_t buckets = 1;
+  while (buckets < robots) buckets *= 2;
+  begin_.resize(buckets + 1);
+  by_bucket_.resize(robots);
+}
+
+// --- Robots by place ---
+
+std::int64_t Reservations::cell(double x) const {
+  constexpr double kFarthest = 0x1p62;
+  return static_cast<std::int64_t>(std::clamp(std::floor(2.0 * x / reach_), -kFarthest, kFarthest));
+}
+
+std::size_t Reservations::bucket(std::int64_t x, std::int64_t y) const {
+  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15U + static_cast<std::uint64_t>(y);
+  h = (h ^ (h >> 32)) * 0xD6E8FEB86659FD93U;
+  return (h ^ (h >> 32)) & (begin_.size() - 2);
+}
+
+void Reservations::place_robots() {
+  std::fill(begin_.begin(), begin_.end(), 0);
+  const auto bucket_of = [&](std::size_t i) { return bucket(cell(at(i).x), cell(at(i).y)); };
+  for (std::size_t i = 0; i < of_.size(); ++i) ++begin_[bucket_of(i)];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& b : begin_) sum += b, b = sum;
+  for (std::size_t i = of_.size(); i-- > 0;)
+    by_bucket_[--begin_[bucket_of(i)]] = {at(i), cell(at(i).x), cell(at(i).y), static_cast<std::uint32_t>(i)};
+}
+
+template <class Visit>
+void Reservations::for_each_near(Vec2 here, double reach, const Visit& visit) const {
+  const std::int64_t x0 = cell(here.x - reach), x1 = cell(here.x + reach);
+  const std::int64_t y0 = cell(here.y - reach), y1 = cell(here.y + reach);
+  for (std::int64_t y = y0; y <= y1; ++y)
+    for (std::int64_t x = x0; x <= x1; ++x) {
+      const std::size_t b = bucket(x, y);
+      for (std::uint32_t k = begin_[b]; k < begin_[b + 1]; ++k) {
+        const Placed& j = by_bucket_[k];
+        if (j.cell_x == x && j.cell_y == y && squared_norm(j.at - here) <= reach * reach) visit(j.robot);
+      }
+    }
+}
+
+// --- Where robots stand ---
+
+bool Reservations::is_moving(std::size_t i) const {
+  return squared_norm(at(i) - places_[i]) > squared(kPlaceReached * diameter_);
+}
+
+std::uint64_t Reservations::steps_of(double seconds) const {
+  return static_cast<std::uint64_t>(std::ceil(seconds / time_step_ - 1e-9));
+}
+
+/// m, along its course from there, whose farthest corner in sight is the nearest by the course.
+double Reservations::way_from(std::size_t i, Vec2 place) const {
+  const RobotUnderWay& r = (*robots_)[i];
+  double rest = r.rest;
+  for (std::size_t k = r.corners_ahead - 1; k > 0; --k) {
+    if (sees(i, place, r.ahead[k])) return norm(r.ahead[k] - place) + rest;
+    rest += norm(r.ahead[k] - r.ahead[k - 1]);
+  }
+  return norm(r.next() - place) + rest;
+}
+
+/// Whether its course goes on in sight of there.
+bool Reservations::leads_on(std::size_t i, Vec2 place) const {
+  const RobotUnderWay& r = (*robots_)[i];
+  return std::any_of(r.ahead.begin(), r.ahead.begin() + static_cast<std::ptrdiff_t>(r.corners_ahead),
+                     [&](Vec2 corner) { return sees(i, place, corner); });
+}
+
+bool Reservations::sees(std::size_t i, Vec2 from, Vec2 to) const {
+  const double radius = (*robots_)[i].radius, there = space_.clearance(from, radius);
+  return space_.is_clear(from, to, std::min(radius, there) - kWallRounding);
+}
+
+/// Whether a straight way there comes no nearer to obstacles than its ends are, or not near.
+bool Reservations::is_open(std::size_t i, Vec2 to, double margin) const {
+  if (space_.is_open()) return true;
+  const double radius = (*robots_)[i].radius, wanted = radius + margin;
+  const double there = space_.clearance(to, wanted);
+  return there >= radius - kWallRounding &&
+         space_.is_clear(at(i), to, std::min(there, space_.clearance(at(i), wanted)) - kWallRounding);
+}
+
+// --- Who has a reservation ---
+
+void Reservations::look_whether_stalled(std::size_t i) {
+  OfRobot& of = of_[i];
+  places_[i] = at(i);
+  if (of.is_at_goal) {
+    of.has_way_then = 0;
+    reserved_[i] = 1;
+    return;
+  }
+  if (step_ - of.looked < steps_of(kStall) && of.has_way_then) return;
+  const double way = way_from(i, at(i));
+  const double least = kProgress * static_cast<double>(step_ - of.looked) * time_step_ * (*robots_)[i].max_speed;
+  reserved_[i] = of.has_way_then && of.way_then - way < least;
+  if (reserved_[i]) of.free_since = step_;
+  of.has_way_then = 1;
+  of.way_then = way;
+  of.looked = step_;
+}
+
+bool Reservations::is_something_ahead(std::size_t i) const {
+  const Vec2 on = (*robots_)[i].next() - at(i);
+  bool is_any = false;
+  for_each_near(at(i), kAhead * diameter_,
+                [&](std::size_t j) { is_any = is_any || (j != i && dot(at(j) - at(i), on) >= 0.0); });
+  return is_any;
+}
+
+/// REQUIRES: it stands on its place.
+void Reservations::look_whether_free(std::size_t i) {
+  if (who_ == WhoReserves::all || of_[i].is_at_goal) return;
+  if (is_something_ahead(i)) {
+    of_[i].free_since = step_;
+  } else if (step_ - of_[i].free_since > steps_of(kFree)) {
+    reserved_[i] = 0;
+    of_[i].has_way_then = 0;
+    places_[i] = at(i);
+  }
+}
+
+/// The robot that was at its goal longer ago, or never, comes first, those that are there last.
+bool Reservations::is_before(std::size_t a, std::size_t b) const {
+  constexpr auto kLast = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t since_a = of_[a].is_at_goal ? kLast : of_[a].at_goal_last;
+  const std::uint64_t since_b = of_[b].is_at_goal ? kLast : of_[b].at_goal_last;
+  if (since_a != since_b) return since_a < since_b;
+  const double far_a = squared_norm((*robots_)[a].goal - at(a)), far_b = squared_norm((*robots_)[b].goal - at(b));
+  return far_a != far_b ? far_a < far_b : a < b;
+}
+
+void Reservations::look(const std::vector<RobotUnderWay>& robots) {
+  robots_ = &robots;
+  ++step_;
+  has_changed_ = false;
+  if (step_ == 1)
+    for (std::size_t i = 0; i < of_.size(); ++i) places_[i] = at(i);
+  bool has_placed = false;
+  waiting_.clear();
+  const std::uint64_t tickets = tickets_;
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    of_[i].is_at_goal = robots[i].is_at_goal;
+    if (robots[i].is_at_goal) of_[i].at_goal_last = step_;
+    const bool had = reserved_[i];
+    if (!had) look_whether_stalled(i);
+    if (reserved_[i] && !has_placed) place_robots(), has_placed = true;
+    if (reserved_[i] && !is_moving(i)) {
+      look_whether_free(i);
+      const bool rests =
+          robots[i].is_at_goal && squared_norm(robots[i].goal - at(i)) <= squared(kPlaceReached * diameter_);
+      if (reserved_[i] && !rests) waiting_.push_back(static_cast<std::uint32_t>(i));
+    }
+    has_changed_ = has_changed_ || had != static_cast<bool>(reserved_[i]);
+  }
+  std::sort(waiting_.begin(), waiting_.end(), [this](std::size_t a, std::size_t b) { return is_before(a, b); });
+  for (const std::uint32_t i : waiting_) {
+    oldest_pusher_ = i;
+    if (decided_[i] != step_) reserve(i, 0);
+  }
+  has_changed_ = has_changed_ || tickets_ != tickets;
+  count_ = 0;
+  for (std::size_t i = 0; i < of_.size(); ++i) left_[i] = reserved_[i] ? norm(places_[i] - at(i)) : 0.0;
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    count_ += reserved_[i];
+    preferred_[i] = reserved_[i] ? preferred_of(i) : Vec2{};
+  }
+  robots_ = nullptr;
+}
+
+// --- Which place ---
+
+bool Reservations::Outlook::is_of(std::size_t i, const RobotUnderWay& r) const {
+  return robot == i && position == r.position && goal == r.goal && ahead == r.ahead &&
+         corners_ahead == r.corners_ahead && rest == r.rest;
+}
+
+/// Where the robot could drive, as far as obstacles allow. It is the same as long as the robot stands.
+const Reservations::Outlook& Reservations::outlook_of(std::size_t i) {
+  constexpr std::size_t kMost = 0x4000;
+  const RobotUnderWay& r = (*robots_)[i];
+  if (outlooks_.empty()) outlooks_.resize(std::min(kMost, begin_.size() - 1));
+  Outlook& out = outlooks_[i % outlooks_.size()];
+  if (out.is_of(i, r)) return out;
+  out.robot = i;
+  out.position = r.position;
+  out.goal = r.goal;
+  out.ahead = r.ahead;
+  out.corners_ahead = r.corners_ahead;
+  out.rest = r.rest;
+  look_about(i, out);
+  return out;
+}
+
+void Reservations::look_about(std::size_t i, Outlook& out) const {
+  const RobotUnderWay& r = (*robots_)[i];
+  const Vec2 p = r.position;
+  out.way = way_from(i, p);
+  out.count = 0;
+  const bool is_in_sight = leads_on(i, p);  // else anything nearer will do
+  const auto add = [&](Vec2 place, bool pushes_nobody = false) {
+    if (!is_open(i, place, pushes_nobody ? kRouteMargin : kWallMargin * diameter_)) return;
+    const double way = way_from(i, place);
+    out.places[out.count++] = {
+        place, way, way < out.way - kLeastNearer * diameter_ && (!is_in_sight || leads_on(i, place)), pushes_nobody};
+  };
+  const double to_goal = norm(r.goal - p), to_next = norm(r.next() - p);
+  if (to_goal < kLongestDrive * pitch_) add(r.goal);
+  if (to_next > kPlaceReached * diameter_) add(p + std::min(1.0, pitch_ / to_next) * (r.next() - p), true);
+  const PlaceRows rows = rows_about(space_, p, r.radius, pitch_);
+  const double column = std::round(dot(p - rows.origin, rows.along) / rows.column);
+  double row = std::round(dot(p - rows.origin, rows.across) / rows.row);
+  if (rows.rows > 0) row = std::clamp(row, 0.0, rows.rows - 1.0);
+  out.stands_on_place = norm(rows.place(column, row) - p) <= kStandsOn * pitch_;
+  for (const double y : {row - 1.0, row, row + 1.0})
+    for (const double x : {column - 1.0, column, column + 1.0}) {
+      if (!rows.has_row(y)) continue;
+      const Vec2 place = rows.place(x, y);
+      const double far2 = squared_norm(place - p);
+      if (far2 > squared(kStandsOn * pitch_) && far2 < squared(kLongestDrive * pitch_)) add(place);
+    }
+}
+
+/// Places that others stand on or drive to cost more.
+double Reservations::cost_of_pushing(std::size_t i, Vec2 place, bool is_pushed, std::size_t near,
+                                     std::size_t near_end) const {
+  for (std::size_t k = near; k < near_end; ++k) {
+    const double keep = (*robots_)[i].radius + (*robots_)[list_[k]].radius - kPlaceReached * diameter_;
+    if (squared_norm(places_[list_[k]] - place) < keep * keep)
+      return (is_pushed ? kCostOfPushingOn : kCostOfPushing) * pitch_;
+  }
+  return 0.0;
+}
+
+/// Whether the robot may drive there; the robots that it must push for it are put behind the list of those near it.
+bool Reservations::is_there_room(std::size_t i, const Option& to, std::size_t near, std::size_t near_end,
+                                 std::size_t& pushed) {
+  const RobotUnderWay& r = (*robots_)[i];
+  const Vec2 p = r.position, q = to.place;
+  list_.resize(near_end);
+  pushed = 0;
+  for (std::size_t k = near; k < near_end; ++k) {
+    const std::uint32_t j = list_[k];
+    const RobotUnderWay& other = (*robots_)[j];
+    const double keep = r.radius + other.radius + kMargin * diameter_;
+    if (is_pushing_[j]) {  // sets out after this one
+      if (comes_near_until_left(p, q, at(j), keep) || squared_distance(q, at(j), places_[j]) < keep * keep)
+        return false;
+    } else if (is_moving(j)) {  // drives before this one
+      if (squared_distance({p, q}, {at(j), places_[j]}) < keep * keep && comes_near(p, q, places_[j], keep))
+        return false;
+    } else if (comes_near(p, q, at(j), keep) || comes_near(p, q, places_[j], keep)) {
+      const bool passes = !reserved_[j] && norm(other.velocity) > kInMotion * other.max_speed;
+      if (to.pushes_nobody || passes || decided_[j] == step_ || pushed == kMostPushed) return false;
+      list_.push_back(j);
+      ++pushed;
+    }
+  }
+  return true;
+}
+
+bool Reservations::try_place(std::size_t i, const Option& to, std::size_t near, std::size_t depth) {
+  const std::size_t near_end = list_.size();
+  std::size_t pushed = 0;
+  bool has_room = is_there_room(i, to, near, near_end, pushed);
+  if (has_room) {
+    const Vec2 before = places_[i];
+    places_[i] = to.place;
+    for (std::size_t k = 0; k < pushed && has_room; ++k) {
+      const std::uint32_t j = list_[near_end + k];
+      has_room = depth < kLongestRow && decided_[j] != step_ && reserve(j, depth + 1);
+    }
+    if (!has_room) places_[i] = before;
+  }
+  list_.resize(near_end);
+  return has_room;
+}
+
+/// A place for the robot, if there is one; then those that it pushes have one too. `depth`: how many push in a row.
+bool Reservations::reserve(std::size_t i, std::size_t depth) {
+  decided_[i] = step_;
+  const std::size_t near = list_.size();
+  for_each_near(at(i), reach_, [&](std::uint32_t j) {
+    if (j != i) list_.push_back(j);
+  });
+  is_pushing_[i] = 1;
+  const bool found = find_place(i, near, depth);
+  is_pushing_[i] = 0;
+  list_.resize(near);
+  if (found) {
+    reserved_[i] = 1;
+    of_[i].in_vain = 0;
+    of_[i].ticket = ++tickets_;
+  } else {
+    ++of_[i].in_vain;
+  }
+  return found;
+}
+
+bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth) {
+  const Outlook& found = outlook_of(i);  // another robot's may take its room
+  const bool is_pushed = depth > 0, may_settle = !is_pushed && !of_[i].is_at_goal && !found.stands_on_place;
+  const bool is_restless = !is_pushed && !of_[i].is_at_goal && of_[i].in_vain % kRestlessEvery == kRestlessEvery - 1;
+  const std::size_t near_end = list_.size();
+  std::array<Option, Outlook::kMost> options;
+  const std::size_t count = found.count;
+  SplitMix64 random(step_ * of_.size() + i);
+  const bool is_shaken = is_pushed && of_[oldest_pusher_].in_vain > kShakeAfter;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Prospect& p = found.places[k];
+    options[k] = {p.place, p.way + cost_of_pushing(i, p.place, is_pushed, near, near_end), p.leads_on, p.pushes_nobody};
+    if (is_shaken) options[k].cost += 2.0 * pitch_ * random.fraction();
+  }
+  const auto sort = [&] {  // few, and equal ones stay in order
+    for (std::size_t k = 1; k < count; ++k)
+      for (std::size_t at = k; at > 0 && options[at].cost < options[at - 1].cost; --at)
+        std::swap(options[at], options[at - 1]);
+  };
+  const auto try_all = [&](auto&& may_take) {
+    sort();
+    return std::any_of(options.begin(), options.begin() + static_cast<std::ptrdiff_t>(count),
+                       [&](const Option& o) { return may_take(o) && try_place(i, o, near, depth); });
+  };
+  if (try_all([&](const Option& o) { return is_pushed ? !o.pushes_nobody : o.leads_on; })) return true;
+  const auto is_place = [](const Option& o) { return !o.pushes_nobody; };
+  if (may_settle) {  // off the rows of places, and no way on: to a place of them
+    for (std::size_t k = 0; k < count; ++k) options[k].cost = squared_norm(options[k].place - at(i));
+    if (try_all(is_place)) return true;
+  }
+  if (!is_restless) return false;
+  for (std::size_t k = 0; k < count; ++k) options[k].cost = random.fraction();
+  return try_all(is_place);
+}
+
+// --- How far ---
+
+/// Of what is left of its way, what stays clear of the ways of all earlier tickets. These only get shorter: a way that
+/// is clear of them remains so.
+double Reservations::share_allowed(std::size_t i) {
+  if (clear_[i] == of_[i].ticket) return 1.0;
+  constexpr int kMostSteps = 8;
+  constexpr double kClose = 1e-6;  // diameters
+  const Vec2 p = at(i), way = places_[i] - p;
+  const double length = left_[i], radius = (*robots_)[i].radius;
+  double share = 1.0;
+  bool is_clear = true;
+  const double reach = length + kLongestDrive * pitch_ + (1.0 + kDrivenMargin) * diameter_;
+  for_each_near(p, reach, [&](std::size_t j) {
+    if (left_[j] <= kPlaceReached * diameter_ || of_[j].ticket >= of_[i].ticket || j == i || share == 0.0) return;
+    const double keep = radius + (*robots_)[j].radius + kDrivenMargin * diameter_;
+    if (squared_norm(at(j) - p) > squared(length + left_[j] + keep) ||
+        squared_distance({p, places_[i]}, {at(j), places_[j]}) >= squared(keep))
+      return;
+    is_clear = false;
+    // Each step is as long as there is room all round.
+    double t = 0.0;
+    for (int n = 0; n < kMostSteps && t < share; ++n) {
+      const double gap = std::sqrt(squared_distance(p + t * way, at(j), places_[j])) - keep;
+      if (gap <= kClose * diameter_) break;
+      t += gap / length;
+    }
+    share = std::min(share, t);
+  });
+  if (is_clear) clear_[i] = of_[i].ticket;
+  return share;
+}
+
+Vec2 Reservations::preferred_of(std::size_t i) {
+  const Vec2 way = places_[i] - at(i);
+  const double length = left_[i];
+  if (length == 0.0) return {};
+  const double share = is_moving(i) ? share_allowed(i) : 1.0;
+  return std::min(share, (*robots_)[i].max_speed * time_step_ / length) / time_step_ * way;
+}
+
+// --- Snapshots ---
+
+void Reservations::put(crowd::SnapshotWriter& to) const {
+  to.fields(step_, tickets_, reserved_, places_);
+  for (const OfRobot& of : of_)
+    to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.has_way_then,
+              of.is_at_goal);
+}
+
+void Reservations::get(crowd::SnapshotReader& from) {
+  from.fields(step_, tickets_, reserved_, places_);
+  from.require(reserved_.size() == of_.size() && places_.size() == of_.size(), "other robots");
+  for (OfRobot& of : of_)
+    from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.has_way_then,
+                of.is_at_goal);
+  std::fill(decided_.begin(), decided_.end(), 0);
+  std::fill(clear_.begin(), clear_.end(), 0);
+}
+
+}  // namespace exactvo::formation::detail
