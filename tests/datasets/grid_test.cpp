@@ -196,9 +196,22 @@ TEST_F(RosMapTest, TheLowerLeftPixelLiesAtTheOrigin) {
   EXPECT_EQ(file.notes.front().text, "2 unknown cells taken as free");
 }
 
+TEST_F(RosMapTest, AnOriginThatIsNoListOfNumbersIsNamed) {
+  put("m.pgm", pgm(kPixels));
+  const auto found = [&](const std::string& origin) {
+    return refusal_of([&] { read_obstacles(put("m.yaml", "image: m.pgm\nresolution: 0.5\norigin: " + origin + "\n")); })
+        .found();
+  };
+  EXPECT_EQ(found("[0.0, 0.0, -nan]"), "\"-nan\" as number 3 of a list");
+  EXPECT_EQ(found("[[1, 2], 0, 0]"), "a list as number 1 of a list");
+  EXPECT_EQ(found("[0, ~, 0]"), "nothing as number 2 of a list");
+  EXPECT_EQ(found("{x: 1}"), "keys");
+  EXPECT_EQ(found("here"), "\"here\"");
+}
+
 TEST_F(RosMapTest, GreyTwoHundredAndFiveIsFreeAtAQuarter) {
   put("m.pgm", pgm(kPixels));
-  EXPECT_EQ(read_map("free_thresh: 0.25\n").notes.front().text, "1 unknown cells taken as free");
+  EXPECT_EQ(read_map("free_thresh: 0.25\n").notes.front().text, "1 unknown cell taken as free");
 }
 
 TEST_F(RosMapTest, NegatedTwinsAgree) {

@@ -184,6 +184,20 @@ TEST_F(ScenarioRobotTables, AByteOrderMarkIsLeftOut) {
   EXPECT_EQ(s.robots[0].position, (Vec2{1, 2}));
 }
 
+TEST_F(ScenarioRobotTables, FieldsMayBeQuoted) {
+  std::ofstream(folder_ / "robots.csv")
+      << "\"id\",x,y, \"goal_x\" ,goal_y\n\"a, \"\"b\"\"\",\"1\",2,3,4\nplain,5,6,7,8\n";
+  const Scenario s = read(R"({"file": "robots.csv"})", "", folder_);
+  ASSERT_EQ(s.robots.size(), 2U);
+  EXPECT_EQ(s.robots[0].id, "a, \"b\"");
+  EXPECT_EQ(s.robots[0].position, (Vec2{1, 2}));
+  EXPECT_EQ(s.robots[1].id, "plain");
+  for (const char* row : {"\"a,1,2,3,4\n", "\"a\"b,1,2,3,4\n", "\"a\"\",1,2,3,4\n"}) {
+    std::ofstream(folder_ / "robots.csv") << "id,x,y,goal_x,goal_y\n" << row;
+    expect_refusal(refused(R"({"file": "robots.csv"})", "", folder_), DataCode::format_syntax, "line 2");
+  }
+}
+
 TEST_F(ScenarioRobotTables, AThousandRobotsAreRead) {
   std::ofstream table(folder_ / "robots.csv");
   table << "goal_x,goal_y,x,y,radius,id,vx\n";

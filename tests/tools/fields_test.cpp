@@ -87,6 +87,13 @@ TEST_F(Lines, ATableSkipsWhatHoldsNothingAndItsMark) {
   EXPECT_FALSE(table.next());
 }
 
+TEST(Fields, CommasWithinQuotationMarksPartNothing) {
+  using Fields = std::vector<std::string_view>;
+  EXPECT_EQ(fields_of("\"a, b\",1, \"2\" ,"), (Fields{"a, b", "1", "2", ""}));
+  EXPECT_EQ(fields_of("1, 2,3"), (Fields{"1", "2", "3"}));
+  EXPECT_EQ(fields_of("1 2\t3"), (Fields{"1", "2", "3"}));
+}
+
 TEST_F(Lines, AFileThatIsNotThereOrAFolderIsRefused) {
   for (const auto& [file, code] :
        {std::pair{path_ + ".missing", datasets::DataCode::file_missing},

@@ -202,6 +202,28 @@ TEST(ObstacleVerbs, DegreesThatBecameMetresAreSaid) {
   EXPECT_THAT(here.run(vo + " --units metres").out, HasSubstr("nearest boundary"));
 }
 
+TEST(ObstacleVerbs, NotesOnWholeFilesAreSaid) {
+  const Workplace here;
+  here.write("table.csv", "id,WKT\n1,\"POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\"\n");
+  for (const std::string arguments : {"validate table.csv", "segment table.csv", "repair table.csv --out u.wkt",
+                                      "convert table.csv v.wkt", "batch table.csv --out out --write measurements"})
+    EXPECT_THAT(here.run(arguments).err, HasSubstr("table.csv: taken as metres: names no reference system"))
+        << arguments;
+  here.write("m.pgm", "P2 2 1 255\n0 205\n");
+  here.write("m.yaml", "image: m.pgm\nresolution: 1\norigin: [0, 0, 0]\n");
+  EXPECT_THAT(here.run("validate m.yaml").err, HasSubstr("m.yaml: 1 unknown cell taken as free"));
+}
+
+TEST(ObstacleVerbs, DistortionIsInJson) {
+  const Workplace here;
+  here.write("unit.geojson", kFourByThree);
+  const json file = json::parse(here.run("validate unit.geojson --json").out).at("files").at(0);
+  EXPECT_NEAR(file.at("distortion").at("length").get<double>(), 3.2e-4, 1e-5);
+  EXPECT_TRUE(file.at("distortion").at("certified").get<bool>());
+  here.write("a.wkt", kGood);
+  EXPECT_TRUE(json::parse(here.run("validate a.wkt --json").out).at("files").at(0).at("distortion").is_null());
+}
+
 TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
   const Workplace here;
   here.write("a.wkt", kGood);

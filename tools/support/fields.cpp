@@ -10,6 +10,21 @@ namespace {
 
 constexpr const char* kBlanks = " \t\r\n";
 
+/// Of a field, and of its quotation marks as CSV has them: commas between them part no fields.
+std::size_t end_of_field(std::string_view line) {
+  bool is_quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (line[k] == '"') is_quoted = !is_quoted;
+    if (line[k] == ',' && !is_quoted) return k;
+  }
+  return std::string_view::npos;
+}
+
+std::string_view without_quotes(std::string_view field) {
+  const bool is_quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
+  return is_quoted ? field.substr(1, field.size() - 2) : field;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -28,8 +43,9 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   const bool by_blanks = separators == kBlanks;
   std::vector<std::string_view> fields;
   for (;;) {
-    const std::size_t end = line.find_first_of(separators);
-    fields.push_back(trimmed(line.substr(0, end)));
+    const std::size_t end = by_blanks ? line.find_first_of(separators) : end_of_field(line);
+    const std::string_view field = trimmed(line.substr(0, end));
+    fields.push_back(by_blanks ? field : without_quotes(field));
     if (end == std::string_view::npos) return fields;
     line.remove_prefix(by_blanks ? std::min(line.find_first_not_of(separators, end), line.size()) : end + 1);
   }

@@ -21,7 +21,8 @@ std::string_view trimmed(std::string_view text);
 /// Without the byte order mark that may stand before the text of a file.
 std::string_view without_mark(std::string_view text);
 
-/// Between commas, or between blanks where there is no comma; blanks round a field are taken off.
+/// Between commas, or between blanks where there is no comma; blanks round a field are taken off, and the quotation
+/// marks of CSV, within which commas part nothing.
 std::vector<std::string_view> fields_of(std::string_view line);
 
 /// The whole field as a double, which may be infinite or NaN where it says so; nothing where it is no number.

@@ -78,7 +78,10 @@ double ratio(double part, std::uint64_t whole) {
 /// JSON; the same in every output and at any time.
 std::string provenance_of(const Identity& identity, const BatchRun& run) {
   Provenance provenance = make_provenance(run.command_line, 0);
-  for (const Input& input : identity.inputs) provenance.inputs.push_back({input.name, input.sha256});
+  for (const Input& input : identity.inputs) {
+    provenance.inputs.push_back({input.name, input.hashes.sha256});
+    provenance.inputs.insert(provenance.inputs.end(), input.hashes.read_with.begin(), input.hashes.read_with.end());
+  }
   provenance.written_at = "see summary.json";
   return to_json(provenance);
 }

@@ -71,6 +71,32 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   }
 }
 
+std::optional<std::vector<std::string>> csv_fields_of(std::string_view line) {
+  std::vector<std::string> fields;
+  for (;;) {
+    const std::string_view rest = line.substr(std::min(line.find_first_not_of(kBlanks), line.size()));
+    std::string field;
+    if (!rest.empty() && rest.front() == '"') {
+      std::size_t at = 1;
+      for (;; ++at) {
+        at = std::min(at, rest.size());
+        if (at == rest.size()) return std::nullopt;
+        if (rest[at] == '"' && rest.substr(at + 1, 1) != "\"") break;
+        if (rest[at] == '"') ++at;
+        field += rest[at];
+      }
+      line = rest.substr(at + 1);
+      if (!trimmed(line.substr(0, line.find(','))).empty()) return std::nullopt;
+    } else {
+      field = std::string(trimmed(line.substr(0, line.find(','))));
+    }
+    fields.push_back(std::move(field));
+    const std::size_t end = line.find(',');
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};

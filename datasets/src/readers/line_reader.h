@@ -5,6 +5,7 @@
 /// A text a line at a time, and the fields of a line as numbers, with the line's number in every refusal.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -50,6 +51,9 @@ class LineReader {
 std::vector<std::string_view> words_of(std::string_view line);
 /// Split at every `separator`; blanks round a field are taken off.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
+/// The same of CSV (RFC 4180): in a field that begins with a quotation mark separators count for nothing, and two
+/// quotation marks are one. None where a quotation mark is not closed, or more follows it than blanks.
+std::optional<std::vector<std::string>> csv_fields_of(std::string_view line);
 std::string_view trimmed(std::string_view text);
 
 }  // namespace exactvo::datasets

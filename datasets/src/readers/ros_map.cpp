@@ -202,8 +202,22 @@ class MapYaml {
     try {
       return node.as<T>();
     } catch (const YAML::Exception&) {
-      refuse(key, DataCode::wrong_type, node.IsScalar() ? "\"" + node.Scalar() + "\"" : "a list or keys", expected);
+      refuse(key, DataCode::wrong_type, words_of(node), expected);
     }
+  }
+
+  /// What stands there; of a list the first entry that is no number.
+  static std::string words_of(const YAML::Node& node) {
+    if (node.IsScalar()) return "\"" + node.Scalar() + "\"";
+    if (node.IsMap()) return "keys";
+    if (!node.IsSequence()) return "nothing";
+    for (std::size_t k = 0; k < node.size(); ++k) {
+      double number = 0.0;
+      const YAML::Node entry = node[k];
+      if (!YAML::convert<double>::decode(entry, number))
+        return (entry.IsSequence() ? "a list" : words_of(entry)) + " as number " + std::to_string(k + 1) + " of a list";
+    }
+    return "a list";
   }
 
   double finite(double number, const char* key) const {
@@ -303,7 +317,7 @@ Grid to_grid(const GreyImage& image, const MapFacts& map, Collector& out) {
       unknown += is == Occupancy::unknown ? 1 : 0;
     }
   }
-  if (unknown > 0) out.note("", std::to_string(unknown) + " unknown cells taken as free");
+  if (unknown > 0) out.note("", geometry::counted(unknown, "unknown cell") + " taken as free");
   return grid;
 }
 

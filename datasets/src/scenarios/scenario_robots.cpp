@@ -112,12 +112,20 @@ class FreeRoom {
   std::unordered_map<Cell, std::vector<Vec2>, HashOfCell> taken_;
 };
 
+std::vector<std::string> fields_in(const LineReader& lines) {
+  std::optional<std::vector<std::string>> fields = csv_fields_of(lines.line());
+  if (!fields)
+    lines.refuse(DataCode::format_syntax, "a quotation mark that is not closed where its field ends",
+                 "fields as CSV quotes them: \"a, \"\"b\"\"\"");
+  return std::move(*fields);
+}
+
 /// The columns of a table of robots.
 struct Columns {
   explicit Columns(const LineReader& lines) {
-    const std::vector<std::string_view> names = fields_of(lines.line(), ',');
+    const std::vector<std::string> names = fields_in(lines);
     for (std::size_t k = 0; k < names.size(); ++k) {
-      const std::string name(names[k]);
+      const std::string& name = names[k];
       if (std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown))
         lines.refuse(DataCode::key_unknown, "an unknown column \"" + name + "\"",
                      "columns out of id, x, y, goal_x, goal_y, vx, vy, radius, max_speed");
@@ -310,7 +318,7 @@ class RobotsReader {
   }
 
   void read_row(const LineReader& lines, const Columns& columns) {
-    const std::vector<std::string_view> fields = fields_of(lines.line(), ',');
+    const std::vector<std::string> fields = fields_in(lines);
     if (fields.size() != columns.at.size())
       lines.refuse(DataCode::wrong_count, geometry::counted(fields.size(), "field"),
                    std::to_string(columns.at.size()) + ", as many as the header has");
@@ -319,7 +327,7 @@ class RobotsReader {
       if (column == columns.at.end()) return otherwise;
       const double value = lines.to_number(fields[column->second]);
       if (!(value >= least && value <= most))
-        lines.refuse(DataCode::out_of_range, std::string(name) + " " + std::string(fields[column->second]),
+        lines.refuse(DataCode::out_of_range, std::string(name) + " " + fields[column->second],
                      "a number from " + in_words(least) + " to " + in_words(most));
       return value;
     };
@@ -331,7 +339,7 @@ class RobotsReader {
     const auto id = columns.at.find("id");
     if (id == columns.at.end()) return;
     if (fields[id->second].empty()) lines.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
-    robot.id = std::string(fields[id->second]);
+    robot.id = fields[id->second];
   }
 
   static std::string in_words(double bound) {

@@ -92,6 +92,44 @@ TEST_F(Inputs, WhatAKilledBatchHasLeftIsAnOutput) {
   EXPECT_EQ(names(run_to("out")), Names{"in/walls.wkt"});
 }
 
+TEST_F(Inputs, EveryFileHasItsOwnHash) {
+  fs::create_directories(folder_ / "maps" / "pictures");
+  write_text(folder_ / "maps" / "floor.yaml",
+             "image: pictures/floor.pgm\nresolution: 1\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\n");
+  write_text(folder_ / "maps" / "pictures" / "floor.pgm", "P2 2 2 255\n0 255\n255 255\n");
+  const auto inputs = batch::list_inputs({folder_ / "maps"}, folder_ / "out").files;
+  ASSERT_EQ(inputs.size(), 1u);
+  const batch::InputHashes& hashes = inputs[0].hashes;
+  EXPECT_EQ(hashes.sha256, sha256_of_file(folder_ / "maps" / "floor.yaml"));
+  ASSERT_EQ(hashes.read_with.size(), 1u);
+  EXPECT_EQ(hashes.read_with[0].path, (folder_ / "maps" / "pictures" / "floor.pgm").generic_string());
+  EXPECT_EQ(hashes.read_with[0].sha256, sha256_of_file(folder_ / "maps" / "pictures" / "floor.pgm"));
+  BatchRun run = run_to("out");
+  run.paths = {folder_ / "maps"};
+  run_batch(plain_, run);
+  const std::string summary = content_of(run.out / "summary.json");
+  EXPECT_NE(summary.find("\"sha256\": \"" + hashes.sha256), std::string::npos) << summary;
+  EXPECT_NE(summary.find("\"sha256\": \"" + hashes.read_with[0].sha256), std::string::npos) << summary;
+}
+
+TEST_F(Inputs, NotesOnWholeFilesAreGathered) {
+  write_text(folder_ / "maps" / "a.csv", "id,WKT\n1,\"LINESTRING (5 5, 6 6)\"\n");
+  write_text(folder_ / "maps" / "b.csv", "id,WKT\n1,\"LINESTRING (5 5, 6 7)\"\n");
+  if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+  BatchRun run = run_to("out");
+  run.paths = {folder_ / "maps"};
+  const auto expect_one_note = [&] {
+    const std::vector<BatchNote> notes = run_batch(plain_, run).summary.notes;
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0].text, "taken as metres: names no reference system");
+    EXPECT_EQ(notes[0].files, 2u);
+    EXPECT_EQ(notes[0].file, (folder_ / "maps" / "a.csv").generic_string());
+  };
+  expect_one_note();
+  run.resume = true;
+  expect_one_note();  // of a batch that is complete, from its summary
+}
+
 TEST_F(Inputs, AnotherProgramsSummaryHidesNothing) {
   write_text(folder_ / "in" / "other" / "summary.json", "{\"inputs\": []}\n");
   write_text(folder_ / "in" / "other" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
+#include "support/escape.h"
 #include "support/parse_errors.h"
 #include "support/robot_numbers.h"
 #include "support/simulation_flags.h"
+#include "support/size_text.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -151,13 +153,6 @@ BatchRun run_of(const BatchFlags& flags) {
   return run;
 }
 
-std::string size_text(double bytes) {
-  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
-  std::size_t k = 0;
-  for (; bytes >= 1000.0 && k + 1 < std::size(units); ++k) bytes /= 1000.0;
-  return fmt::format("{:.3g} {}", bytes, units[k]);
-}
-
 /// What is written, times the input: measured on 20,000 polygons of 14 corners as WKT. Grids and compressed files may
 /// give much more.
 constexpr double kMeasurementsOfInput = 1.3;
@@ -220,6 +215,19 @@ void name_rejected(const BatchSummary& summary, const std::string& out) {
   for (std::size_t k = 0; k < std::min(all.size(), kMostNamed); ++k)
     message(fmt::format("rejected: {}: {}", all[k].path, all[k].code));
   if (all.size() > kMostNamed) message(fmt::format("and {} more, see {}/summary.json", all.size() - kMostNamed, out));
+}
+
+/// What was assumed of whole files, each text once.
+void say_batch_notes(const BatchSummary& summary, const std::string& out) {
+  constexpr std::size_t kMostSaid = 20;
+  const std::vector<datasets::BatchNote>& notes = summary.notes;
+  for (std::size_t k = 0; k < std::min(notes.size(), kMostSaid); ++k) {
+    const std::string others =
+        notes[k].files > 1 ? fmt::format(" and {}", counted(notes[k].files - 1, "other file")) : "";
+    message(shown(fmt::format("{}{}: {}", notes[k].file, others, notes[k].text)));
+  }
+  if (notes.size() > kMostSaid)
+    message(fmt::format("and {} more notes, see {}/summary.json", notes.size() - kMostSaid, out));
 }
 
 /// Whether this batch goes where an earlier one is, and does not go on with it.
@@ -287,6 +295,7 @@ ExitCode batch(const BatchFlags& flags) {
   if (result.was_complete) message("nothing left to do");
   if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
   print(words_of(result.summary, flags.out, run.shards == 1));
+  say_batch_notes(result.summary, flags.out);
   name_rejected(result.summary, flags.out);
   note_missing_half_planes(result.summary, flags.out);
   return verdict(result.summary);

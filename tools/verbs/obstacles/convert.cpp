@@ -33,7 +33,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
     message(fmt::format("{}: occupied cells: {} of {}; they became {}, exactly those", file.file,
                         file.coverage->occupied, file.coverage->cells, counted(file.obstacles.size(), "polygon")));
   }
-  if (file.origin) message(projection_line(file));
+  say_notes(file);
   if (file.counts.repaired > 0)
     message(fmt::format("{}: {} repaired", file.file, counted(file.counts.repaired, "obstacle")));
   if (file.counts.passed_over > 0)

@@ -29,7 +29,7 @@ namespace {
 FileAnswer read_one(const std::string& file, const datasets::ReadOptions& options) {
   try {
     FileAnswer answer{file, datasets::read_obstacles(file, options), std::nullopt};
-    say_projection(*answer.content);
+    say_notes(*answer.content);
     return answer;
   } catch (const DataError& error) {
     return {file, std::nullopt, error, options.format.empty() ? guessed_format(file) : ""};
@@ -186,9 +186,10 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict) {
 
 OrderedJson json_of(const FileAnswer& answer) {
   const auto empty = OrderedJson::array();
-  OrderedJson json{{"file", answer.file}, {"format", nullptr}, {"verdict", "unreadable"},           {"code", nullptr},
-                   {"counts", nullptr},   {"problems", empty}, {"unlisted", OrderedJson::object()}, {"origin", nullptr},
-                   {"notes", empty}};
+  OrderedJson json{
+      {"file", answer.file},   {"format", nullptr}, {"verdict", "unreadable"},           {"code", nullptr},
+      {"counts", nullptr},     {"problems", empty}, {"unlisted", OrderedJson::object()}, {"origin", nullptr},
+      {"distortion", nullptr}, {"notes", empty}};
   if (answer.error) {
     json["code"] = datasets::code_name(answer.error->code());
     json["problems"].push_back(problem_json(*answer.error));
@@ -210,6 +211,10 @@ OrderedJson json_of(const FileAnswer& answer) {
   if (content.origin)
     json["origin"] = {{"longitude", unsigned_zero(content.origin->longitude)},
                       {"latitude", unsigned_zero(content.origin->latitude)}};
+  if (content.distortion)
+    json["distortion"] = {{"length", content.distortion->length},
+                          {"area", content.distortion->area},
+                          {"certified", content.distortion->certified}};
   for (const datasets::DataNote& note : content.notes)
     if (!note.code) json["notes"].push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
   return json;
@@ -259,13 +264,22 @@ std::string text_of(const OrderedJson& json) {
 
 std::string projection_line(const datasets::ObstacleFile& file) {
   if (!file.origin) return "";
-  return fmt::format("{}: projected from degrees to metres, centred on longitude {}, latitude {}", file.file,
-                     file.origin->longitude, file.origin->latitude);
+  return fmt::format("{}: projected from {} to metres, centred on longitude {}, latitude {}", file.file,
+                     file.projected_from, file.origin->longitude, file.origin->latitude);
 }
 
 void say_projection(const datasets::ObstacleFile& file) {
   if (const std::string line = projection_line(file); !line.empty())
     message(line + "; --units metres takes them as they stand");
+}
+
+void say_notes(const datasets::ObstacleFile& file) {
+  say_projection(file);
+  for (const datasets::DataNote& note : file.notes) {
+    const bool is_said = file.origin && note.text.find("; brought to metres round ") != std::string::npos;
+    if (note.of_feature || is_said) continue;
+    message(shown(file.file + ": " + (note.place.empty() ? "" : note.place + ": ") + note.text));
+  }
 }
 
 }  // namespace exactvo::tools

@@ -75,7 +75,7 @@ std::string guess_words(const FileAnswer& answer, const std::string& option = "-
 /// The format that a file is taken for when none is named; empty if none is found, or the file cannot be read twice.
 std::string guessed_format(const std::string& file);
 
-/// Reads every file; a DataError of a file becomes its answer. Says which were projected.
+/// Reads every file; a DataError of a file becomes its answer. Says the notes of each (say_notes).
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
 
 /// bad_input where a file could not be read; negative where obstacles were rejected, or with `strict` where anything
@@ -86,8 +86,9 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict = false);
 /// "unreadable"), "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
 /// "ring", "vertex", "x", "y", "in_file", "at_vertex", "found", "repaired"}], "origin", "notes"}: x and y in metres,
 /// "in_file" the same place in the file's own numbers (longitude, latitude), "at_vertex" the vertex as it is written.
-/// "origin" is round what place degrees were projected, or null. What is no ring's has "code", "place", "found",
-/// "expected" and "repaired". A number that is not finite is null.
+/// "origin" is round what place degrees were projected, or null; "distortion" {"length", "area", "certified"}, shares,
+/// or null where no place on earth is known. What is no ring's has "code", "place", "found", "expected" and "repaired".
+/// A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
 /// One line per problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], would be repaired": on reading,
@@ -104,10 +105,13 @@ std::string repair_hint(const FileAnswer& answer);
 std::string text_of(const OrderedJson& json);
 
 /// Degrees that became metres: what nobody may take for granted, since GeoJSON without units is one of degrees.
-/// "FILE: degrees became metres round longitude X, latitude Y"; empty where nothing was projected.
+/// "FILE: projected from degrees to metres, centred on longitude X, latitude Y"; empty where nothing was projected.
 std::string projection_line(const datasets::ObstacleFile& file);
 
 /// Says the projection_line of a file that has one, and how to read it otherwise.
 void say_projection(const datasets::ObstacleFile& file);
+
+/// That, and what the notes say of the file as a whole: units that were assumed, unknown cells, its extent.
+void say_notes(const datasets::ObstacleFile& file);
 
 }  // namespace exactvo::tools

@@ -316,7 +316,7 @@ void declare_repair(CLI::App& app, RepairFlags& flags) {
 
 Verb repair_verb() {
   return {"repair", "Repair invalid obstacle files: winding, closure, spikes, self-crossings, overlaps",
-          "  exactvo repair countries.geojson --out repaired.geojson --figure repaired.svg\n"
+          "  exactvo repair buildings.geojson --out repaired.geojson --figure repaired.svg\n"
           "    (status 1: some obstacles cannot be repaired; the others are written)\n",
           with_flags(declare_repair, repair)};
 }

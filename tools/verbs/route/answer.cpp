@@ -29,10 +29,8 @@ namespace {
 // --- The map ---
 
 /// What concerns the file as a whole, such as moving obstacles that are left out.
-void say_notes(const datasets::ObstacleFile& content) {
-  say_projection(content);
-  for (const datasets::DataNote& note : content.notes)
-    if (!note.code && note.place.empty() && !content.origin) message(content.file + ": " + note.text);
+void say_all_notes(const datasets::ObstacleFile& content) {
+  say_notes(content);
   if (content.obstacles.empty()) message(content.file + ": no obstacle in it");
 }
 
@@ -217,7 +215,7 @@ std::string AskedMap::name_of(std::size_t obstacle) const {
 
 AskedMap read_asked_map(const std::string& file, const datasets::ReadOptions& reading, const std::string& cell_point) {
   datasets::ObstacleFile content = datasets::read_obstacles(file, reading);
-  say_notes(content);
+  say_all_notes(content);
   AskedMap map{file, content.format, std::move(content.obstacles), {}, std::nullopt};
   if (map.format == "movingai-map") {
     map.cells = cells_of(file, reading, cell_point);

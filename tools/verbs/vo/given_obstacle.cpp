@@ -107,12 +107,14 @@ bool ends_in_empty(const std::string& text) {
 datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
   if (is_there(text)) {
     datasets::ObstacleFile file = datasets::read_obstacles(text, reading);
-    say_projection(file);
+    say_notes(file);
     return file;
   }
   if ((text.find('(') == std::string::npos && !ends_in_empty(text)) || !begins_wkt(word_before_bracket(text)))
     throw UsageError(option, text, std::string("a file that is there, WKT (POLYGON(...), ...), ") + kShapeWords);
-  return datasets::parse_wkt(text, option, {});
+  datasets::ObstacleFile file = datasets::parse_wkt(text, option, {});
+  say_notes(file);
+  return file;
 }
 
 }  // namespace

@@ -92,10 +92,18 @@ struct RejectedFile {
   std::string code;  ///< "E_FORMAT_UNKNOWN"
 };
 
+/// What is said of whole files.
+struct BatchNote {
+  std::string text;       ///< "taken as metres: names no reference system"
+  std::string file;       ///< the first of which it is said
+  std::size_t files = 0;  ///< of how many
+};
+
 /// What a batch came to: the numbers of its summary.json.
 struct BatchSummary {
   BatchTally files;                          ///< by how their reading ended
   std::vector<RejectedFile> rejected_files;  ///< in the order of the inputs
+  std::vector<BatchNote> notes;              ///< each text once, a thousand at most
   BatchTally obstacles;                      ///< by how their processing ended
   std::uint64_t passed_over = 0;             ///< points and empty geometries: no obstacles, not among `read`
   std::uint64_t obstacles_out = 0;           ///< of what was done or repaired; a repair may make several of one

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/merge/summary.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "exactvo/datasets/provenance.h"
@@ -19,6 +20,27 @@ void add(BatchTally& sum, const BatchTally& one) {
   sum.done += one.done;
   sum.repaired += one.repaired;
   for (const auto& [code, count] : one.rejected) sum.rejected[code] += count;
+}
+
+/// Numbers of one file alone, which stand in its facts.
+bool is_measured(const std::string& note) {
+  return note.rfind("extent ", 0) == 0 || note.rfind("lengths ", 0) == 0 ||
+         note.find("; brought to metres ") != std::string::npos;
+}
+
+void add_note(std::vector<BatchNote>& notes, const std::string& text, const std::string& file) {
+  constexpr std::size_t kMostTexts = 1000;
+  const auto known = std::find_if(notes.begin(), notes.end(), [&](const BatchNote& n) { return n.text == text; });
+  if (known != notes.end()) {
+    ++known->files;
+  } else if (notes.size() < kMostTexts) {
+    notes.push_back({text, file, 1});
+  }
+}
+
+void add_notes(std::vector<BatchNote>& notes, const std::vector<std::string>& texts, const std::string& file) {
+  for (const std::string& text : texts)
+    if (!is_measured(text)) add_note(notes, text, file);
 }
 
 constexpr const char* kRejected = "rejected";
@@ -56,6 +78,7 @@ BatchSummary summary_of(const Identity& identity, const std::vector<InputFacts>&
     count_file(summary.files, one);
     if (one.outcome == kRejected) summary.rejected_files.push_back({identity.inputs[k].name, one.code});
     add(summary.obstacles, one.tally);
+    add_notes(summary.notes, one.notes, identity.inputs[k].name);
     summary.passed_over += one.passed_over;
   }
   return summary;
@@ -77,7 +100,8 @@ std::string to_json(const BatchSummary& summary, const Identity& identity, const
   json.key("configuration").raw(identity.configuration);
   json.key("inputs").begin_array();
   for (std::size_t k = 0; k < facts.size(); ++k) {
-    json.begin_inline_object().member("path", identity.inputs[k].name).member("sha256", identity.inputs[k].sha256);
+    json.begin_inline_object();
+    append_input(json, identity.inputs[k]);
     json.key("facts").raw(to_json(facts[k])).end_object();
   }
   json.end_array();
@@ -114,6 +138,7 @@ BatchSummary read_summary(const fs::path& out) {
     json.at("no_half_plane").get_to(summary.no_half_plane);
     for (const Json& input : json.at("inputs")) {
       const Json& facts = input.at("facts");
+      add_notes(summary.notes, facts.at("notes").get<std::vector<std::string>>(), input.at("path").get<std::string>());
       if (facts.at("outcome") == kRejected)
         summary.rejected_files.push_back({input.at("path").get<std::string>(), facts.at("code").get<std::string>()});
     }

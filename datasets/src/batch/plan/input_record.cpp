@@ -25,6 +25,10 @@ void append_optional_facts(JsonWriter& json, const InputFacts& facts) {
     json.key("coverage").begin_object().member("cells", std::uint64_t{c.cells});
     json.member("occupied", std::uint64_t{c.occupied}).member("cell_area", c.cell_area).end_object();
   }
+  if (facts.distortion) {
+    json.key("distortion").begin_object().member("length", facts.distortion->length);
+    json.member("area", facts.distortion->area).member("certified", facts.distortion->certified).end_object();
+  }
 }
 
 void parse_optional_facts(const Json& json, InputFacts& facts) {
@@ -37,6 +41,10 @@ void parse_optional_facts(const Json& json, InputFacts& facts) {
   if (const auto at = json.find("coverage"); at != json.end()) {
     facts.coverage = Coverage{at->at("cells").get<std::size_t>(), at->at("occupied").get<std::size_t>(),
                               at->at("cell_area").get<double>()};
+  }
+  if (const auto at = json.find("distortion"); at != json.end()) {
+    facts.distortion =
+        Distortion{at->at("length").get<double>(), at->at("area").get<double>(), at->at("certified").get<bool>()};
   }
 }
 

@@ -31,6 +31,7 @@ struct InputFacts {
   std::optional<ProjectionOrigin> origin;
   std::optional<Extent> extent;
   std::optional<Coverage> coverage;
+  std::optional<Distortion> distortion;
 };
 /// One JSON object on one line, and back.
 std::string to_json(const InputFacts& facts);

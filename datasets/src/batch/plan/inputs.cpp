@@ -8,7 +8,6 @@
 #include "batch/plan/journal.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_files.h"
-#include "exactvo/datasets/provenance.h"
 #include "files/file_names.h"
 
 namespace exactvo::datasets::batch {
@@ -24,6 +23,14 @@ std::string hash_of(const fs::path& path) {
   } catch (const DataError&) {
     return {};
   }
+}
+
+/// As the input is named: by the folder that its user named, not by its place on this machine.
+std::string name_beside(const fs::path& input, const fs::path& other) {
+  std::error_code error;
+  const fs::path folder = input.parent_path();
+  const fs::path relative = fs::relative(other, folder.empty() ? fs::path(".") : folder, error);
+  return (error || relative.empty() ? other : (folder / relative).lexically_normal()).generic_string();
 }
 
 DataError cannot_walk(const fs::path& folder, const std::error_code& error) {
@@ -76,8 +83,7 @@ class Listing {
       if (belongs || !seen.insert(name).second) continue;
       std::error_code error;
       const std::uintmax_t size = fs::file_size(file, error);
-      inputs.push_back(
-          {file.generic_string(), file, identity_of_input(file, format_), error ? 0 : std::uint64_t{size}});
+      inputs.push_back({file.generic_string(), file, hashes_of_input(file, format_), error ? 0 : std::uint64_t{size}});
     }
     if (inputs.empty()) throw nothing_to_read();
     return {std::move(inputs), earlier_};
@@ -146,13 +152,27 @@ class Listing {
 
 }  // namespace
 
-std::string identity_of_input(const fs::path& path, const std::string& format) {
-  const std::string own = hash_of(path);
-  if (own.empty()) return own;
+bool InputHashes::operator==(const InputHashes& other) const {
+  const auto same = [](const InputFile& a, const InputFile& b) { return a.path == b.path && a.sha256 == b.sha256; };
+  return sha256 == other.sha256 &&
+         std::equal(read_with.begin(), read_with.end(), other.read_with.begin(), other.read_with.end(), same);
+}
+
+void append_input(JsonWriter& json, const Input& input) {
+  json.member("path", input.name).member("sha256", input.hashes.sha256);
+  if (input.hashes.read_with.empty()) return;
+  json.list("read_with", input.hashes.read_with, [&](const InputFile& file) {
+    json.begin_inline_object().member("path", file.path).member("sha256", file.sha256).end_object();
+  });
+}
+
+InputHashes hashes_of_input(const fs::path& path, const std::string& format) {
+  InputHashes hashes{hash_of(path), {}};
+  if (hashes.sha256.empty()) return hashes;
   const std::vector<fs::path> files = files_read_with(path, format);
-  std::string all = own;
-  for (std::size_t k = 1; k < files.size(); ++k) all += " " + hash_of(files[k]);
-  return files.size() == 1 ? own : sha256_of(all);
+  for (std::size_t k = 1; k < files.size(); ++k)
+    hashes.read_with.push_back({name_beside(path, files[k]), hash_of(files[k])});
+  return hashes;
 }
 
 Inputs list_inputs(const std::vector<fs::path>& paths, const fs::path& out, const std::string& format) {

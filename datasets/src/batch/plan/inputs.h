@@ -11,15 +11,27 @@
 #include <vector>
 
 #include "exactvo/datasets/batch.h"
+#include "exactvo/datasets/provenance.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
+
+/// SHA-256 of a file, and of every other that is read with it; empty where one can't be read.
+struct InputHashes {
+  std::string sha256;
+  std::vector<InputFile> read_with;
+
+  bool operator==(const InputHashes& other) const;
+};
 
 struct Input {
   std::string name;  ///< as the user named it, or the folder's name and what is below it
   std::filesystem::path path;
-  std::string sha256;  ///< empty where it can't be read
+  InputHashes hashes;
   std::uint64_t size = 0;
 };
+/// The members "path", "sha256" and, where there is any, "read_with": [{"path", "sha256"}] of an object that is open.
+void append_input(JsonWriter& json, const Input& input);
 
 struct Inputs {
   std::vector<Input> files;  ///< at least one
@@ -35,7 +47,7 @@ struct Inputs {
 Inputs list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                    const std::string& format = {});
 
-/// What `Input::sha256` is now.
-std::string identity_of_input(const std::filesystem::path& path, const std::string& format = {});
+/// What `Input::hashes` are now.
+InputHashes hashes_of_input(const std::filesystem::path& path, const std::string& format = {});
 
 }  // namespace exactvo::datasets::batch

@@ -44,6 +44,14 @@ std::string text_at(const Json& object, const char* key) {
   return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
+InputHashes hashes_at(const Json& input) {
+  InputHashes hashes{text_at(input, "sha256"), {}};
+  const auto others = input.is_object() ? input.find("read_with") : input.end();
+  if (others == input.end() || !others->is_array()) return hashes;
+  for (const Json& file : *others) hashes.read_with.push_back({text_at(file, "path"), text_at(file, "sha256")});
+  return hashes;
+}
+
 void refuse_other_inputs(const Json& there, const Identity& identity, const fs::path& path) {
   const auto at = there.find("inputs");
   const std::size_t count = at != there.end() && at->is_array() ? at->size() : 0;
@@ -54,7 +62,7 @@ void refuse_other_inputs(const Json& there, const Identity& identity, const fs::
   }
   for (std::size_t k = 0; k < count; ++k) {
     const Input& input = identity.inputs[k];
-    if (text_at((*at)[k], "path") == input.name && text_at((*at)[k], "sha256") == input.sha256) continue;
+    if (text_at((*at)[k], "path") == input.name && hashes_at((*at)[k]) == input.hashes) continue;
     throw other_run(path, "an output of " + text_at((*at)[k], "path") + " as it was",
                     input.name + " as it is now; another --out, or an empty one");
   }
@@ -142,7 +150,9 @@ std::string to_json(const Identity& identity) {
   json.key("configuration").raw(identity.configuration);
   json.key("inputs").begin_array();
   for (const Input& input : identity.inputs) {
-    json.begin_inline_object().member("path", input.name).member("sha256", input.sha256).end_object();
+    json.begin_inline_object();
+    append_input(json, input);
+    json.end_object();
   }
   json.end_array();
   return json.end_object().take() + "\n";

@@ -188,7 +188,9 @@ InputFacts read_into(Chunker& chunker, const Input& input, const ReadOptions& gi
     facts.origin = file.origin;
     facts.extent = file.extent;
     facts.coverage = file.coverage;
-    for (const DataNote& note : file.notes) facts.notes.push_back(note.text);
+    facts.distortion = file.distortion;
+    for (const DataNote& note : file.notes)
+      facts.notes.push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
     set_outcome(facts, file.counts, first_rejected);
   } catch (const DataError& error) {
     reject(facts, code_name(error.code()), error.what());
@@ -211,7 +213,7 @@ void read_input(const Input& input, std::size_t number, const BatchConfiguration
   Chunker chunker(input, number, journal, watch, give);
   try {
     InputFacts facts = read_into(chunker, input, configuration.reading, configuration.memory_limit);
-    if (identity_of_input(input.path, configuration.reading.format) != input.sha256) {
+    if (!(hashes_of_input(input.path, configuration.reading.format) == input.hashes)) {
       Piece changed{number};
       changed.has_changed = true;
       return give(std::move(changed));
