@@ -5,7 +5,7 @@ A call is (name, function, arguments by name); the function of a method makes it
 import numpy as np
 
 import exactvo
-from exactvo import datasets, explorer, lp, routes, rvo2, shapes, simulation, vo
+from exactvo import datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
 
 ONE = {"name": "one", "time_limit": 1, "robots": [{"id": "R1", "position": [0, 0], "goal": [1, 0]}]}
 SQUARE = "POLYGON((10 0, 12 0, 12 2, 10 2, 10 0))\n"
@@ -127,6 +127,7 @@ def good_calls(folder):
         ("simulation.Recording.half_planes", run.half_planes, dict(step=0, robot=0)),
         ("simulation.Recording.audit", run.audit, {}),
         ("simulation.JointPlan.path", PLAN.path, dict(robot=1)),
+        ("sweeps.sweep", sweeps.sweep, dict(scenario=ONE, vary={"/time_limit": [1]}, table=str(folder / "sweep.csv"), jobs=1, method="ivo", guidance=None, liveness=None, controller="default", integrator="exact")),
         ("simulation.Recording.write", run.write, dict(path=str(folder / "again.jsonl"))),
         ("simulation.Recording.view", run.view, dict(height=720)),
         ("explorer.view", explorer.view, dict(height=720)),

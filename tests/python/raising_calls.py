@@ -9,7 +9,7 @@ import numpy as np
 from good_calls import DOOR, ONE, PLAN, SQUARE, WALL, good_calls, two_robots
 
 import exactvo
-from exactvo import _exactvo, datasets, explorer, lp, routes, rvo2, shapes, simulation, vo
+from exactvo import _exactvo, datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
 
 
 def overlapping():
@@ -148,6 +148,9 @@ def raising_calls(folder):
         ("simulation.Recording.half_planes", "ArgumentError", lambda: run.half_planes("x", 0)),
         ("simulation.Recording.half_planes", "IndexError", lambda: run.half_planes(0, 9)),
         ("simulation.JointPlan.path", "ArgumentError", lambda: PLAN.path(2)),
+        ("sweeps.sweep", "ArgumentError", lambda: sweeps.sweep(ONE, {"metod": ["orca"]})),
+        ("sweeps.sweep", "DataError", lambda: sweeps.sweep(ONE, {"/time_step": [-1]})),
+        ("sweeps.sweep", "MissingFileError", lambda: sweeps.sweep(missing, {})),
         ("simulation.Recording.write", "ArgumentError", lambda: run.write(None)),
         ("simulation.Recording.write", "DataError", lambda: run.write(elsewhere)),
         ("simulation.Recording.view", "ArgumentError", lambda: run.view(height=0)),

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "run_program.h"
 
@@ -55,6 +59,168 @@ TEST(Lp, WhatALineMayNotHoldIsNamedWithItsPlace) {
     EXPECT_EQ(outcome.status, 2) << r.line;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr(r.place), HasSubstr(r.words), Not(HasSubstr("requires")))) << r.line;
   }
+}
+
+// --- Answers of other solvers ---
+
+/// Feasible, with the best velocity (0.5, 0); contradictory; relaxed, with a least violation of 0.5 m/s.
+constexpr const char* kThree =
+    R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": [{"normal": [-1, 0], "offset": -0.5}]}
+{"bound": {"disc": 2}, "preferred": [2, 0], "constraints": [{"normal": [-1, 0], "offset": 1}, {"normal": [1, 0], "offset": 1}]}
+{"bound": {"disc": 2}, "preferred": [0, 1], "constraints": [{"normal": [1, 0], "offset": 0.5, "priority": "soft"}, {"normal": [-1, 0], "offset": 0.5, "priority": "soft"}]}
+)";
+
+struct Judged {
+  const char* answers;  ///< CSV of index, vx, vy, status, or JSON Lines
+  std::vector<const char*> verdicts;
+  int status = 0;
+};
+
+TEST(LpCheck, EveryAnswerGetsItsVerdict) {
+  const Workplace here;
+  here.write("p.jsonl", kThree);
+  const Judged cases[] = {
+      {"index,vx,vy,status\n0,0.5,0,optimal\n1,,,infeasible\n2,0,1,relaxed\n", {"optimal", "infeasible", "optimal"}},
+      {"vx,vy\n0.5,0\n0,0\n0,1\n", {"optimal", "wrongly-feasible", "optimal"}, 1},
+      {"vx vy\n0.4999999 0\n0 0\n0 1\n", {"optimal", "wrongly-feasible", "optimal"}, 1},
+      {"index,vx,vy,status\n2,0,1,infeasible\n0,0.5000001,0,optimal\n1,,,infeasible\n",
+       {"optimal", "infeasible", "wrong-status"},
+       1},
+      {"vx,vy,status\n0.51,0,optimal\n,,infeasible\n0.2,1,relaxed\n", {"violated", "infeasible", "violated"}, 1},
+      {"vx,vy,status\n0.4,0,optimal\n,,infeasible\n0,1,optimal\n", {"not-optimal", "infeasible", "wrong-status"}, 1},
+      {"vx,vy,status\n,,infeasible\n,,infeasible\n0,0.2,\n", {"wrongly-infeasible", "infeasible", "optimal"}, 1},
+      {"vx,vy,status\n0.5,0,relaxed\n,,infeasible\n0,3,relaxed\n", {"wrong-status", "infeasible", "violated"}, 1},
+      {"index,vx,vy\n2,0,1\n", {"missing", "missing", "optimal"}, 1},
+      {"{\"velocity\": [0.5, 0]}\n{\"velocity\": null, \"status\": \"infeasible\"}\n{\"index\": 2, \"velocity\": [0, "
+       "1], "
+       "\"other\": 1}\n{\"summary\": {}}\n",
+       {"optimal", "infeasible", "optimal"}},
+      {"vx,vy\nnan,0\n0,0\n1e300,1\n", {"violated", "wrongly-feasible", "violated"}, 1},
+  };
+  for (const Judged& c : cases) {
+    here.write("a", c.answers);
+    const Outcome outcome = here.run("lp p.jsonl --check a --json");
+    EXPECT_EQ(outcome.status, c.status) << c.answers << outcome.err;
+    std::istringstream lines(outcome.out);
+    std::string line;
+    for (const char* verdict : c.verdicts) {
+      ASSERT_TRUE(std::getline(lines, line)) << c.answers << outcome.err;
+      const json judged = json::parse(line);
+      EXPECT_EQ(judged["verdict"], verdict) << c.answers << line;
+      EXPECT_EQ(judged["right"], judged["verdict"] == "optimal" || judged["verdict"] == "infeasible");
+    }
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(json::parse(line)["summary"]["problems"], 3);
+    EXPECT_EQ(here.run("lp p.jsonl --check a").status, c.status);
+  }
+}
+
+TEST(LpCheck, TheGapIsProvenAndCountsTheLoss) {
+  const Workplace here;
+  here.write("p.jsonl", kThree);
+  here.write("a.csv", "index,vx,vy\n0,0.4,0\n2,0,1\n");
+  std::istringstream lines(here.run("lp p.jsonl --check a.csv --json --tolerance 0.2").out);
+  std::string line;
+  std::getline(lines, line);
+  const json first = json::parse(line);
+  EXPECT_EQ(first["verdict"], "optimal");
+  EXPECT_NEAR(first["excess"].get<double>(), 0.1, 1e-12);
+  EXPECT_NEAR(first["certified_gap"].get<double>(), 1.6 * 1.6 - 1.5 * 1.5, 1e-9);
+  EXPECT_EQ(first["violation"], 0.0);
+  std::getline(lines, line);
+  std::getline(lines, line);
+  EXPECT_TRUE(json::parse(line)["certified_gap"].is_number()) << line;
+}
+
+TEST(LpCheck, EverySolverPassesAndItsAnswersMovedDoNot) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A7.json") + " --record-all --no-figures --out out").status, 0);
+  const Outcome written = here.run("lp out --out problems.jsonl");
+  ASSERT_EQ(written.status, 0) << written.err;
+  EXPECT_EQ(here.run("lp out/recording.jsonl --out again.jsonl").status, 0);
+  EXPECT_EQ(here.read("problems.jsonl"), here.read("again.jsonl"));
+  for (const char* solver : {"incremental", "batch", "certified"}) {
+    here.write("answers.jsonl", here.run(std::string("lp problems.jsonl --json --solver ") + solver).out);
+    const Outcome outcome = here.run("lp problems.jsonl --check answers.jsonl --json");
+    EXPECT_EQ(outcome.status, 0) << solver << outcome.out.substr(0, 500);
+  }
+  std::istringstream answers(here.read("answers.jsonl"));
+  std::string moved, line;
+  std::size_t count = 0;
+  while (std::getline(answers, line)) {
+    json answer = json::parse(line);
+    if (answer.contains("summary")) break;
+    const bool is_first = ++count == 1;
+    if (!is_first) answer["velocity"] = {answer["velocity"][0].get<double>() + 0.01, answer["velocity"][1]};
+    moved += answer.dump() + "\n";
+  }
+  here.write("moved.jsonl", moved);
+  const Outcome outcome = here.run("lp problems.jsonl --check moved.jsonl --json");
+  EXPECT_EQ(outcome.status, 1);
+  const json summary = json::parse(outcome.out.substr(outcome.out.rfind("{\"summary\"")))["summary"];
+  EXPECT_EQ(summary["problems"], count);
+  EXPECT_GE(summary["wrong"].get<std::size_t>() + 1, count);
+  EXPECT_GT(count, 500u);
+}
+
+TEST(LpCheck, TheDecisionsOfARunAreItsProblems) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A2.json") + " --no-figures --out out").status, 0);
+  std::istringstream lines(here.run("lp out --json").out), table(here.read("out/trajectory.csv"));
+  std::string line, row;
+  std::getline(table, row);
+  std::vector<std::string> names;
+  std::istringstream header(row);
+  for (std::string name; std::getline(header, name, ',');) names.push_back(name);
+  const auto column = [&](const std::string& start) {
+    return static_cast<std::size_t>(
+        std::find_if(names.begin(), names.end(), [&](const std::string& n) { return n.rfind(start, 0) == 0; }) -
+        names.begin());
+  };
+  const std::size_t x = column("chosen_vx"), y = column("chosen_vy");
+  ASSERT_LT(std::max(x, y), names.size()) << row;
+  std::size_t compared = 0;
+  while (std::getline(table, row) && std::getline(lines, line)) {
+    std::vector<std::string> fields;
+    std::istringstream cells(row);
+    for (std::string field; std::getline(cells, field, ',');) fields.push_back(field);
+    const json answer = json::parse(line);
+    if (answer.contains("summary")) break;
+    EXPECT_NEAR(answer["velocity"][0].get<double>(), std::stod(fields.at(x)), 1e-9) << row;
+    EXPECT_NEAR(answer["velocity"][1].get<double>(), std::stod(fields.at(y)), 1e-9) << row;
+    ++compared;
+  }
+  EXPECT_GT(compared, 300u);
+}
+
+TEST(LpCheck, WhatIsNoAnswerIsRefusedWithItsLine) {
+  const Workplace here;
+  here.write("p.jsonl", kThree);
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "no answer"},
+      {"x,y\n1,2\n", "line 1: found x,y, expected answers"},
+      {"vx,vy\n1\n", "line 2: found 1, expected 2 fields"},
+      {"vx,vy\n1,two\n", "line 2: found two, expected a number in column vy"},
+      {"index,vx,vy\n3,0,0\n", "found an answer to problem 3, expected a problem of the file, 0 to 2"},
+      {"index,vx,vy\n0,0,0\n0,1,0\n", "line 3: found a second answer to problem 0"},
+      {"vx,vy,status\n0,0,fine\n", "found fine, expected optimal, relaxed"},
+      {"vx,vy,status\n,,optimal\n", "found an answer without a velocity"},
+      {"{\"velocity\": [1]}\n", "line 1: found [1], expected \"velocity\": [x, y]"},
+      {"{\"velocity\": [0, 0]}\n{oops\n", "line 2: found {oops"},
+      {"vx,vy\n0,0\n0,0\n0,0\n0,0\n", "line 5: found an answer to problem 3"}};
+  for (const auto& [answers, words] : cases) {
+    here.write("a", answers);
+    const Outcome outcome = here.run("lp p.jsonl --check a");
+    EXPECT_EQ(outcome.status, 2) << answers;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << answers;
+  }
+  for (const auto& [options, words] :
+       {std::pair("--check a --out b", "--check cannot be combined with --out"),
+        std::pair("--check a --certify", "--certify cannot be combined with --check"),
+        std::pair("--check a --solver batch", "--solver cannot be combined with --check"),
+        std::pair("--check a --tolerance=-1", "--tolerance: found '-1'"),
+        std::pair("--out b --json", "--json cannot be combined with --out")})
+    EXPECT_THAT(here.run(std::string("lp p.jsonl ") + options).err, HasSubstr(words)) << options;
 }
 
 /// Two instances without a line in binary: m, m_hard, v_max, v_pref.

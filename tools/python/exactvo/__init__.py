@@ -6,7 +6,7 @@
 >>> run.plot()                                                 # doctest: +SKIP
 
 `exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
-`exactvo.Crowd` many robots, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios, `exactvo.datasets` obstacle files.
+`exactvo.Crowd` many robots, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files.
 SI units: metres, seconds, radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and
 ``where``. The guide: docs/guide/python.md.
 """
@@ -29,6 +29,7 @@ from .explorer import ExplorerPage, view
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
 from .simulation import METHODS, Recording, Scenario, read_recording, simulate
+from .sweeps import sweep
 from .vo import VelocityObstacle, free_velocities, velocity_obstacles
 
 __all__ = [
@@ -66,6 +67,7 @@ __all__ = [
     "routes",
     "shapes",
     "simulate",
+    "sweep",
     "velocity_obstacles",
     "view",
     "vo",

@@ -5,18 +5,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/lp_problems.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/lp/solvers.h"
+#include "support/run.h"
+#include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/unsigned_zero.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/lp/answers.h"
 
 namespace exactvo::tools {
 namespace {
@@ -28,6 +38,10 @@ struct LpFlags {
   std::string solver = "certified";
   bool certify = false;
   bool json = false;
+  std::string out;
+  std::string answers;
+  double tolerance = 1e-6;
+  const CLI::Option* solver_option = nullptr;
 };
 
 double thread_nanoseconds() {
@@ -162,14 +176,186 @@ void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary)
   out.flush();
 }
 
+// --- Answers of other solvers ---
+
+Json null_or(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json judged_line(std::size_t index, const JudgedAnswer& j) {
+  return {{"index", index},
+          {"verdict", name(j.verdict)},
+          {"right", j.is_right()},
+          {"status", name(j.truth)},
+          {"best", {unsigned_zero(j.best.x), unsigned_zero(j.best.y)}},
+          {"violation", null_or(j.violation)},
+          {"excess", null_or(j.excess)},
+          {"certified_gap", null_or(j.certified_gap)}};
+}
+
+struct JudgedSummary {
+  std::size_t right = 0, certified = 0;
+  std::array<std::size_t, 8> by_verdict{};
+  double worst_violation = 0.0, worst_excess = 0.0;
+};
+
+JudgedSummary summary_of(const std::vector<JudgedAnswer>& all) {
+  JudgedSummary s;
+  for (const JudgedAnswer& j : all) {
+    s.right += j.is_right();
+    s.certified += j.certified_gap.has_value();
+    ++s.by_verdict[static_cast<std::size_t>(j.verdict)];
+    s.worst_violation = std::max(s.worst_violation, j.violation.value_or(0.0));
+    s.worst_excess = std::max(s.worst_excess, j.excess.value_or(0.0));
+  }
+  return s;
+}
+
+void print_judged_lines(const std::vector<JudgedAnswer>& all, const JudgedSummary& s) {
+  ChunkedOutput out;
+  for (std::size_t k = 0; k < all.size(); ++k) out.add(judged_line(k, all[k]).dump() + "\n");
+  Json fields = {{"problems", all.size()}, {"right", s.right}, {"wrong", all.size() - s.right}};
+  for (std::size_t k = 0; k < s.by_verdict.size(); ++k) fields[name(static_cast<LpVerdict>(k))] = s.by_verdict[k];
+  fields["certified"] = s.certified;
+  fields["worst_violation"] = s.worst_violation;
+  fields["worst_excess"] = s.worst_excess;
+  out.add(Json({{"summary", fields}}).dump() + "\n");
+  out.flush();
+}
+
+void print_judged_table(const std::vector<JudgedAnswer>& all, const JudgedSummary& s) {
+  const auto cell = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; };
+  ChunkedOutput out;
+  out.add(fmt::format("{:>8} {:<19}{:<12}{:>12}{:>12}{:>14}\n", "problem", "verdict", "is", "violation", "excess",
+                      "proven within"));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    out.add(fmt::format("{:>8} {:<19}{:<12}{:>12}{:>12}{:>14}\n", k, name(all[k].verdict), name(all[k].truth),
+                        cell(all[k].violation), cell(all[k].excess), cell(all[k].certified_gap)));
+  std::string counts;
+  for (std::size_t k = 0; k < s.by_verdict.size(); ++k)
+    if (s.by_verdict[k] > 0) counts += fmt::format(", {} {}", s.by_verdict[k], name(static_cast<LpVerdict>(k)));
+  out.add(fmt::format("{}: {} right, {} wrong{}; worst violation {:.4g} m/s, worst excess {:.4g} m/s\n",
+                      geometry::counted(all.size(), "answer"), s.right, all.size() - s.right, counts, s.worst_violation,
+                      s.worst_excess));
+  out.flush();
+}
+
+ExitCode check_answers(const std::vector<lp::Problem>& problems, const LpFlags& flags) {
+  const std::vector<std::optional<GivenAnswer>> answers = read_lp_answers(flags.answers, problems.size());
+  std::vector<JudgedAnswer> all;
+  for (std::size_t k = 0; k < problems.size(); ++k) {
+    if (interrupted()) throw Interrupted();
+    all.push_back(judge(problems[k], answers[k], flags.tolerance));
+  }
+  const JudgedSummary s = summary_of(all);
+  flags.json ? print_judged_lines(all, s) : print_judged_table(all, s);
+  return s.right == all.size() ? ExitCode::success : ExitCode::negative;
+}
+
+// --- Problems ---
+
+/// The recording that is meant: a folder of a run, or a file that begins as one.
+std::optional<std::filesystem::path> recording_meant(const std::string& file) {
+  std::error_code unknown;
+  if (std::filesystem::exists(std::filesystem::path(file) / "recording.jsonl", unknown)) return recording_at(file);
+  if (!std::filesystem::is_regular_file(file, unknown)) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string beginning(200, '\0');
+  in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  return beginning.find("exactvo-recording") == std::string::npos ? std::nullopt
+                                                                  : std::optional<std::filesystem::path>(file);
+}
+
+lp::Problem problem_of(const formation::Scenario& scenario, const formation::RobotStep& robot, double max_speed) {
+  lp::Problem problem;
+  problem.preferred = robot.preferred;
+  if (scenario.speed_bound == formation::SpeedBoundKind::disc)
+    problem.bound.disc = max_speed;
+  else
+    problem.bound.box_x = problem.bound.box_y = max_speed;
+  for (const formation::RecordedConstraint& c : robot.constraints)
+    problem.constraints.push_back(
+        {c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft, static_cast<int>(c.body)});
+  return problem;
+}
+
+/// The decisions of a run, row by row and robot by robot; the last row has none.
+void for_each_decision(const std::filesystem::path& recording, const std::function<void(lp::Problem)>& take) {
+  std::optional<formation::Step> row;
+  datasets::read_recording(
+      recording, [&](const datasets::RecordingFile& about, const formation::Step& next, const formation::LyapunovRow*) {
+        if (interrupted()) throw Interrupted();
+        for (std::size_t i = 0; row && i < row->robots.size(); ++i)
+          take(problem_of(about.scenario, row->robots[i], about.scenario.robots[i].max_speed));
+        row = next;
+      });
+}
+
+Json json_of(const lp::Problem& problem) {
+  Json bound = Json::object();
+  if (std::isfinite(problem.bound.disc)) bound["disc"] = problem.bound.disc;
+  const auto side = [](double length) { return std::isfinite(length) ? Json(length) : Json(); };
+  if (std::isfinite(problem.bound.box_x) || std::isfinite(problem.bound.box_y))
+    bound["box"] = {side(problem.bound.box_x), side(problem.bound.box_y)};
+  Json constraints = Json::array();
+  for (const lp::Constraint& c : problem.constraints) {
+    Json one = {{"normal", {c.half_plane.normal.x, c.half_plane.normal.y}}, {"offset", c.half_plane.offset}};
+    if (c.priority == lp::Priority::soft) one["priority"] = "soft";
+    if (c.label != -1) one["label"] = c.label;
+    constraints.push_back(std::move(one));
+  }
+  Json json = {{"bound", bound},
+               {"preferred", {problem.preferred.x, problem.preferred.y}},
+               {"constraints", std::move(constraints)}};
+  if (problem.objective == lp::Objective::farthest) json["objective"] = "farthest";
+  return json;
+}
+
+void for_each_problem(const std::string& file, const std::function<void(lp::Problem)>& take) {
+  if (const auto recording = recording_meant(file)) return for_each_decision(*recording, take);
+  for (lp::Problem& problem :
+       datasets::parse_lp_problems(datasets::read_file_or_input(file), datasets::name_of_input(file)))
+    take(std::move(problem));
+}
+
+ExitCode write_problems(const LpFlags& flags) {
+  datasets::AtomicFile out(flags.out);
+  std::size_t count = 0;
+  for_each_problem(flags.file, [&](const lp::Problem& problem) {
+    out.write(json_of(problem).dump() + "\n");
+    ++count;
+  });
+  out.commit();
+  message(fmt::format("wrote {}: {}", flags.out, geometry::counted(count, "problem")));
+  return ExitCode::success;
+}
+
 bool asks_for_proofs(lp::Solver solver, const LpFlags& flags) {
   return flags.certify || solver == lp::Solver::certified || solver == lp::Solver::exact;
 }
 
-ExitCode run(const LpFlags& flags) {
+void check_option_conflicts(const LpFlags& flags) {
+  const bool checks = !flags.answers.empty(), writes = !flags.out.empty();
+  refuse_both(checks && writes, "--check", "--out");
+  for (const auto& [is_there, option] :
+       {std::pair(flags.certify, "--certify"), std::pair(flags.solver_option->count() > 0, "--solver")}) {
+    refuse_both(checks && is_there, option, "--check", "answers are compared with the certified ones");
+    refuse_both(writes && is_there, option, "--out", "--out writes problems, not answers");
+  }
+  refuse_both(writes && flags.json, "--json", "--out", "--out writes JSON Lines in any case");
+  refuse_both(checks && flags.answers == "-" && flags.file == "-", "--check -", "- for the problems",
+              "there is one standard input");
+  require(flags.tolerance >= 0.0 && std::isfinite(flags.tolerance), "--tolerance", fmt::format("{}", flags.tolerance),
+          "a number of m/s, at least 0");
+}
+
+ExitCode solve_or_check(const LpFlags& flags) {
   const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
-  const std::vector<lp::Problem> problems =
-      datasets::parse_lp_problems(datasets::read_file_or_input(flags.file), datasets::name_of_input(flags.file));
+  check_option_conflicts(flags);
+  if (!flags.out.empty()) return write_problems(flags);
+  std::vector<lp::Problem> problems;
+  for_each_problem(flags.file, [&](lp::Problem problem) { problems.push_back(std::move(problem)); });
+  if (!flags.answers.empty()) return check_answers(problems, flags);
   lp::Solving solving(solver, problems);
   const double before = thread_nanoseconds();
   solving.solve();
@@ -192,11 +378,24 @@ ExitCode run(const LpFlags& flags) {
 }
 
 void declare_lp(CLI::App& app, LpFlags& flags) {
-  app.add_option("file", flags.file, "Problems: JSON Lines, one JSON document or a binary instance file; - for stdin")
+  app.add_option(
+         "file", flags.file,
+         "Problems: JSON Lines, one JSON document or a binary instance file, - for stdin; or a run (its folder or "
+         "recording.jsonl), whose decisions are the problems")
       ->required();
-  app.add_option("--solver", flags.solver, "incremental, batch, certified or exact")->capture_default_str();
+  flags.solver_option =
+      app.add_option("--solver", flags.solver, "incremental, batch, certified or exact")->capture_default_str();
   app.add_flag("--certify", flags.certify, "Certify every answer; those that cannot be certified are solved exactly");
   app.add_flag("--json", flags.json, "One JSON result per line, then a summary");
+  app.add_option(
+      "--check", flags.answers,
+      "FILE, or - for stdin: answers of another solver, JSON Lines (such as --json prints) or CSV with the "
+      "columns vx, vy and, where wanted, index and status; each is judged by a proof, and status 1 says that "
+      "one is wrong");
+  app.add_option("--tolerance", flags.tolerance,
+                 "With --check: m/s, by which an answer may violate a constraint or be worse than the best one")
+      ->capture_default_str();
+  declare_out(app, flags.out, "FILE: write the problems as JSON Lines instead of solving them");
 }
 
 }  // namespace
@@ -206,6 +405,8 @@ Verb lp_verb() {
       "lp", "Solve the small optimisation problems that turn half-planes into a velocity, with certificates",
       "  echo '{\"bound\": {\"disc\": 2}, \"preferred\": [2, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": "
       "-0.5}]}' | exactvo lp - --json\n"
+      "  exactvo lp problems.jsonl --check answers.csv\n"
+      "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo lp out/A7 --out A7.jsonl\n"
       "    (a violation is in m/s where the normals have length 1, else in m/s times |normal|. Status 1: an answer is "
       "not\n"
       "    proven although a proof was requested by `certified`, `exact` or --certify. The lines:\n"
@@ -214,7 +415,7 @@ Verb lp_verb() {
       "    the file: not reading, laying out for `batch`, gathering, printing, nor what --certify adds. Of a file of "
       "few\n"
       "    problems it says little; to compare solvers run bench_lp --instances FILE)\n",
-      with_flags(declare_lp, run)};
+      with_flags(declare_lp, solve_or_check)};
 }
 
 }  // namespace exactvo::tools
