@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "division/chain_fit.h"
-#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
@@ -102,6 +101,16 @@ class Dual {
       if (!(excess > kOptimality)) break;
       join(worst, excess);
     }
+  }
+
+  // The points that the weights are of, as they were given.
+  std::vector<WeightedPoint> support_among(const std::vector<Vec2>& given) const {
+    std::vector<WeightedPoint> support;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const auto at = std::find(points_.begin(), points_.end(), active_[i]);
+      support.push_back({given[static_cast<std::size_t>(at - points_.begin())], weight_[i]});
+    }
+    return support;
   }
 
   // The moments with weights that add up to 1.
@@ -285,16 +294,12 @@ bool all_in_box(const std::vector<Vec2>& points, double half_height) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return std::fabs(p.y) <= half_height; });
 }
 
-// The dual needs three points that are not collinear; those that are keep their box.
-EllipseFrame smallest_in_box(const std::vector<Vec2>& in_box, double& least_area) {
-  constexpr double kFlat = 0x1p-26;  // squares of it still count beside 1
-  if (all_in_box(in_box, kFlat)) {
-    least_area = 0.0;
-    return {{}, 1.0, 0.0, 1.0, false};
-  }
-  const EllipseFrame inner = frame_of_moments(Dual(in_box).moments());
-  least_area = kPi * inner.k11 * inner.k22;
-  return inner;
+// Three points whose triangle is about the largest, weighted alike: where the dual's arithmetic says nothing.
+std::vector<WeightedPoint> support_of_flat(const std::vector<Vec2>& points) {
+  const Vec2 p = farthest_from(points.front(), points);
+  const Vec2 q = farthest_from(p, points);
+  const auto by_area = [&](Vec2 a, Vec2 b) { return doubled_area_below(p, q, a) < doubled_area_below(p, q, b); };
+  return {{p, 1.0}, {q, 1.0}, {*std::max_element(points.begin(), points.end(), by_area), 1.0}};
 }
 
 // The dual's arithmetic can fail where points are collinear within the rounding of the box.
@@ -361,12 +366,16 @@ Ellipse ellipse_of(const EllipseFrame& f) {
   return {f.center, l11, f.k11 * (f.k21 / l11), f.k11 * (f.k22 / l11)};
 }
 
+// The dual needs three points that are not collinear; those that are keep their box.
 EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points) {
+  constexpr double kFlat = 0x1p-26;  // squares of it still count beside 1
   const EllipseFrame outer = unit_box_frame(points);
-  double area_in_box = 0.0;
-  const EllipseFrame inner = smallest_in_box(into(outer, points), area_in_box);
-  if (!is_sound(inner)) return {outer, 0.0};
-  return {composed(outer, inner), area_in_box * outer.k11 * outer.k22};
+  const std::vector<Vec2> in_box = into(outer, points);
+  if (all_in_box(in_box, kFlat)) return {outer, support_of_flat(points)};
+  const Dual dual(in_box);
+  const EllipseFrame inner = frame_of_moments(dual.moments());
+  if (!is_sound(inner)) return {outer, support_of_flat(points)};
+  return {composed(outer, inner), dual.support_among(points)};
 }
 
 Ellipse certified_ellipse(const EllipseFrame& candidate, const std::vector<Vec2>& points) {

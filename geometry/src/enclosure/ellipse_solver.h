@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "enclosure/least_area.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::geometry::detail {
@@ -36,7 +37,7 @@ Ellipse ellipse_of(const EllipseFrame& frame);
 /// A numerical optimum, not certified.
 struct EllipseCandidate {
   EllipseFrame frame;
-  double least_area = 0.0;  ///< m^2; no enclosing ellipse is smaller: the dual value, rounded
+  std::vector<WeightedPoint> support;  ///< of the points, with the dual's weights; their bound is near the least area
 };
 
 /// REQUIRES: at least two distinct points, all finite. For points that are collinear up to rounding, k22 is a few ulps.

@@ -24,7 +24,7 @@ FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points) {
   detail::require_places(points);
   if (detail::on_one_line(points)) return of_collinear(points);
   const detail::EllipseCandidate candidate = detail::solve_smallest_ellipse(points);
-  return {detail::certified_ellipse(candidate.frame, points), candidate.least_area};
+  return {detail::certified_ellipse(candidate.frame, points), detail::certified_least_area(candidate.support)};
 }
 
 }  // namespace exactvo::geometry

@@ -58,7 +58,7 @@ void enclose_all(const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.ellipse_contains, [&] {
     if (options.exact_smallest_ellipse) {
       out.smallest_ellipse = smallest_ellipse(out.hull.vertices);
-      out.measurements.least_ellipse_area = area(out.smallest_ellipse);
+      out.measurements.least_ellipse_area = fast_smallest_ellipse(out.hull.vertices).least_area;
     } else {
       const FastEllipse fast = fast_smallest_ellipse(out.hull.vertices);
       out.smallest_ellipse = fast.ellipse;

@@ -56,7 +56,7 @@ Ellipse smallest_ellipse(const std::vector<Vec2>& points);
 /// A certified ellipse and what it could at best be improved to.
 struct FastEllipse {
   Ellipse ellipse;          ///< certified to contain the points
-  double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, rounded
+  double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, certified
 };
 
 /// The same by Newton's method on the dual, hundreds of times faster. Containment certified; `least_area` shows how

@@ -81,7 +81,7 @@ struct ShapeMeasurements {
   double perimeter = 0.0;           ///< m, of all rings
   double hull_area = 0.0;           ///< m^2
   double ellipse_area = 0.0;        ///< m^2, of the smallest ellipse
-  double least_ellipse_area = 0.0;  ///< m^2; no enclosing ellipse is smaller (a dual value); 0 where flat
+  double least_ellipse_area = 0.0;  ///< m^2; no enclosing ellipse is smaller: a dual value, certified; 0 where flat
   double trap_free_area = 0.0;      ///< m^2; 0 without the ellipse
   /// m; a goal farther than this from the middle of the smallest ellipse can't make a robot stall at it: (a^2 - b^2)/b.
   /// Infinite where that ellipse is flat.
