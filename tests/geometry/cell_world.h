@@ -33,6 +33,18 @@ class CellWorld {
     goal_ = free_cell();
   }
 
+  /// Start and goal become corners of cells, or middles of their sides, inside the wall.
+  void put_ends_on_cells_borders(SeededRandom& random) {
+    for (Place* end : {&start_, &goal_}) {
+      do *end = {random.integer(1, 2 * side_ - 1), random.integer(1, 2 * side_ - 1)};
+      while (end->x % 2 != 0 && end->y % 2 != 0);
+    }
+  }
+  /// What an end is in contact with.
+  enum class Contact { none, a_side_or_corner, pinch, blocked_on_every_side };
+  Contact contact_of_start() const { return contact_of(start_); }
+  Contact contact_of_goal() const { return contact_of(goal_); }
+
   std::vector<geometry::Obstacle> obstacles() const {
     const double n = side_;
     std::vector<geometry::Obstacle> out{geometry::Polyline{{{0, 0}, {n, 0}, {n, n}, {0, n}, {0, 0}}}};
@@ -77,6 +89,14 @@ class CellWorld {
 
   bool is_blocked(int x, int y) const {
     return x < 0 || y < 0 || x >= side_ || y >= side_ || blocked_[static_cast<std::size_t>(y) * side_ + x];
+  }
+  Contact contact_of(Place p) const {
+    int blocked = 0;
+    for (const int x : {(p.x - 1) / 2, p.x / 2})
+      for (const int y : {(p.y - 1) / 2, p.y / 2}) blocked += is_blocked(x, y);
+    if (blocked == 4) return Contact::blocked_on_every_side;
+    if (p.x % 2 == 0 && p.y % 2 == 0 && is_pinch(p.x / 2, p.y / 2)) return Contact::pinch;
+    return blocked > 0 ? Contact::a_side_or_corner : Contact::none;
   }
   int blocked_round(int x, int y) const {
     return is_blocked(x - 1, y - 1) + is_blocked(x, y - 1) + is_blocked(x - 1, y) + is_blocked(x, y);

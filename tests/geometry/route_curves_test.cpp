@@ -55,7 +55,7 @@ class Searched {
 
   std::optional<routing::Way> find(Vec2 s, Vec2 t, std::size_t most = routing::WaySearch::kMostNodes) {
     routing::WaySearch search(plan_, most);
-    std::optional<routing::Way> way = search.find(s, cell_of(s), t, cell_of(t));
+    std::optional<routing::Way> way = search.find(s, {cell_of(s)}, t, {cell_of(t)});
     steps = search.steps();
     was_second = search.was_second_search();
     return way;

@@ -3,6 +3,7 @@
 
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <regex>
@@ -67,17 +68,21 @@ struct Edge {
   Spot a, b;
 };
 
-/// The share of p + share d, within [low, high], that is nearest to q; whether that is nearer than the radius, or
-/// touches it where the radius is 0.
-bool is_near_point(const Spot& p, const Spot& d, const Number& low, const Number& high, const Spot& q,
-                   const Number& radius2) {
+/// The share of p + share d, within [low, high], that is nearest to q, and its squared distance.
+Number distance2_to(const Spot& p, const Spot& d, const Number& low, const Number& high, const Spot& q) {
   const Number length2 = norm2(d);
   Number share = low;
   if (length2 > 0) share = dot(q - p, d) / length2;
   if (share < low) share = low;
   if (share > high) share = high;
   const Spot at{Number(p.x + share * d.x), Number(p.y + share * d.y)};
-  const Number distance2 = norm2(at - q);
+  return norm2(at - q);
+}
+
+/// Whether that is nearer than the radius, or touches q where the radius is 0.
+bool is_near_point(const Spot& p, const Spot& d, const Number& low, const Number& high, const Spot& q,
+                   const Number& radius2) {
+  const Number distance2 = distance2_to(p, d, low, high, q);
   return distance2 < radius2 || (radius2 == 0 && distance2 == 0);
 }
 
@@ -151,11 +156,11 @@ class Checker {
     }
     if (points.empty() || !is_same(points.front(), start_) || !is_same(points.back(), goal_))
       return RouteVerdict::wrong;
-    if (is_inside_any(start_)) return RouteVerdict::wrong;
-    if (points.size() == 1 && !is_clear({start_, start_})) return RouteVerdict::wrong;
+    if (points.size() == 1 && free_sides(start_).empty()) return RouteVerdict::wrong;
+    if (points.size() > 1 && is_inside_any(middle(points[0], points[1]))) return RouteVerdict::wrong;
     mpf_class length(0, 256);
     for (std::size_t k = 1; k < points.size(); ++k) {
-      if (!is_clear({points[k - 1], points[k]})) return RouteVerdict::wrong;
+      if (!is_clear({points[k - 1], points[k]}, k == 1, k + 1 == points.size())) return RouteVerdict::wrong;
       length += sqrt(mpf_class(norm2(points[k] - points[k - 1]), 256));
     }
     constexpr double kSame = 0x1p-40, kSearch = 0x1p-30;  // as the checker's header has it
@@ -174,17 +179,22 @@ class Checker {
       if (!exact || !is_on(*exact, c.on)) return RouteVerdict::wrong;
       points.push_back(*exact);
     }
-    bool about_start = false, about_goal = false;
     for (std::size_t k = 0; k < n; ++k) {
       const Spot &p = points[k], &q = points[(k + 1) % n];
       const bool holds = separated.chain[k].gap_follows ? norm2(q - p) < 4 * radius2_ : is_on(q, separated.chain[k].on);
       if (!holds) return RouteVerdict::wrong;
-      about_start ^= rises_through(start_, p, q);
-      about_goal ^= rises_through(goal_, p, q);
     }
-    const bool is_free =
-        !is_inside_any(start_) && !is_inside_any(goal_) && is_clear({start_, start_}) && is_clear({goal_, goal_});
-    return about_start != about_goal && is_free ? RouteVerdict::proven : RouteVerdict::wrong;
+    const auto is_round = [&](const Spot& x) {
+      bool round = false;
+      for (std::size_t k = 0; k < n; ++k) round ^= rises_through(x, points[k], points[(k + 1) % n]);
+      return round;
+    };
+    const std::vector<Spot> starts = free_sides(start_), goals = free_sides(goal_);
+    if (starts.empty() || goals.empty()) return RouteVerdict::wrong;
+    for (const Spot& s : starts)
+      for (const Spot& g : goals)
+        if (is_round(s) == is_round(g)) return RouteVerdict::wrong;
+    return RouteVerdict::proven;
   }
 
   RouteVerdict operator()(const geometry::Blocked& blocked) const {
@@ -194,13 +204,12 @@ class Checker {
     if (blocked.inside) {
       if (!solid_[blocked.by.obstacle]) return RouteVerdict::wrong;
       const Place place = place_in(edges, end);
-      return place == Place::border   ? RouteVerdict::either
-             : place == Place::inside ? RouteVerdict::proven
-                                      : RouteVerdict::wrong;
+      return place == Place::inside ? RouteVerdict::proven : RouteVerdict::wrong;
     }
     if (blocked.by.edge >= edges.size()) return RouteVerdict::wrong;
     const geometry::Segment& s = edges[blocked.by.edge];
-    return meets({end, end}, {spot(s.a), spot(s.b)}, radius2_) ? RouteVerdict::proven : RouteVerdict::wrong;
+    const bool is_near = meets({end, end}, {spot(s.a), spot(s.b)}, radius2_);
+    return is_near && (radius2_ > 0 || free_sides(end).empty()) ? RouteVerdict::proven : RouteVerdict::wrong;
   }
 
  private:
@@ -217,11 +226,85 @@ class Checker {
     return false;
   }
 
-  bool is_clear(const Edge& piece) const {
-    for (const std::vector<geometry::Segment>& edges : edges_)
-      for (const geometry::Segment& s : edges)
-        if (!is_far(piece, s) && meets(piece, {spot(s.a), spot(s.b)}, radius2_)) return false;
+  static Spot middle(const Spot& p, const Spot& q) { return {Number((p.x + q.x) / 2), Number((p.y + q.y) / 2)}; }
+
+  /// Places beside p in the free space, so near that no edge but those through p is as near: at least one on each side
+  /// of these. A disc has p itself, where it is free.
+  std::vector<Spot> free_sides(const Spot& p) const {
+    Number nearest2 = 1;  // the squared distance of the edges that do not hold p
+    std::vector<Spot> along;
+    for (const std::vector<geometry::Segment>& edges : edges_) {
+      for (const geometry::Segment& s : edges) {
+        const Spot a = spot(s.a), b = spot(s.b);
+        const Number distance2 = distance2_to(a, b - a, 0, 1, p);
+        if (distance2 < radius2_) return {};
+        if (distance2 > 0) nearest2 = std::min(nearest2, distance2);
+        for (const Spot& end : {a, b})
+          if (distance2 == 0 && !is_same(end, p)) along.push_back(end - p);
+      }
+    }
+    std::vector<Spot> found;
+    if (along.empty() || radius2_ > 0) {
+      if (!is_inside_any(p)) found.push_back(p);
+      return found;
+    }
+    // Halfway between any two directions of equal length (nearly, in doubles), the opposite of that, and square to it:
+    // those of neighbours are among them, and any other is some place beside p too.
+    for (const Spot& u : along) {
+      for (const Spot& v : along) {
+        const Spot one = of_length_one(u), other = of_length_one(v);
+        const Spot sum{Number(one.x + other.x), Number(one.y + other.y)};
+        for (const Spot& d : {sum, Spot{Number(-sum.x), Number(-sum.y)}, Spot{Number(-one.y), one.x},
+                              Spot{one.y, Number(-one.x)}, Spot{Number(-one.x), Number(-one.y)}}) {
+          if (norm2(d) == 0) continue;
+          // Shorter than the distance to the other edges: each coordinate is at most 3, and nearest2 at most 1.
+          const Number step = nearest2 / 8;
+          const Spot place{Number(p.x + step * d.x), Number(p.y + step * d.y)};
+          const bool is_on_edge =
+              std::any_of(along.begin(), along.end(), [&](const Spot& e) { return cross(e, d) == 0 && dot(e, d) > 0; });
+          if (!is_on_edge && !is_inside_any(place)) found.push_back(place);
+        }
+      }
+    }
+    return found;
+  }
+  /// Nearly.
+  static Spot of_length_one(const Spot& d) {
+    const Number size = std::max(Number(abs(d.x)), Number(abs(d.y)));
+    const double x = Number(d.x / size).get_d(), y = Number(d.y / size).get_d(), length = std::hypot(x, y);
+    return {Number(d.x / size / Number(length)), Number(d.y / size / Number(length))};
+  }
+
+  /// Whether a piece keeps clear; a point may touch obstacles where its first or last piece begins or ends.
+  bool is_clear(const Edge& piece, bool is_first, bool is_last) const {
+    for (const std::vector<geometry::Segment>& edges : edges_) {
+      for (const geometry::Segment& s : edges) {
+        if (is_far(piece, s)) continue;
+        const Edge edge{spot(s.a), spot(s.b)};
+        if (radius2_ > 0 ? meets(piece, edge, radius2_) : touches(piece, edge, is_first, is_last)) return false;
+      }
+    }
     return true;
+  }
+
+  /// By the shares of the piece that lie on the edge's line and between its ends: none but 0 or 1, where these may.
+  static bool touches(const Edge& piece, const Edge& edge, bool first_may, bool last_may) {
+    const Spot d = piece.b - piece.a, e = edge.b - edge.a;
+    if (norm2(d) == 0) return !(first_may && last_may) && meets(piece, edge, 0);
+    const Number slope = cross(e, d), height = cross(e, piece.a - edge.a);
+    if (norm2(e) == 0 || (slope == 0 && height == 0)) {  // a point, or on one line
+      if (norm2(e) == 0 && cross(d, edge.a - piece.a) != 0) return false;
+      Number low = dot(edge.a - piece.a, d) / norm2(d), high = dot(edge.b - piece.a, d) / norm2(d);
+      if (low > high) std::swap(low, high);
+      if (low > 1 || high < 0) return false;
+      return !(high == 0 && first_may) && !(low == 1 && last_may);
+    }
+    if (slope == 0) return false;
+    const Number share = -height / slope;
+    if (share < 0 || share > 1) return false;
+    const Spot at{Number(piece.a.x + share * d.x), Number(piece.a.y + share * d.y)};
+    if (dot(at - edge.a, at - edge.b) > 0) return false;
+    return !(share == 0 && first_may) && !(share == 1 && last_may);
   }
 
   /// By doubles, with more room than any rounding here takes.

@@ -12,11 +12,7 @@
 
 namespace exactvo::test {
 
-enum class RouteVerdict {
-  wrong,
-  proven,
-  either  ///< an end on a polygon's border is not free, whether one says that it is inside or not
-};
+enum class RouteVerdict { wrong, proven };
 
 RouteVerdict verdict_on(const std::vector<geometry::Obstacle>& obstacles, const geometry::RouteQuestion& question,
                         const geometry::RouteAnswer& answer);

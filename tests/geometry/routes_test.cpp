@@ -241,18 +241,10 @@ TEST(RoutesOfPoints, APointPassesEveryGapThatHasAWidth) {
     EXPECT_TRUE(std::holds_alternative<Route>(asked(door(width), 0.0, {-3, 1}, {3, -2}))) << width;
 }
 
-TEST(RoutesOfPoints, AnEndInContactIsBlockedAndOneBesideItIsNot) {
-  const std::vector<Obstacle> two{box_at(0, 0, 2, 2), Polyline{{{5, 0}, {5, 2}}}};
-  for (const Vec2 touching : {Vec2{2, 1}, Vec2{2, 2}, Vec2{5, 1}, Vec2{5, 2}})
-    EXPECT_TRUE(std::holds_alternative<Blocked>(asked(two, 0.0, touching, {-3, -3}))) << to_string({touching});
-  for (const Vec2 beside : {Vec2{above(2.0), 1}, Vec2{above(2.0), above(2.0)}, Vec2{above(5.0), 1}})
-    EXPECT_TRUE(std::holds_alternative<Route>(asked(two, 0.0, beside, {-3, -3}))) << to_string({beside});
-}
-
 // In a turned maze a wall ends beside the one it was to end on, by the rounding of a coordinate: a point passes there.
 TEST(RoutesOfPoints, AreThereWhereSomeDiscHasOneAndHardlyLongerThanTheirBound) {
   SeededRandom random(test::seed_of_run(21));
-  std::size_t counts[3] = {};
+  std::size_t counts[3] = {}, with_room = 0;
   for (int k = 0; k < 240; ++k) {
     const FieldKind kind = test::kFieldKinds[static_cast<std::size_t>(k) % std::size(test::kFieldKinds)];
     const RouteField f = route_field(random, kind);
@@ -264,7 +256,11 @@ TEST(RoutesOfPoints, AreThereWhereSomeDiscHasOneAndHardlyLongerThanTheirBound) {
     EXPECT_EQ(plan.is_reachable(f.start, f.goal), answer.index() == 0) << text;
     ++counts[answer.index()];
     const double widest = map.widest_radius(f.start, f.goal);
-    EXPECT_EQ(widest > 0.0, answer.index() == 0) << text;
+    const bool has_room = map.widest_radius(f.start, f.start) > 0.0 && map.widest_radius(f.goal, f.goal) > 0.0;
+    if (has_room) {
+      EXPECT_EQ(widest > 0.0, answer.index() == 0) << text;
+    }
+    with_room += has_room;
     const auto* route = std::get_if<Route>(&answer);
     if (!route) continue;
     EXPECT_LE(route->length, route->lower_bound * (1.0 + 1e-9)) << text;
@@ -279,6 +275,7 @@ TEST(RoutesOfPoints, AreThereWhereSomeDiscHasOneAndHardlyLongerThanTheirBound) {
   EXPECT_GE(counts[0], 50u);
   EXPECT_GE(counts[1], 1u);
   EXPECT_GE(counts[2], 5u);
+  EXPECT_GE(with_room, 150u);
 }
 
 TEST(RoutesOfPoints, AreTheShortestAmongCells) {

@@ -35,6 +35,11 @@ constexpr const char* kRooms = R"({"name": "rooms", "robots": [{"id": "R", "posi
 constexpr const char* kTriangle =
     "LINESTRING (-1 0, 3 0.1)\nLINESTRING (-0.5 -0.7, 1.5 2.9)\nLINESTRING (2.6 -0.5, 0.7 2.9)\n";
 
+/// A room with thick walls, and two boxes with a common side.
+constexpr const char* kThick =
+    "POLYGON ((0 0, 6 0, 6 6, 0 6, 0 0), (1 1, 5 1, 5 5, 1 5, 1 1))\n"
+    "POLYGON ((10 0, 12 0, 12 2, 10 2, 10 0))\nPOLYGON ((12 0, 14 0, 14 2, 12 2, 12 0))\n";
+
 /// A block in the middle, corridors of one cell round it.
 constexpr const char* kGrid = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n";
 
@@ -43,6 +48,7 @@ class Rooms {
   Rooms() {
     here.write("rooms.json", kRooms);
     here.write("triangle.wkt", kTriangle);
+    here.write("thick.wkt", kThick);
     here.write("grid.map", kGrid);
   }
   Outcome route(const std::string& arguments) const { return here.run("route rooms.json " + arguments); }
@@ -190,7 +196,28 @@ TEST(RouteVerb, APointPassesWhereSomeDiscDoesAndTouchesNothing) {
   const Outcome shut = rooms.here.run("route shut.map --from 1,1 --to 2,2 --radius 0 --cell-point corner");
   EXPECT_EQ(shut.status, 1) << "a gap without width";
   EXPECT_THAT(shut.out, HasSubstr("without a gap"));
-  EXPECT_THAT(rooms.route("--from 6,1 --to 1,1 --radius 0").out, HasSubstr("blocked: the start is on"));
+}
+
+// An end on an edge or a corner was said to be blocked.
+TEST(RouteVerb, APointMayStartAndEndInContact) {
+  const Rooms rooms;
+  EXPECT_THAT(rooms.route("--from 6,1 --to 1,1 --radius 0").out, StartsWith("route: 5 m, "));
+  EXPECT_THAT(rooms.route("--from 6,1 --to 6,1 --radius 0").out, StartsWith("route: 0 m, "));
+  EXPECT_THAT(rooms.route("--from 8,2 --to 10,4 --radius 0").out, StartsWith("route: 4 m, "));
+  const auto thick = [&](const std::string& ends) { return rooms.here.run("route thick.wkt " + ends); };
+  EXPECT_THAT(thick("--from 1,3 --to 6,3 --radius 0").out, StartsWith("separated, the start is enclosed: "));
+  EXPECT_THAT(thick("--from 0.5,3 --to 6,3 --radius 0").out, StartsWith("blocked: the start is inside "));
+  const Outcome shared = thick("--from 9,9 --to 12,1 --radius 0");
+  EXPECT_EQ(shared.status, 1);
+  EXPECT_EQ(shared.out, "blocked: the goal is on polygon 2, with obstacles on every side of it\n");
+  // No disc gets away from a wall that its middle lies on: that is what --widest asks for.
+  const Outcome widest = rooms.route("--from 6,1 --to 1,1 --widest --json");
+  EXPECT_EQ(widest.status, 1);
+  const json answer = json::parse(widest.out);
+  EXPECT_EQ(answer.at("widest_radius"), 0.0);
+  EXPECT_EQ(answer.at("status"), "route");
+  rooms.here.write("widest.json", widest.out);
+  EXPECT_EQ(rooms.here.run("audit --certificate widest.json").status, 0);
 }
 
 TEST(RouteVerb, TheEnclosedEndIsNamed) {
@@ -214,7 +241,11 @@ const Case kCases[] = {{"route", "rooms.json --from 1,1 --to 11,7 --radius 0.45"
                        {"inside", "rooms.json --from 1,1 --to 9,3 --radius 0.4"},
                        {"a point's route", "rooms.json --from 1,1 --to 11,7 --radius 0"},
                        {"a point that is separated", "triangle.wkt --from 1,0.9 --to 5,5 --radius 0"},
-                       {"a point in contact", "rooms.json --from 6,1 --to 1,1 --radius 0"}};
+                       {"a point in contact", "rooms.json --from 6,1 --to 1,1 --radius 0"},
+                       {"a point between corners in contact", "rooms.json --from 6,3 --to 10,4 --radius 0"},
+                       {"a point in contact inside of a room", "thick.wkt --from 1,3 --to 6,3 --radius 0"},
+                       {"a point between two boxes", "thick.wkt --from 12,1 --to 9,9 --radius 0"},
+                       {"a disc in contact", "rooms.json --from 7.5,3 --to 6.5,1 --radius 0.5"}};
 
 /// What was changed, and the certificate that came of it; each claims what is false or not shown.
 using Mutants = std::vector<std::pair<std::string, json>>;
@@ -397,6 +428,7 @@ TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
     const json answer = answer_to(rooms, c);
     const std::string kind = answer.at("status");
     const bool is_route = kind == "route";
+    const bool is_of_disc = is_route && (answer.at("radius") != 0.0 || c.name.find("in contact") == std::string::npos);
     const double too_narrow = answer.at("radius") == 0.0 ? 0.0 : 0.001;
     std::vector<std::pair<const char*, json>> lies{{"status", is_route ? "separated" : "route"},
                                                    {"status", nullptr},
@@ -407,14 +439,14 @@ TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
                                                    {"lower_bound", 11.9},
                                                    {"points", json::array()},
                                                    {"needed_width", 7.0},
-                                                   {"widest_radius", is_route ? too_narrow : 77.0},
+                                                   {"widest_radius", is_of_disc ? too_narrow : 77.0},
                                                    {"widest_radius", "wide"}};
     if (kind == "blocked") lies.emplace_back("blocked", json::parse(R"({"end": "neither", "inside": false})"));
     if (kind == "blocked") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
     if (kind == "separated") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
     ++kinds[is_route ? 0 : kind == "separated" ? 1 : 2];
     json true_beside = answer;
-    true_beside["widest_radius"] = is_route ? 77.0 : too_narrow;
+    true_beside["widest_radius"] = is_of_disc ? 77.0 : too_narrow;
     expect_of_both(rooms.here, true_beside.dump() + "\n", 0, std::string(c.name));
     std::string text;
     for (const auto& [key, lie] : lies) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -190,13 +191,24 @@ bool agrees(const OrderedJson& beside, const char* key, const OrderedJson& value
   return said == nullptr || *said == value;
 }
 
+/// Whether no disc has a route, however small, since an end lies on an edge.
+bool is_in_contact(const std::vector<Obstacle>& obstacles, const RouteQuestion& question) {
+  constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+  const auto has_room = [&](Vec2 p) {
+    return geometry::check(obstacles, {kSmallest, p, p}, Route{{{p, {}, {}}}, 0.0, 0.0}).empty();
+  };
+  return !has_room(question.start) || !has_room(question.goal);
+}
+
 /// Whether the widest radius, where it stands beside, has a route exactly if it is no less than that of the question.
-bool agrees_in_widest(const OrderedJson& beside, double radius, bool is_route) {
+bool agrees_in_widest(const OrderedJson& beside, const std::vector<Obstacle>& obstacles, const RouteQuestion& question,
+                      bool is_route) {
   const OrderedJson* widest = member(beside, "widest_radius");
   if (widest == nullptr) return true;
   if (!widest->is_number()) return false;
   const double number = widest->get<double>();
-  return (number >= radius && number > 0.0) == is_route;
+  const bool is_of_disc = is_route && !(question.radius == 0.0 && is_in_contact(obstacles, question));
+  return (number >= question.radius && number > 0.0) == is_of_disc;
 }
 
 /// Whether the gaps that stand beside start at those points of the chain behind which there is one.
@@ -224,7 +236,8 @@ bool agrees_in_end(const OrderedJson& beside, const OrderedJson& certificate) {
   return same("end") && same("inside");
 }
 
-bool is_of_this_answer(const OrderedJson& beside, const OrderedJson& certificate, const RouteQuestion& question,
+bool is_of_this_answer(const OrderedJson& beside, const OrderedJson& certificate,
+                       const std::vector<Obstacle>& obstacles, const RouteQuestion& question,
                        const RouteAnswer& answer) {
   const auto* route = std::get_if<Route>(&answer);
   const OrderedJson none = nullptr;
@@ -234,7 +247,7 @@ bool is_of_this_answer(const OrderedJson& beside, const OrderedJson& certificate
          agrees(beside, "lower_bound", route ? certificate.at("lower_bound") : none) &&
          agrees(beside, "points", route ? rounded_json(route->points) : none) &&
          agrees(beside, "needed_width", 2.0 * question.radius) && agrees_in_gaps(beside, answer) &&
-         agrees_in_end(beside, certificate) && agrees_in_widest(beside, question.radius, route != nullptr);
+         agrees_in_end(beside, certificate) && agrees_in_widest(beside, obstacles, question, route != nullptr);
 }
 
 std::string claim_words(const RouteQuestion& q, const RouteAnswer& answer, std::size_t obstacles) {
@@ -294,7 +307,8 @@ CheckedCertificate RouteChecker::check_one(const OrderedJson& certificate, const
   const std::string claim = claim_words(question, answer, obstacles_->size());
   const std::string why = geometry::check(*obstacles_, question, answer);
   if (!why.empty()) return {"not proven: " + why, claim, false};
-  if (!is_of_this_answer(beside, certificate, question, answer)) return {"of another answer", claim, false};
+  if (!is_of_this_answer(beside, certificate, *obstacles_, question, answer))
+    return {"of another answer", claim, false};
   return {"valid", claim, true};
 }
 

@@ -370,4 +370,53 @@ bool CellMap::triangle_holds(int triangle, const Point& x) const {
   return true;
 }
 
+Point CellMap::middle_of(int triangle) const {
+  const int* v = triangles[triangle].vertex;
+  const Vector<Rational> a = vertex(v[0]).exact(), b = vertex(v[1]).exact(), c = vertex(v[2]).exact();
+  return {Rational((a.x + b.x + c.x) / 3), Rational((a.y + b.y + c.y) / 3)};
+}
+
+std::vector<CellMap::TriangleAt> CellMap::triangles_at(int triangle, const Point& x) const {
+  const Triangle& first = triangles[triangle];
+  int zero = -1, corner = -1;  // the side that x lies on; the vertex where two of them meet
+  for (int i = 0; i < 3; ++i) {
+    if (orient(vertex(first.vertex[(i + 1) % 3]), vertex(first.vertex[(i + 2) % 3]), x) != 0) continue;
+    if (zero >= 0) corner = 3 - zero - i;
+    zero = i;
+  }
+  if (zero < 0) return {{triangle, -1, -1}};
+  const auto local = [&](int t, int v) {
+    const int* vertices_of = triangles[t].vertex;
+    return static_cast<int>(std::find(vertices_of, vertices_of + 3, v) - vertices_of);
+  };
+  std::vector<TriangleAt> found;
+  if (corner < 0) {
+    found.push_back({triangle, zero, -1});
+    const int other = first.neighbour[zero];
+    if (other >= 0)
+      found.push_back(
+          {other, 3 - local(other, first.vertex[(zero + 1) % 3]) - local(other, first.vertex[(zero + 2) % 3]), -1});
+    return found;
+  }
+  const int v = first.vertex[corner];
+  for (int t = triangle; t >= 0 && (found.empty() || t != triangle);) {
+    const int at = local(t, v);
+    found.push_back({t, (at + 1) % 3, at});
+    t = triangles[t].neighbour[(at + 1) % 3];
+  }
+  return found;
+}
+
+bool CellMap::opens_towards(const std::vector<TriangleAt>& about, const Point& to) const {
+  return std::any_of(about.begin(), about.end(), [&](const TriangleAt& t) {
+    const Triangle& triangle = triangles[t.triangle];
+    const auto side = [&](int a, int b) {
+      return orient(vertex(triangle.vertex[a % 3]), vertex(triangle.vertex[b % 3]), to);
+    };
+    if (!triangle.free) return false;
+    if (t.corner < 0) return side(t.side_to_next + 1, t.side_to_next + 2) > 0;
+    return side(t.corner, t.corner + 1) >= 0 && side(t.corner + 2, t.corner) >= 0;
+  });
+}
+
 }  // namespace exactvo::geometry::routing

@@ -120,8 +120,21 @@ class CellMap {
   bool side_admits(const Side& side, double r) const;
   /// The cell of a triangle in which x lies, or one of those on whose border it lies.
   int cell_in(int triangle, const Point& x) const;
+  /// The mean of its vertices.
+  Point middle_of(int triangle) const;
   /// Whether x lies in the closed triangle.
   bool triangle_holds(int triangle, const Point& x) const;
+  /// The triangles that x lies in, their sides included: one, the two at a side, or all at a vertex, counter-clockwise.
+  /// Triangle k + 1 lies behind `side_to_next` of triangle k. REQUIRES: `triangle_holds(triangle, x)`.
+  struct TriangleAt {
+    int triangle;
+    int side_to_next;  ///< local; -1: x lies on no side of it
+    int corner;        ///< local, where x is a vertex; else -1
+  };
+  std::vector<TriangleAt> triangles_at(int triangle, const Point& x) const;
+  /// Whether the straight way to `to` leaves the point, which lies on a side or is a vertex, through one of the
+  /// triangles about it that are free.
+  bool opens_towards(const std::vector<TriangleAt>& about, const Point& to) const;
 
   PlanarGraph graph;
   std::vector<Point> vertices;  ///< the graph's, then the corners of the square

@@ -2,6 +2,7 @@
 #include "routes/chain.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "routes/signs.h"
@@ -40,12 +41,13 @@ class ChainFinder {
   };
 
   bool odd(const Point& a, const Point& b) const { return ray_crosses(s_, a, b) != ray_crosses(t_, a, b); }
-  bool is_wall(int node) const { return node >= vertices_; }
+  bool is_wall(int node) const { return node >= vertices_ && !graph_.is_part(node); }
+  const Point& place_of(int node) const { return map_.vertex(graph_.vertex_of(node)); }
   const PlanarGraph::Edge& edge_of(int node) const { return map_.graph.edges[node - vertices_]; }
 
   bool is_odd(int from, const Arc& arc) const {
-    if (arc.link == ArcGraph::kSide) return odd(map_.vertex(from), map_.vertex(arc.to));
-    const int wall = is_wall(from) ? from : arc.to, vertex = is_wall(from) ? arc.to : from;
+    if (arc.link == ArcGraph::kSide) return odd(place_of(from), place_of(arc.to));
+    const int wall = is_wall(from) ? from : arc.to, vertex = graph_.vertex_of(is_wall(from) ? arc.to : from);
     const PlanarGraph::Edge& e = edge_of(wall);
     if (arc.link == ArcGraph::kEnd) return vertex == e.b && odd(map_.vertex(e.a), map_.vertex(e.b));
     const Point& foot = graph_.foot(arc.link);
@@ -139,8 +141,8 @@ class ChainFinder {
         out.chain.push_back({shown(contact(leaving.arc, leaving.arc.to)), on, gap});
       } else {
         // Where no gap follows, a wall does: the point lies on that.
-        const EdgeName on = gap ? map_.graph.on[node] : edge_of(leaving.arc.to).on;
-        out.chain.push_back({shown(map_.vertex(node)), on, gap});
+        const EdgeName on = gap ? map_.graph.on[graph_.vertex_of(node)] : edge_of(leaving.arc.to).on;
+        out.chain.push_back({shown(place_of(node)), on, gap});
       }
     }
     drop_repeated(out.chain);
@@ -149,7 +151,7 @@ class ChainFinder {
 
   /// Where an arc between a wall and `vertex` touches the wall.
   Point contact(const Arc& arc, int vertex) const {
-    return arc.link == ArcGraph::kEnd ? map_.vertex(vertex) : graph_.foot(arc.link);
+    return arc.link == ArcGraph::kEnd ? place_of(vertex) : graph_.foot(arc.link);
   }
 
   /// A point that is followed by itself along an edge says nothing.
@@ -168,8 +170,7 @@ class ChainFinder {
 
   const CellMap& map_;
   const ArcGraph& graph_;
-  const Point& s_;
-  const Point& t_;
+  Point s_, t_;
   int vertices_;
 };
 
@@ -178,9 +179,7 @@ class ChainFinder {
 ArcGraph::ArcGraph(const ClearancePlan& plan) {
   const CellMap& map = plan.map();
   const int vertices = static_cast<int>(map.graph.vertices.size());
-  struct Pair {
-    int a, b, link;
-  };
+  whole_ = vertices + static_cast<int>(map.graph.edges.size());
   std::vector<Pair> pairs;
   for (std::size_t k = 0; k < map.graph.edges.size(); ++k) {
     const int wall = vertices + static_cast<int>(k);
@@ -199,7 +198,63 @@ ArcGraph::ArcGraph(const ClearancePlan& plan) {
     feet_[k] = map.foot(link);
     pairs.push_back({link.vertex, vertices + link.wall, static_cast<int>(k)});
   }
-  first_.assign(map.graph.vertices.size() + map.graph.edges.size() + 1, 0);
+  set_arcs(whole_, pairs);
+}
+
+namespace {
+
+/// The walls at a vertex by solid angle: the numbers of the graph's edges between two free triangles, and where there
+/// is a free triangle on both sides of one, that edge alone.
+std::vector<std::vector<int>> walls_by_angle(const CellMap& map, const std::vector<CellMap::TriangleAt>& about) {
+  std::vector<std::vector<int>> angles;
+  const std::size_t n = about.size();
+  const auto is_free = [&](std::size_t k) { return map.triangles[about[k % n].triangle].free; };
+  std::size_t first = 0;
+  while (first < n && !is_free(first)) ++first;
+  bool is_open = false;  // whether the last angle goes on
+  for (std::size_t k = first; k < first + n; ++k) {
+    if (is_free(k)) is_open = false;
+    const CellMap::TriangleAt& t = about[k % n];
+    const int wall = map.triangles[t.triangle].wall[t.side_to_next];
+    if (wall < 0) continue;
+    if (!is_open) angles.emplace_back();
+    is_open = true;
+    angles.back().push_back(wall);
+  }
+  return angles;
+}
+
+}  // namespace
+
+ArcGraph::ArcGraph(const ArcGraph& graph, const CellMap& map, const std::vector<CellMap::TriangleAt>& about)
+    : feet_(graph.feet_), whole_(graph.whole_), vertex_of_part_(graph.vertex_of_part_) {
+  const int vertices = static_cast<int>(map.graph.vertices.size());
+  const CellMap::TriangleAt& first = about.front();
+  const int vertex = first.corner >= 0 ? map.triangles[first.triangle].vertex[first.corner] : -1;
+  std::vector<int> node_of(map.graph.edges.size(), vertex);  // that stands for the vertex beside a wall
+  int cut_wall = -1;
+  if (vertex >= 0) {
+    const std::vector<std::vector<int>> angles = walls_by_angle(map, about);
+    for (std::size_t k = 1; k < angles.size(); ++k) {
+      for (const int wall : angles[k]) node_of[wall] = whole_ + static_cast<int>(vertex_of_part_.size());
+      vertex_of_part_.push_back(vertex);
+    }
+  } else if (map.triangles[first.triangle].free && map.triangles[about.back().triangle].free) {
+    cut_wall = vertices + map.triangles[first.triangle].wall[first.side_to_next];
+  }
+  std::vector<Pair> pairs;
+  for (int node = 0; node < graph.size(); ++node) {
+    for (const Arc* arc = graph.begin(node); arc != graph.end(node); ++arc) {
+      if (node > arc->to || node == cut_wall || arc->to == cut_wall) continue;
+      const bool is_here = vertex >= 0 && node == vertex && arc->to >= vertices && arc->to < whole_;
+      pairs.push_back({is_here ? node_of[arc->to - vertices] : node, arc->to, arc->link});
+    }
+  }
+  set_arcs(whole_ + static_cast<int>(vertex_of_part_.size()), pairs);
+}
+
+void ArcGraph::set_arcs(int nodes, const std::vector<Pair>& pairs) {
+  first_.assign(static_cast<std::size_t>(nodes) + 1, 0);
   for (const Pair& p : pairs) {
     ++first_[p.a + 1];
     ++first_[p.b + 1];
@@ -225,8 +280,18 @@ ExactPoint shown(const Point& p) {
   return out;
 }
 
-Separated separating_chain(const ClearancePlan& plan, const ArcGraph& graph, const Point& s, const Point& t) {
-  return ChainFinder(plan, graph, s, t)();
+Separated separating_chain(const ClearancePlan& plan, const ArcGraph& graph, const ChainEnd& s, const ChainEnd& t) {
+  const CellMap& map = plan.map();
+  // Beside an end in contact, on any side of it: no chain of the cut graph tells them apart.
+  const auto beside = [&](const ChainEnd& end) {
+    for (const CellMap::TriangleAt& at : end.about)
+      if (map.triangles[at.triangle].free) return map.middle_of(at.triangle);
+    return Point(end.at);
+  };
+  std::optional<ArcGraph> cut;
+  for (const ChainEnd* end : {&s, &t})
+    if (!end->about.empty()) cut.emplace(ArcGraph(cut ? *cut : graph, map, end->about));
+  return ChainFinder(plan, cut ? *cut : graph, beside(s), beside(t))();
 }
 
 }  // namespace exactvo::geometry::routing

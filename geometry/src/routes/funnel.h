@@ -2,7 +2,9 @@
 #pragma once
 
 /// \file
-/// The turns of the shortest curve through given portals: a funnel (Lee and Preparata 1984). Rounded.
+/// The turns of the shortest curve through given portals: a funnel (Lee and Preparata 1984). Rounded; for a
+/// point it decides by exact turns. (Where walls end beside another by a rounding, several portals lie almost on one
+/// line.)
 
 #include <cstddef>
 #include <vector>
@@ -21,6 +23,13 @@ class PortalRow {
       : plan_(&plan), portals_(&portals), from_left_(std::move(from_left)) {}
 
   std::size_t size() const { return portals_->size(); }
+  /// Whether the ends are vertices, as they are for a point, and not rounded places beside them.
+  bool has_exact_ends() const { return plan_->radius() == 0.0; }
+  /// That end, a fraction where the vertex is one. REQUIRES: `has_exact_ends()`.
+  Point exact_end(std::size_t k, bool left) const {
+    const int v = vertex(k, left);
+    return v >= 0 ? plan_->map().vertex(v) : Point(end(k, left));
+  }
   int portal(std::size_t k) const { return (*portals_)[k]; }
   bool is_from_left(std::size_t k) const { return from_left_[k]; }
   /// Where the centre can be on the k-th portal: the end on the left of the way, or on its right.

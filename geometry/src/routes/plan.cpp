@@ -167,6 +167,10 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
   if (gap < 0.0) from.at = to.at = 0.5 * (from.at + to.at);
   out.from = x + from.at * u;
   out.to = x + to.at * u;
+  if (radius_ == 0.0) {  // in the same bits on every side that ends at the vertex: a funnel asks which of two is where
+    if (portal.from.vertex >= 0) out.from = map_->vertex(portal.from.vertex).rounded();
+    if (portal.to.vertex >= 0) out.to = map_->vertex(portal.to.vertex).rounded();
+  }
   out.from_corner = from.corner;
   out.to_corner = to.corner;
   out.from_turns = from.turns;
@@ -361,6 +365,15 @@ bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
     const auto [i, j] = map_->ends_of(piece);
     const Point &a = map_->vertex(i), &b = map_->vertex(j);
     return strip.is_clearly_apart(a.rounded(), b.rounded()) || keeps_clear(p, q, a, b, radius_);
+  });
+}
+
+bool ClearancePlan::is_clear_but_at(const Point& p, const Point& q, bool p_may, bool q_may) const {
+  const Strip strip(p.rounded(), q.rounded(), 0.0);
+  return grid_->for_each_near(p.rounded(), q.rounded(), 0.0, [&](int piece) {
+    const auto [i, j] = map_->ends_of(piece);
+    const Point &a = map_->vertex(i), &b = map_->vertex(j);
+    return strip.is_clearly_apart(a.rounded(), b.rounded()) || !touch(p, q, a, b, p_may, q_may);
   });
 }
 

@@ -88,6 +88,8 @@ class ClearancePlan {
   /// Whether the disc can move straight from p to q: every piece stays at least a radius away, and a point (radius 0)
   /// touches none. Exact.
   bool is_clear(const Point& p, const Point& q) const;
+  /// Of a point: whether it touches no piece on its way from p to q but at an end that may.
+  bool is_clear_but_at(const Point& p, const Point& q, bool p_may, bool q_may) const;
   /// The pieces nearer than r to x, each once, ascending.
   std::vector<int> pieces_within(Vec2 x, double r) const;
 

@@ -25,10 +25,30 @@ double length_of(const Polyline& points) {
   return length;
 }
 
+/// What corners of a route from s to t see of each other: s and t may touch obstacles where they say so. A polyline
+/// between two such ends that touches nothing else could lead through the inside of an obstacle: it must not begin so.
+class Sight {
+ public:
+  Sight(const ClearancePlan& plan, const RouteEnd& s, const RouteEnd& t)
+      : plan_(plan), first_(s), first_may_(s.inside.has_value()), last_may_(t.inside.has_value()) {}
+
+  bool operator()(const Polyline& corners, std::size_t i, std::size_t j) const {
+    const bool i_may = i == 0 && first_may_, j_may = j + 1 == corners.size() && last_may_;
+    if (!i_may && !j_may) return plan_.is_clear(corners[i], corners[j]);
+    return (!i_may || plan_.map().opens_towards(first_.about, corners[j])) &&
+           plan_.is_clear_but_at(corners[i], corners[j], i_may, j_may);
+  }
+
+ private:
+  const ClearancePlan& plan_;
+  const RouteEnd& first_;
+  bool first_may_, last_may_;
+};
+
 /// Leaves corners out where two others see each other. Nothing where two neighbours do not.
 class Shortener {
  public:
-  Shortener(const ClearancePlan& plan, const Polyline& corners) : plan_(plan), corners_(corners) {}
+  Shortener(const Sight& sight, const Polyline& corners) : sight_(sight), corners_(corners) {}
 
   std::optional<Polyline> operator()() {
     kept_.assign(1, 0);
@@ -50,7 +70,7 @@ class Shortener {
   }
 
  private:
-  bool sees(std::size_t i, std::size_t j) const { return plan_.is_clear(corners_[i], corners_[j]); }
+  bool sees(std::size_t i, std::size_t j) const { return sight_(corners_, i, j); }
 
   /// In place of the last one, where that is not needed.
   void keep(std::size_t corner) {
@@ -72,7 +92,7 @@ class Shortener {
     return found;
   }
 
-  const ClearancePlan& plan_;
+  const Sight& sight_;
   const Polyline& corners_;
   std::vector<std::size_t> kept_;
 };
@@ -80,11 +100,11 @@ class Shortener {
 /// The shortest curve through a row of portals, and polylines beside it.
 class TautCurve {
  public:
-  TautCurve(const ClearancePlan& plan, const PortalRow& row, Vec2 s, Vec2 t)
-      : plan_(plan), row_(row), turns_(turns_through(row, s, t)) {
-    points_.push_back(s);
+  TautCurve(const ClearancePlan& plan, const PortalRow& row, const RouteEnd& s, const RouteEnd& t)
+      : plan_(plan), row_(row), s_(s), t_(t), sight_(plan, s, t), turns_(turns_through(row, s.at, t.at)) {
+    points_.push_back(s.at);
     for (const Turn& turn : turns_) points_.push_back(row.end(turn.at, turn.left));
-    points_.push_back(t);
+    points_.push_back(t.at);
     for (std::size_t k = 1; k < points_.size(); ++k) length_ += norm(points_[k] - points_[k - 1]);
     for (const Vec2 p : points_) size_ = std::max(size_, largest_of(p));
   }
@@ -96,6 +116,7 @@ class TautCurve {
   /// One corner beside each vertex that the curve touches, `inset` m away. Nothing where that cannot be proven.
   std::optional<Polyline> beside_vertices(double inset) const {
     Polyline corners{points_.front()};
+    if (s_.inside) corners.emplace_back(moved_inside(s_, inset));
     int last = -1;  // the vertex beside which the last corner lies
     for (std::size_t leg = 0; leg + 1 < points_.size(); ++leg) {
       const Vec2 in = unit(points_[leg + 1] - points_[leg]);
@@ -115,13 +136,16 @@ class TautCurve {
       corners.emplace_back(beside(points_[leg + 1], turn.left, in, out, inset));
       last = vertex;
     }
+    if (t_.inside) corners.emplace_back(moved_inside(t_, inset));
     corners.emplace_back(points_.back());
-    return Shortener(plan_, corners)();
+    return Shortener(sight_, corners)();
   }
 
   /// A corner in each portal, exact where rounded ones cannot be proven.
   Polyline through_portals(double inset) const {
     Polyline corners{points_.front()};
+    if (s_.inside) corners.emplace_back(moved_inside(s_, inset));
+    const std::size_t first = corners.size();  // of those in portals
     std::vector<OnPortal> shares;
     for (std::size_t leg = 0; leg + 1 < points_.size(); ++leg) {
       const std::size_t end = leg < turns_.size() ? turns_[leg].at + 1 : row_.size();
@@ -130,23 +154,29 @@ class TautCurve {
         corners.emplace_back(at(k, shares.back()));
       }
     }
+    if (t_.inside) corners.emplace_back(moved_inside(t_, inset));
     corners.emplace_back(points_.back());
+    const auto exactly = [&](std::size_t i) {
+      if (i < first) return exactly_inside(s_, inset);
+      if (i >= first + shares.size()) return exactly_inside(t_, inset);
+      return exactly_at(i - first, shares[i - first]);
+    };
     std::vector<char> is_exact(corners.size(), 0);
     is_exact.front() = is_exact.back() = 1;
     for (std::size_t k = 0; k + 1 < corners.size();) {
       const bool doubtful = !is_exact[k] || !is_exact[k + 1];
-      if (!doubtful || plan_.is_clear(corners[k], corners[k + 1])) {
+      if (!doubtful || sight_(corners, k, k + 1)) {
         ++k;
         continue;
       }
       for (const std::size_t i : {k, k + 1}) {
         if (is_exact[i]) continue;
-        corners[i] = exactly_at(i - 1, shares[i - 1]);
+        corners[i] = exactly(i);
         is_exact[i] = 1;
       }
       if (k > 0) --k;
     }
-    std::optional<Polyline> fewer = Shortener(plan_, corners)();
+    std::optional<Polyline> fewer = Shortener(sight_, corners)();
     return fewer ? std::move(*fewer) : corners;
   }
 
@@ -194,6 +224,19 @@ class TautCurve {
     const Rational share(place.share);
     return {Rational(x.x + share * (y.x - x.x)), Rational(x.y + share * (y.y - x.y))};
   }
+  /// From an end in contact into its triangle, `inset` m, but not beyond its middle.
+  static double share_inside(const RouteEnd& end, double inset) {
+    const double room = norm(end.inside->rounded() - end.at);
+    return inset < room ? inset / room : 1.0;
+  }
+  static Vec2 moved_inside(const RouteEnd& end, double inset) {
+    return end.at + share_inside(end, inset) * (end.inside->rounded() - end.at);
+  }
+  static Point exactly_inside(const RouteEnd& end, double inset) {
+    const Vector<Rational> from = Point(end.at).exact(), to = end.inside->exact();
+    const Rational share(share_inside(end, inset));
+    return {Rational(from.x + share * (to.x - from.x)), Rational(from.y + share * (to.y - from.y))};
+  }
   /// Away from a vertex on the left or right of the curve, which comes along `in` and leaves along `out`.
   static Vec2 beside(Vec2 vertex, bool left, Vec2 in, Vec2 out, double inset) {
     const Vec2 on = in + out, right{on.y, -on.x};
@@ -202,6 +245,8 @@ class TautCurve {
 
   const ClearancePlan& plan_;
   const PortalRow& row_;
+  const RouteEnd &s_, &t_;
+  Sight sight_;
   std::vector<Turn> turns_;
   std::vector<Vec2> points_;  ///< start, turns, goal
   double length_ = 0.0, size_ = 0.0;
@@ -209,9 +254,9 @@ class TautCurve {
 
 }  // namespace
 
-std::vector<Point> point_route(const ClearancePlan& plan, Vec2 s, int start, Vec2 t, const Way& way) {
+std::vector<Point> point_route(const ClearancePlan& plan, const RouteEnd& s, const RouteEnd& t, const Way& way) {
   constexpr double kHardlyLonger = 1.0 + 1e-9;
-  const PortalRow row(plan, way.portals, start);
+  const PortalRow row(plan, way.portals, way.start);
   const TautCurve curve(plan, row, s, t);
   Polyline best;
   double length = 0.0;
@@ -228,6 +273,9 @@ std::vector<Point> point_route(const ClearancePlan& plan, Vec2 s, int start, Vec
     if (is_short(curve.beside_vertices(share * curve.size()))) return best;
   for (const double share : {0x1p-48, 0x1p-68, 0x1p-108})
     if (is_short(curve.through_portals(share * curve.size()))) return best;
+  // Ends in contact may lie on one line of walls, and very near to each other.
+  constexpr double kOfLength = 0x1p-34;
+  if (s.inside || t.inside) is_short(curve.through_portals(kOfLength * curve.length()));
   return best;
 }
 

@@ -98,22 +98,52 @@ bool cross_inside(const Stretch& s, const Stretch& t) {
   return turn(s, t.a) * turn(s, t.b) < 0 && turn(t, s.a) * turn(t, s.b) < 0;
 }
 
-/// Squared distances. A point, whose radius is 0, must not touch anything.
-bool is_too_near(const Rational& distance, const Rational& radius) {
-  return distance < radius || (sgn(radius) == 0 && sgn(distance) == 0);
-}
-
 bool comes_nearer_than(const Stretch& s, const Stretch& t, const Rational& squared) {
-  return cross_inside(s, t) || is_too_near(squared_distance(s.a, t), squared) ||
-         is_too_near(squared_distance(s.b, t), squared) || is_too_near(squared_distance(t.a, s), squared) ||
-         is_too_near(squared_distance(t.b, s), squared);
+  return cross_inside(s, t) || squared_distance(s.a, t) < squared || squared_distance(s.b, t) < squared ||
+         squared_distance(t.a, s) < squared || squared_distance(t.b, s) < squared;
 }
 
-/// Whether the ray from p to the right crosses ab; of its ends the upper one counts.
-bool ray_crosses(const Place& p, const Place& a, const Place& b) {
-  if ((a.y > p.y) == (b.y > p.y)) return false;
+bool lies_on(const Place& p, const Stretch& s) {
+  return sgn(squared_distance(p, s)) == 0;
+}
+
+/// Whether two stretches have a point in common other than an end of the first that may (`a_may`, `b_may`).
+bool touch(const Stretch& s, const Stretch& t, bool a_may, bool b_may) {
+  const bool a_on = lies_on(s.a, t), b_on = lies_on(s.b, t);
+  if ((a_on && !a_may) || (b_on && !b_may) || (a_on && b_on && !(s.a == s.b))) return true;
+  for (const Place& p : {t.a, t.b})
+    if (lies_on(p, s) && !(a_may && p == s.a) && !(b_may && p == s.b)) return true;
+  return cross_inside(s, t);
+}
+
+/// Whether the ray from p along d crosses ab, behind p; of its ends the one on the left counts.
+bool ray_crosses(const Place& p, const Place& d, const Place& a, const Place& b) {
+  const bool is_east = sgn(d.y) == 0 && sgn(d.x) > 0;  // as it mostly is: without products
+  const auto is_left = [&](const Place& x) { return is_east ? x.y > p.y : sgn(outer(d, x - p)) > 0; };
+  const bool b_left = is_left(b);
+  if (is_left(a) == b_left) return false;
   const int side = sgn(outer(b - a, p - a));
-  return b.y > a.y ? side > 0 : side < 0;
+  return b_left ? side > 0 : side < 0;
+}
+const Place& to_the_right() {
+  static const Place east{1, 0};
+  return east;
+}
+
+/// By their angle from the direction to the right, counter-clockwise.
+bool turns_less(const Place& u, const Place& v) {
+  const auto is_upper = [](const Place& d) { return sgn(d.y) > 0 || (sgn(d.y) == 0 && sgn(d.x) > 0); };
+  if (is_upper(u) != is_upper(v)) return is_upper(u);
+  return sgn(outer(u, v)) > 0;
+}
+
+/// A direction that is passed on the turn from u to v, counter-clockwise; from u to itself it is a whole turn.
+Place between(const Place& u, const Place& v) {
+  const int turn = sgn(outer(u, v));
+  if (turn == 0 && sgn(inner(u, v)) > 0) return {Rational(-u.x), Rational(-u.y)};
+  if (turn == 0) return {Rational(-u.y), u.x};
+  const Rational sign(turn);
+  return {Rational(sign * (u.x + v.x)), Rational(sign * (u.y + v.y))};
 }
 
 class Checker {
@@ -137,9 +167,11 @@ class Checker {
     if (points.empty()) return "no points";
     if (!(points.front() == start_)) return at(0) + "not the start";
     if (!(points.back() == goal_)) return at(points.size() - 1) + "not the goal";
-    if (inside_any(start_)) return at(0) + "inside an obstacle";
-    for (std::size_t k = 0; k + 1 < std::max<std::size_t>(points.size(), 2); ++k) {
-      const std::string why = too_near({points[k], points[std::min(k + 1, points.size() - 1)]});
+    if (!leaves_into_the_open(points)) return at(0) + "inside an obstacle";
+    const std::size_t pieces = std::max<std::size_t>(points.size(), 2) - 1;
+    for (std::size_t k = 0; k < pieces; ++k) {
+      const std::string why =
+          too_near({points[k], points[std::min(k + 1, points.size() - 1)]}, k == 0, k + 1 == pieces);
       if (!why.empty()) return at(k) + why;
     }
     constexpr double kRounding = 0x1p-40;  // far more than a sum of 2^12 square roots is off by
@@ -154,7 +186,7 @@ class Checker {
   std::string operator()(const Separated& separated) const {
     const std::vector<ChainPoint>& chain = separated.chain;
     if (chain.size() < 2) return "fewer than two points";
-    bool about_start = false, about_goal = false;
+    std::vector<Stretch> sides;
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const ChainPoint &here = chain[k], &next = chain[(k + 1) % chain.size()];
       const std::optional<Place> p = place_of(here.point), q = place_of(next.point);
@@ -167,23 +199,35 @@ class Checker {
       } else if (!lies_on(*q, edge(here.on))) {
         return at(k) + "the next point is not on its edge";
       }
-      about_start ^= ray_crosses(start_, *p, *q);
-      about_goal ^= ray_crosses(goal_, *p, *q);
+      sides.push_back({*p, *q});
     }
-    if (about_start == about_goal) return "it does not separate the start from the goal";
-    // What separates must keep off both: else it could pass through one of them.
-    for (const Place* end : {&start_, &goal_})
-      if (inside_any(*end) || !too_near({*end, *end}).empty()) return "an end is not free";
-    return "";
+    // The chain may touch a point's ends, but must pass each of them on one side.
+    std::vector<bool> is_round[2];
+    for (const Place* end : {&start_, &goal_}) {
+      for (const Place& d : open_directions(*end)) {
+        bool round = false;
+        for (const Stretch& side : sides) round ^= ray_crosses(*end, d, side.a, side.b);
+        is_round[end == &goal_].push_back(round);
+      }
+    }
+    if (is_round[0].empty() || is_round[1].empty()) return "an end is not free";
+    for (const std::vector<bool>& round : is_round)
+      if (std::find(round.begin(), round.end(), !round.front()) != round.end()) return "it passes through an end";
+    return is_round[0].front() == is_round[1].front() ? "it does not separate the start from the goal" : "";
   }
 
   std::string operator()(const Blocked& blocked) const {
     const Place& end = blocked.end == Blocked::End::start ? start_ : goal_;
-    if (blocked.inside)
-      return blocked.by.obstacle < edges_.size() && inside(blocked.by.obstacle, end) ? "" : "not inside that obstacle";
+    if (blocked.inside) {
+      if (blocked.by.obstacle >= edges_.size() || !inside(blocked.by.obstacle, end, to_the_right()))
+        return "not inside that obstacle";
+      return is_on_edge(blocked.by.obstacle, end) ? "on the edge of that obstacle" : "";
+    }
     if (!exists(blocked.by)) return "no such edge";
-    return is_too_near(squared_distance(end, edge(blocked.by)), squared_) ? ""
-                                                                          : "not nearer than the radius to that edge";
+    const Rational distance = squared_distance(end, edge(blocked.by));
+    if (sgn(radius_) > 0) return distance < squared_ ? "" : "not nearer than the radius to that edge";
+    if (sgn(distance) != 0) return "not on that edge";
+    return open_directions(end).empty() ? "" : "free on a side of that edge";
   }
 
  private:
@@ -193,21 +237,59 @@ class Checker {
   }
   Stretch edge(const EdgeName& name) const { return stretch_of(edges_[name.obstacle][name.edge]); }
 
-  static bool lies_on(const Place& p, const Stretch& s) { return sgn(squared_distance(p, s)) == 0; }
-
-  bool inside(std::size_t obstacle, const Place& p) const {
+  bool is_on_edge(std::size_t obstacle, const Place& p) const {
+    return std::any_of(edges_[obstacle].begin(), edges_[obstacle].end(),
+                       [&](const Segment& e) { return lies_on(p, stretch_of(e)); });
+  }
+  /// Whether the obstacle holds what follows p along d, which no edge through p does.
+  bool inside(std::size_t obstacle, const Place& p, const Place& d) const {
     bool in = false;
     if (solid_[obstacle])
-      for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, place_of(e.a), place_of(e.b));
+      for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, d, place_of(e.a), place_of(e.b));
     return in;
   }
-  bool inside_any(const Place& p) const {
+  bool inside_any(const Place& p, const Place& d) const {
     for (std::size_t i = 0; i < edges_.size(); ++i)
-      if (inside(i, p)) return true;
+      if (inside(i, p, d)) return true;
     return false;
   }
 
-  std::string too_near(const Stretch& piece) const {
+  /// Where p is free: a direction from it into each part of the free space that it is a point of. For a radius above 0
+  /// that is one. A point may lie on edges: then one between each two of them that follow one another round it.
+  std::vector<Place> open_directions(const Place& p) const {
+    std::vector<Place> along;
+    bool is_near = false;
+    for_each_edge_near({p, p}, [&](std::size_t, std::size_t, const Stretch& e) {
+      is_near = is_near || squared_distance(p, e) < squared_;
+      if (sgn(radius_) > 0 || !lies_on(p, e)) return;
+      for (const Place& end : {e.a, e.b})
+        if (!(end == p)) along.push_back(end - p);
+    });
+    if (is_near) return {};
+    std::sort(along.begin(), along.end(), turns_less);
+    std::vector<Place> open;
+    if (along.empty()) open.push_back(to_the_right());
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      const Place &u = along[k], &v = along[(k + 1) % along.size()];
+      const bool is_last_of_its_kind = k + 1 == along.size() || turns_less(u, v);
+      if (is_last_of_its_kind) open.push_back(between(u, v));
+    }
+    open.erase(std::remove_if(open.begin(), open.end(), [&](const Place& d) { return inside_any(p, d); }), open.end());
+    return open;
+  }
+
+  /// Whether a route begins outside of all obstacles; what touches no edge on its way stays there.
+  bool leaves_into_the_open(const std::vector<Place>& points) const {
+    if (points.size() < 2 || points[0] == points[1]) return !open_directions(start_).empty();
+    bool touches = false;
+    for_each_edge_near({start_, start_},
+                       [&](std::size_t, std::size_t, const Stretch& e) { touches = touches || lies_on(start_, e); });
+    return !inside_any(start_, touches ? points[1] - points[0] : to_the_right());
+  }
+
+  /// Calls f(obstacle, edge, stretch) for every edge that may come within a radius of the piece, and some others.
+  template <typename F>
+  void for_each_edge_near(const Stretch& piece, const F& f) const {
     const auto [left, right] = std::minmax(piece.a.x, piece.b.x);
     const auto [low, high] = std::minmax(piece.a.y, piece.b.y);
     const double x0 = not_above(left - radius_), x1 = not_below(right + radius_);
@@ -217,11 +299,21 @@ class Checker {
         const Segment& e = edges_[i][k];
         const bool apart = (e.a.x < x0 && e.b.x < x0) || (e.a.x > x1 && e.b.x > x1) || (e.a.y < y0 && e.b.y < y0) ||
                            (e.a.y > y1 && e.b.y > y1);
-        if (!apart && comes_nearer_than(piece, stretch_of(e), squared_))
-          return "nearer to edge " + std::to_string(k) + " of obstacle " + std::to_string(i) + " than the radius";
+        if (!apart) f(i, k, stretch_of(e));
       }
     }
-    return "";
+  }
+
+  /// A point may touch obstacles with the first end of its first piece and with the last end of its last.
+  std::string too_near(const Stretch& piece, bool is_first, bool is_last) const {
+    std::string why;
+    for_each_edge_near(piece, [&](std::size_t i, std::size_t k, const Stretch& e) {
+      const bool is_wrong =
+          sgn(radius_) > 0 ? comes_nearer_than(piece, e, squared_) : touch(piece, e, is_first, is_last);
+      if (why.empty() && is_wrong)
+        why = "nearer to edge " + std::to_string(k) + " of obstacle " + std::to_string(i) + " than the radius";
+    });
+    return why;
   }
 
   Rational radius_, squared_;

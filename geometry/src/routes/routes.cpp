@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 #include <optional>
 
@@ -148,7 +149,7 @@ struct RoutePlan::State {
     idle.pop_back();
     return search;
   }
-  Separated chain_between(Vec2 start, Vec2 goal) {
+  Separated chain_between(const routing::ChainEnd& start, const routing::ChainEnd& goal) {
     std::call_once(arcs_made, [this] { arcs.emplace(plan); });
     return routing::separating_chain(plan, *arcs, start, goal);
   }
@@ -160,9 +161,11 @@ struct RoutePlan::State {
 
 namespace {
 
-/// Where a start or goal lies: its cell, or what blocks it.
+/// Where a start or goal lies: the cells that it can leave into, or what blocks it.
 struct Located {
-  int cell = -1;
+  std::vector<int> cells;  ///< one, unless it is a point's and touches an obstacle; none where it is blocked
+  /// Where it is a point's and touches an obstacle, the triangles about it.
+  std::vector<CellMap::TriangleAt> about;
   Blocked blocked;
 };
 
@@ -197,32 +200,73 @@ EdgeName name_of(const CellMap& map, int piece) {
   return piece < edges ? map.graph.edges[piece].on : map.graph.on[map.graph.isolated[piece - edges]];
 }
 
-/// The first polygon that holds x, which lies on no edge; the number of obstacles if there is none.
+/// The first polygon that holds x inside; the number of obstacles if there is none.
 std::size_t polygon_round(const std::vector<Obstacle>& obstacles, Vec2 x) {
   const auto holds = [&](const Obstacle& obstacle) {
     const auto* polygon = std::get_if<Polygon>(&obstacle);
-    return polygon != nullptr && contains(*polygon, x);
+    return polygon != nullptr && locate(*polygon, x) == Place::inside;
   };
   return static_cast<std::size_t>(std::find_if(obstacles.begin(), obstacles.end(), holds) - obstacles.begin());
+}
+
+/// The free cells among those of the triangles about x, each once.
+std::vector<int> free_cells(const CellMap& map, const std::vector<CellMap::TriangleAt>& about, Vec2 x) {
+  std::vector<int> cells;
+  for (const CellMap::TriangleAt& t : about) {
+    if (!map.triangles[t.triangle].free) continue;
+    const int cell = map.cell_in(t.triangle, x);
+    if (std::find(cells.begin(), cells.end(), cell) == cells.end()) cells.push_back(cell);
+  }
+  return cells;
 }
 
 Located located(const RouteMap::Parts& parts, const ClearancePlan& plan, Vec2 x, Blocked::End end) {
   Located out;
   out.blocked.end = end;
   const int piece = plan.piece_too_near(x);
-  if (piece >= 0) {
-    out.blocked.by = name_of(parts.cells, piece);
-    return out;
-  }
+  if (piece >= 0) out.blocked.by = name_of(parts.cells, piece);
+  if (piece >= 0 && plan.radius() > 0.0) return out;
   const int triangle = triangle_of(parts.cells, parts.grid, x);
   if (triangle < 0) throw std::runtime_error("routes: no triangle holds " + to_string({x}));
-  if (parts.cells.triangles[triangle].free) {
-    out.cell = plan.map().cell_in(triangle, x);
-  } else {
-    out.blocked.inside = true;
-    out.blocked.by.obstacle = polygon_round(parts.obstacles, x);
+  if (piece >= 0) {
+    out.about = parts.cells.triangles_at(triangle, x);
+    out.cells = free_cells(plan.map(), out.about, x);
+  } else if (parts.cells.triangles[triangle].free) {
+    out.cells.push_back(plan.map().cell_in(triangle, x));
   }
+  if (!out.cells.empty()) return out;
+  // On an edge that two polygons share x is inside neither.
+  const std::size_t polygon = polygon_round(parts.obstacles, x);
+  out.blocked.inside = polygon < parts.obstacles.size();
+  if (out.blocked.inside) out.blocked.by = {polygon, 0};
   return out;
+}
+
+/// Those cells of one end that a disc can go from to a cell of the other.
+std::vector<int> connected(const ClearancePlan& plan, const Located& end, const Located& other) {
+  std::vector<int> cells;
+  std::copy_if(end.cells.begin(), end.cells.end(), std::back_inserter(cells), [&](int cell) {
+    return std::any_of(other.cells.begin(), other.cells.end(),
+                       [&](int there) { return plan.component(cell) == plan.component(there); });
+  });
+  return cells;
+}
+
+int last_cell(const CellMap& map, const routing::Way& way) {
+  int cell = way.start;
+  for (const int portal : way.portals) {
+    const routing::Portal& p = map.portals[portal];
+    cell = p.left == cell ? p.right : p.left;
+  }
+  return cell;
+}
+
+/// The end x of a route that begins or ends in the cell.
+routing::RouteEnd end_in(const CellMap& map, const Located& end, Vec2 x, int cell) {
+  for (const CellMap::TriangleAt& t : end.about)
+    if (map.triangles[t.triangle].free && map.cell_in(t.triangle, x) == cell)
+      return {x, map.middle_of(t.triangle), end.about};
+  return {x, std::nullopt, {}};
 }
 
 /// Rounded: of the exact differences, since points may lie near to each other and far from the origin.
@@ -273,7 +317,7 @@ bool RoutePlan::is_reachable(Vec2 start, Vec2 goal) const {
   EXACTVO_REQUIRE(state_->map.covers(start) && state_->map.covers(goal), to_string({start, goal}));
   const Located s = located(parts, state_->plan, start, Blocked::End::start);
   const Located t = located(parts, state_->plan, goal, Blocked::End::goal);
-  return s.cell >= 0 && t.cell >= 0 && state_->plan.component(s.cell) == state_->plan.component(t.cell);
+  return !connected(state_->plan, s, t).empty();
 }
 
 RouteAnswer RoutePlan::query(Vec2 start, Vec2 goal) const {
@@ -281,18 +325,21 @@ RouteAnswer RoutePlan::query(Vec2 start, Vec2 goal) const {
   const ClearancePlan& plan = state_->plan;
   EXACTVO_REQUIRE(state_->map.covers(start) && state_->map.covers(goal), to_string({start, goal}));
   const Located s = located(parts, plan, start, Blocked::End::start);
-  if (s.cell < 0) return s.blocked;
+  if (s.cells.empty()) return s.blocked;
   const Located t = located(parts, plan, goal, Blocked::End::goal);
-  if (t.cell < 0) return t.blocked;
-  if (plan.component(s.cell) != plan.component(t.cell)) return state_->chain_between(start, goal);
+  if (t.cells.empty()) return t.blocked;
+  const std::vector<int> starts = connected(plan, s, t);
+  if (starts.empty()) return state_->chain_between({start, s.about}, {goal, t.about});
   EXACTVO_REQUIRE(!parts.chains_only, "a route on a map for chains only");
   if (start == goal) return Route{{routing::shown(start)}, 0.0, 0.0};
   std::unique_ptr<routing::WaySearch> search = state_->take();
-  const std::optional<routing::Way> way = search->find(start, s.cell, goal, t.cell);
+  const std::optional<routing::Way> way = search->find(start, starts, goal, connected(plan, t, s));
   state_->give_back(std::move(search));
   std::optional<std::vector<Point>> points;
   if (way && plan.radius() > 0.0) points = routing::realised(plan, start, goal, *way);
-  if (way && plan.radius() == 0.0) points = routing::point_route(plan, start, s.cell, goal, *way);
+  if (way && plan.radius() == 0.0)
+    points = routing::point_route(plan, end_in(plan.map(), s, start, way->start),
+                                  end_in(plan.map(), t, goal, last_cell(plan.map(), *way)), *way);
   if (!points)
     throw RouteNotProven("routes: no proven route from " + to_string({start}) + " to " + to_string({goal}) +
                          " for radius " + hex_text(plan.radius()) + ", though there is one");

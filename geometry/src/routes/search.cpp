@@ -60,18 +60,21 @@ WaySearch::WaySearch(const ClearancePlan& plan, std::size_t most)
       allowed_(map_.cell_portals.size()),
       in_corridor_(2 * map_.portals.size()) {}
 
-std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
+std::optional<Way> WaySearch::find(Vec2 s, const std::vector<int>& starts, Vec2 t, const std::vector<int>& goals) {
   Way way;
   steps_ = 0;
   was_second_search_ = false;
-  if (start == goal) {
+  goal_cells_ = goals;
+  const auto common = std::find_if(starts.begin(), starts.end(), [&](int cell) { return is_goal(cell); });
+  if (common != starts.end()) {
     way.lower_bound = norm(t - s);
+    way.start = *common;
     return way;
   }
-  if (search(s, start, t, goal, way)) return way;
+  if (search(s, starts, t, way)) return way;
   way = {};
   was_second_search_ = true;
-  if (search_nearly_open(s, start, t, goal, way)) return way;
+  if (search_nearly_open(s, starts, t, way)) return way;
   return std::nullopt;
 }
 
@@ -80,24 +83,24 @@ int WaySearch::corner_at(int portal, Vec2 x) const {
   return 2 * portal + (norm(x - q.from) <= norm(x - q.to) ? 0 : 1);
 }
 
-bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
+bool WaySearch::search(Vec2 s, const std::vector<int>& starts, Vec2 t, Way& way) {
   nodes_.clear();
   queue_.clear();
   beside_root_.clear();
   fresh_ = 0;
   corridors_.clear();
-  goal_cell_ = goal;
   best_.clear();
   best_in_sector_.clear();
   allowed_.clear();
   in_corridor_.clear();
-  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.set(c, 1);
-  open_start(s, start);
+  for (const int goal : goal_cells_)
+    for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.set(c, 1);
+  open_start(s, starts);
   const std::size_t most = std::min(most_, 1000000 + 1000 * map_.cell_portals.size());
   bound_ = norm(t - s);
   while (nodes_.size() <= most) {
     // A single successor is expanded at once, several wait in the queue.
-    const bool single = nodes_.size() == fresh_ + 1 && nodes_[fresh_].cell != goal;
+    const bool single = nodes_.size() == fresh_ + 1 && !is_goal(nodes_[fresh_].cell);
     int number = static_cast<int>(fresh_);
     double bound = 0.0;
     if (!single) {
@@ -107,7 +110,7 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
     }
     fresh_ = nodes_.size();
     if (is_outdone(nodes_[number])) continue;
-    if (nodes_[number].cell == goal) {
+    if (is_goal(nodes_[number].cell)) {
       trace(number, t, way);
       // Portals that rounding has shut were opened by up to twice the slack.
       way.lower_bound =
@@ -122,12 +125,16 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   return false;
 }
 
-void WaySearch::open_start(Vec2 s, int start) {
-  for (const Passage& p : plan_.passages(start))
-    if (may_pass(p, start))
+/// From one start cell into another no way leads that is shorter than straight into the other.
+void WaySearch::open_start(Vec2 s, const std::vector<int>& starts) {
+  for (const int start : starts) {
+    for (const Passage& p : plan_.passages(start)) {
+      if (!may_pass(p, start) || std::find(starts.begin(), starts.end(), p.to) != starts.end()) continue;
       add({p.to, p.portal, -1, -1, p.left, p.right, s, p.left - s, p.right - s, p.left_turns, p.right_turns,
            p.from_left, 0, 0.0, largest_of(s)},
           p);
+    }
+  }
 }
 
 void WaySearch::queue_fresh(Vec2 t) {
@@ -211,7 +218,7 @@ bool WaySearch::grow(int number, int length) {
   Corridor& corridor = corridors_[number];
   while (corridor.size() < length) {
     const Crossing last = corridor[corridor.size() - 1];
-    if (last.cell == goal_cell_) return false;
+    if (is_goal(last.cell)) return false;
     const Passage* on = nullptr;
     for (const Passage& p : plan_.passages(last.cell)) {
       if (p.portal == last.portal || !may_pass(p, last.cell)) continue;
@@ -245,7 +252,7 @@ bool WaySearch::passes(const Node& n, const Crossing& c) const {
 
 /// Takes the view on through the cell behind `at`, if it passes one portal of it as a whole: then it sees no other.
 bool WaySearch::pass_on(const Node& n, Crossing& at) const {
-  if (at.cell == goal_cell_) return false;
+  if (is_goal(at.cell)) return false;
   for (const Passage& p : plan_.passages(at.cell)) {
     if (p.portal == at.portal || !may_pass(p, at.cell)) continue;
     const Crossing next{p.portal, p.to, p.left, p.right, p.size};
@@ -261,7 +268,7 @@ bool WaySearch::pass_on(const Node& n, Crossing& at) const {
 void WaySearch::leap(int number) {
   constexpr int kFewPortals = 12;  // are passed as fast one by one
   const Node n = nodes_[number];
-  if (n.straight < kFewPortals || n.cell == goal_cell_) return;
+  if (n.straight < kFewPortals || is_goal(n.cell)) return;
   const double size_here = std::max(n.root_size, plan_.shrunk(n.portal).size);
   if (is_void(norm(n.left_ray), size_here) || is_void(norm(n.right_ray), size_here)) return;
   if (norm(n.left - n.root) <= kRounding * size_here || norm(n.right - n.root) <= kRounding * size_here) return;
@@ -292,7 +299,7 @@ void WaySearch::leap(int number) {
 void WaySearch::expand(int number) {
   leap(number);
   const Node n = nodes_[number];
-  if (n.cell == goal_cell_) {  // it has leapt there: to be taken in its turn
+  if (is_goal(n.cell)) {  // it has leapt there: to be taken in its turn
     nodes_.push_back(n);
     return;
   }

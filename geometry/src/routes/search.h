@@ -9,6 +9,7 @@
 /// Where rounding shuts what the exact rules leave open, Dijkstra's search over the portals finds a way, and a funnel
 /// its turns. That way need not be the shortest; its bound is then no more than what is known of every way.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,7 @@ struct Way {
   std::vector<int> portals;
   std::vector<Waypoint> waypoints;
   double lower_bound = 0.0;  ///< m; no route is shorter, up to rounding
+  int start = -1;            ///< the cell that it begins in
 };
 
 /// p beyond the line ab.
@@ -50,9 +52,9 @@ class WaySearch {
   /// Gives up after `most` nodes and leaves it to the second search; for tests.
   explicit WaySearch(const ClearancePlan& plan, std::size_t most = kMostNodes);
 
-  /// From s in one cell to t in another. Nothing where neither search finds a way: a defect if the cells are in one
-  /// component.
-  std::optional<Way> find(Vec2 s, int start, Vec2 t, int goal);
+  /// From s to t, each in the closure of all its cells. Nothing where neither search finds a way: a defect if two of
+  /// the cells are in one component.
+  std::optional<Way> find(Vec2 s, const std::vector<int>& starts, Vec2 t, const std::vector<int>& goals);
 
   /// Of the last question: portals looked at one by one, and boxes of portals in leaps (corridors.h).
   std::size_t steps() const { return steps_; }
@@ -82,9 +84,10 @@ class WaySearch {
     int corridor, place;
   };
 
-  bool search(Vec2 s, int start, Vec2 t, int goal, Way& way);
-  bool search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way);
-  void open_start(Vec2 s, int start);
+  bool search(Vec2 s, const std::vector<int>& starts, Vec2 t, Way& way);
+  bool search_nearly_open(Vec2 s, const std::vector<int>& starts, Vec2 t, Way& way);
+  void open_start(Vec2 s, const std::vector<int>& starts);
+  bool is_goal(int cell) const { return std::find(goal_cells_.begin(), goal_cells_.end(), cell) != goal_cells_.end(); }
   void leap(int number);
   bool pass_on(const Node& node, Crossing& at) const;
   bool passes(const Node& node, const Crossing& c) const;
@@ -129,7 +132,7 @@ class WaySearch {
   Remembered<char> allowed_;
   std::vector<Corridor> corridors_;
   Remembered<InCorridor> in_corridor_;  ///< a portal as it is crossed: 2 portal + (1: from its left)
-  int goal_cell_ = -1;
+  std::vector<int> goal_cells_;
   std::size_t steps_ = 0;
   bool was_second_search_ = false;
   /// Corner, portal, cell, interval and rays of a node.

@@ -80,6 +80,8 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
   else if (cross(n.right - n.root, goal - n.root) < 0.0)
     corner = corner_at(n.portal, n.right);
   if (corner >= 0 && corner != last) add_vertex(corner, way.portals.size() - 1);
+  const Portal& first = map_.portals[way.portals.front()];
+  way.start = from_left.front() ? first.left : first.right;
   set_waypoints(turns, from_left, way);
 }
 
@@ -103,7 +105,7 @@ void WaySearch::set_waypoints(const std::vector<Waypoint>& turns, const std::vec
 
 // --- The second search ---
 
-bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way) {
+bool WaySearch::search_nearly_open(Vec2 s, const std::vector<int>& starts, Vec2 t, Way& way) {
   way.lower_bound = bound_;
   // Portals that are clearly empty come last: a gate that the disc fits through may have some.
   using Cost = std::pair<int, double>;  // of those, how many; then the length, m
@@ -113,14 +115,17 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
     Vec2 at;
   };
   std::vector<Reached> reached(map_.cell_portals.size());
-  reached[start] = {{0, 0.0}, -1, s};
   std::priority_queue<std::pair<Cost, int>, std::vector<std::pair<Cost, int>>, std::greater<>> queue;
-  queue.emplace(Cost{0, 0.0}, start);
-  while (!queue.empty()) {
+  for (const int start : starts) {
+    reached[start] = {{0, 0.0}, -1, s};
+    queue.emplace(Cost{0, 0.0}, start);
+  }
+  int goal = -1;
+  while (!queue.empty() && goal < 0) {
     const auto [cost, cell] = queue.top();
     queue.pop();
     if (cost > reached[cell].cost) continue;
-    if (cell == goal) break;
+    if (is_goal(cell)) goal = cell;
     for (const CellMap::CellPortal& p : map_.cell_portals[cell]) {
       const Portal& portal = map_.portals[p.portal];
       if (portal.right < 0 || !plan_.admits(portal)) continue;
@@ -133,9 +138,10 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
       queue.emplace(there, to);
     }
   }
-  if (reached[goal].through < 0) return false;
+  if (goal < 0) return false;
   std::vector<bool> from_left;
-  for (int c = goal; c != start;) {
+  way.start = goal;
+  for (int& c = way.start; reached[c].through >= 0;) {
     const Portal& portal = map_.portals[reached[c].through];
     from_left.push_back(portal.right == c);
     way.portals.push_back(reached[c].through);

@@ -56,6 +56,22 @@ inline bool cross_properly(const Point& p, const Point& q, const Point& a, const
   return orient(p, q, a) * orient(p, q, b) < 0 && orient(a, b, p) * orient(a, b, q) < 0;
 }
 
+/// Whether the segments pq and ab touch, and not only at an end of pq that may (`p_may`, `q_may`).
+inline bool touch(const Point& p, const Point& q, const Point& a, const Point& b, bool p_may, bool q_may) {
+  const auto is_same = [](const Point& x, const Point& y) { return compare_distance(x, y, 0.0) == 0; };
+  const auto lies_on = [](const Point& x, const Point& from, const Point& to) {
+    return compare_segment_distance(x, from, to, 0.0) <= 0;
+  };
+  const bool p_on = lies_on(p, a, b), q_on = lies_on(q, a, b);
+  if ((p_on && !p_may) || (q_on && !q_may)) return true;
+  if (p_on && q_on && !is_same(p, q)) return true;
+  // Where they have more than one point in common, each end of that part is an end of one of them.
+  const auto touches_inside = [&](const Point& x) {
+    return lies_on(x, p, q) && !(p_may && is_same(x, p)) && !(q_may && is_same(x, q));
+  };
+  return touches_inside(a) || touches_inside(b) || cross_properly(p, q, a, b);
+}
+
 /// Whether the segment pq keeps a distance of at least r from the segment ab; where r is 0, whether they do not touch.
 inline bool keeps_clear(const Point& p, const Point& q, const Point& a, const Point& b, double r) {
   // Of two that do not touch, most lie on one side of the other's line.

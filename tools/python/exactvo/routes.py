@@ -194,7 +194,7 @@ class RouteMap:
         return self._plan.route(start, goal)
 
     def plan(self, radius: float) -> RoutePlan:
-        """The map for a disc of `radius` (m; 0: a point, which touches nothing). Raises `ArgumentError`."""
+        """The map for a disc of `radius` (m; 0: a point; its ends may touch obstacles). Raises `ArgumentError`."""
         return RoutePlan(self, self._native.plan(radius))
 
     def widest_radius(self, start: Point, goal: Point) -> float:

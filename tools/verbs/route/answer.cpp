@@ -146,7 +146,9 @@ std::string words_of(const Blocked& blocked, const AskedMap& map, const geometry
   const std::string by = map.name_of(blocked.by.obstacle);
   if (blocked.inside) return fmt::format("blocked: the {} is inside {}", end_name(blocked), by);
   const double distance = distance_to(blocked, map, end_of(blocked, question));
-  if (distance == 0.0) return fmt::format("blocked: the {} is on {}", end_name(blocked), by);
+  if (distance == 0.0 && question.radius > 0.0) return fmt::format("blocked: the {} is on {}", end_name(blocked), by);
+  if (question.radius == 0.0)
+    return fmt::format("blocked: the {} is on {}, with obstacles on every side of it", end_name(blocked), by);
   const auto [near, needed] = geometry::told_apart(distance, question.radius);
   return fmt::format("blocked: the {} is {} m from {} and would have to be {} m", end_name(blocked), near, by, needed);
 }
@@ -226,7 +228,7 @@ AskedMap read_asked_map(const std::string& file, const datasets::ReadOptions& re
 }
 
 bool AnsweredRoute::is_route() const {
-  return answer ? std::holds_alternative<Route>(*answer) : widest.value_or(0.0) > 0.0;
+  return is_of_radius ? answer && std::holds_alternative<Route>(*answer) : widest.value_or(0.0) > 0.0;
 }
 
 std::vector<Gap> gaps_of(const Separated& separated) {

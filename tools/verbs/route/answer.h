@@ -54,6 +54,7 @@ struct AnsweredRoute {
   std::optional<geometry::RouteAnswer> answer;  ///< with a radius
   std::optional<double> widest;                 ///< m, with --widest
   bool is_widest_of_map = false;                ///< even the largest radius of the map fits
+  bool is_of_radius = true;  ///< false: none was given, and an answer is a point's, since no disc has a route
 
   /// Whether there is a route: for the radius, or without one for any.
   bool is_route() const;

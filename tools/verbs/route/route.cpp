@@ -223,7 +223,9 @@ class Answers {
   bool covers(Vec2 point) const { return routes_.covers(point); }
 
   AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) {
-    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false};
+    AnsweredRoute answered{index,        {flags_.radius.value_or(0.0), start, goal},
+                           std::nullopt, std::nullopt,
+                           false,        flags_.radius.has_value()};
     if (flags_.radius) answered.answer = plan_->query(start, goal);
     if (!flags_.widest) return answered;
     answered.widest = routes_.widest_radius(start, goal);
@@ -309,7 +311,7 @@ ExitCode route(const RouteFlags& flags) {
   reading.repair = flags.repair;
   AskedMap map = read_asked_map(flags.map, reading, flags.cell_point);
   if (map.cells) {
-    // A point does not touch obstacles, and the corner of a free cell may lie on one.
+    // A corner where two blocked cells touch has a free cell on either side: it stands for the one that is named.
     const bool is_moved = flags.radius == 0.0 && map.cells->offset == 0.0;
     if (is_moved) map.cells->offset = kIntoCell;
     message(fmt::format(
@@ -327,7 +329,8 @@ void declare_route(CLI::App& app, RouteFlags& flags) {
                  "Start X,Y in metres of the map as it is read (one in degrees is projected, and a message says how); "
                  "on a Moving AI map a cell, as in its .scen");
   app.add_option("--to", flags.to, "Goal X,Y, likewise");
-  app.add_option("--radius", flags.radius, "Radius of the disc, m; 0: a point, which touches no obstacle");
+  app.add_option("--radius", flags.radius,
+                 "Radius of the disc, m; 0: a point, which touches obstacles with its start and goal at most");
   app.add_flag("--widest", flags.widest,
                "The largest radius for which there is a route, an exact double; 0 with the reason if there is none");
   app.add_option("--queries", flags.queries,

@@ -21,7 +21,7 @@ namespace exactvo::geometry {
 
 /// What was asked.
 struct RouteQuestion {
-  double radius = 0.0;  ///< m, >= 0; 0: a point, which touches nothing
+  double radius = 0.0;  ///< m, >= 0; 0: a point, which only its ends may touch obstacles with
   /// m.
   Vec2 start, goal;  ///< m
 };

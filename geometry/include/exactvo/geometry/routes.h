@@ -9,8 +9,8 @@
 ///
 /// The free space is closed: a centre is free where it is at least a radius away from every edge and inside no polygon.
 /// A gap of exactly two radii is passed. The outside of all obstacles is free, and obstacles may cross, touch and
-/// overlap. Radius 0 is a point: it comes as near to obstacles as it likes and touches none, so that it passes where
-/// some disc does, however small.
+/// overlap. Radius 0 is a point: it comes as near to obstacles as it likes and touches them with its start and goal at
+/// most, so that it passes where some disc does, however small.
 ///
 /// Exact: which of the three answers is given, the points of a route and of a chain, and what `check` says of them
 /// (route_certificate.h, which shares no code with this). Rounded: lengths. A route is short, not proven shortest: its
@@ -75,7 +75,7 @@ struct Blocked {
     goal    ///< where it ends
   };
   End end = End::start;  ///< which end
-  bool inside = false;   ///< inside the polygon obstacles[by.obstacle]; else nearer than a radius to the edge
+  bool inside = false;   ///< inside the polygon obstacles[by.obstacle]; else nearer than a radius to the edge, or on it
   EdgeName by;           ///< the obstacle or edge that is in the way; `edge` without meaning where `inside`
 };
 
