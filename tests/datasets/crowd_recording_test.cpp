@@ -237,7 +237,7 @@ TEST_F(PutRobots, AnOverlapFailsWhateverWasPromised) {
 TEST_F(PutRobots, ExactContactIsClear) {
   for (const double gap : {0.0, -0x1p-18, 0x1p-18}) {
     const CrowdAuditReport audit = audit_of([&](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.0 + gap, 0}); });
-    EXPECT_GT(audit.pairs, 2U);
+    EXPECT_GT(audit.pairs, gap > 0.0 ? 0U : 2U);  // one step of the lattice apart they are not near
     EXPECT_EQ(audit.pairs_overlapping + audit.pairs_met > 0, gap < 0.0) << gap;
   }
 }

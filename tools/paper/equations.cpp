@@ -94,7 +94,7 @@ const std::vector<Equation>& equations() {
        "itself; "
        "half-planes at the brake point x + v / k3, which moves at exactly w",
        {{"formation/src/runs/formation_run.cpp", "tracked_velocity"},
-        {"formation/src/steering/controller_options.cpp", "controller_options_of"}}},
+        {"formation/src/control/controller_options.cpp", "controller_options_of"}}},
       {"(16)",
        "V_IVO = argmin over IVOA+ of |v - v_pref|",
        "",
