@@ -188,7 +188,7 @@ TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
                 R"([{"robot": "b", "why": "a was first at the goal that both have, which leaves no room for both"}])"));
   EXPECT_EQ(one["pushed_off"], 0);
   EXPECT_LT(one["time"], 20.0);
-  here.write("street.json", R"({"name": "street", "robots": [
+  here.write("street.json", R"({"name": "street", "liveness": "bias", "robots": [
       {"id": "a", "position": [0, 0], "goal": [10, 0], "radius": 0.3}, {"id": "b", "position": [10, 0], "goal": [0, 0], "radius": 0.3}],
       "obstacles": [{"id": "u", "polyline": [[-2, 0.5], [12, 0.5]]}, {"id": "l", "polyline": [[-2, -0.5], [12, -0.5]]}]})");
   EXPECT_THAT(here.run("simulate street.json --engine crowd").out, HasSubstr("  standstill   2 robots: nothing moves"));

@@ -147,7 +147,7 @@ template <class T>
 std::size_t OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b) const {
   const std::size_t edges = lines_of_edges(robot, b);
   b.near.clear();
-  b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
+  lines_of_bodies(robot, b);
   lay_out_rows(edges + b.body_lines.size(), b);
   put_obstacles(robot, edges, b, nullptr);
   return edges + b.still;

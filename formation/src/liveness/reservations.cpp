@@ -31,8 +31,6 @@ constexpr double kLeastNearer = 0.01;
 constexpr double kAhead = 2.6;
 
 // m.
-/// What ways straight along a course keep beside the radius: courses keep little more.
-constexpr double kRouteMargin = 1e-6;
 /// What clearances are rounded by.
 constexpr double kWallRounding = 1e-7;
 
@@ -54,6 +52,8 @@ constexpr double kInMotion = 0.35;
 constexpr std::uint32_t kShakeAfter = 10;
 /// After as many in vain a robot goes anywhere.
 constexpr std::uint32_t kRestlessEvery = 32;
+/// After as many nothing is new.
+constexpr std::uint32_t kGivesUpAfter = 512;
 /// Robots that push each other in a row.
 constexpr std::size_t kLongestRow = 200;
 /// Pushed by one.
@@ -209,13 +209,29 @@ bool Reservations::sees(std::size_t i, Vec2 from, Vec2 to) const {
   return space_.is_clear(from, to, std::min(radius, there) - kWallRounding);
 }
 
-/// Whether a straight way there comes no nearer to obstacles than its ends are, or not near.
-bool Reservations::is_open(std::size_t i, Vec2 to, double margin) const {
+/// Whether a straight way there keeps off obstacles. Where the robot stands nearer to one it has to leave that at once:
+/// along a wall that it touches rounding stops it.
+bool Reservations::is_open(std::size_t i, Vec2 to) const {
+  constexpr double kAway = 1e-3;  // sine of the angle with the wall
   if (space_.is_open()) return true;
-  const double radius = (*robots_)[i].radius, wanted = radius + margin;
-  const double there = space_.clearance(to, wanted);
-  return there >= radius - kWallRounding &&
-         space_.is_clear(at(i), to, std::min(there, space_.clearance(at(i), wanted)) - kWallRounding);
+  const Vec2 p = at(i), way = to - p;
+  const double radius = (*robots_)[i].radius, wanted = radius + kWallMargin * diameter_;
+  const double here = space_.clearance(p, wanted), there = space_.clearance(to, wanted);
+  if (there < radius - kWallRounding || (there < wanted && to != (*robots_)[i].goal)) return false;
+  if (here < wanted && !(there < wanted)) {
+    const Vec2 from_wall = space_.from_nearest_edge(p, wanted);
+    if (dot(way, from_wall) < kAway * norm(way) * norm(from_wall)) return false;
+  }
+  return space_.is_clear(p, to, std::min(here, there) - kWallRounding);
+}
+
+/// The place, or one as near to it as robots stand off walls.
+Vec2 Reservations::off_walls(std::size_t i, Vec2 place) const {
+  constexpr double kAndSome = 1.0 + 1e-6;
+  const double wanted = ((*robots_)[i].radius + kWallMargin * diameter_) * kAndSome;
+  const Vec2 from_wall = space_.from_nearest_edge(place, wanted);
+  const double off = norm(from_wall);
+  return off > 0.0 ? place + (wanted / off - 1.0) * from_wall : place;
 }
 
 // --- Who has a reservation ---
@@ -223,6 +239,10 @@ bool Reservations::is_open(std::size_t i, Vec2 to, double margin) const {
 void Reservations::look_whether_stalled(std::size_t i) {
   OfRobot& of = of_[i];
   places_[i] = at(i);
+  if ((*robots_)[i].yields) {
+    of.has_way_then = 0;
+    return;
+  }
   if (of.is_at_goal) {
     of.has_way_then = 0;
     reserved_[i] = 1;
@@ -248,10 +268,10 @@ bool Reservations::is_something_ahead(std::size_t i) const {
 
 /// REQUIRES: it stands on its place.
 void Reservations::look_whether_free(std::size_t i) {
-  if (who_ == WhoReserves::all || of_[i].is_at_goal) return;
-  if (is_something_ahead(i)) {
+  if (who_ == WhoReserves::all || (of_[i].is_at_goal && !(*robots_)[i].yields)) return;
+  if (!(*robots_)[i].yields && is_something_ahead(i)) {
     of_[i].free_since = step_;
-  } else if (step_ - of_[i].free_since > steps_of(kFree)) {
+  } else if ((*robots_)[i].yields || step_ - of_[i].free_since > steps_of(kFree)) {
     reserved_[i] = 0;
     of_[i].has_way_then = 0;
     places_[i] = at(i);
@@ -268,6 +288,10 @@ bool Reservations::is_before(std::size_t a, std::size_t b) const {
   return far_a != far_b ? far_a < far_b : a < b;
 }
 
+std::uint64_t Reservations::patience() const {
+  return steps_of(kStall) + steps_of(kFree) + 2;
+}
+
 void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   robots_ = &robots;
   ++step_;
@@ -278,8 +302,10 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   waiting_.clear();
   const std::uint64_t tickets = tickets_;
   for (std::size_t i = 0; i < of_.size(); ++i) {
-    of_[i].is_at_goal = robots[i].is_at_goal;
-    if (robots[i].is_at_goal) of_[i].at_goal_last = step_;
+    OfRobot& of = of_[i];
+    of.is_at_goal = robots[i].is_at_goal;
+    if (of.is_at_goal || of.leg != robots[i].leg) of.at_goal_last = step_;
+    of.leg = robots[i].leg;
     const bool had = reserved_[i];
     if (!had) look_whether_stalled(i);
     if (reserved_[i] && !has_placed) place_robots(), has_placed = true;
@@ -287,7 +313,7 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
       look_whether_free(i);
       const bool rests =
           robots[i].is_at_goal && squared_norm(robots[i].goal - at(i)) <= squared(kPlaceReached * diameter_);
-      if (reserved_[i] && !rests) waiting_.push_back(static_cast<std::uint32_t>(i));
+      if (reserved_[i] && !rests && !robots[i].yields) waiting_.push_back(static_cast<std::uint32_t>(i));
     }
     has_changed_ = has_changed_ || had != static_cast<bool>(reserved_[i]);
   }
@@ -337,14 +363,15 @@ void Reservations::look_about(std::size_t i, Outlook& out) const {
   out.count = 0;
   const bool is_in_sight = leads_on(i, p);  // else anything nearer will do
   const auto add = [&](Vec2 place, bool pushes_nobody = false) {
-    if (!is_open(i, place, pushes_nobody ? kRouteMargin : kWallMargin * diameter_)) return;
+    if (!is_open(i, place)) return;
     const double way = way_from(i, place);
     out.places[out.count++] = {
         place, way, way < out.way - kLeastNearer * diameter_ && (!is_in_sight || leads_on(i, place)), pushes_nobody};
   };
   const double to_goal = norm(r.goal - p), to_next = norm(r.next() - p);
   if (to_goal < kLongestDrive * pitch_) add(r.goal);
-  if (to_next > kPlaceReached * diameter_) add(p + std::min(1.0, pitch_ / to_next) * (r.next() - p), true);
+  if (to_next > kPlaceReached * diameter_)
+    add(off_walls(i, p + std::min(1.0, pitch_ / to_next) * (r.next() - p)), true);
   const PlaceRows rows = rows_about(space_, p, r.radius, pitch_);
   const double column = std::round(dot(p - rows.origin, rows.along) / rows.column);
   double row = std::round(dot(p - rows.origin, rows.across) / rows.row);
@@ -429,8 +456,9 @@ bool Reservations::reserve(std::size_t i, std::size_t depth) {
     reserved_[i] = 1;
     of_[i].in_vain = 0;
     of_[i].ticket = ++tickets_;
-  } else {
+  } else if (of_[i].in_vain < kGivesUpAfter) {
     ++of_[i].in_vain;
+    has_changed_ = true;
   }
   return found;
 }
@@ -438,12 +466,14 @@ bool Reservations::reserve(std::size_t i, std::size_t depth) {
 bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth) {
   const Outlook& found = outlook_of(i);  // another robot's may take its room
   const bool is_pushed = depth > 0, may_settle = !is_pushed && !of_[i].is_at_goal && !found.stands_on_place;
-  const bool is_restless = !is_pushed && !of_[i].is_at_goal && of_[i].in_vain % kRestlessEvery == kRestlessEvery - 1;
+  const bool is_restless = !is_pushed && !of_[i].is_at_goal && of_[i].in_vain < kGivesUpAfter &&
+                           of_[i].in_vain % kRestlessEvery == kRestlessEvery - 1;
   const std::size_t near_end = list_.size();
   std::array<Option, Outlook::kMost> options;
   const std::size_t count = found.count;
   SplitMix64 random(step_ * of_.size() + i);
-  const bool is_shaken = is_pushed && of_[oldest_pusher_].in_vain > kShakeAfter;
+  const bool is_shaken =
+      is_pushed && of_[oldest_pusher_].in_vain > kShakeAfter && of_[oldest_pusher_].in_vain < kGivesUpAfter;
   for (std::size_t k = 0; k < count; ++k) {
     const Prospect& p = found.places[k];
     options[k] = {p.place, p.way + cost_of_pushing(i, p.place, is_pushed, near, near_end), p.leads_on, p.pushes_nobody};
@@ -516,7 +546,7 @@ Vec2 Reservations::preferred_of(std::size_t i) {
 void Reservations::put(crowd::SnapshotWriter& to) const {
   to.fields(step_, tickets_, reserved_, places_);
   for (const OfRobot& of : of_)
-    to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.has_way_then,
+    to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
               of.is_at_goal);
 }
 
@@ -524,7 +554,7 @@ void Reservations::get(crowd::SnapshotReader& from) {
   from.fields(step_, tickets_, reserved_, places_);
   from.require(reserved_.size() == of_.size() && places_.size() == of_.size(), "other robots");
   for (OfRobot& of : of_)
-    from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.has_way_then,
+    from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
                 of.is_at_goal);
   std::fill(decided_.begin(), decided_.end(), 0);
   std::fill(clear_.begin(), clear_.end(), 0);

@@ -47,6 +47,8 @@ struct RobotUnderWay {
   double radius = 0.5;                 ///< m, > 0
   double max_speed = 1.5;              ///< m/s, > 0
   bool is_at_goal = false;             ///< near enough to rest there
+  bool yields = false;                 ///< it wants no place of its own: it only makes way where it is pushed
+  std::uint32_t leg = 0;               ///< how many goals it has passed
 
   Vec2 next() const { return ahead.front(); }
 };
@@ -94,8 +96,10 @@ class Reservations {
   const std::vector<Vec2>& preferred() const { return preferred_; }
   /// How many have one.
   std::size_t count() const { return count_; }
-  /// Whether the last `look` gave or took a reservation.
+  /// Whether the last `look` gave or took a reservation, or tried in vain to get one and would try otherwise next time.
   bool has_changed() const { return has_changed_; }
+  /// If in as many steps nothing moves and nothing has changed, nothing will.
+  std::uint64_t patience() const;
   /// Of the reservation that the robot got last; 0: none yet.
   std::uint64_t ticket(std::size_t i) const { return of_[i].ticket; }
 
@@ -112,6 +116,7 @@ class Reservations {
     std::uint64_t free_since = 0;    ///< step at which something was ahead last
     double way_then = 0.0;           ///< m
     std::uint32_t in_vain = 0;       ///< reservations that were not to be had since the last one
+    std::uint32_t leg = 0;
     std::uint8_t has_way_then = 0;
     std::uint8_t is_at_goal = 0;
   };
@@ -150,7 +155,8 @@ class Reservations {
   double way_from(std::size_t i, Vec2 place) const;
   bool leads_on(std::size_t i, Vec2 place) const;
   bool sees(std::size_t i, Vec2 from, Vec2 to) const;
-  bool is_open(std::size_t i, Vec2 to, double margin) const;
+  bool is_open(std::size_t i, Vec2 to) const;
+  Vec2 off_walls(std::size_t i, Vec2 place) const;
   std::uint64_t steps_of(double seconds) const;
 
   void look_whether_stalled(std::size_t i);

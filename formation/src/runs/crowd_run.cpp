@@ -18,8 +18,10 @@
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/told_apart.h"
+#include "liveness/reservations.h"
 #include "motion/leader.h"
 #include "runs/crowd_way.h"
+#include "scene/free_space.h"
 #include "scene/goals.h"
 #include "scene/number_text.h"
 #include "steering/goal_claims.h"
@@ -48,6 +50,9 @@ constexpr double kReach = 2.0;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
 constexpr double kFastestBody = 0x1p14;
+
+/// s that a run goes on after all have arrived, for those that were pushed off their goals to return.
+constexpr double kReturn = 60.0;
 
 /// m: what lies farther out than robots, goals and obstacles is not gone to.
 double extent(const Scenario& s) {
@@ -111,6 +116,7 @@ class CrowdRun {
     preferred_.resize(scenario.robots.size());
     crowd_.positions(at_);
     make_claims();
+    make_reservations();
   }
 
   CrowdRunReport run() {
@@ -145,6 +151,15 @@ class CrowdRun {
     if (!may_end_elsewhere && (last_places_.empty() || !any_leave_no_room(scenario_, goals(), room))) return;
     claims_.emplace(scenario_, room, scenario_.horizons.orca);
     now_.resize(ways_.size());
+  }
+
+  void make_reservations() {
+    if (scenario_.liveness != Liveness::plan || scenario_.robots.empty()) return;
+    double widest = 0.0;
+    for (const Robot& r : scenario_.robots) widest = std::max(widest, r.radius);
+    space_.emplace(scenario_.obstacles);
+    reservations_.emplace(*space_, ways_.size(), scenario_.time_step, widest);
+    under_way_.resize(ways_.size());
   }
 
   /// Of all robots, the last ones where these stand aside.
@@ -211,9 +226,10 @@ class CrowdRun {
     SnapshotWriter of_run(run), to(whole);
     of_run.put(ways_.size());
     for_each_count(report_, [&](const auto& count) { of_run.put(count); });
-    of_run.fields(moved_, claimed_);
+    of_run.fields(moved_, claimed_, all_arrived_, reserved_);
     for (const CrowdWay& way : ways_) put(of_run, way);
     if (claims_) put(of_run, *claims_);
+    if (reservations_) reservations_->put(of_run);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
     to.fields(run.str(), crowd.str(), sink.str());
@@ -229,9 +245,10 @@ class CrowdRun {
     SnapshotReader of_run(run, kSnapshotOfRun);
     require(is_at_end(whole) && of_run.get<std::size_t>() == ways_.size());
     for_each_count(report_, [&](auto& count) { of_run.get(count); });
-    of_run.fields(moved_, claimed_);
+    of_run.fields(moved_, claimed_, all_arrived_, reserved_);
     for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way_of(of_run, i);
     if (claims_) get_claims(of_run, *claims_);
+    if (reservations_) reservations_->get(of_run);
     const CrowdOptions wanted = crowd_.options();
     crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
@@ -253,8 +270,8 @@ class CrowdRun {
   /// What adds up from step to step.
   template <class Report, class Visit>
   static void for_each_count(Report& r, const Visit& visit) {
-    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.cut_short, &r.overlapping, &r.touching,
-                        &r.widened, &r.stopped, &r.half_planes, &r.edges, &r.bodies})
+    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.cut_short, &r.reserved, &r.overlapping,
+                        &r.touching, &r.widened, &r.stopped, &r.half_planes, &r.edges, &r.bodies})
       visit(*count);
     for (auto* number : {&r.time, &r.path_length}) visit(*number);
   }
@@ -317,7 +334,8 @@ class CrowdRun {
     const std::size_t next = way.course ? way.course->next : 0;
     bool is_new = false;
     if (has_reached_goal(i)) pass(i);
-    const bool looks = way.course && !way.arrived && (report_.steps + i) % kLookAgain == 0;
+    const bool is_back = way.arrived && (!reservations_ || is_at_goal(i));
+    const bool looks = way.course && !is_back && (report_.steps + i) % kLookAgain == 0;
     if (way.nearest) way.stays = norm(at_[i] - way.nearest->place) <= scenario_.arrival_tolerance;
     if (looks) {
       const Heading to = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]);
@@ -384,6 +402,39 @@ class CrowdRun {
     return turned;
   }
 
+  // --- Reservations ---
+
+  void reserve() {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) under_way_[i] = under_way(i);
+    if (ranks_) ranks_->share({{under_way_.data(), in_bytes(ends_, sizeof(RobotUnderWay))}});
+    reservations_->look(under_way_);
+    if (reservations_->has_changed()) reserved_ = report_.steps;
+    crowd_.set_reservations(reservations_->places(), reservations_->reserved());
+  }
+
+  bool has_reserved(std::size_t i) const { return reservations_ && reservations_->reserved()[i] != 0; }
+
+  RobotUnderWay under_way(std::size_t i) const {
+    const CrowdWay& way = ways_[i];
+    RobotUnderWay r;
+    r.position = at_[i];
+    r.velocity = velocity_[i];
+    r.radius = scenario_.robots[i].radius;
+    r.max_speed = scenario_.robots[i].max_speed;
+    r.leg = static_cast<std::uint32_t>(way.goal);
+    r.yields = way.stays || is_taken(i);
+    r.goal = end_of(i);
+    r.is_at_goal = ends_here(i) && !way.nearest && is_at_goal(i);
+    r.ahead.front() = way.heading;
+    if (!way.course) return r;
+    const std::vector<Vec2>& points = way.course->points;
+    std::size_t k = way.course->next + 1;
+    for (; k < points.size() && r.corners_ahead < RobotUnderWay::kMostAhead; ++k)
+      r.ahead[r.corners_ahead++] = points[k];
+    for (; k < points.size(); ++k) r.rest += norm(points[k] - points[k - 1]);
+    return r;
+  }
+
   /// Straight on to where each is at the end of the step, up to half a step of the lattice.
   void set_out_obstacles() {
     const double end = static_cast<double>(report_.steps + 1) * scenario_.time_step;
@@ -398,7 +449,9 @@ class CrowdRun {
     for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
     if (claims_) look_at_claims();
     crowd_.velocities(velocity_);
-    for (std::size_t i = own_begin(); i < own_end(); ++i) preferred_[i] = kept_right(i, preferred_of(i));
+    if (reservations_) reserve();
+    for (std::size_t i = own_begin(); i < own_end(); ++i)
+      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : kept_right(i, preferred_of(i));
     share_preferred();
     crowd_.set_preferred(preferred_);
     const StepReport s = crowd_.step();
@@ -406,6 +459,7 @@ class CrowdRun {
     report_.time = static_cast<double>(report_.steps) * scenario_.time_step;
     report_.relaxed += s.relaxed;
     report_.cut_short += s.cut_short;
+    report_.reserved += s.reserved;
     report_.overlapping += s.overlapping;
     report_.touching += s.touching;
     report_.widened += s.widened;
@@ -421,13 +475,17 @@ class CrowdRun {
   }
 
   /// The least of what the ranks want.
-  enum class After { stop, step, nothing };
+  enum class After { stop, step, returns, nothing };
   After what_follows(bool is_stopped) {
     After own = After::stop;
-    if (!is_stopped) own = someone_goes_on() ? After::step : After::nothing;
+    if (!is_stopped) own = someone_goes_on() ? After::step : someone_returns() ? After::returns : After::nothing;
     const After all = ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
     report_.stands_still = all == After::step && repeats_itself();
-    return report_.stands_still ? After::nothing : all;
+    if (report_.stands_still) return After::nothing;
+    if (all != After::returns) return all;
+    if (!all_arrived_) all_arrived_ = report_.steps;
+    const double since = static_cast<double>(report_.steps - *all_arrived_) * scenario_.time_step;
+    return since < kReturn ? After::step : After::nothing;
   }
 
   /// Of the own ones.
@@ -437,12 +495,20 @@ class CrowdRun {
     return false;
   }
 
-  /// Whether no step changes anything any more. What a step does follows from places, velocities, aims and claims, and
-  /// from whose turn it is to look along its route. In as many steps as there are turns none of these has changed, from
-  /// velocities of 0 on: so the next ones do what they have done.
+  /// The same of those that were pushed off their goals.
+  bool someone_returns() const {
+    for (std::size_t i = own_begin(); reservations_ && i < own_end(); ++i)
+      if (ways_[i].arrived && !is_at_goal(i) && !is_taken(i)) return true;
+    return false;
+  }
+
+  /// Whether no step changes anything any more. What a step does follows from places, velocities, aims, claims and
+  /// reservations, and from whose turn it is to look along its route. In as many steps as there are turns none of these
+  /// has changed, from velocities of 0 on: so the next ones do what they have done.
   bool repeats_itself() const {
     const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
-    if (!is_long_ago(std::max(moved_, claimed_))) return false;
+    if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
+    if (reservations_ && std::max(moved_, reserved_) + reservations_->patience() > report_.steps) return false;
     bool is_so = true;
     for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(ways_[i].turned);
     return (ranks_ ? ranks_->least(is_so) : is_so) != 0;
@@ -491,10 +557,15 @@ class CrowdRun {
   std::vector<Vec2> at_, before_, velocity_, preferred_;
   std::vector<Vec2> last_places_;  ///< empty: their last goals
   std::optional<GoalClaims> claims_;
-  std::vector<EndNow> now_;    ///< with claims
-  double moving_until_ = 0.0;  ///< s, the obstacles
-  std::size_t moved_ = 0;      ///< the last step in which something moved
-  std::size_t claimed_ = 0;    ///< step at which a claim changed last
+  std::vector<EndNow> now_;             ///< with claims
+  std::optional<ObstacleSpace> space_;  ///< with reservations
+  std::optional<Reservations> reservations_;
+  std::vector<RobotUnderWay> under_way_;
+  std::optional<std::size_t> all_arrived_;  ///< step after which some have only to return to their goals
+  std::size_t reserved_ = 0;                ///< step at which a reservation changed last
+  double moving_until_ = 0.0;               ///< s, the obstacles
+  std::size_t moved_ = 0;                   ///< the last step in which something moved
+  std::size_t claimed_ = 0;                 ///< step at which a claim changed last
   CrowdRunReport report_;
 };
 

@@ -309,6 +309,7 @@ Scenario street_scenario() {
 
 TEST(CrowdRanks, ARunEndsWhereNothingChangesAnyMore) {
   Scenario s = street_scenario();
+  s.liveness = Liveness::bias;  // with reservations the two get past each other
   const auto run = [&](Ranks* ranks, const std::string& resume, std::vector<std::string>* snapshots, CrowdSink* sink) {
     CrowdRunOptions options;
     options.ranks = ranks;

@@ -60,14 +60,15 @@ std::string to_json(const CrowdRunReport& r, const formation::Scenario& scenario
       "\"pushed_off\": {}, "
       "\"staying\": {}, \"without_route\": {}, \"goal_taken\": {}, \"stands_still\": {}, "
       "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
-      "\"decisions\": {{\"relaxed\": {}, \"cut_short\": {}, \"overlapping\": {}, \"touching\": {}, \"widened\": {}, "
+      "\"decisions\": {{\"relaxed\": {}, \"cut_short\": {}, \"reserved\": {}, \"overlapping\": {}, \"touching\": {}, "
+      "\"widened\": {}, "
       "\"stopped\": {}}}, "
       "\"half_planes\": {{\"robots\": {}, \"edges\": {}, \"moving\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
       "\"provenance\": {}}}\n",
       nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.pushed_off, r.staying,
       to_json(r.without_route, scenario).dump(), to_json(r.goal_taken, scenario).dump(), r.stands_still, r.steps,
-      r.time, or_null(r.median_arrival), or_null(r.last_arrival), r.path_length, r.relaxed, r.cut_short, r.overlapping,
-      r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.bodies, r.digest, r.wall_time,
+      r.time, or_null(r.median_arrival), or_null(r.last_arrival), r.path_length, r.relaxed, r.cut_short, r.reserved,
+      r.overlapping, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.bodies, r.digest, r.wall_time,
       datasets::to_json(provenance));
 }
 
@@ -100,7 +101,8 @@ std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario
       "{}, engine crowd, method orca: {} of {} arrived{}, {} without a route{}\n"
       "{}{}{}"
       "  arrival      median {}, last {}\n"
-      "  decisions    {:.3g} % relaxed, {:.3g} % cut short before another robot, {:.3g} % stopped before an edge; "
+      "  decisions    {:.3g} % relaxed, {:.3g} % cut short before another robot, {:.3g} % with a reserved place, "
+      "{:.3g} % stopped before an edge; "
       "{} overlapping\n"
       "  half-planes  {:.3g} against robots, {:.3g} against edges and {:.3g} against moving obstacles in a decision\n"
       "  path length  {:.4g} m on average\n"
@@ -110,9 +112,9 @@ std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario
       r.goal_taken.empty() ? "" : fmt::format(", {} whose goal is taken", r.goal_taken.size()),
       lines_of("no route", r.without_route, scenario), lines_of("goal taken", r.goal_taken, scenario),
       line_of_others(r), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
-      100.0 * share(r.cut_short, r), 100.0 * share(r.stopped, r), r.overlapping, share(r.half_planes, r),
-      share(r.edges, r), share(r.bodies, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time,
-      decisions / r.wall_time);
+      100.0 * share(r.cut_short, r), 100.0 * share(r.reserved, r), 100.0 * share(r.stopped, r), r.overlapping,
+      share(r.half_planes, r), share(r.edges, r), share(r.bodies, r), r.path_length / static_cast<double>(r.robots),
+      r.steps, r.wall_time, decisions / r.wall_time);
 }
 
 /// What a crowd says of a scenario, "robot R: max_speed: found 0, expected ...", in the parts of a DataError.

@@ -12,8 +12,9 @@
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
 /// stays. Where two last goals are too near to each other for both robots (and `Scenario::liveness` is not off), these
 /// stand aside within their tolerance; where that is not enough, who is there first keeps its goal, and the other stays
-/// beside it. A run ends when nobody goes on, or when nothing changes
-/// any more. Deterministic, with any number of threads and of ranks.
+/// beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve places
+/// (liveness/reservations.h); after all have arrived, a run goes on up to 60 s for those that were pushed off. A run ends
+/// when nobody goes on, or when nothing changes any more. Deterministic, with any number of threads and of ranks.
 ///
 /// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
@@ -79,6 +80,7 @@ struct CrowdRunReport {
   double path_length = 0.0;            ///< of all robots together
   std::size_t relaxed = 0;             ///< decisions in which half-planes against others are relaxed
   std::size_t cut_short = 0;           ///< decisions that do not get their wish, since another would be met in the step
+  std::size_t reserved = 0;            ///< decisions of robots that drive to a reserved place, or stand there
   std::size_t overlapping = 0;         ///< decisions of robots that overlapped another: 0 after a legal start
   std::size_t touching = 0;            ///< decisions of robots that touched another
   std::size_t widened = 0;             ///< decisions with more than 10 neighbours
