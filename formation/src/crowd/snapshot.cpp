@@ -9,7 +9,7 @@
 #include <ostream>
 
 #include "crowd/body.h"
-#include "crowd/snapshot_bytes.h"
+#include "snapshot_bytes.h"
 #include "exactvo/geometry/shape_numbers.h"
 
 namespace exactvo::formation::crowd {

@@ -26,7 +26,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "crowd/snapshot_bytes.h"
+#include "snapshot_bytes.h"
 #include "exactvo/geometry/vec2.h"
 #include "scene/free_space.h"
 

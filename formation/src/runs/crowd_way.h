@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "crowd/snapshot_bytes.h"
+#include "snapshot_bytes.h"
 #include "exactvo/formation/scenario.h"
 #include "steering/goal_claims.h"
 #include "steering/guide.h"
