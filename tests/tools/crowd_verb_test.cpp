@@ -29,7 +29,7 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
   EXPECT_EQ(metrics["robots"], 40);
   EXPECT_EQ(metrics["arrived"], 40);
   EXPECT_EQ(metrics["provenance"]["inputs"][0]["path"], "ring.json");
-  const json same = json::parse(here.run("simulate ring.json --engine crowd --threads 2 --json").out);
+  const json same = json::parse(here.run("simulate ring.json --engine crowd --threads 2 --no-figures --json").out);
   EXPECT_EQ(same["digest"], metrics["digest"]);
 
   const Outcome audit = here.run("audit ring.evr --json");
