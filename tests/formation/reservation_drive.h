@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "liveness/cells.h"
+#include "scene/cells.h"
 #include "liveness/reservations.h"
 #include "steering/guide.h"
 

@@ -273,7 +273,7 @@ lp::Problem problem_of(const formation::Scenario& scenario, const formation::Rob
     problem.bound.disc = max_speed;
   else
     problem.bound.box_x = problem.bound.box_y = max_speed;
-  for (const formation::RecordedConstraint& c : robot.constraints)
+  for (const formation::DecisionConstraint& c : robot.constraints)
     problem.constraints.push_back(
         {c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft, static_cast<int>(c.body)});
   return problem;
