@@ -31,9 +31,10 @@ struct Separation {
   double margin = 0.0;    ///< m, >= 0: they stay at least this far apart along the direction
 };
 
-/// Separations of each pair of parts in turn (by `part`, then by `other`), each pair's in the order of time and without
-/// a gap over the time that the two motions have in common; empty where they have none.
+/// A proof that a moving body stays clear.
 struct MotionCertificate {
+  /// Of each pair of parts in turn (by `part`, then by `other`), each pair's in the order of time and without a gap
+  /// over the time that the two motions have in common; empty where they have none.
   std::vector<Separation> separations;
 };
 

@@ -50,10 +50,11 @@ struct MotionEvent {
 
 /// Two bodies that come nearer to each other than `near`, over all time.
 struct Approach {
-  std::size_t body = 0, other = 0;  ///< numbers of the trajectories, body < other
-  Bounds clearance;                 ///< m, certified: the least; below 0 where they overlap
-  double nearest_time = 0.0;        ///< s, rounded: a moment of least clearance
-  Vec2 place;                       ///< m, rounded: where, at that moment
+  std::size_t body = 0;       ///< number of a trajectory
+  std::size_t other = 0;      ///< number of the other trajectory, above `body`
+  Bounds clearance;           ///< m, certified: the least; below 0 where they overlap
+  double nearest_time = 0.0;  ///< s, rounded: a moment of least clearance
+  Vec2 place;                 ///< m, rounded: where, at that moment
 };
 
 /// What was looked at, and what comes near.
