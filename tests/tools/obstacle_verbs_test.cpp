@@ -224,6 +224,25 @@ TEST(ObstacleVerbs, DistortionIsInJson) {
   EXPECT_TRUE(json::parse(here.run("validate a.wkt --json").out).at("files").at(0).at("distortion").is_null());
 }
 
+TEST(Segment, TheSizeOfItsOutputIsSaidBefore) {
+  const Workplace here;
+  EXPECT_EQ(here.run("generate star --seed 3 --count 20 --out stars.wkt").status, 0);
+  for (const std::string out : {"shapes.geojson", "shapes.jsonl"}) {
+    const Outcome outcome = here.run("segment stars.wkt --out " + out + (out == "shapes.geojson" ? " --metres" : ""));
+    const std::size_t about = outcome.err.find(": about ");
+    ASSERT_NE(about, std::string::npos) << outcome.err;
+    EXPECT_LT(about, outcome.err.find("wrote " + out));
+    std::istringstream words(outcome.err.substr(about + 8));
+    double said = 0.0;
+    std::string unit;
+    words >> said >> unit;
+    said *= unit == "MB" ? 1e6 : unit == "kB" ? 1e3 : 1.0;
+    const auto written = static_cast<double>(here.read(out).size());
+    EXPECT_GT(said, written / 2) << outcome.err;
+    EXPECT_LT(said, written * 2) << outcome.err << written;
+  }
+}
+
 TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
   const Workplace here;
   here.write("a.wkt", kGood);

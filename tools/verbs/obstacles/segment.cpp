@@ -13,6 +13,7 @@
 #include "figures/figure.h"
 #include "figures/outlines.h"
 #include "support/escape.h"
+#include "support/size_text.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -184,6 +185,32 @@ void write_out(const std::vector<Decomposed>& all, const SegmentFlags& flags) {
   datasets::write_file_atomically(out, features.text());
 }
 
+/// What a vertex and an obstacle become in --out, bytes: measured on what `generate` makes, within a factor of two.
+struct SizesOut {
+  double a_vertex;
+  double an_obstacle;
+};
+constexpr SizesOut kRecords{190.0, 1500.0}, kFeatures{25500.0, 50000.0};
+
+/// Before the work, as `batch` does.
+void say_size(const std::vector<FileAnswer>& answers, const SegmentFlags& flags) {
+  std::size_t obstacles = 0, vertices = 0;
+  double input = 0.0;
+  for (const FileAnswer& answer : answers) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(answer.file, error);
+    input += error ? 0.0 : static_cast<double>(size);
+    obstacles += answer.content->obstacles.size();
+    for (const formation::SceneObstacle& o : answer.content->obstacles)
+      vertices += geometry::vertices_of(o.shape).size();
+  }
+  const SizesOut sizes = std::filesystem::path(flags.out).extension() == ".jsonl" ? kRecords : kFeatures;
+  const double out =
+      sizes.a_vertex * static_cast<double>(vertices) + sizes.an_obstacle * static_cast<double>(obstacles);
+  message(fmt::format("{}, {}, {}: about {} in {}", counted(answers.size(), "file"), size_text(input),
+                      counted(vertices, "vertex", "vertices"), size_text(out), flags.out));
+}
+
 // --- Words ---
 
 const char* word(const geometry::Verdict& verdict) {
@@ -237,6 +264,7 @@ ExitCode segment(const SegmentFlags& flags) {
   for (const FileAnswer& answer : answers) {
     for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
   }
+  if (!flags.out.empty()) say_size(answers, flags);
   const std::vector<Decomposed> all = decomposed(answers, flags);
   for (const FileAnswer& answer : answers) {
     if (answer.content->obstacles.empty()) message("no obstacle in " + counts_line(answer));
