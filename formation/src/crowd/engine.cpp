@@ -390,7 +390,7 @@ class CrowdEngine final : public CrowdCore {
     }
     s.hard[slot] += static_cast<std::int32_t>(s.one.still);
     s.moving[slot] = static_cast<std::int32_t>(moving);
-    s.counts.bodies += s.one.body_lines.size();
+    s.counts.bodies += s.one.body_lines.size() - s.one.capsule_lines.size();
   }
 
   /// The half-planes of a group against bodies that move, in the rows from `first` on; how many rows.

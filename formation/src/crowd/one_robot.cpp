@@ -115,11 +115,12 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
   d.hint = hint_of(table_, last, crowd_.robots.kind(robot));
   counts.edges = lines_of_edges(robot, b);
   b.body_lines.clear();
+  b.capsule_lines.clear();
   b.still = 0;
   if (has_bodies()) lines_of_bodies(robot, b);
-  counts.bodies = b.body_lines.size();
+  counts.bodies = b.body_lines.size() - b.capsule_lines.size();
   counts.neighbours = b.near.size();
-  const std::size_t hard = counts.edges + b.still, lines = counts.edges + counts.bodies + counts.neighbours;
+  const std::size_t hard = counts.edges + b.still, lines = counts.edges + b.body_lines.size() + counts.neighbours;
   lay_out_rows(lines, b);
   put_obstacles(robot, counts.edges, b, words);
   bool touches = false;
@@ -218,8 +219,8 @@ std::size_t OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
 template <class T>
 void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
   b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
-  if (crowd_.reservations.empty() || is_reserved(robot)) return;
   b.capsule_lines.clear();
+  if (crowd_.reservations.empty() || is_reserved(robot)) return;
   const CrowdKind& kind = kind_of(robot);
   crowd_.reservations.add_lines(crowd_.position_of(robot), kind.radius, kind.max_speed, crowd_.options.time_step,
                                 b.capsule_lines);
