@@ -40,6 +40,7 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "last_arrival_time",
                                                      "min_obstacle_clearance",
                                                      "min_robot_clearance",
+                                                     "robot_margin",
                                                      "collisions",
                                                      "formation_position_error",
                                                      "formation_velocity_error",
@@ -80,10 +81,18 @@ TEST(MetricsFile, ACollisionSaysWithWhomWhenAndHowDeep) {
 
 TEST(MetricsFile, AFormationHasACourse) {
   formation::Metrics m = metrics();
-  m.formation_course = formation::FormationCourse{4.0, 3.0, "R2", 1.0, std::nullopt};
+  m.formation_course = formation::FormationCourse{4.0, 3.0, "R2", 1.0, std::nullopt, 0.75, 0.5};
   EXPECT_EQ(Json::parse(metrics_json(info(), m))["formation_course"].dump(),
-            R"({"largest_error":4,"largest_error_at":3,"largest_error_of":"R2","first_formed":1,"formed_since":null})");
+            R"({"largest_error":4,"largest_error_at":3,"largest_error_of":"R2","first_formed":1,"formed_since":null,)"
+            R"("share_formed":0.75,"rms_error":0.5})");
   EXPECT_TRUE(Json::parse(metrics_json(info(), metrics()))["formation_course"].is_null());
+}
+
+TEST(MetricsFile, MarginsThatWereNotKeptAreCounted) {
+  formation::Metrics m = metrics();
+  m.robot_margin = formation::RobotMarginCourse{0.3, 12, 4};
+  EXPECT_EQ(Json::parse(metrics_json(info(), m))["robot_margin"].dump(), R"({"asked":0.3,"pair_rows":12,"robots":4})");
+  EXPECT_TRUE(Json::parse(metrics_json(info(), metrics()))["robot_margin"].is_null());
 }
 
 TEST(MetricsFile, WhatDoesNotApplyIsNull) {

@@ -396,6 +396,8 @@ TEST(FormationCourse, TheLargestErrorAndWhenTheFormationHoldsAgain) {
   EXPECT_EQ(m.formation_course->largest_error_of, "R2");
   EXPECT_EQ(m.formation_course->first_formed.value(), 1.0);
   EXPECT_EQ(m.formation_course->formed_since.value(), 4.0);
+  EXPECT_DOUBLE_EQ(m.formation_course->share_formed, 4.0 / 6.0);
+  EXPECT_DOUBLE_EQ(m.formation_course->rms_error, std::sqrt((4.0 + 16.0 + 0.0025) / 12.0));
   EXPECT_DOUBLE_EQ(m.robots[0].largest_slot_error.value(), 0.0);
   EXPECT_NEAR(m.robots[0].detour.value(), 0.0, 1e-12);
   // The slot's way is 6 m and the start 3 m from it; the robot drove hypot(1, 3) + 2 hypot(1, 2) + hypot(1, 3.95) + ...
@@ -405,6 +407,45 @@ TEST(FormationCourse, TheLargestErrorAndWhenTheFormationHoldsAgain) {
   EXPECT_NE(m.outcome.find("; R2 went a detour of "), std::string::npos) << m.outcome;
   EXPECT_NE(m.outcome.find(" m, up to 4 m from its slot; the formation holds since 4 s"), std::string::npos)
       << m.outcome;
+}
+
+/// Row by row, so that roundings differ: robots whose rims touch, and a robot at a wall.
+TEST(Clearances, ContactIsZero) {
+  test::SeededRandom random(11);
+  for (int k = 0; k < 200; ++k) {
+    Scenario s;
+    const Vec2 middle = random.in_box(100.0);
+    const Vec2 apart = 0.5 * random.direction();  // the sum of the radii, up to rounding
+    s.robots = {robot("R1", middle, middle), robot("R2", middle + apart, middle + apart)};
+    s.robots[0].radius = 0.2;
+    s.robots[1].radius = 0.3;
+    s.obstacles = {{"wall", geometry::Polyline{{middle + Vec2{-0.2, -3.0}, middle + Vec2{-0.2, 3.0}}}}};
+    const Metrics m = measure(s, resting(s, 2));
+    for (const std::optional<double>& clearance : {m.min_robot_clearance, m.robots[0].min_obstacle_clearance}) {
+      EXPECT_GE(clearance.value(), 0.0) << "case " << k;
+      EXPECT_LE(clearance.value(), 1e-12) << "case " << k;
+    }
+    EXPECT_FALSE(is_safe(m)) << "contact is no proof of a distance";
+  }
+  Scenario deep;
+  deep.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {0.99, 0}, {0.99, 0})};
+  EXPECT_NEAR(measure(deep, resting(deep, 2)).min_robot_clearance.value(), -0.01, 1e-9);
+}
+
+TEST(RobotMargin, PairsNearerThanTheMarginAreCountedInEachRow) {
+  Scenario s;
+  s.margins.robot = 0.3;
+  s.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {1.2, 0}, {1.2, 0}), robot("R3", {2.5, 0}, {2.5, 0}),
+              robot("R4", {9, 0}, {9, 0})};
+  Metrics m = measure(s, resting(s, 4));  // gaps of 0.2 m and 0.3 m
+  ASSERT_TRUE(m.robot_margin.has_value());
+  EXPECT_EQ(m.robot_margin->asked, 0.3);
+  EXPECT_EQ(m.robot_margin->pair_rows, 5u);
+  EXPECT_EQ(m.robot_margin->robots, 2u);
+  s.margins.robot = 0.1;
+  EXPECT_EQ(measure(s, resting(s, 4)).robot_margin->pair_rows, 0u);
+  s.margins.robot = 0.0;
+  EXPECT_FALSE(measure(s, resting(s, 4)).robot_margin.has_value());
 }
 
 TEST(DistanceSeries, MovingObstaclesCount) {

@@ -14,6 +14,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/stuck.h"
+#include "exactvo/formation/waiting.h"
 #include "liveness_scenes.h"
 #include "support/c_library.h"
 #include "support/seeded_random.h"
@@ -601,6 +602,40 @@ TEST(Liveness, RobotsWithAWideMarginWaitForEachOther) {
   test_scenes::add_robot(s, {6.0, 0.7}, {-6.0, 0.7});
   const Metrics m = measure(s, simulate(s));
   EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
+}
+
+/// Twenty that cross a square of 10 m. Pairs that fell back used to keep a micrometre, and no number said so.
+TEST(Liveness, PairsThatFallBackKeepWhatIsLeftOfTheirMargin) {
+  std::size_t judged = 0, repaired = 0;
+  for (const int seed : {1, 2, 3}) {
+    test::SeededRandom random(seed);
+    Scenario s;
+    s.name = "square";
+    s.margins.robot = 0.3;
+    const auto from = test_scenes::scattered(20, {-5, -5}, {5, 5}, 1.35, random);
+    const auto to = test_scenes::scattered(20, {-5, -5}, {5, 5}, 1.35, random);
+    for (std::size_t i = 0; i < from.size(); ++i) test_scenes::add_robot(s, from[i], to[i]);
+    s.time_limit = 30.0;
+    for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
+      s.liveness = liveness;
+      const Recording run = simulate(s, {});
+      const Metrics m = measure(s, run);
+      EXPECT_EQ(relaxed(run), 0u);
+      ASSERT_TRUE(m.robot_margin.has_value());
+      const bool is_kept = m.min_robot_clearance.value() >= kMarginKept * s.margins.robot;
+      EXPECT_TRUE(is_kept || m.robot_margin->pair_rows > 0) << "what is not kept is counted";
+      if (m.plans->time_by_plan == 0.0) {
+        EXPECT_TRUE(is_kept) << seed << ": " << *m.min_robot_clearance;
+      }
+      EXPECT_GT(m.min_robot_clearance.value(), 0.03) << seed << ": what plans keep at least";
+      for (const Step& row : run.steps)
+        for (std::size_t i = 0; i < row.robots.size(); ++i)
+          for (const DecisionConstraint& c : row.robots[i].constraints) repaired += fell_back(s, row, i, c);
+      ++judged;
+    }
+  }
+  EXPECT_EQ(judged, 6u);
+  EXPECT_GT(repaired, 100u);
 }
 
 /// The same in millimetres and in kilometres, and far from the origin, as surveyors count.

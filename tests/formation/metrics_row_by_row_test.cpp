@@ -115,6 +115,13 @@ void measure_course(const Scenario& scenario, const Recording& recording, Metric
   for (std::size_t k = 0; k < recording.steps.size() && !course.first_formed; ++k)
     if (worst(k) <= scenario.arrival_tolerance) course.first_formed = recording.steps[k].time;
   course.formed_since = settled_since(recording, scenario.arrival_tolerance, worst);
+  const auto rows = static_cast<double>(recording.steps.size() - 1);
+  double squares = 0.0;
+  for (std::size_t k = 1; k < recording.steps.size(); ++k) {
+    course.share_formed += (worst(k) <= scenario.arrival_tolerance) / rows;
+    for (std::size_t i = 0; i < m.robots.size(); ++i) squares += std::pow(slot_error(recording, k, i), 2);
+  }
+  course.rms_error = std::sqrt(squares / (rows * static_cast<double>(m.robots.size())));
 }
 
 /// m: from a robot's start to its goals, or to its slot and on with the leader.
@@ -251,6 +258,8 @@ void expect_same(const Scenario& scenario, const Recording& recording, const std
   EXPECT_EQ(a.largest_error_of, b.largest_error_of);
   EXPECT_EQ(a.first_formed, b.first_formed);
   EXPECT_EQ(a.formed_since, b.formed_since);
+  EXPECT_NEAR(a.share_formed, b.share_formed, 1e-9);
+  EXPECT_NEAR(a.rms_error, b.rms_error, 1e-9 * b.rms_error);
 }
 
 Scenario paper_scenario(const std::string& name) {

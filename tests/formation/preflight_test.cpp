@@ -224,6 +224,57 @@ TEST(OpenWay, IsFoundOnlyWhereNothingSeparates) {
   EXPECT_GT(shut, 20);
 }
 
+TEST(Preflight, RobotsThatHaveArrivedBeforeTheyMoveAreNamed) {
+  Scenario s = scene({0.002, 0.001}, {{0.008, 0.001}}, {});  // metres and a map in millimetres, say
+  s.robots.push_back(s.robots[0]);
+  s.robots[1].id = "R2";
+  s.robots[1].position = {5.0, 5.0};
+  s.robots[1].goals = {{5.05, 5.0}, {4.95, 5.0}};
+  const std::vector<std::string> warnings = warnings_before(s);
+  ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
+  EXPECT_THAT(warnings[0], HasSubstr("2 robots within arrival_tolerance, 0.1 m, of the goal at the start"));
+  EXPECT_THAT(warnings[0], HasSubstr(": R1, R2"));
+  s.robots[0].goals = {s.robots[0].position};
+  s.robots[1].goals = {{5.05, 5.0}, {8.0, 5.0}};
+  EXPECT_TRUE(warnings_before(s).empty()) << "one stays where it is, the other has a way to go";
+}
+
+/// Five in a wedge, their leader on a straight way.
+Scenario wedge() {
+  Scenario s;
+  s.formation.emplace();
+  s.formation->leader = {{{{0, 0}, {20, 0}}, 1.0}};
+  s.formation->offsets = {{0, 0}, {-2, 2}, {-2, -2}, {-4, 4}, {-4, -4}};
+  s.formation->topology.adjacency.assign(5, std::vector<double>(5, 1.0));
+  s.formation->topology.pinning.assign(5, 1.0);
+  for (std::size_t i = 0; i < 5; ++i) {
+    s.formation->topology.adjacency[i][i] = 0.0;
+    Robot& r = s.robots.emplace_back();
+    r.id = "R" + std::to_string(i + 1);
+    r.position = s.formation->offsets[i];
+  }
+  return s;
+}
+
+TEST(Preflight, AFormationThatFollowsItsChoicesTooSlowlyIsWarnedOf) {
+  EXPECT_TRUE(warnings_before(wedge()).empty());
+  Scenario slow = wedge();
+  slow.formation->gains.k3 = 1.0;
+  std::vector<std::string> warnings = warnings_before(slow);
+  ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
+  EXPECT_THAT(warnings[0], HasSubstr("gain k3 = 1 1/s: robots that pass each other at 3 m/s"));
+  EXPECT_THAT(warnings[0], HasSubstr("k3 = 10.6 1/s would do"));
+  slow.formation->gains.k3 = 10.7;
+  EXPECT_TRUE(warnings_before(slow).empty());
+  Scenario bounded = wedge();
+  bounded.formation->controller_options.acceleration_bound = 1.0;
+  warnings = warnings_before(bounded);
+  ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
+  EXPECT_THAT(warnings[0], HasSubstr("acceleration_bound = 1 m/s^2: a robot takes 3 s to stop"));
+  bounded.formation->controller_options.acceleration_bound = 10.0;
+  EXPECT_TRUE(warnings_before(bounded).empty());
+}
+
 /// Doors as narrow as the robot, or narrower by less than any grid would see, at odd angles and far from the origin.
 TEST(OpenWay, LeadsThroughNoDoorNarrowerThanTheRobot) {
   test::SeededRandom random(test::seed_of_run(18));

@@ -216,6 +216,7 @@ TEST(Simulate, JsonHasEveryKey) {
                           "last_arrival_time",
                           "min_obstacle_clearance",
                           "min_robot_clearance",
+                          "robot_margin",
                           "collisions",
                           "formation_position_error",
                           "formation_velocity_error",
@@ -358,6 +359,31 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   EXPECT_EQ(here.run("simulate cart.json").status, 0) << "only where asked for";
   const std::string clear = "simulate " + data_file("paper/A1.json") + " --fail-on-collision";
   EXPECT_EQ(here.run(clear).status, 0);
+}
+
+TEST(Simulate, ARobotThatDoesNotArriveIsSaidToMachines) {
+  const Workplace here;
+  here.write("shut.json", R"({ "name": "shut", "time_limit": 5,
+    "robots": [ { "id": "in", "position": [0, 0], "goal": [8, 0] }, { "id": "free", "position": [9, 9], "goal": [8, 9] } ],
+    "obstacles": [ { "id": "cell", "polyline": [[-2, -2], [2, -2], [2, 2], [-2, 2], [-2, -2]] } ] })");
+  EXPECT_EQ(here.run("simulate shut.json").status, 0) << "only where asked for";
+  const Outcome outcome = here.run("simulate shut.json --out out --fail-unless-arrived");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("did not arrive"));
+  EXPECT_FALSE(json::parse(here.read("out/metrics.json"))["all_arrived"].get<bool>());
+  EXPECT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --fail-unless-arrived").status, 0);
+  EXPECT_THAT(here.run("simulate shut.json --engine crowd --fail-unless-arrived").err,
+              HasSubstr("--fail-unless-arrived"));
+}
+
+TEST(Simulate, MarginsThatAreNotKeptAndSlotsThatMoveAreSaid) {
+  const Workplace here;
+  here.write("near.json", R"({ "name": "near", "time_limit": 5, "margins": { "robot": 0.3 },
+    "robots": [ { "id": "a", "position": [0, 0], "goal": [8, 0] }, { "id": "b", "position": [0, 1.1], "goal": [8, 1.1] } ] })");
+  EXPECT_THAT(here.run("simulate near.json").out,
+              HasSubstr("of robots nearer to each other than margins.robot, 0.3 m (2 robots)"));
+  EXPECT_THAT(here.run("simulate " + data_file("paper/B1.json")).err,
+              HasSubstr("formation: recentre moves every slot by (-0.3333, -0.3333)"));
 }
 
 /// MB that the program takes at most.

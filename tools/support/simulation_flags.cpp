@@ -82,8 +82,11 @@ std::optional<formation::ControllerOptions> controller_options_of(const Simulati
 }  // namespace
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
-  CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
-                            ->capture_default_str();
+  CLI::Option* method =
+      app.add_option("--method,-m", flags.method,
+                     help("Avoidance method (ivo: a way to drive, not the half-plane of vo --variant ivo)",
+                          formation::method_names()))
+          ->capture_default_str();
   flags.of_goals = {app.add_option(
       "--guidance,-g", flags.guidance,
       help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};

@@ -20,7 +20,13 @@ void append_robot(JsonWriter& json, const formation::RobotMetrics& robot) {
 void append(JsonWriter& json, const formation::FormationCourse& course) {
   json.begin_inline_object().member("largest_error", course.largest_error);
   json.member("largest_error_at", course.largest_error_at).member("largest_error_of", course.largest_error_of);
-  json.member("first_formed", course.first_formed).member("formed_since", course.formed_since).end_object();
+  json.member("first_formed", course.first_formed).member("formed_since", course.formed_since);
+  json.member("share_formed", course.share_formed).member("rms_error", course.rms_error).end_object();
+}
+
+void append(JsonWriter& json, const formation::RobotMarginCourse& margin) {
+  json.begin_inline_object().member("asked", margin.asked).member("pair_rows", margin.pair_rows);
+  json.member("robots", margin.robots).end_object();
 }
 
 void append(JsonWriter& json, const formation::PlanMetrics& plans) {
@@ -81,7 +87,7 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.optional("guidance", info.guidance).optional("liveness", info.liveness);
   json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
-  json.member("collisions", m.collisions);
+  json.member("robot_margin", m.robot_margin, appended).member("collisions", m.collisions);
   json.member("formation_position_error", m.formation_position_error);
   json.member("formation_velocity_error", m.formation_velocity_error);
   json.member("leader_arrival_time", m.leader_arrival_time);

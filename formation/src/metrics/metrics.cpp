@@ -22,13 +22,20 @@ namespace {
 
 using geometry::kInfinity;
 
+/// Lower bounds are a little too low, so that of two in contact, which is proven to be no more than that or which
+/// rounding alone could explain, they lie just below 0: that is 0.
+std::optional<double> contact_is_zero(std::optional<double> clearance) {
+  if (clearance && *clearance < 0.0 && !touched(clearance)) clearance = 0.0;
+  return clearance;
+}
+
 void write_clearances(detail::Clearances clearances, Metrics& m) {
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
-    const std::optional<double>& mine = clearances.to_obstacles[i];
+    const std::optional<double> mine = contact_is_zero(clearances.to_obstacles[i]);
     m.robots[i].min_obstacle_clearance = mine;
     if (mine) m.min_obstacle_clearance = std::min(*mine, m.min_obstacle_clearance.value_or(kInfinity));
   }
-  m.min_robot_clearance = clearances.between_robots;
+  m.min_robot_clearance = contact_is_zero(clearances.between_robots);
   m.collisions = std::move(clearances.collisions);
 }
 
@@ -40,6 +47,7 @@ Recording beginning_of(const Recording& run) {
   known.tracking_gain = run.tracking_gain;
   known.relative_frame = run.relative_frame;
   known.offsets = run.offsets;
+  known.controller_options = run.controller_options;
   return known;
 }
 

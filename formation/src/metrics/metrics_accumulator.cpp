@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "metrics/divergence.h"
+#include "scene/near_pairs.h"
+#include "scene/goals.h"
 
 namespace exactvo::formation::detail {
 
@@ -44,6 +46,7 @@ void MetricsAccumulator::add(const Step& row) {
     r.velocity = step.velocity;
   }
   if (scenario_.formation) add_to_course(row);
+  add_margins(row);
   leader_ = {row.leader_position, row.leader_velocity};
   time_ = row.time;
   ++rows_;
@@ -107,13 +110,34 @@ void MetricsAccumulator::add_to_course(const Step& row) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const double error = slot_error(row, run_.offsets, i);
     worst = std::max(worst, error);
+    if (rows_ > 0) sum_of_squared_errors_ += error * error;
     if (rows_ == 0 || !(error > robots_[i].largest_slot_error)) continue;
     robots_[i].largest_slot_error = error;
     robots_[i].largest_slot_error_at = row.time;
   }
   if (!first_formed_ && worst <= scenario_.arrival_tolerance) first_formed_ = row.time;
+  formed_rows_ += rows_ > 0 && worst <= scenario_.arrival_tolerance;
   formed_.add(row.time, worst, scenario_.arrival_tolerance);
   error_ = worst;
+}
+
+/// m; 0 of a formation whose controller keeps none.
+double MetricsAccumulator::asked_margin() const {
+  const bool has_none = run_.controller_options && !run_.controller_options->margins;
+  return has_none ? 0.0 : scenario_.margins.robot;
+}
+
+void MetricsAccumulator::add_margins(const Step& row) {
+  const double kept = kMarginKept * asked_margin();
+  if (!(kept > 0.0) || robots_.size() < 2) return;
+  places_.clear();
+  for (const RobotStep& r : row.robots) places_.push_back(r.position);
+  for_each_near_pair(places_, 2.0 * largest_radius(scenario_.robots) + kept, [&](std::size_t i, std::size_t j) {
+    const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
+    if (!(norm(places_[i] - places_[j]) - radii < kept)) return;
+    ++pair_rows_within_margin_;
+    robots_[i].was_within_margin = robots_[j].was_within_margin = true;
+  });
 }
 
 void MetricsAccumulator::write_to(Metrics& m) const {
@@ -132,6 +156,11 @@ void MetricsAccumulator::write_to(Metrics& m) const {
   m.plans.emplace();
   m.plans->time_by_plan = static_cast<double>(rows_by_plan_) * run_.time_step;
   m.plans->time_back = static_cast<double>(rows_back_) * run_.time_step;
+  if (asked_margin() > 0.0 && robots_.size() > 1) {
+    const auto nearer =
+        std::count_if(robots_.begin(), robots_.end(), [](const OfRobot& r) { return r.was_within_margin; });
+    m.robot_margin = {asked_margin(), pair_rows_within_margin_, static_cast<std::size_t>(nearer)};
+  }
   m.relaxed_steps = counted_.relaxed;
   m.uncertified_half_planes = counted_.uncertified;
   m.active_set_switches = counted_.switches;
@@ -175,6 +204,10 @@ void MetricsAccumulator::write_course(Metrics& m) const {
   }
   course.first_formed = first_formed_;
   course.formed_since = formed_.since();
+  if (rows_ < 2) return;
+  const double rows = static_cast<double>(rows_ - 1);
+  course.share_formed = static_cast<double>(formed_rows_) / rows;
+  course.rms_error = std::sqrt(sum_of_squared_errors_ / (rows * static_cast<double>(robots_.size())));
 }
 
 void MetricsAccumulator::write_detours(Metrics& m) const {

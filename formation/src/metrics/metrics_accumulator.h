@@ -55,6 +55,7 @@ class MetricsAccumulator {
     double jitter = 0.0, velocity_variation = 0.0, peak_acceleration = 0.0;
     double last_turn = 0.0;
     std::size_t reversals = 0;
+    bool was_within_margin = false;  ///< nearer to another robot than the margin
     ActiveSet active;
   };
 
@@ -64,11 +65,13 @@ class MetricsAccumulator {
   void add_decision(OfRobot& r, const RobotStep& step);
   void add_arrival(std::size_t robot, const Step& row);
   void add_to_course(const Step& row);
+  void add_margins(const Step& row);
   void write_formation(Metrics& m) const;
   void write_arrivals(Metrics& m) const;
   void write_course(Metrics& m) const;
   void write_detours(Metrics& m) const;
   double direct_way(std::size_t robot) const;
+  double asked_margin() const;
 
   /// Counts of decisions. Those of the last row are no decision's, so a row counts when the next one comes.
   struct Counts {
@@ -80,7 +83,11 @@ class MetricsAccumulator {
   std::vector<OfRobot> robots_;
   std::size_t rows_ = 0, rows_by_plan_ = 0, rows_back_ = 0;
   Counts counted_, of_last_row_;
+  std::vector<Vec2> places_;  ///< memory of `add_margins`
+  std::size_t pair_rows_within_margin_ = 0;
   std::optional<double> first_formed_;
+  std::size_t formed_rows_ = 0;         ///< from the second row on, as the sum
+  double sum_of_squared_errors_ = 0.0;  ///< m2, over robots and rows
   SettledSince formed_;
   // In the last row.
   double time_ = 0.0;   ///< s

@@ -133,6 +133,24 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
   }
 }
 
+/// Robots that have arrived before they move, all in one sentence: as a rule the scene is in another unit of length.
+/// Who starts in its very goal is to stay there.
+void warn_of_goals_at_start(const Scenario& s, std::vector<std::string>& out) {
+  constexpr std::size_t kNamed = 10;
+  std::vector<std::string> ids;
+  for (const Robot& robot : s.robots) {
+    const auto is_there = [&](Vec2 goal) { return norm(goal - robot.position) <= s.arrival_tolerance; };
+    const bool stays = robot.goals.size() == 1 && robot.goals[0] == robot.position;
+    if (!stays && std::all_of(robot.goals.begin(), robot.goals.end(), is_there)) ids.push_back(robot.id);
+  }
+  if (ids.empty()) return;
+  std::string text = ids[0];
+  for (std::size_t k = 1; k < std::min(ids.size(), kNamed); ++k) text += ", " + ids[k];
+  if (ids.size() > kNamed) text += " and " + std::to_string(ids.size() - kNamed) + " more";
+  out.push_back(geometry::counted(ids.size(), "robot") + " within arrival_tolerance, " + metres(s.arrival_tolerance) +
+                ", of the goal at the start, arrived before any move (lengths are in metres): " + text);
+}
+
 /// Robots that have to pass each other and cannot; the first ones.
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
   constexpr std::size_t kNamed = 10;
@@ -258,7 +276,50 @@ void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, st
   }
 }
 
+// --- What a formation's controller follows too slowly ---
+
+/// m/s: how fast two robots of a formation go past each other at most, each closing in on its slot.
+double passing_speed(const Scenario& s, const ControllerOptions& options) {
+  double fastest = 0.0;
+  for (const Robot& robot : s.robots) fastest = std::max(fastest, robot.max_speed);
+  return 2.0 * (options.saturation ? std::min(fastest, s.formation->catch_up_speed) : fastest);
+}
+
+/// Math: x' = k3 (y - x) for the brake point y, so that x is the mean of past y with weights k3 exp(-k3 t), of
+/// variance 1 / k3^2. Round a disc of radius R = r_i + r_j a relative velocity u bends the way of y_i - y_j by u^2 / R;
+/// the mean lies half the variance times that inside of it: u^2 / (2 R k3^2).
+void warn_of_lag(const Scenario& s, const ControllerOptions& options, std::vector<std::string>& out) {
+  const double margin = options.margins ? s.margins.robot : 0.0, k3 = s.formation->gains.k3;
+  const double radii = 2.0 * largest_radius(s.robots), speed = passing_speed(s, options);
+  if (!(margin > 0.0)) return;
+  const double enough = speed / std::sqrt(2.0 * radii * margin);
+  if (k3 >= enough) return;
+  out.push_back("gain k3 = " + number_text(k3, 3) + " 1/s: robots that pass each other at " + number_text(speed, 3) +
+                " m/s cut the corners of their brake points by more than margins.robot, " + metres(margin) +
+                ", and can overlap; k3 = " + number_text(enough, 3) + " 1/s would do");
+}
+
+void warn_of_bound(const Scenario& s, const ControllerOptions& options, std::vector<std::string>& out) {
+  const double bound = options.acceleration_bound;
+  if (!(bound > 0.0)) return;
+  double fastest = 0.0;
+  for (const Robot& robot : s.robots) fastest = std::max(fastest, robot.max_speed);
+  const double stops_in = fastest / bound;
+  if (stops_in <= s.horizons.least) return;
+  out.push_back("acceleration_bound = " + number_text(bound, 3) + " m/s^2: a robot takes " + number_text(stops_in, 3) +
+                " s to stop, longer than horizons.least, " + number_text(s.horizons.least, 3) +
+                " s: robots can overlap each other and obstacles");
+}
+
 }  // namespace
+
+std::vector<std::string> controller_warnings(const Scenario& scenario, const ControllerOptions& options) {
+  std::vector<std::string> out;
+  if (!options.brake_point) return out;
+  if (scenario.robots.size() > 1) warn_of_lag(scenario, options, out);
+  warn_of_bound(scenario, options, out);
+  return out;
+}
 
 std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets,
                                             Reachability& reach) {
@@ -281,6 +342,7 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   }
   warn_of_pairs(scenario, last, out);
   if (!scenario.formation) warn_of_near_pairs(scenario, last, out);
+  if (!scenario.formation) warn_of_goals_at_start(scenario, out);
   warn_of_passing(scenario, out);
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;

@@ -55,8 +55,8 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 
 /// Repair instead of relaxing (liveness, rule R0): as long as there are robots whose half-planes, as they decided last,
 /// contradict each other, all pairs of these fall back to those that they would have at rest, and decide again. In each
-/// round some pair does so for good, so that it ends. Half-planes of moving obstacles and of robots that do not yield
-/// may still be relaxed.
+/// round some pair does so for good, so that it ends. They keep what is left of their margin: resting satisfies that
+/// too. Half-planes of moving obstacles and of robots that do not yield may still be relaxed.
 void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
     return row.robots[i].status != lp::Status::optimal || (groups.is_member(i) && held_by_all_[i]);
@@ -65,6 +65,7 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
   for (std::size_t i = 0; i < others.size(); ++i)
     if (is_contradicted(i)) contradicted.insert(i);
   std::vector<std::vector<std::size_t>> fallen(others.size());  // with whom each fell back
+  const double kept = std::max(gap, pair_rule(rules_).margin);
   while (!contradicted.empty()) {
     std::set<std::size_t> changed;
     for (const std::size_t i : contradicted) {
@@ -72,7 +73,7 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
         const std::size_t j = c.index;
         const bool both_yield = is_of_robot(scene_, c) && robots_[i].cooperates && robots_[j].cooperates;
         if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
-        fall_back(now(), i, j, others, gap);
+        fall_back(now(), i, j, others, kept);
         fallen[i].push_back(j);
         fallen[j].push_back(i);
         changed.insert({i, j});

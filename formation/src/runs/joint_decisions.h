@@ -39,7 +39,7 @@ class JointDecisions {
 
   std::vector<Anchor> anchors;                  ///< where half-planes of this step are built
   std::vector<std::vector<Constraint>> others;  ///< its half-planes against robots and moving obstacles
-  double gap = kContactSkin;                    ///< m, that pairs which fall back keep, as in `fall_back`
+  double gap = kContactSkin;  ///< m, that pairs keep of which one goes by plan, and pairs that fall back at least
 
   /// Takes the robots as they are.
   void begin_step();

@@ -25,6 +25,9 @@ std::vector<std::string> warnings_with(const Scenario& scenario, const Simulatio
                                        Reachability& reach) {
   std::vector<std::string> warnings;
   if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
+  if (scenario.formation)
+    for (std::string& warning : controller_warnings(scenario, controller_options_in_use(scenario, options)))
+      warnings.push_back(std::move(warning));
   for (std::string& warning : preflight_warnings(scenario, offsets_in_use(scenario, options), reach))
     warnings.push_back(std::move(warning));
   return warnings;

@@ -36,6 +36,7 @@ struct SimulateFlags {
   bool json = false;
   bool no_figures = false;
   bool fail_on_collision = false;
+  bool fail_unless_arrived = false;
   bool force = false;
 };
 
@@ -47,7 +48,9 @@ std::string or_dash(const std::optional<double>& value, const char* unit) {
 std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
   std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
   if (!has_goal) arrival.clear();
-  const std::string detour = robot.detour ? fmt::format(" ({:.3g} m of it a detour)", *robot.detour) : "";
+  const std::string detour = robot.detour ? fmt::format(" ({:.3g} m more than {})", *robot.detour,
+                                                        has_goal ? "straight to its goals" : "its slot's")
+                                          : "";
   const std::string slot =
       robot.largest_slot_error ? fmt::format(", up to {:.3g} m from its slot", *robot.largest_slot_error) : "";
   return fmt::format("  {:<12} {}path length {:.4g} m{}{}, minimum clearance to obstacles {}{}\n", shown(robot.id),
@@ -76,10 +79,11 @@ std::string formation_lines(const formation::Metrics& m) {
                                   : std::string("no error at any time");
   return fmt::format(
       "  formation    position error {}, velocity error {} at the end; leader at the end of its path: {}\n"
-      "  formation    {}; first formed at {}, holds since {}\n",
+      "  formation    {}; first formed at {}, holds since {}\n"
+      "  formation    formed for {:.3g} % of the time, root mean square of slot errors {:.3g} m\n",
       or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
       or_dash(m.leader_arrival_time, "s"), largest, or_dash(course.first_formed, "s"),
-      or_dash(course.formed_since, "s"));
+      or_dash(course.formed_since, "s"), 100.0 * course.share_formed, course.rms_error);
 }
 
 std::string course_words(const formation::LyapunovCourse& c) {
@@ -90,6 +94,15 @@ std::string course_words(const formation::LyapunovCourse& c) {
 
 std::string lyapunov_lines(const formation::LyapunovSummary& s) {
   return fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(s.paper), course_words(s.sound));
+}
+
+/// Where it was not kept.
+std::string margin_line(const formation::Metrics& m) {
+  if (!m.robot_margin || m.robot_margin->pair_rows == 0) return "";
+  const formation::RobotMarginCourse& margin = *m.robot_margin;
+  return fmt::format("  margin       {} of robots nearer to each other than margins.robot, {:.4g} m ({})\n",
+                     geometry::counted(margin.pair_rows, "pair-row"), margin.asked,
+                     geometry::counted(margin.robots, "robot"));
 }
 
 std::string summary(const FinishedRun& run) {
@@ -103,13 +116,13 @@ std::string summary(const FinishedRun& run) {
   if (run.file.scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
   for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
   return text + fmt::format(
-                    "  clearance    to obstacles {}, between robots {}\n"
+                    "  clearance    to obstacles {}, between robots {}\n{}"
                     "  jitter       {:.4g} m/s^2, {}, {}\n"
                     "  velocity     total variation {:.4g} m/s, peak acceleration {:.4g} m/s^2\n"
                     "  half-planes  {} not certified, relaxed in {}\n"
                     "  steps        {} in {:.3g} s of wall time\n",
-                    or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), m.jitter,
-                    geometry::counted(m.heading_reversals, "heading reversal"),
+                    or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), margin_line(m),
+                    m.jitter, geometry::counted(m.heading_reversals, "heading reversal"),
                     geometry::counted(m.active_set_switches, "active-set switch", "active-set switches"),
                     m.velocity_variation, m.peak_acceleration, m.uncertified_half_planes,
                     geometry::counted(m.relaxed_steps, "decision"), m.steps, m.wall_time);
@@ -119,11 +132,27 @@ void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) message("warning: " + warning);
 }
 
-/// How fast a formation can form, said before the run.
-void announce(const formation::Scenario& scenario, formation::Integrator integrator) {
+/// m: by how much the offsets in use differ from those of the scenario.
+geometry::Vec2 recentred_by(const formation::FormationSpec& spec, const formation::SimulationOptions& options) {
+  const formation::ControllerOptions in_use = options.controller_options.value_or(
+      formation::switched(formation::controller_options_of(options.controller), spec.controller_options));
+  geometry::Vec2 sum{};
+  if (!spec.recentre || !in_use.recentred) return sum;
+  for (const geometry::Vec2 offset : spec.offsets) sum += offset;
+  return -sum / static_cast<double>(spec.offsets.size());
+}
+
+/// How fast a formation can form, and where its slots are, said before the run.
+void announce(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
   if (!scenario.formation) return;
+  const geometry::Vec2 moved = recentred_by(*scenario.formation, options);
+  if (norm(moved) > scenario.arrival_tolerance)
+    message(
+        fmt::format("formation: recentre moves every slot by ({:.4g}, {:.4g}), so that the offsets have no mean; "
+                    "\"recentre\": false keeps them as they are",
+                    moved.x, moved.y));
   const formation::Stability s = stability_of(*scenario.formation);
-  const bool has_limit = integrator == formation::Integrator::euler;
+  const bool has_limit = options.integrator == formation::Integrator::euler;
   message(fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s{}",
                       s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate,
                       has_limit ? fmt::format("; explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
@@ -224,10 +253,11 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
   }
-  announce(scenario, options.integrator);
+  announce(scenario, options);
   const FinishedRun finished = flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
                                                  : run_into_folder(flags, read, options);
-  const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
+  const bool failed = (flags.fail_on_collision && !finished.metrics.collisions.empty()) ||
+                      (flags.fail_unless_arrived && !finished.metrics.all_arrived);
   return failed ? ExitCode::negative : ExitCode::success;
 }
 
@@ -269,6 +299,9 @@ void declare_simulate(CLI::App& app, SimulateFlags& flags) {
   app.add_flag("--json", flags.json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
   app.add_flag("--fail-on-collision", flags.fail_on_collision, "Exit status 1 if a robot overlaps anything");
+  app.add_flag("--fail-unless-arrived", flags.fail_unless_arrived,
+               "Exit status 1 if a robot did not arrive: at its last goal, or, in a formation, at its slot with the "
+               "leader at its end");
   app.add_flag("--force", flags.force,
                "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
   declare_crowd_flags(app, flags.crowd);

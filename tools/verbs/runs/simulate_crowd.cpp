@@ -244,7 +244,7 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   flags.method = app.get_option("--method");
   for (const char* option : {"--every", "--snapshot-every", "--resume", "--precision"})
     flags.of_crowd.push_back(app.get_option(option));
-  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--force"})
+  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--fail-unless-arrived", "--force"})
     flags.of_standard.push_back(app.get_option(option));
 }
 

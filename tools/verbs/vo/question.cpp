@@ -284,7 +284,10 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "How much of the change the robot takes, in (0, 1]. Below 1 a second half-plane is given, which "
                  "holds only if the other side takes the rest");
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
-  app.add_option("--variant", flags.variants, "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure")
+  app.add_option(
+         "--variant", flags.variants,
+         "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure. Here ivo is one half-plane, not a "
+         "method of simulate")
       ->allow_extra_args(false);
   app.add_flag("--exact-legs", flags.exact_legs,
                "The legs as algebraic numbers: polynomial, interval; with --free also which cones share one");

@@ -6,8 +6,8 @@
 ///
 /// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
 /// ends, where the integrator has no closed form) and of what moves beside the robot, round its corners and through
-/// its changes of speed, with all roundings taken off. Where a robot overlaps an obstacle they are at most 0, and not
-/// its depth.
+/// its changes of speed, with all roundings taken off. A bound just below 0, which those roundings alone could explain
+/// (`kContactDepth`), is 0: contact. Where a robot overlaps an obstacle they are at most 0, and not its depth.
 
 #include <cstddef>
 #include <functional>
@@ -51,8 +51,8 @@ struct RobotMetrics {
   std::optional<double> arrival_time;            ///< s
   double path_length = 0.0;                      ///< m
   std::optional<double> min_obstacle_clearance;  ///< m, swept: to the robot's rim, negative is penetration
-  /// m, how much longer its path is than the direct way: from its start straight to its goals, of a robot that arrived;
-  /// in a formation from its start to its slot and on with the leader. Never below 0.
+  /// m, how much longer its path is than the direct way: from its start straight to its goals, through walls too, of a
+  /// robot that arrived; in a formation from its start to its slot and on with the leader. Never below 0.
   std::optional<double> detour = std::nullopt;
   std::optional<double> largest_slot_error = std::nullopt;  ///< m, in a formation, from the second row on
 };
@@ -64,6 +64,8 @@ struct FormationCourse {
   std::string largest_error_of;        ///< the robot's id
   std::optional<double> first_formed;  ///< s: when all were first within the scenario's arrival tolerance
   std::optional<double> formed_since;  ///< s: since when they are to the end
+  double share_formed = 0.0;           ///< of the rows from the second on: in which all were within that tolerance
+  double rms_error = 0.0;              ///< m, root mean square of all robots' distances from their slots in these rows
 };
 
 /// Joint plans of robots that waited for each other (liveness).
@@ -72,12 +74,20 @@ struct PlanMetrics : LivenessCourse {
   double time_back = 0.0;     ///< s, in which some robot went back to where its plan begins
 };
 
+/// Pairs of robots that were nearer to each other than `margins.robot`, at the rows of a run.
+struct RobotMarginCourse {
+  double asked = 0.0;         ///< m, the margin
+  std::size_t pair_rows = 0;  ///< pairs, counted once in every row in which they were nearer
+  std::size_t robots = 0;     ///< robots of such pairs
+};
+
 /// What a run came to.
 struct Metrics {
   bool all_arrived = false;                        ///< every robot's `arrived`
   std::optional<double> last_arrival_time;         ///< s
-  std::optional<double> min_obstacle_clearance;    ///< m, swept
-  std::optional<double> min_robot_clearance;       ///< m, swept
+  std::optional<double> min_obstacle_clearance;    ///< m, swept; 0 in contact
+  std::optional<double> min_robot_clearance;       ///< m, swept; 0 in contact
+  std::optional<RobotMarginCourse> robot_margin;   ///< of several robots that are asked to keep one
   std::optional<double> formation_position_error;  ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
   std::optional<double> formation_velocity_error;  ///< m/s, at the end
   std::optional<double> leader_arrival_time;       ///< s
@@ -138,6 +148,9 @@ class Evaluator {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// A gap of less than this share of the margin has not kept it: robots come to it from farther away, ever more slowly.
+inline constexpr double kMarginKept = 0.99;
 
 /// m. A clearance below `-kContactDepth` is a contact. Certified clearances are too low by at most 4 * 2^-46 of the
 /// coordinates, which is less than this within 10 km of the origin; robots exactly at contact distance are therefore
