@@ -120,8 +120,6 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
              R"({"name": "b", "speed_bound": "box", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   here.write("slow.json", R"({"name": "s", "robots": [{"id": "A", "position": [0, 0], "goal": [9, 0]},
       {"id": "B", "position": [5, 5], "goal": [9, 0], "max_speed": 1e-6}]})");
-  here.write("plan.json", R"({"name": "p", "liveness": "plan",
-      "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   const std::pair<const char*, const char*> cases[] = {
       {"simulate ring.json --engine crwd", "one of standard crowd; did you mean 'crowd'?"},
       {"simulate ring.json --record out.evr",
@@ -138,7 +136,6 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
       {"simulate ring.json --engine crowd --every 0 --record out.evr",
        "--every: found '0', expected a whole number from 1 to 1000000"},
       {"simulate slow.json --engine crowd", "slow.json: robot B: max_speed: found "},
-      {"simulate plan.json --engine crowd --record out.evr", "plan.json: /liveness: found \"plan\""},
       {"simulate box.json --engine crowd --record out.evr", "/speed_bound"},
       {"audit ring.json --sample 3", ".evr"},
       {"audit none.evr", "E_FILE_MISSING"},

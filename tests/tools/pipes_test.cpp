@@ -284,7 +284,7 @@ TEST(Pipes, ARunIsAuditedFromItsStandardOutput) {
   EXPECT_THAT(here.read("log"), HasSubstr("standard output: found No space left on device"));
   for (const std::string other : {"--out o", "--engine crowd"})
     EXPECT_EQ(here.run("simulate s.json --record - " + other).status, 2) << other;
-  EXPECT_THAT(here.run("simulate s.json --record r.jsonl").err, HasSubstr("expected - for stdout, or a pipe; or "));
+  EXPECT_THAT(here.run("simulate s.json --record r.jsonl").err, HasSubstr("expected - for stdout, or a pipe; --out DIR writes a recording"));
 }
 
 /// Whatever keeps a run from beginning, who waits for its recording gets an end.

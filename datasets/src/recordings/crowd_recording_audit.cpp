@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The audit of recordings of crowds (crowd_recording.h): shares nothing with the engine that made them.
+// The audit of recordings of crowds (crowd_recording.h): shares no decision code with the engine that made
+// them, only the geometry library.
 //
 // Two robots must not overlap, whatever made them: contact is clear, less is a failed check. Of an edge or a body that
 // is touched, or all but, a robot must not come nearer to it than it is, up to rounding: for an edge the half-plane is

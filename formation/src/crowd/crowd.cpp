@@ -150,6 +150,7 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
   }
   unsorted = unchecked = true;
   core->forget_preference(id);
+  core->reservations.forget(static_cast<std::int32_t>(id));
   return id;
 }
 
@@ -479,7 +480,8 @@ void Crowd::set_reservations(const std::vector<Vec2>& place, const std::vector<s
     if (reserved[id] != 0 && !geometry::is_finite(place[id]))
       throw CrowdError(CrowdProblem::not_finite, "reserved place of robot " + std::to_string(id) +
                                                      ": found a coordinate that is no number, expected metres");
-  body_->core->reservations.set(place, reserved);
+  const auto end = static_cast<std::ptrdiff_t>(id_end());
+  body_->core->reservations.set({place.begin(), place.begin() + end}, {reserved.begin(), reserved.begin() + end});
   body_->core->changed();
 }
 

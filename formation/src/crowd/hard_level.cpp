@@ -67,7 +67,6 @@ template <class T>
 void HardLevel<T>::take_kinds() {
   const double q = crowd_.options.position_step, dt = crowd_.options.time_step;
   kinds_.clear();
-  largest_ = 0;
   for (std::size_t k = 0; k < crowd_.kinds.size(); ++k) {
     const CrowdKind& kind = crowd_.kinds[k];
     StepsOfKind steps;
@@ -75,7 +74,6 @@ void HardLevel<T>::take_kinds() {
     steps.reach = std::sqrt(static_cast<double>(table_.reach[k])) * (1.0 + 0x1p-10);
     const double speed = kind.max_speed * dt / q;
     steps.squared_speed = speed * speed * (1.0 - 0x1p-46);
-    largest_ = std::max(largest_, steps.radius);
     kinds_.push_back(steps);
   }
 }
@@ -98,7 +96,7 @@ Motion HardLevel<T>::decide(std::size_t robot, int round, HardBuffers& b, OneRob
   if (round > 0 && safe == wish) return safe;
   if (!put_rows(robot, round, b, counts)) return safe;
   if (violated(b.rows, wish) == nullptr) return wish;
-  if (crowd_.reservations.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b);
+  if (crowd_.reservations.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
   return nearest(robot, safe, b, one);
 }
 
@@ -151,7 +149,8 @@ void HardLevel<T>::put_row(std::size_t robot, std::size_t other, int round, Hard
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
 template <class T>
-Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers& b) const {
+Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const {
+  const std::size_t obstacles = one_.put_obstacles(robot, one);
   const Motion wish = wish_of(robot);
   double share = 1.0;
   for (const MotionRow& row : b.rows) {
@@ -161,7 +160,8 @@ Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers
   }
   for (int k = 0; k < kCorrections; ++k, share *= 1.0 - 0x1p-10) {
     const Motion m = between(safe, wish, share);
-    if (squared_length(m) <= kinds_[crowd_.robots.kind(robot)].squared_speed && violated(b.rows, m) == nullptr)
+    if (squared_length(m) <= kinds_[crowd_.robots.kind(robot)].squared_speed && violated(b.rows, m) == nullptr &&
+        one_.keeps_obstacles(robot, obstacles, one, m.x, m.y))
       return m;
     if (share == 0.0) break;
   }

@@ -5,10 +5,11 @@
 /// The second level of a step: from what each robot wishes to a motion that keeps all robots apart. Exact.
 ///
 /// The first level (half-planes between neighbours, relaxed where they contradict each other) says what each robot
-/// wishes. Then, for every pair that could meet within the step, `pair_rows` makes two half-planes of motions that rest
-/// satisfies. A robot takes its wish if that satisfies its rows; else the motion nearest to it, found in doubles and
-/// accepted only by the integer test of every row; else rest. So whatever the wishes, the density and the rounding are,
-/// two robots that do not overlap at the beginning of a step do not overlap at any moment of it (lemmas of pair_row.h).
+/// wishes. Then, for every pair that could meet within the step (and does not overlap by more than `kRoundedContact`),
+/// `pair_rows` makes two half-planes of motions that rest satisfies. A robot takes its wish if that satisfies its rows;
+/// else the motion nearest to it, found in doubles and accepted only by the integer test of every row; else rest. So
+/// whatever the wishes, the density and the rounding are, two robots that do not overlap at the beginning of a step do
+/// not overlap at any moment of it (lemmas of pair_row.h).
 ///
 /// A second round repeats this from the motions of the first on, for robots whose wish was cut short: what their
 /// neighbours did not use is shared out again.
@@ -54,7 +55,7 @@ class HardLevel {
   bool put_rows(std::size_t robot, int round, HardBuffers& b, StepReport& counts) const;
   void put_row(std::size_t robot, std::size_t other, int round, HardBuffers& b, bool& found) const;
   crowd::Motion nearest(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
-  crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b) const;
+  crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   crowd::Motion rounded(std::size_t robot, crowd::Motion safe, std::size_t obstacles, const HardBuffers& b,
                         const OneRobotBuffers<T>& one) const;
 
@@ -62,7 +63,6 @@ class HardLevel {
   const crowd::KindTable<T>& table_;
   const OneRobot<T>& one_;
   std::vector<StepsOfKind> kinds_;
-  std::int64_t largest_ = 0;  ///< radius
 };
 
 }  // namespace exactvo::formation

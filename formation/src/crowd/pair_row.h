@@ -10,16 +10,16 @@
 /// numbers):
 ///  (1) If N.D >= bar and N.(D + m_a - m_b) >= bar, then |D + s (m_a - m_b)| >= R for all s in [0, 1]: the product is
 ///      affine in s, and N.z <= |N| |z|.
-///  (2) c_a + c_b >= bar - N.D. So two motions that satisfy their rows satisfy (1), and each robot may compute its row
-///  by
-///      itself: both follow from the same numbers in the order of ids.
+///  (2) c_a + c_b >= bar - N.D. So two motions that satisfy their rows satisfy (1), and each robot may compute its
+///      row by itself: both follow from the same numbers in the order of ids.
 ///  (3) N = D always serves at u = 0, as N.D = |D|^2 >= R |D|; with c_a = c_b = 0 the distance does not shrink,
-///  whatever
-///      R is: two robots that overlap at the beginning of a step never come nearer to each other in it.
+///      whatever R is: two robots that satisfy these rows never come nearer to each other in the step, even if they
+///      overlap.
 ///  (4) The rows contain u. At u = 0 so c_a <= 0 and c_b <= 0: rest satisfies every row of every robot, and no linear
 ///      program made of them is infeasible.
-///  (5) If a motion of the parallelogram between u and the wishes keeps `bar` from 0 in some direction that was tried,
-///      both wishes satisfy their rows: only pairs that would come too near are hindered.
+///  (5) If all joint motions of the parallelogram between u and the wishes keep `bar` from 0 along the normal that was
+///      chosen, both wishes satisfy their rows. If the parallelogram stays R and the rounding of normals away from 0,
+///      such a normal is chosen.
 /// Source: van den Berg et al. 2011 for the normal of a pair whose wishes cross. The split by what each wishes, and the
 /// lemmas, are our own.
 

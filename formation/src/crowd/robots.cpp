@@ -261,7 +261,9 @@ std::size_t Robots::strip_end(std::size_t i) const {
 
 std::size_t Robots::bytes() const {
   std::size_t words = start_.capacity();
-  for (const auto* field : {&x, &y, &mx, &my, &id, &hint, &next_mx, &next_my, &order_}) words += field->capacity();
+  for (const auto* field :
+       {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my, &order_})
+    words += field->capacity();
   return 4 * words + 2 * (tag.capacity() + tags_scratch_.capacity()) + next_kept.capacity();
 }
 

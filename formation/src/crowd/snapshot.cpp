@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A crowd as bytes, little-endian: a mark, the options, and behind them, in a checksum, kinds and robots in their
 // order.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -9,8 +10,8 @@
 #include <ostream>
 
 #include "crowd/body.h"
-#include "snapshot_bytes.h"
 #include "exactvo/geometry/shape_numbers.h"
+#include "snapshot_bytes.h"
 
 namespace exactvo::formation::crowd {
 namespace {
@@ -178,7 +179,7 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   get_counted(in, preferred);
   get_counted(in, places);
   get_counted(in, reserved);
-  require(places.size() == reserved.size() && (places.empty() || places.size() >= id_end), "a number of reservations");
+  require(places.size() == reserved.size(), "a number of reservations");
   for (std::size_t k = 0; k < places.size(); ++k)
     require(reserved[k] == 0 || geometry::is_finite(places[k]), "a place");
   std::map<ObstacleId, std::vector<geometry::Segment>> obstacles;
@@ -199,7 +200,10 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   body.edges_changed = true;
   body.id_end = id_end;
   r.set_strip(strip);
-  if (preferred.size() >= id_end && !preferred.empty()) core.set_preferred(preferred);
+  if (!preferred.empty()) {
+    preferred.resize(std::max<std::size_t>(preferred.size(), id_end));
+    core.set_preferred(preferred);
+  }
   core.reservations.set(places, reserved);
   body.unsorted = true;
   body.unchecked = false;

@@ -544,20 +544,20 @@ Vec2 Reservations::preferred_of(std::size_t i) {
 // --- Snapshots ---
 
 void Reservations::put(crowd::SnapshotWriter& to) const {
-  to.fields(step_, tickets_, reserved_, places_);
+  to.fields(step_, tickets_, reserved_, places_, clear_);
   for (const OfRobot& of : of_)
     to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
               of.is_at_goal);
 }
 
 void Reservations::get(crowd::SnapshotReader& from) {
-  from.fields(step_, tickets_, reserved_, places_);
-  from.require(reserved_.size() == of_.size() && places_.size() == of_.size(), "other robots");
+  from.fields(step_, tickets_, reserved_, places_, clear_);
+  const bool fits = reserved_.size() == of_.size() && places_.size() == of_.size() && clear_.size() == of_.size();
+  from.require(fits, "other robots");
   for (OfRobot& of : of_)
     from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
                 of.is_at_goal);
   std::fill(decided_.begin(), decided_.end(), 0);
-  std::fill(clear_.begin(), clear_.end(), 0);
 }
 
 }  // namespace exactvo::formation::detail

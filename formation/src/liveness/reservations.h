@@ -26,9 +26,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "snapshot_bytes.h"
 #include "exactvo/geometry/vec2.h"
 #include "scene/free_space.h"
+#include "snapshot_bytes.h"
 
 namespace exactvo::formation::detail {
 
@@ -59,7 +59,7 @@ inline constexpr double kPlaceReached = 1e-3;
 /// Which robots reserve places.
 enum class WhoReserves {
   jammed,  ///< those that have stalled, are pushed or rest at their goals; until nothing is ahead of them
-  all      ///< all, always: everybody gets home without half-planes, if more slowly in the open
+  all      ///< all, always: all robots come home without half-planes, if more slowly in the open
 };
 
 /// A straight row of places, and the rows beside it: a square lattice in the open, rows that fit the passage in one.

@@ -154,7 +154,8 @@ class CrowdRun {
   }
 
   void make_reservations() {
-    if (scenario_.liveness != Liveness::plan || scenario_.robots.empty()) return;
+    // Robots with a reservation do not evade moving obstacles.
+    if (scenario_.liveness != Liveness::plan || scenario_.robots.empty() || !scenario_.moving_obstacles.empty()) return;
     double widest = 0.0;
     for (const Robot& r : scenario_.robots) widest = std::max(widest, r.radius);
     space_.emplace(scenario_.obstacles);

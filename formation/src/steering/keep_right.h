@@ -15,7 +15,7 @@ namespace exactvo::formation::detail {
 using geometry::Vec2;
 
 struct KeepRight {
-  static constexpr double kSmoothing = 0.2;  ///< of a step
+  static constexpr double kSmoothing = 0.2;  ///< weight of the last step in the mean
   static constexpr double kLeast = 0.03;     ///< rad: of a robot that meets others and is not held up
   static constexpr double kMost = 1.3;       ///< rad: of one that stands
   static constexpr double kPatience = 0.5;   ///< of robots that do not know whether another is near: one that sets out

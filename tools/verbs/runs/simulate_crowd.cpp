@@ -273,10 +273,6 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
   const formation::Scenario& scenario = read.scenario;
   for (const formation::ScenarioProblem& p : crowd_problems(scenario))
     throw datasets::DataError(datasets::DataCode::scenario, file, p.pointer, p.found, p.expected);
-  if (read.names_liveness && scenario.liveness != formation::Liveness::off)
-    throw datasets::DataError(datasets::DataCode::scenario, file, "/liveness",
-                              std::string("\"") + name(scenario.liveness) + "\", which a crowd does not do",
-                              "\"off\", or none, for a crowd");
   formation::CrowdRunOptions options;
   if (!simulation.guidance.empty())
     options.guidance =

@@ -69,7 +69,7 @@ class VelocityReader {
     if (line.front() == '{') return from_json(line);
     if (line.front() == '[') {
       // Nearly always two plain numbers; whatever else it is, the parser says.
-      const auto plain = line.back() == ']'
+      const auto plain = line.back() == ']' && line.find('"') == std::string_view::npos
                              ? from_fields(fields_of(trimmed(line.substr(1, line.size() - 2))), {0, 1, 2})
                              : std::nullopt;
       return plain ? *plain : from_json(line);

@@ -9,16 +9,19 @@
 /// in a time step: p' = p + m is exact, and m q / dt is the velocity that was decided on. What is certified is what is
 /// driven. "Float" and "double" name the arithmetic of half-planes and of the linear program only.
 ///
-/// A step has two levels. The first makes half-planes against neighbours and obstacles, and asks a linear program for the
-/// best velocity: the robot's *wish*. Half-planes between robots are relaxed there where they contradict each other. The
-/// second turns wishes into motions that keep all robots apart, in integers; rest is always one (hard_level.h).
+/// A step has two levels. The first makes half-planes against neighbours and obstacles, and asks a linear program for
+/// the best velocity: the robot's *wish*. Half-planes between robots are relaxed there where they contradict each
+/// other. The second turns wishes into motions that keep all robots apart, in integers; rest is always one
+/// (hard_level.h).
 ///
 /// Promises (tests quote the numbers). Let a robot be *kept* in a step if its velocity provably satisfies all its
 /// half-planes, and let two robots *touch* if they are nearer than the sum R of their radii and a rounding error:
 /// 40 u (|dx| + |dy| + R), u = 2^-24 (float) or 2^-53.
-///  (1) Two robots that do not overlap at the beginning of a step do not overlap at any moment of it, kept or not, at any
+///  (1) Two robots that do not overlap at the beginning of a step do not overlap at any moment of it, kept or not, at
+///  any
 ///      density (exact contact is no overlap). Exact, for `CrowdOptions::certified`; radii are rounded up to whole
-///      lattice steps. Two that were put onto each other part, and nothing is promised of them until they are apart.
+///      lattice steps. Of two that overlap by more than 8 of them nothing is promised until they are apart; less is
+///      the rounding of places and radii, and such two do not come nearer.
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
 ///      pair needs.
 ///  (3) |velocity| <= max_speed, exactly.
@@ -27,13 +30,15 @@
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
 ///  (7) A robot that no edge of an obstacle and no body at rest touches at the beginning of a step (nearer than the
 ///      radius and a rounding error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
-///  (8) No robot comes nearer to an edge or a body at rest that touches it, up to the same rounding error. Certified, for
+///  (8) No robot comes nearer to an edge or a body at rest that touches it, up to the same rounding error. Certified,
+///  for
 ///      `CrowdOptions::certified`.
 ///  (9) A kept robot and a moving body that do not touch at the beginning of a step are apart at every moment of it; if
 ///      they touch, they do not overlap at its end. Certified, for `CrowdOptions::certified`.
-/// A robot that is not kept violates half-planes against other robots or moving bodies, since these contradict each other
-/// (`StepReport::relaxed`), or since another robot would be met within the step (`StepReport::cut_short`). Which velocity
-/// is best is heuristic in its last digits.
+/// A robot that is not kept violates half-planes against other robots or moving bodies, since these contradict each
+/// other
+/// (`StepReport::relaxed`), since another robot would be met within the step (`StepReport::cut_short`), or since it
+/// drives to a reserved place (`StepReport::reserved`). Which velocity is best is heuristic in its last digits.
 ///
 /// Units are metres, seconds, metres per second. See also: vo/reciprocal.h is the rule for one pair in double.
 
@@ -141,9 +146,10 @@ struct StepReport {
   std::size_t bodies = 0;      ///< half-planes made against bodies, at rest and in motion
   std::size_t stopped = 0;  ///< robots that stay where they are, since nothing else was found that leads onto no edge
   std::size_t nudged = 0;   ///< kept robots whose velocity had to be rounded to another place of the lattice
-  std::size_t overlapping = 0;  ///< robots that overlapped another at the beginning of the step: 0 after a legal start
-  std::size_t reserved = 0;     ///< robots that drive straight to a reserved place
-  std::size_t cut_short = 0;    ///< robots that do not get their wish, since they would meet another within the step
+  std::size_t overlapping =
+      0;  ///< robots that overlapped another by more than 8 lattice steps at the beginning of the step
+  std::size_t reserved = 0;   ///< robots that drive straight to a reserved place
+  std::size_t cut_short = 0;  ///< robots that do not get their wish, since they would meet another within the step
 };
 
 /// Seconds of threads in each phase, summed over the steps; only with CrowdOptions::time_phases.
@@ -291,7 +297,9 @@ class Crowd {
   void set_steering(Steering steering);
   /// Places (m) that robots have reserved, by id, until they are set again; `reserved`: 0 of robots without one. A
   /// robot with a reservation drives straight in the direction that it prefers: half-planes against other robots do not
-  /// turn it, the second level of the step slows it down. Other robots keep out of its way to the place where they can.
+  /// turn it, the second level of the step slows it down. It keeps off edges and bodies at rest, but does not evade
+  /// moving bodies. Other robots keep out of its way to the place where they can. New robots have no reservation.
+  /// Throws CrowdError: `wrong_count`, `not_finite`.
   void set_reservations(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved);
 
   /// Decides for all robots and moves them. Throws CrowdError where a robot would leave the lattice, where two are in
@@ -305,7 +313,8 @@ class Crowd {
   void velocities(std::vector<Vec2>& by_id) const;
   /// 1: the robot was kept in the last step. 0: it was not, or is new.
   void kept(std::vector<std::uint8_t>& by_id) const;
-  /// 1: another robot could have been met within the last step. Of that step until robots are added or removed.
+  /// 1: another robot could have been met within the last step. REQUIRES: called after `step`, before robots are added
+  /// or removed and before `snapshot` or `explain`; not part of a snapshot.
   void met(std::vector<std::uint8_t>& by_id) const;
   /// m, exact.
   Vec2 position(RobotId robot) const;

@@ -11,10 +11,10 @@
 /// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
 /// stays. Where two last goals are too near to each other for both robots (and `Scenario::liveness` is not off), these
-/// stand aside within their tolerance; where that is not enough, who is there first keeps its goal, and the other stays
+/// stand aside within their tolerance; where that is not enough, the robot that is there first keeps its goal, and the other stays
 /// beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve places
 /// (liveness/reservations.h); after all have arrived, a run goes on up to 60 s for those that were pushed off. A run ends
-/// when nobody goes on, or when nothing changes any more. Deterministic, with any number of threads and of ranks.
+/// when no robot goes on, or when nothing changes any more. Deterministic, with any number of threads and of ranks.
 ///
 /// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
@@ -69,7 +69,7 @@ struct CrowdRunReport {
   std::size_t staying = 0;     ///< have no route to a goal
   /// These, in the order of the scenario: each stays, or goes as near as it can (`Scenario::unreachable`).
   std::vector<RobotNotThere> without_route;
-  /// Others that did not arrive, of whom each stays beside its goal or was on its way there: another robot is there,
+  /// Others that did not arrive, each of which stays beside its goal or was on its way there: another robot is there,
   /// or at a goal so near that the two cannot both be at theirs.
   std::vector<RobotNotThere> goal_taken;
   std::size_t steps = 0;  ///< time steps that were taken
