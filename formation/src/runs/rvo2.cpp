@@ -195,6 +195,7 @@ class RVOSimulator::State {
   /// Agents that others hold up turn to the right: where RVO2's would pass through each other, these would stand. Agents
   /// have no goals, so they turn as much near them.
   static Vec2 kept_right(Agent& a) {
+    if (!exactvo::geometry::is_finite(exact(a.preferred))) return exact(a.preferred);  // the step refuses it
     if (!a.has_met) a.keep_right = {};
     return a.keep_right.turned(exact(a.preferred), a.moves, 0.0, KeepRight::kPatience, exactvo::geometry::kInfinity,
                                1.0);
