@@ -154,7 +154,7 @@ class VectorReader {
       feature.SetGeometryDirectly(geometry);
   }
 
-  /// Of a row of a CSV whose SRID is not that of the first geometry.
+  /// Refuses a row of a CSV whose SRID is not that of the first geometry.
   void refuse_other_srid(const OGRFeature& feature, const std::string& place) const {
     const int srid = srid_of(text_of_geometry(feature));
     if (srid != csv_srid_.value_or(srid)) throw other_system(srid, *csv_srid_, path_.string(), place);

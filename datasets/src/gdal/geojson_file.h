@@ -40,7 +40,7 @@ class GeoJsonFile {
 
   /// The members of the outermost object, without a collection's features; of a sequence none.
   const Json& members() const { return members_; }
-  /// Of the rings and lines of a collection, its numbers taken for degrees.
+  /// The box of the rings and lines of a collection, its numbers taken for degrees.
   const std::optional<DegreeBox>& box() const { return box_; }
   /// Throws as the constructor does, if the file has changed.
   void for_each(const TakeRecord& take) const;

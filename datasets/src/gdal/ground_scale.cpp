@@ -27,7 +27,7 @@ LocalScale scale_of(geometry::Vec2 east, geometry::Vec2 north) {
   return {greatest > 0.0 ? area / greatest : 0.0, greatest, area};
 }
 
-/// Of the ellipsoid at a latitude, m: along a meridian, and of the parallel.
+/// The radii of the ellipsoid at a latitude, m: along the meridian, and of the parallel.
 struct Radii {
   double meridian;
   double parallel;

@@ -20,8 +20,8 @@
 
 namespace exactvo::datasets {
 
-/// Of the azimuthal equidistant projection within r metres of its centre, on an ellipsoid with the semi-minor axis b,
-/// m. Rounded up. REQUIRES: 0 <= r <= b / 2.
+/// The distortion of the azimuthal equidistant projection within r metres of its centre, on an ellipsoid with the
+/// semi-minor axis b, m. Rounded up. REQUIRES: 0 <= r <= b / 2.
 Distortion distortion_round_centre(double r, double b);
 
 /// Measured at `places`, degrees, by differences over 100 m in both directions. `to_units`: from degrees on the

@@ -301,7 +301,7 @@ void LayerPlane::check_reach(const LayerNumbers& layer, const DegreeBox& box) {
   if (farthest > limit) refuse_far(layer.name, farthest);
 }
 
-/// Of the points that have a place; the others are refused when they are read.
+/// Looks at the points that have a place; the others are refused when they are read.
 double LayerPlane::farthest_of(const geometry::Ring& ring) {
   std::vector<double> x, y;
   for (const geometry::Vec2 p : ring) {

@@ -92,11 +92,11 @@ struct RejectedFile {
   std::string code;  ///< "E_FORMAT_UNKNOWN"
 };
 
-/// What is said of whole files.
+/// A note on whole files, printed once for all files that it holds for.
 struct BatchNote {
   std::string text;       ///< "taken as metres: names no reference system"
-  std::string file;       ///< the first of which it is said
-  std::size_t files = 0;  ///< of how many
+  std::string file;       ///< the first that it holds for
+  std::size_t files = 0;  ///< how many it holds for
 };
 
 /// What a batch came to: the numbers of its summary.json.
