@@ -576,8 +576,8 @@ TEST(CutRoutes, WithoutAWayRoundWhatRestsForGoodItStaysAndTheRunEnds) {
   Scenario s = two_doors(0.0);
   s.obstacles.push_back({"second door", Polyline{{{0, -5}, {0, -3}}}});
   const GuidedRun run = guided(s);
-  EXPECT_THAT(run.metrics.outcome, testing::StartsWith("the robot did not arrive; moving obstacle 'cart' stands on the "
-                                                       "route of R, and none leads round it"));
+  EXPECT_THAT(run.metrics.outcome, testing::StartsWith("the robot did not arrive; R waits: moving obstacle 'cart' stands on "
+                                                       "its route, and none leads round it"));
   EXPECT_LT(run.recording.steps.back().time, 20.0);
   const Step& decided = run.recording.steps[run.recording.steps.size() - 2];
   EXPECT_EQ(decided.robots[0].mode, Mode::staying);
@@ -602,7 +602,7 @@ TEST(CutRoutes, AGuideRoundWhatStoodStaysValidAsLongAsItIsUsed) {
   double time = 0.0;
   const auto stands_at = [&](double y) {
     for (int k = 0; k < 2; ++k) standing.look(time += 2.0, {{{0, y}, {0, 0}}});
-    return standing.guide();
+    return standing.detour().guide;
   };
   const std::shared_ptr<detail::Guide> used = stands_at(-4.0);
   const std::weak_ptr<detail::Guide> unused = stands_at(-3.5);

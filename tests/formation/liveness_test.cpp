@@ -445,7 +445,7 @@ TEST(Liveness, AMovingObstacleThatStandsInTheOnlyWayIsNamed) {
   cart.motion.path = {{0, 0}};
   s.moving_obstacles = {cart};
   const std::string outcome = measure(s, simulate(s)).outcome;
-  EXPECT_NE(outcome.find("moving obstacle 'cart' stands on the route of R1, and none leads round it"),
+  EXPECT_NE(outcome.find("R1 waits: moving obstacle 'cart' stands on its route, and none leads round it"),
             std::string::npos)
       << outcome;
   EXPECT_EQ(outcome.find("more time"), std::string::npos) << outcome;

@@ -150,7 +150,7 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   }
 }
 
-TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
+TEST(CrowdVerb, ARunNamesRobotsWithoutARouteAndTheReason) {
   const Workplace here;
   here.write("locked.json", R"({"name": "locked", "time_limit": 20, "horizons": {"least": 0.5}, "liveness": "off",
       "robots": [{"id": "free", "position": [-3, 0], "goal": [-9, 0]}, {"id": "locked", "position": [20, 0], "goal": [0, 8]}],
@@ -163,13 +163,12 @@ TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
   ASSERT_EQ(metrics["without_route"].size(), 1U);
   EXPECT_EQ(metrics["without_route"][0]["robot"], "locked");
   EXPECT_FALSE(metrics["without_route"][0]["why"].get<std::string>().empty());
-  EXPECT_EQ(metrics["pushed_off"], 0);
-  // Both goals are one place: who comes second pushes off who came first.
+  // Both goals are one place: the robot that comes second pushes off the first.
   here.write("one.json",
              R"({"name": "one", "time_limit": 60, "guidance": "none", "horizons": {"least": 0.5}, "liveness": "off",
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
   const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
-  EXPECT_EQ(one["pushed_off"].get<int>(), one["arrived"].get<int>() - 1) << one;
+  EXPECT_EQ(one["arrived"], 1) << one;
 }
 
 TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
@@ -178,12 +177,11 @@ TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
   const Outcome words = here.run("simulate one.json --engine crowd");
   EXPECT_THAT(words.out, HasSubstr("1 of 2 robots arrived, 0 without a route, 1 whose goal is taken\n"
-                                   "  goal taken   b: a was first at the goal that both have"));
+                                   "  goal taken   b: stays: a was first at the goal that both have"));
   const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
   EXPECT_EQ(one["goal_taken"],
             json::parse(
-                R"([{"robot": "b", "why": "a was first at the goal that both have, which leaves no room for both"}])"));
-  EXPECT_EQ(one["pushed_off"], 0);
+                R"([{"robot": "b", "why": "stays: a was first at the goal that both have, which leaves no room for both"}])"));
   EXPECT_LT(one["time"], 20.0);
   here.write("street.json", R"({"name": "street", "liveness": "bias", "robots": [
       {"id": "a", "position": [0, 0], "goal": [10, 0], "radius": 0.3}, {"id": "b", "position": [10, 0], "goal": [0, 0], "radius": 0.3}],

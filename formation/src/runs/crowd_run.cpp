@@ -20,13 +20,11 @@
 #include "exactvo/geometry/told_apart.h"
 #include "liveness/reservations.h"
 #include "motion/leader.h"
-#include "runs/crowd_way.h"
+#include "runs/journeys.h"
+#include "runs/run_schedule.h"
 #include "scene/free_space.h"
-#include "scene/goals.h"
 #include "scene/number_text.h"
-#include "steering/goal_claims.h"
 #include "steering/guide.h"
-#include "steering/last_places.h"
 
 namespace exactvo::formation {
 
@@ -50,9 +48,6 @@ constexpr double kReach = 2.0;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
 constexpr double kFastestBody = 0x1p14;
-
-/// s that a run goes on after all have arrived, for those that were pushed off their goals to return.
-constexpr double kReturn = 60.0;
 
 /// m: what lies farther out than robots, goals and obstacles is not gone to.
 double extent(const Scenario& s) {
@@ -107,22 +102,24 @@ class CrowdRun {
         ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
     add_robots();
     for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
-    for (const MovingObstacle& o : scenario.moving_obstacles) {
+    for (const MovingObstacle& o : scenario.moving_obstacles)
       moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
-      moving_until_ = std::max(moving_until_, rests_from(o.motion));
-    }
     if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
-    ways_.resize(scenario.robots.size());
-    preferred_.resize(scenario.robots.size());
+    const std::size_t robots = scenario.robots.size();
     crowd_.positions(at_);
-    make_claims();
+    journeys_.emplace(scenario, guide_ ? &*guide_ : nullptr, scenario.liveness, at_, RoomAtEnds{},
+                      scenario.horizons.orca);
+    preferred_.resize(robots);
+    turned_.resize(robots);
+    arrived_.resize(robots);
+    if (journeys_->has_claims()) ends_now_.resize(robots);
     make_reservations();
   }
 
   CrowdRunReport run() {
     const Clock::time_point start = Clock::now();
     options_.resume_from.empty() ? begin() : restore(options_.resume_from);
-    const auto most = static_cast<std::size_t>(std::ceil(scenario_.time_limit / scenario_.time_step - 1e-9));
+    const std::size_t most = steps_of_run(scenario_);
     for (After after = what_follows(false); report_.steps < most && after == After::step;) {
       step();
       after = what_follows(options_.progress && !options_.progress(report_.time));
@@ -137,20 +134,14 @@ class CrowdRun {
 
  private:
   void begin() {
-    report_.robots = ways_.size();
+    report_.robots = journeys_->size();
     for (std::size_t i = own_begin(); i < own_end(); ++i) set_out(i);
     if (sink_) sink_->begin(crowd_);
   }
 
-  /// Where goals are nearer to each other than radii take.
-  void make_claims() {
-    if (scenario_.liveness == Liveness::off) return;
-    const RoomAtEnds room;
-    if (any_leave_no_room(scenario_, goals(), room)) last_places_ = last_places(scenario_, room);
-    const bool may_end_elsewhere = guide_ && scenario_.unreachable == Unreachable::nearest;
-    if (!may_end_elsewhere && (last_places_.empty() || !any_leave_no_room(scenario_, goals(), room))) return;
-    claims_.emplace(scenario_, room, scenario_.horizons.orca);
-    now_.resize(ways_.size());
+  void set_out(std::size_t i) {
+    journeys_->set_out(i);
+    journeys_->look_along(i);
   }
 
   void make_reservations() {
@@ -159,18 +150,8 @@ class CrowdRun {
     double widest = 0.0;
     for (const Robot& r : scenario_.robots) widest = std::max(widest, r.radius);
     space_.emplace(scenario_.obstacles);
-    reservations_.emplace(*space_, ways_.size(), scenario_.time_step, widest);
-    under_way_.resize(ways_.size());
-  }
-
-  /// Of all robots, the last ones where these stand aside.
-  std::vector<RobotPlace> goals() const {
-    std::vector<RobotPlace> all;
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      for (const Vec2 goal : scenario_.robots[i].goals) all.push_back({i, goal});
-      if (!last_places_.empty()) all.back().place = last_places_[i];
-    }
-    return all;
+    reservations_.emplace(*space_, journeys_->size(), scenario_.time_step, widest);
+    under_way_.resize(journeys_->size());
   }
 
   // --- Ranks: each looks where robots own_begin() to own_end() are to go ---
@@ -186,27 +167,32 @@ class CrowdRun {
     if (ranks_) ranks_->share({{preferred_.data(), in_bytes(ends_, sizeof(Vec2))}});
   }
 
-  /// All ways to the first rank, which says whether it is this one.
-  bool gather_ways() {
-    count_arrived();
-    if (!ranks_) return true;
-    require_same_states();
-    std::ostringstream own;
-    SnapshotWriter to(own);
-    for (std::size_t i = own_begin(); i < own_end(); ++i) put(to, ways_[i]);
-    const std::vector<std::string> all = ranks_->gather(own.str());
-    for (std::size_t r = 1; r < all.size(); ++r) {
-      std::istringstream bytes(all[r]);
-      SnapshotReader from(bytes, kSnapshotOfRun);
-      for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) ways_[i] = get_way_of(from, i);
+  /// All journeys come to the first rank. Returns whether it is this one.
+  bool gather_journeys() {
+    if (ranks_) {
+      require_same_states();
+      std::ostringstream own;
+      SnapshotWriter to(own);
+      for (std::size_t i = own_begin(); i < own_end(); ++i) put(to, i);
+      const std::vector<std::string> all = ranks_->gather(own.str());
+      for (std::size_t r = 1; r < all.size(); ++r) {
+        std::istringstream bytes(all[r]);
+        SnapshotReader from(bytes, kSnapshotOfRun);
+        for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) get(from, i);
+      }
     }
-    count_arrived();
+    report_.arrived = 0;
+    for (std::size_t i = 0; i < journeys_->size(); ++i) report_.arrived += journeys_->at_goal(i);
     return is_first();
   }
 
-  void count_arrived() {
-    report_.arrived = static_cast<std::size_t>(
-        std::count_if(ways_.begin(), ways_.end(), [](const CrowdWay& way) { return way.arrived.has_value(); }));
+  void put(SnapshotWriter& to, std::size_t i) const {
+    journeys_->put(i, to);
+    to.fields(turned_[i], arrived_[i]);
+  }
+  void get(SnapshotReader& from, std::size_t i) {
+    journeys_->get(i, from);
+    from.fields(turned_[i], arrived_[i]);
   }
 
   void require_same_states() const {
@@ -218,18 +204,18 @@ class CrowdRun {
   // --- Snapshots: the run, the crowd, the sink, and a checksum ---
 
   void keep_snapshot() {
-    if (gather_ways()) options_.keep_snapshot(snapshot());
+    if (gather_journeys()) options_.keep_snapshot(snapshot());
   }
 
-  /// REQUIRES: all ways are here.
+  /// REQUIRES: all journeys are here.
   std::string snapshot() const {
     std::ostringstream run, crowd, sink, whole;
     SnapshotWriter of_run(run), to(whole);
-    of_run.put(ways_.size());
+    of_run.put(journeys_->size());
     for_each_count(report_, [&](const auto& count) { of_run.put(count); });
-    of_run.fields(moved_, claimed_, all_arrived_, reserved_);
-    for (const CrowdWay& way : ways_) put(of_run, way);
-    if (claims_) put(of_run, *claims_);
+    of_run.fields(moved_, claimed_, reserved_);
+    journeys_->put_shared(of_run);
+    for (std::size_t i = 0; i < journeys_->size(); ++i) put(of_run, i);
     if (reservations_) reservations_->put(of_run);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
@@ -244,23 +230,19 @@ class CrowdRun {
     std::istringstream run(from.get<std::string>()), crowd(from.get<std::string>()), sink(from.get<std::string>());
     from.finish();
     SnapshotReader of_run(run, kSnapshotOfRun);
-    require(is_at_end(whole) && of_run.get<std::size_t>() == ways_.size());
+    require(is_at_end(whole) && of_run.get<std::size_t>() == journeys_->size());
     for_each_count(report_, [&](auto& count) { of_run.get(count); });
-    of_run.fields(moved_, claimed_, all_arrived_, reserved_);
-    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way_of(of_run, i);
-    if (claims_) get_claims(of_run, *claims_);
+    of_run.fields(moved_, claimed_, reserved_);
+    journeys_->get_shared(of_run);
+    for (std::size_t i = 0; i < journeys_->size(); ++i) get(of_run, i);
     if (reservations_) reservations_->get(of_run);
     const CrowdOptions wanted = crowd_.options();
     crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
     require(is_at_end(run) && found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
-            found.precision == wanted.precision && crowd_.id_end() == ways_.size());
+            found.precision == wanted.precision && crowd_.id_end() == journeys_->size());
     crowd_.positions(at_);
     if (sink_) sink_->restore(crowd_, sink);
-  }
-
-  CrowdWay get_way_of(SnapshotReader& from, std::size_t i) const {
-    return get_way(from, scenario_.robots[i].goals.size(), guide_.has_value());
   }
 
   static bool is_at_end(std::istream& from) { return from.peek() == std::istream::traits_type::eof(); }
@@ -308,99 +290,36 @@ class CrowdRun {
     return kind;
   }
 
-  Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[ways_[i].goal]; }
-
-  bool has_last_goal(std::size_t i) const { return ways_[i].goal + 1 == scenario_.robots[i].goals.size(); }
-  Vec2 aim_of(std::size_t i) const { return has_last_goal(i) && !last_places_.empty() ? last_places_[i] : goal_of(i); }
-
-  /// For the present goal.
-  void set_out(std::size_t i) {
-    CrowdWay& way = ways_[i];
-    const Vec2 aim = aim_of(i);
-    const double reach =
-        std::max(0.0, reach_of(scenario_.robots[i], way.goal, scenario_.arrival_tolerance) - norm(aim - goal_of(i)));
-    way.heading = aim;
-    if (!guide_) return;
-    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {aim, reach});
-    way.course = std::move(answer.course);
-    way.stays = !way.course;
-    way.nearest = answer.nearest;
-    way.why_not = answer.defect.empty() ? std::move(answer.why_not) : std::move(answer.defect);
-  }
+  // --- One robot ---
 
   void look(std::size_t i) {
-    CrowdWay& way = ways_[i];
-    const auto aim = [&] { return std::tuple(way.goal, way.heading.x, way.heading.y, way.stays); };
+    const Journey& j = (*journeys_)[i];
+    const auto aim = [&] {
+      return std::tuple(j.goal, j.heading.x, j.heading.y, journeys_->stays(i), j.course ? j.course->next : 0);
+    };
     const auto before = aim();
-    const std::size_t next = way.course ? way.course->next : 0;
-    bool is_new = false;
-    if (has_reached_goal(i)) pass(i);
-    const bool is_back = way.arrived && (!reservations_ || is_at_goal(i));
-    const bool looks = way.course && !is_back && (report_.steps + i) % kLookAgain == 0;
-    if (way.nearest) way.stays = norm(at_[i] - way.nearest->place) <= scenario_.arrival_tolerance;
-    if (looks) {
-      const Heading to = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]);
-      way.heading = to.place;
-      is_new = to.is_new;
-    }
-    if (is_new || aim() != before || (way.course && way.course->next != next)) way.turned = report_.steps;
+    if (journeys_->pass_goal(i)) journeys_->look_along(i);
+    journeys_->look_whether_it_waits(i, velocity_[i] == Vec2{});
+    journeys_->go_round(i);
+    const bool is_there = journeys_->at_goal(i);
+    if (!is_there || !arrived_[i]) arrived_[i] = is_there ? std::optional(report_.time) : std::nullopt;
+    if (is_there || j.waits_for_room || j.nearest || (report_.steps + i) % kLookAgain == 0) journeys_->look_along(i);
+    if (!journeys_->take_note(i).empty() || aim() != before) turned_[i] = report_.steps;
   }
 
-  bool is_at_goal(std::size_t i) const {
-    return norm(at_[i] - goal_of(i)) <= reach_of(scenario_.robots[i], ways_[i].goal, scenario_.arrival_tolerance);
+  Vec2 preferred_of(std::size_t i) {
+    const Vec2 preferred = journeys_->beside_taken(i, journeys_->preferred(i));
+    if (scenario_.liveness == Liveness::off) return preferred;
+    const double held_up = (*journeys_)[i].keep_right.held_up;
+    const Vec2 turned = journeys_->kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience);
+    if ((*journeys_)[i].keep_right.held_up != held_up) turned_[i] = report_.steps;
+    return turned;
   }
-  /// A goal on the way that is taken is passed beside it.
-  bool has_reached_goal(std::size_t i) const { return is_at_goal(i) || (!has_last_goal(i) && rests_beside(i)); }
-
-  /// Its goal is reached: on to the next.
-  void pass(std::size_t i) {
-    CrowdWay& way = ways_[i];
-    if (way.goal + 1 < scenario_.robots[i].goals.size()) {
-      ++way.goal;
-      set_out(i);
-    } else if (!way.arrived) {
-      way.arrived = report_.time;
-      way.heading = aim_of(i);
-    }
-  }
-
-  // --- Ends that are taken ---
-
-  Vec2 end_of(std::size_t i) const { return ways_[i].nearest ? ways_[i].nearest->place : aim_of(i); }
 
   void look_at_claims() {
-    for (std::size_t i = own_begin(); i < own_end(); ++i) {
-      const CrowdWay& way = ways_[i];
-      const bool counts = way.nearest || way.course || !guide_, is_last = counts && ends_here(i);
-      const bool is_there = way.nearest ? way.stays : is_at_goal(i);
-      now_[i] = {at_[i], end_of(i), counts, is_last, !way.nearest, is_there, true};
-    }
-    if (ranks_) ranks_->share({{now_.data(), in_bytes(ends_, sizeof(EndNow))}});
-    if (claims_->look(now_)) claimed_ = report_.steps;
-  }
-
-  /// It goes to no other goal.
-  bool ends_here(std::size_t i) const { return has_last_goal(i) || ways_[i].nearest; }
-  bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
-  bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
-
-  Vec2 preferred_of(std::size_t i) const {
-    const Vec2 way = ways_[i].heading - at_[i];
-    const double length = norm(way);
-    const double speed = std::min(scenario_.robots[i].max_speed, length / scenario_.time_step);
-    const Vec2 preferred = ways_[i].stays || length == 0.0 ? Vec2{} : (speed / length) * way;
-    return is_taken(i) && !now_[i].is_there ? claims_->beside_taken_place(i, preferred) : preferred;
-  }
-
-  /// Rule R1.
-  Vec2 kept_right(std::size_t i, Vec2 preferred) {
-    if (scenario_.liveness == Liveness::off) return preferred;
-    CrowdWay& way = ways_[i];
-    const double before = way.keep_right.held_up;
-    const Vec2 turned = way.keep_right.turned(preferred, velocity_[i], 0.0, KeepRight::kPatience,
-                                              norm(end_of(i) - at_[i]), scenario_.robots[i].radius);
-    if (way.keep_right.held_up != before) way.turned = report_.steps;
-    return turned;
+    for (std::size_t i = own_begin(); i < own_end(); ++i) ends_now_[i] = journeys_->end_now(i, true);
+    if (ranks_) ranks_->share({{ends_now_.data(), in_bytes(ends_, sizeof(EndNow))}});
+    if (journeys_->look_at_claims(ends_now_)) claimed_ = report_.steps;
   }
 
   // --- Reservations ---
@@ -416,20 +335,20 @@ class CrowdRun {
   bool has_reserved(std::size_t i) const { return reservations_ && reservations_->reserved()[i] != 0; }
 
   RobotUnderWay under_way(std::size_t i) const {
-    const CrowdWay& way = ways_[i];
+    const Journey& j = (*journeys_)[i];
     RobotUnderWay r;
     r.position = at_[i];
     r.velocity = velocity_[i];
     r.radius = scenario_.robots[i].radius;
     r.max_speed = scenario_.robots[i].max_speed;
-    r.leg = static_cast<std::uint32_t>(way.goal);
-    r.yields = way.stays || is_taken(i);
-    r.goal = end_of(i);
-    r.is_at_goal = ends_here(i) && !way.nearest && is_at_goal(i);
-    r.ahead.front() = way.heading;
-    if (!way.course) return r;
-    const std::vector<Vec2>& points = way.course->points;
-    std::size_t k = way.course->next + 1;
+    r.leg = static_cast<std::uint32_t>(j.goal);
+    r.yields = journeys_->stays(i) || journeys_->is_taken(i);
+    r.goal = journeys_->end_of(i);
+    r.is_at_goal = !j.nearest && journeys_->at_goal(i);
+    r.ahead.front() = j.heading;
+    if (!j.course) return r;
+    const std::vector<Vec2>& points = j.course->points;
+    std::size_t k = j.course->next + 1;
     for (; k < points.size() && r.corners_ahead < RobotUnderWay::kMostAhead; ++k)
       r.ahead[r.corners_ahead++] = points[k];
     for (; k < points.size(); ++k) r.rest += norm(points[k] - points[k - 1]);
@@ -445,14 +364,22 @@ class CrowdRun {
     }
   }
 
+  void look_at_obstacles() {
+    moved_obstacles_.clear();
+    for (const MovingObstacle& o : scenario_.moving_obstacles)
+      moved_obstacles_.push_back({displacement_at(o, report_.time), leader_at(o.motion, report_.time).velocity});
+    journeys_->look_at_moving_obstacles(report_.time, moved_obstacles_);
+  }
+
   void step() {
     set_out_obstacles();
-    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
-    if (claims_) look_at_claims();
+    look_at_obstacles();
     crowd_.velocities(velocity_);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
+    if (journeys_->has_claims()) look_at_claims();
     if (reservations_) reserve();
     for (std::size_t i = own_begin(); i < own_end(); ++i)
-      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : kept_right(i, preferred_of(i));
+      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
     share_preferred();
     crowd_.set_preferred(preferred_);
     const StepReport s = crowd_.step();
@@ -471,35 +398,26 @@ class CrowdRun {
     before_.swap(at_);
     crowd_.positions(at_);
     for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
-    if (at_ != before_ || report_.time < moving_until_ + 2.0 * scenario_.time_step) moved_ = report_.steps;
+    const bool is_settled = report_.time >= journeys_->settled_from() + 2.0 * scenario_.time_step;
+    if (at_ != before_ || !(is_settled || moving_.empty())) moved_ = report_.steps;
     if (sink_) sink_->add_step(crowd_, report_.steps);
   }
 
   /// The least of what the ranks want.
-  enum class After { stop, step, returns, nothing };
+  enum class After { stop, step, nothing };
   After what_follows(bool is_stopped) {
-    After own = After::stop;
-    if (!is_stopped) own = someone_goes_on() ? After::step : someone_returns() ? After::returns : After::nothing;
+    const After own = is_stopped ? After::stop : goes_on() ? After::step : After::nothing;
     const After all = ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
     report_.stands_still = all == After::step && repeats_itself();
-    if (report_.stands_still) return After::nothing;
-    if (all != After::returns) return all;
-    if (!all_arrived_) all_arrived_ = report_.steps;
-    const double since = static_cast<double>(report_.steps - *all_arrived_) * scenario_.time_step;
-    return since < kReturn ? After::step : After::nothing;
+    return report_.stands_still ? After::nothing : all;
   }
 
-  /// Of the own ones.
-  bool someone_goes_on() const {
-    for (std::size_t i = own_begin(); i < own_end(); ++i)
-      if (!ways_[i].arrived && !ways_[i].stays && !(rests_beside(i) && ends_here(i))) return true;
-    return false;
-  }
-
-  /// The same of those that were pushed off their goals.
-  bool someone_returns() const {
-    for (std::size_t i = own_begin(); reservations_ && i < own_end(); ++i)
-      if (ways_[i].arrived && !is_at_goal(i) && !is_taken(i)) return true;
+  /// Whether one of the own robots has neither arrived nor stays.
+  bool goes_on() const {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) {
+      const bool rests = journeys_->rests_beside(i) && journeys_->ends_here(i);
+      if (!journeys_->at_goal(i) && !journeys_->stays(i) && !rests) return true;
+    }
     return false;
   }
 
@@ -511,39 +429,38 @@ class CrowdRun {
     if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
     if (reservations_ && std::max(moved_, reserved_) + reservations_->patience() > report_.steps) return false;
     bool is_so = true;
-    for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(ways_[i].turned);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(turned_[i]);
     return (ranks_ ? ranks_->least(is_so) : is_so) != 0;
   }
 
   // --- The end ---
 
-  std::string why_not_there(std::size_t i) const {
-    const CrowdWay& way = ways_[i];
-    if (!way.nearest) return way.why_not;
-    if (!way.stays && rests_beside(i)) return way.why_not + "; it stays, since " + claims_->words(i);
-    return way.why_not + "; it " + (way.stays ? "went" : "was on its way") + " as near as it can, " +
-           words_of(*way.nearest);
-  }
-
   void finish() {
     report_.digest = crowd_.digest();
+    crowd_.velocities(velocity_);
     for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
-    if (claims_) look_at_claims();
-    if (!gather_ways()) return;
+    if (journeys_->has_claims()) look_at_claims();
+    if (!gather_journeys()) return;
     std::vector<double> times;
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      report_.pushed_off += ways_[i].arrived && norm(at_[i] - goal_of(i)) > scenario_.arrival_tolerance;
-      if (ways_[i].stays || ways_[i].nearest)
-        report_.without_route.push_back({i, why_not_there(i)});
-      else if (!ways_[i].arrived && is_taken(i))
-        report_.goal_taken.push_back({i, claims_->words(i)});
-      if (ways_[i].arrived) times.push_back(*ways_[i].arrived);
+    for (std::size_t i = 0; i < journeys_->size(); ++i) {
+      if (arrived_[i]) times.push_back(*arrived_[i]);
+      if (!journeys_->at_goal(i)) say_why_not_there(i);
     }
     report_.staying = report_.without_route.size();
     std::sort(times.begin(), times.end());
-    if (2 * times.size() > ways_.size()) report_.median_arrival = times[ways_.size() / 2];
+    if (2 * times.size() > journeys_->size()) report_.median_arrival = times[journeys_->size() / 2];
     if (!times.empty()) report_.last_arrival = times.back();
-    count_arrived();
+  }
+
+  void say_why_not_there(std::size_t i) {
+    const Journey& j = (*journeys_)[i];
+    std::string why = journeys_->why_not_there(i);
+    if (!j.no_way.empty())
+      report_.without_route.push_back({i, std::move(why)});
+    else if (journeys_->is_taken(i))
+      report_.goal_taken.push_back({i, std::move(why)});
+    else if (j.cut_by)
+      report_.route_cut.push_back({i, std::move(why)});
   }
 
   const Scenario& scenario_;
@@ -553,20 +470,19 @@ class CrowdRun {
   Crowd crowd_;
   std::vector<std::size_t> ends_;  ///< of the shares of the robots, by rank
   std::optional<Guide> guide_;
-  std::vector<CrowdWay> ways_;
-  std::vector<ObstacleId> moving_;
   std::vector<Vec2> at_, before_, velocity_, preferred_;
-  std::vector<Vec2> last_places_;  ///< empty: their last goals
-  std::optional<GoalClaims> claims_;
-  std::vector<EndNow> now_;             ///< with claims
+  std::optional<Journeys> journeys_;
+  std::vector<std::size_t> turned_;             ///< step at which a journey has changed last
+  std::vector<std::optional<double>> arrived_;  ///< s: since then the robot is at its last goal
+  std::vector<ObstacleId> moving_;
+  std::vector<MovedObstacle> moved_obstacles_;
+  std::vector<EndNow> ends_now_;        ///< with claims
   std::optional<ObstacleSpace> space_;  ///< with reservations
   std::optional<Reservations> reservations_;
   std::vector<RobotUnderWay> under_way_;
-  std::optional<std::size_t> all_arrived_;  ///< step after which some have only to return to their goals
-  std::size_t reserved_ = 0;                ///< step at which a reservation changed last
-  double moving_until_ = 0.0;               ///< s, the obstacles
-  std::size_t moved_ = 0;                   ///< the last step in which something moved
-  std::size_t claimed_ = 0;                 ///< step at which a claim changed last
+  std::size_t reserved_ = 0;  ///< step at which a reservation changed last
+  std::size_t moved_ = 0;     ///< the last step in which something moved
+  std::size_t claimed_ = 0;   ///< step at which a claim changed last
   CrowdRunReport report_;
 };
 

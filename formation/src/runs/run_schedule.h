@@ -16,12 +16,18 @@
 
 namespace exactvo::formation::detail {
 
+/// Share of a step: a time this near to a row is that row's, since 6 * 0.05 is not 0.3 in doubles.
+inline constexpr double kSameRow = 1e-6;
+
+/// How many steps a run has at most.
+inline std::size_t steps_of_run(const Scenario& scenario) {
+  return static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow));
+}
+
 class RunSchedule {
  public:
   RunSchedule(const Scenario& scenario, const SimulationOptions& options)
-      : options_(&options),
-        dt_(scenario.time_step),
-        steps_(static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow))) {
+      : options_(&options), dt_(scenario.time_step), steps_(steps_of_run(scenario)) {
     if (options.stop_at) last_decision_ = row_of(*options.stop_at);
   }
 
@@ -46,9 +52,6 @@ class RunSchedule {
 
  private:
   using Clock = std::chrono::steady_clock;
-
-  /// Share of a step: a time this near to a row is that row's, since 6 * 0.05 is not 0.3 in doubles.
-  static constexpr double kSameRow = 1e-6;
 
   /// The last row at or before `time`.
   std::size_t row_of(double time) const { return static_cast<std::size_t>(time / dt_ + kSameRow); }

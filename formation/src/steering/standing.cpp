@@ -34,8 +34,12 @@ void StandingObstacles::look(double time, const std::vector<MovedObstacle>& movi
     if (time - since_[k] >= kStands * moment(scenario_.horizons)) standing.emplace_back(k, displacement_[k]);
   }
   if (standing == now_) return;
-  now_ = std::move(standing);
+  stand(std::move(standing));
   ++changes_;
+}
+
+void StandingObstacles::stand(Standing standing) {
+  now_ = std::move(standing);
   shapes_.clear();
   for (const auto& [k, moved] : now_) shapes_.push_back(standing_shape(scenario_.moving_obstacles[k], moved));
 }
@@ -51,23 +55,53 @@ std::optional<std::size_t> StandingObstacles::in_the_way(const Course& course, V
   return std::nullopt;
 }
 
-std::shared_ptr<Guide> StandingObstacles::guide() {
-  const auto guide_of = [](const std::shared_ptr<World>& world) {
-    return std::shared_ptr<Guide>(world, &*world->guide);
+Detour StandingObstacles::detour(const Standing& round) {
+  const auto detour_of = [](const std::shared_ptr<World>& world) {
+    return Detour{world->standing, std::shared_ptr<Guide>(world, &*world->guide)};
   };
   for (const std::shared_ptr<World>& world : worlds_)
-    if (world->standing == now_) return guide_of(world);
+    if (world->standing == round) return detour_of(world);
   constexpr std::size_t kMostKept = 8;  // of obstacles that stop at many places
   if (worlds_.size() == kMostKept) worlds_.pop_front();
   const auto world = std::make_shared<World>();
-  world->standing = now_;
+  world->standing = round;
   world->obstacles = scenario_.obstacles;
-  for (std::size_t n = 0; n < now_.size(); ++n)
-    world->obstacles.push_back({scenario_.moving_obstacles[now_[n].first].id, shapes_[n]});
+  for (const auto& [k, moved] : round) {
+    const MovingObstacle& obstacle = scenario_.moving_obstacles[k];
+    world->obstacles.push_back({obstacle.id, standing_shape(obstacle, moved)});
+  }
   const Terrain given = terrain_of(scenario_);
   world->guide.emplace(Terrain{world->obstacles, given.places, given.largest_radius}, scenario_.unreachable,
                        most_margin_);
-  return guide_of(worlds_.emplace_back(world));
+  return detour_of(worlds_.emplace_back(world));
+}
+
+void StandingObstacles::put(crowd::SnapshotWriter& to) const {
+  to.fields(displacement_, since_);
+  put_standing(to, now_);
+}
+
+void StandingObstacles::get(crowd::SnapshotReader& from) {
+  from.fields(displacement_, since_);
+  const std::size_t obstacles = scenario_.moving_obstacles.size();
+  from.require(displacement_.size() <= obstacles && since_.size() == displacement_.size(), "other bytes");
+  stand(get_standing(from, obstacles));
+}
+
+void put_standing(crowd::SnapshotWriter& to, const Standing& standing) {
+  to.put(standing.size());
+  for (const auto& [k, moved] : standing) to.fields(k, moved);
+}
+
+Standing get_standing(crowd::SnapshotReader& from, std::size_t obstacles) {
+  const auto count = from.get<std::size_t>();
+  from.require(count <= obstacles, "other bytes");
+  Standing standing(count);
+  for (auto& [k, moved] : standing) {
+    from.fields(k, moved);
+    from.require(k < obstacles, "other bytes");
+  }
+  return standing;
 }
 
 }  // namespace exactvo::formation::detail

@@ -13,9 +13,23 @@
 #include <vector>
 
 #include "exactvo/formation/recording.h"
+#include "snapshot_bytes.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation::detail {
+
+/// Which moving obstacles stand, each with the displacement that it has come to, m.
+using Standing = std::vector<std::pair<std::size_t, Vec2>>;
+
+void put_standing(crowd::SnapshotWriter& to, const Standing& standing);
+/// `obstacles`: how many there are. Throws CrowdError (bad_snapshot).
+Standing get_standing(crowd::SnapshotReader& from, std::size_t obstacles);
+
+/// Leads round these obstacles, and stays valid after they have moved on.
+struct Detour {
+  Standing round;
+  std::shared_ptr<Guide> guide;
+};
 
 class StandingObstacles {
  public:
@@ -31,19 +45,23 @@ class StandingObstacles {
   /// The first of those that stand which comes nearer than `radius` to the rest of the course from `here` on.
   std::optional<std::size_t> in_the_way(const Course& course, Vec2 here, double radius) const;
 
-  /// Leads round all that stand now, and stays valid after they have moved on.
-  std::shared_ptr<Guide> guide();
+  /// Round all that stand now.
+  Detour detour() { return detour(now_); }
+  Detour detour(const Standing& round);
+
+  void put(crowd::SnapshotWriter& to) const;
+  /// Throws CrowdError (bad_snapshot).
+  void get(crowd::SnapshotReader& from);
 
  private:
-  /// Which stand, each with the place it has moved to.
-  using Standing = std::vector<std::pair<std::size_t, Vec2>>;
-
   /// The static obstacles with those that stand.
   struct World {
     Standing standing;
     std::vector<SceneObstacle> obstacles;
     std::optional<Guide> guide = {};
   };
+
+  void stand(Standing standing);
 
   const Scenario& scenario_;
   double most_margin_;

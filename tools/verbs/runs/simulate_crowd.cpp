@@ -57,17 +57,16 @@ std::string to_json(const CrowdRunReport& r, const formation::Scenario& scenario
                     const datasets::Provenance& provenance) {
   return fmt::format(
       "{{\"scenario\": {}, \"engine\": \"crowd\", \"method\": \"orca\", \"robots\": {}, \"arrived\": {}, "
-      "\"pushed_off\": {}, "
-      "\"staying\": {}, \"without_route\": {}, \"goal_taken\": {}, \"stands_still\": {}, "
+      "\"staying\": {}, \"without_route\": {}, \"goal_taken\": {}, \"route_cut\": {}, \"stands_still\": {}, "
       "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
       "\"decisions\": {{\"relaxed\": {}, \"cut_short\": {}, \"reserved\": {}, \"overlapping\": {}, \"touching\": {}, "
       "\"widened\": {}, "
       "\"stopped\": {}}}, "
       "\"half_planes\": {{\"robots\": {}, \"edges\": {}, \"moving\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
       "\"provenance\": {}}}\n",
-      nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.pushed_off, r.staying,
-      to_json(r.without_route, scenario).dump(), to_json(r.goal_taken, scenario).dump(), r.stands_still, r.steps,
-      r.time, or_null(r.median_arrival), or_null(r.last_arrival), r.path_length, r.relaxed, r.cut_short, r.reserved,
+      nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.staying, to_json(r.without_route, scenario).dump(),
+      to_json(r.goal_taken, scenario).dump(), to_json(r.route_cut, scenario).dump(), r.stands_still, r.steps, r.time,
+      or_null(r.median_arrival), or_null(r.last_arrival), r.path_length, r.relaxed, r.cut_short, r.reserved,
       r.overlapping, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.bodies, r.digest, r.wall_time,
       datasets::to_json(provenance));
 }
@@ -85,7 +84,7 @@ std::string lines_of(const char* title, const RobotsNotThere& robots, const form
 
 /// Of who neither arrived nor is in a list.
 std::string line_of_others(const CrowdRunReport& r) {
-  const std::size_t others = r.robots - r.arrived - r.staying - r.goal_taken.size();
+  const std::size_t others = r.robots - r.arrived - r.staying - r.goal_taken.size() - r.route_cut.size();
   if (others == 0) return "";
   if (r.stands_still)
     return fmt::format(
@@ -98,7 +97,7 @@ std::string line_of_others(const CrowdRunReport& r) {
 std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario) {
   const double decisions = static_cast<double>(r.robots) * static_cast<double>(r.steps);
   return fmt::format(
-      "{}, engine crowd, method orca: {} of {} arrived{}, {} without a route{}\n"
+      "{}, engine crowd, method orca: {} of {} arrived, {} without a route{}\n"
       "{}{}{}"
       "  arrival      median {}, last {}\n"
       "  decisions    {:.3g} % relaxed, {:.3g} % cut short before another robot, {:.3g} % with a reserved place, "
@@ -107,14 +106,14 @@ std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario
       "  half-planes  {:.3g} against robots, {:.3g} against edges and {:.3g} against moving obstacles in a decision\n"
       "  path length  {:.4g} m on average\n"
       "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
-      shown(scenario.name), r.arrived, counted(r.robots, "robot"),
-      r.pushed_off > 0 ? fmt::format(" ({} of them pushed off their goals again)", r.pushed_off) : "", r.staying,
+      shown(scenario.name), r.arrived, counted(r.robots, "robot"), r.staying,
       r.goal_taken.empty() ? "" : fmt::format(", {} whose goal is taken", r.goal_taken.size()),
-      lines_of("no route", r.without_route, scenario), lines_of("goal taken", r.goal_taken, scenario),
-      line_of_others(r), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
-      100.0 * share(r.cut_short, r), 100.0 * share(r.reserved, r), 100.0 * share(r.stopped, r), r.overlapping,
-      share(r.half_planes, r), share(r.edges, r), share(r.bodies, r), r.path_length / static_cast<double>(r.robots),
-      r.steps, r.wall_time, decisions / r.wall_time);
+      lines_of("no route", r.without_route, scenario),
+      lines_of("goal taken", r.goal_taken, scenario) + lines_of("route cut", r.route_cut, scenario), line_of_others(r),
+      or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r), 100.0 * share(r.cut_short, r),
+      100.0 * share(r.reserved, r), 100.0 * share(r.stopped, r), r.overlapping, share(r.half_planes, r),
+      share(r.edges, r), share(r.bodies, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time,
+      decisions / r.wall_time);
 }
 
 /// What a crowd says of a scenario, "robot R: max_speed: found 0, expected ...", in the parts of a DataError.

@@ -11,10 +11,10 @@
 /// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
 /// stays. Where two last goals are too near to each other for both robots (and `Scenario::liveness` is not off), these
-/// stand aside within their tolerance; where that is not enough, the robot that is there first keeps its goal, and the other stays
-/// beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve places
-/// (liveness/reservations.h); after all have arrived, a run goes on up to 60 s for those that were pushed off. A run ends
-/// when no robot goes on, or when nothing changes any more. Deterministic, with any number of threads and of ranks.
+/// stand aside within their tolerance; where that is not enough, the robot that is there first keeps its goal, and the
+/// other stays beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve
+/// places (liveness/reservations.h). A run ends when all robots are at their goals or stay, or when nothing changes any
+/// more. Deterministic, with any number of threads and of ranks.
 ///
 /// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
@@ -63,20 +63,21 @@ struct RobotNotThere {
 
 /// What a run came to. Times in s, lengths in m.
 struct CrowdRunReport {
-  std::size_t robots = 0;      ///< of the scenario
-  std::size_t arrived = 0;     ///< were within the arrival tolerance of their last goal
-  std::size_t pushed_off = 0;  ///< of these: are farther from it at the end
-  std::size_t staying = 0;     ///< have no route to a goal
+  std::size_t robots = 0;   ///< of the scenario
+  std::size_t arrived = 0;  ///< are within the arrival tolerance of their last goals at the end
+  std::size_t staying = 0;  ///< have no route to a goal
   /// These, in the order of the scenario: each stays, or goes as near as it can (`Scenario::unreachable`).
   std::vector<RobotNotThere> without_route;
   /// Others that did not arrive, each of which stays beside its goal or was on its way there: another robot is there,
   /// or at a goal so near that the two cannot both be at theirs.
   std::vector<RobotNotThere> goal_taken;
+  /// Others that did not arrive: a moving obstacle stands on the route of each, and none leads round it.
+  std::vector<RobotNotThere> route_cut;
   std::size_t steps = 0;  ///< time steps that were taken
   double time = 0.0;      ///< simulated
   /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
   std::optional<double> median_arrival;
-  std::optional<double> last_arrival;  ///< s: of those that arrived
+  std::optional<double> last_arrival;  ///< s: of those that arrived. A robot arrives when it comes to its goal for good
   double path_length = 0.0;            ///< of all robots together
   std::size_t relaxed = 0;             ///< decisions in which half-planes against others are relaxed
   std::size_t cut_short = 0;           ///< decisions that do not get their wish, since another would be met in the step
