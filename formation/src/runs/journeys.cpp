@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "exactvo/geometry/infinity.h"
 #include "motion/leader.h"
 #include "runs/own_decision.h"
 #include "scene/goals.h"
@@ -121,6 +122,12 @@ void Journeys::look_along(std::size_t i) {
   add_note(j.note, "pushed out of sight of its route: a new one is planned");
 }
 
+double Journeys::turns_after(std::size_t i) const {
+  const Journey& j = journeys_[i];
+  const bool has_place = j.course && !j.waits_for_good && !at_goal(i);
+  return has_place ? norm(j.heading - at_[i]) / scenario_.robots[i].max_speed : geometry::kInfinity;
+}
+
 double Journeys::way_left(std::size_t i) const {
   const Journey& j = journeys_[i];
   return j.course ? guide_->way_left(*j.course, at_[i]) : norm(aim_of(i) - at_[i]);
@@ -135,9 +142,10 @@ Vec2 Journeys::preferred(std::size_t i) const {
   return straight_for(at_[i], scenario_.robots[i].max_speed, journeys_[i].heading, scenario_.time_step);
 }
 
-Vec2 Journeys::kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience) {
+Vec2 Journeys::kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience,
+                          bool meets_others) {
   return journeys_[i].keep_right.turned(preferred, velocity, least, patience, norm(end_of(i) - at_[i]),
-                                        scenario_.robots[i].radius);
+                                        scenario_.robots[i].radius, meets_others);
 }
 
 // --- Moving obstacles that stand on courses ---

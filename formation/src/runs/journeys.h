@@ -105,13 +105,17 @@ class Journeys {
   Vec2 preferred(std::size_t i) const;
   /// The same for another preferred velocity of robot i.
   Vec2 beside_taken(std::size_t i, Vec2 preferred) const;
-  /// Turned by rule R1. `least`: rad, `patience`: as KeepRight::turned. `velocity`: m/s, of the last step.
-  Vec2 kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience);
+  /// Turned by rule R1. `least`, `patience`, `meets_others`: as KeepRight::turned. `velocity`: m/s, of the last step.
+  Vec2 kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience,
+                  bool meets_others = true);
   /// The journey has it no longer afterwards.
   std::string take_note(std::size_t i) { return std::exchange(journeys_[i].note, {}); }
   std::optional<double> take_margin(std::size_t i) { return std::exchange(journeys_[i].margin, std::nullopt); }
 
   // --- Questions ---
+
+  /// s: how long robot i drives before it turns at the place that it heads for; infinite without a course.
+  double turns_after(std::size_t i) const;
 
   Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[journeys_[i].goal]; }
   bool has_last_goal(std::size_t i) const { return journeys_[i].goal + 1 == scenario_.robots[i].goals.size(); }

@@ -143,7 +143,10 @@ class KinematicRun {
   RobotStep decide_one(std::size_t i) {
     if (journeys_.pass_goal(i)) look_at_goal(i);
     journeys_.look_whether_it_waits(i, is_at_rest(i) && !goes_by_plan(i));
-    if (!goes_by_plan(i)) look(i);
+    if (!goes_by_plan(i)) {
+      if (guide_) journeys_.look_along(i);
+      look(i);
+    }
     add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
     RobotStep step = undecided(positions_[i], velocities_[i]);
     step.note = journeys_.take_note(i);
@@ -154,14 +157,15 @@ class KinematicRun {
       return step;
     }
     const Vec2 preferred = journeys_.beside_taken(i, steer(i, step));
-    add_note(step.note, journeys_.take_note(i));
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), step);
     return step;
   }
 
   Viewpoint viewpoint(std::size_t i) const {
     const Robot& spec = scenario_.robots[i];
-    return {positions_[i], velocities_[i], spec.radius, spec.max_speed};
+    Viewpoint here{positions_[i], velocities_[i], spec.radius, spec.max_speed};
+    here.turns_after = journeys_.turns_after(i);
+    return here;
   }
 
   /// A decision adds half-planes to those of its look as it needs them, so that the margin may change only here.
@@ -176,17 +180,24 @@ class KinematicRun {
     own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
   }
 
-  /// Rule R1, for robots that may meet another that they see.
+  /// Rule R1, for robots that others may hold up.
   Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
     const bool is_free = mode == Mode::direct || mode == Mode::guided;
-    if (!is_free || preferred == Vec2{} || !meets_robots(i)) return preferred;
-    return journeys_.kept_right(i, preferred, velocities_[i], KeepRight::kLeast, 0.0);
+    if (!is_free || preferred == Vec2{}) return preferred;
+    return journeys_.kept_right(i, preferred, velocities_[i], KeepRight::kLeast, 0.0, meets_robots(i, preferred));
   }
 
-  bool meets_robots(std::size_t i) const {
+  /// Whether it sees another robot that may be in its way: one whose half-plane excludes the preferred velocity, or
+  /// that does not move apart from it.
+  bool meets_robots(std::size_t i, Vec2 preferred) const {
     const FreeSpace& space = guide_ ? guide_->space() : walls_;
+    const auto is_in_the_way = [&](std::size_t other, const geometry::HalfPlane& h) {
+      const bool moves_apart = dot(positions_[other] - positions_[i], velocities_[other] - velocities_[i]) > 0.0;
+      return !(moves_apart && dot(h.normal, preferred) >= h.offset);
+    };
     return std::any_of(joint_.others[i].begin(), joint_.others[i].end(), [&](const Constraint& c) {
-      return is_of_robot(scene_, c) && space.is_clear(positions_[i], positions_[c.index], kContactSkin);
+      return is_of_robot(scene_, c) && is_in_the_way(c.index, c.half_plane) &&
+             space.is_clear(positions_[i], positions_[c.index], kContactSkin);
     });
   }
 
@@ -203,7 +214,6 @@ class KinematicRun {
 
   /// Along its course. A robot without one stays, and so does one whose course has led it as near as it can get.
   Vec2 guided(std::size_t i, RobotStep& step) {
-    journeys_.look_along(i);
     const Journey& j = journeys_[i];
     if (j.waits_for_room) return journeys_.preferred(i);
     if (step.mode == Mode::direct) step.mode = journeys_.stays(i) ? Mode::staying : Mode::guided;

@@ -113,7 +113,7 @@ double StaticField::horizon(double distance, const Viewpoint& from) const {
   if (rule_ == HorizonRule::literal)
     return speed > 0.0 && distance > 0.0 ? std::min(distance / speed, kLiteralHorizonAtRest) : kLiteralHorizonAtRest;
   const double tau = distance / std::max(speed, h.speed_floor * from.max_speed);
-  return std::clamp(tau, std::max(h.least, 2.0 * rules_->time_step), h.most);
+  return std::clamp(std::min(tau, from.turns_after), std::max(h.least, 2.0 * rules_->time_step), h.most);
 }
 
 /// m, from the centre: what is farther is beyond reach at the longest horizon, whatever the rounding of its distance.

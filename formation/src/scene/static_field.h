@@ -36,6 +36,9 @@ struct Viewpoint {
   double radius = 0.0;   ///< m
   double max_speed = 0;  ///< m/s
   double horizon = 0.0;  ///< s: instead of what the rules say; 0: none
+  /// s: the robot goes straight on so long, along a way that is clear, and turns then: horizons are not longer, unless
+  /// the least one is.
+  double turns_after = std::numeric_limits<double>::infinity();
 };
 
 /// Which static shapes a decision needs: those within reach, and those whose half-plane may leave the robot's velocity

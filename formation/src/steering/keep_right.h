@@ -25,14 +25,15 @@ struct KeepRight {
   double held_up = 0.0;  ///< smoothed share of the preferred speed that is missing, 0 to 1
 
   /// `velocity`: m/s, of the last step; `least`: rad; `patience`: up to this `held_up`, below 1, it does not turn;
-  /// `way`: m, to its end, of a robot of this radius.
-  Vec2 turned(Vec2 preferred, Vec2 velocity, double least, double patience, double way, double radius) {
+  /// `way`: m, to its end, of a robot of this radius; `meets_others`: false where none can be what holds it up.
+  Vec2 turned(Vec2 preferred, Vec2 velocity, double least, double patience, double way, double radius,
+              bool meets_others = true) {
     if (preferred == Vec2{}) return preferred;
-    const double missing = 1.0 - dot(velocity, preferred) / squared_norm(preferred);
+    const double missing = meets_others ? 1.0 - dot(velocity, preferred) / squared_norm(preferred) : 0.0;
     held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - held_up);
     const double far = std::min(1.0, way / (kNearGoal * radius));
     const double impatience = std::max(0.0, held_up - patience) / (1.0 - patience);
-    const double angle = least + kMost * impatience;
+    const double angle = (meets_others ? least : 0.0) + kMost * impatience;
     return angle > 0.0 ? geometry::rotated(preferred, -far * angle) : preferred;
   }
 };
