@@ -576,8 +576,9 @@ TEST(CutRoutes, WithoutAWayRoundWhatRestsForGoodItStaysAndTheRunEnds) {
   Scenario s = two_doors(0.0);
   s.obstacles.push_back({"second door", Polyline{{{0, -5}, {0, -3}}}});
   const GuidedRun run = guided(s);
-  EXPECT_THAT(run.metrics.outcome, testing::StartsWith("the robot did not arrive; R waits: moving obstacle 'cart' stands on "
-                                                       "its route, and none leads round it"));
+  EXPECT_THAT(run.metrics.outcome,
+              testing::StartsWith("the robot did not arrive; R waits: moving obstacle 'cart' stands on "
+                                  "its route, and none leads round it"));
   EXPECT_LT(run.recording.steps.back().time, 20.0);
   const Step& decided = run.recording.steps[run.recording.steps.size() - 2];
   EXPECT_EQ(decided.robots[0].mode, Mode::staying);
@@ -613,6 +614,38 @@ TEST(CutRoutes, AGuideRoundWhatStoodStaysValidAsLongAsItIsUsed) {
   for (int k = 0; k < 9; ++k) stands_at(0.1 * k);
   EXPECT_TRUE(unused.expired());
   EXPECT_EQ(used->course(0.5, {-8, 3}, to).course.value().points, before.course->points);
+}
+
+/// The first scenario of README. R1 turned by 17 degrees for R2 behind the wall, and R2 crept before the desk, though
+/// its route turns before it: it came after 5.4 s.
+TEST(Guidance, RobotsGoStraightAlongTheirRoutesPastRobotsBehindWallsAndObstaclesBehindTurns) {
+  for (const double mirror : {1.0, -1.0}) {
+    Scenario s;
+    const auto at = [&](double x, double y) { return Vec2{x, mirror * y}; };
+    for (const auto& [id, from, to] :
+         {std::tuple("R1", at(0, 0), at(12, 0)), std::tuple("R2", at(12, 0.5), at(0, 0.5))}) {
+      Robot r;
+      r.id = id;
+      r.position = from;
+      r.goals = {to};
+      s.robots.push_back(r);
+    }
+    s.obstacles = {{"wall", Polyline{{at(6, -2), at(6, 2)}}},
+                   {"desk", geometry::Polygon{{at(3, 3), at(5, 3), at(5, 4), at(3, 4)}, {}}}};
+    const GuidedRun run = guided(s);
+    ASSERT_TRUE(run.metrics.all_arrived);
+    EXPECT_LT(run.metrics.robots[1].arrival_time.value(), 4.5);
+    std::size_t hidden = 0;
+    for (const Step& row : run.recording.steps) {
+      const Vec2 a = row.robots[0].position, b = row.robots[1].position;
+      const double crosses = a.y + (b.y - a.y) * (6.0 - a.x) / (b.x - a.x);
+      const bool is_hidden = (a.x < 6.0) != (b.x < 6.0) && std::fabs(crosses) < 1.999;
+      if (!is_hidden) continue;
+      ++hidden;
+      for (const RobotStep& r : row.robots) EXPECT_LT(std::fabs(r.turned_right), 0.01) << row.time;
+    }
+    EXPECT_GT(hidden, 20U);
+  }
 }
 
 TEST(Guidance, WhoMustGiveWayToACartArrives) {

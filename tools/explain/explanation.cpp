@@ -202,8 +202,7 @@ std::string held_words(const Decision& d, const Balance& b) {
                      formation::name_of(by, d.scenario, d.bodies));
 }
 
-/// How the preferred velocity came about, where it is not simply straight for the goal.
-std::string turned_words(const Decision& d) {
+std::string way_words(const Decision& d) {
   switch (d.step.mode) {
     case formation::Mode::guided:
       return "the preferred velocity leads along a proven route";
@@ -223,6 +222,22 @@ std::string turned_words(const Decision& d) {
     default:
       return "";
   }
+}
+
+/// Rule R1 of liveness.
+std::string keep_right_words(const Decision& d) {
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  const double angle = kDegrees * d.step.turned_right;
+  if (number(angle) == number(0.0)) return "";
+  return fmt::format("it is turned {} degrees to the right, to pass other robots on the same side as they do",
+                     number(angle));
+}
+
+/// How the preferred velocity came about, where it is not simply straight for the goal.
+std::string turned_words(const Decision& d) {
+  const std::string way = way_words(d), right = keep_right_words(d);
+  if (right.empty()) return way;
+  return way.empty() ? "the preferred velocity leads to the goal; " + right : way + "; " + right;
 }
 
 /// Those that are binding, but push nothing.

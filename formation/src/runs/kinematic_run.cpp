@@ -2,6 +2,7 @@
 // Kinematic robots with goals: Section V.A. The loop over time and when it ends, and the order in which a step is
 // decided. Where robots are going is in journeys.h.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -157,7 +158,7 @@ class KinematicRun {
       return step;
     }
     const Vec2 preferred = journeys_.beside_taken(i, steer(i, step));
-    choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), step);
+    choose(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step), step);
     return step;
   }
 
@@ -181,10 +182,13 @@ class KinematicRun {
   }
 
   /// Rule R1, for robots that others may hold up.
-  Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
-    const bool is_free = mode == Mode::direct || mode == Mode::guided;
+  Vec2 kept_right(std::size_t i, Vec2 preferred, RobotStep& step) {
+    const bool is_free = step.mode == Mode::direct || step.mode == Mode::guided;
     if (!is_free || preferred == Vec2{}) return preferred;
-    return journeys_.kept_right(i, preferred, velocities_[i], KeepRight::kLeast, 0.0, meets_robots(i, preferred));
+    const Vec2 turned =
+        journeys_.kept_right(i, preferred, velocities_[i], KeepRight::kLeast, 0.0, meets_robots(i, preferred));
+    step.turned_right = std::atan2(cross(turned, preferred), dot(turned, preferred));
+    return turned;
   }
 
   /// Whether it sees another robot that may be in its way: one whose half-plane excludes the preferred velocity, or

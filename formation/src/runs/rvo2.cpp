@@ -65,7 +65,7 @@ struct Parameters {
 struct Agent {
   Parameters parameters;
   Vector2 position, velocity, preferred;
-  Vec2 at, moves;  ///< what the floats are rounded from
+  Vec2 at, moves;        ///< what the floats are rounded from
   bool has_met = false;  ///< another agent, in the last step
   KeepRight keep_right;
 };
@@ -192,8 +192,8 @@ class RVOSimulator::State {
     time += time_step;
   }
 
-  /// Agents that others hold up turn to the right: where RVO2's would pass through each other, these would stand. Agents
-  /// have no goals, so they turn as much near them.
+  /// Agents that others hold up turn to the right: where RVO2's would pass through each other, these would stand.
+  /// Agents have no goals, so they turn as much near them.
   static Vec2 kept_right(Agent& a) {
     if (!exactvo::geometry::is_finite(exact(a.preferred))) return exact(a.preferred);  // the step refuses it
     if (!a.has_met) a.keep_right = {};

@@ -63,6 +63,7 @@ struct Decision {
   bool exact_multipliers = false;
   Mode mode = Mode::direct;     ///< how `preferred` was formed
   int side = 0;                 ///< +1 left, -1 right, 0 none: the side kept while blocked
+  double turned_right = 0.0;    ///< rad: by which rule R1 (liveness) turned `preferred` for others that may be met
   std::string note;             ///< why a mode began or ended, empty otherwise
   std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
 };
