@@ -11,10 +11,11 @@
 /// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
 /// stays. Where two last goals are too near to each other for both robots (and `Scenario::liveness` is not off), these
-/// stand aside within their tolerance; where that is not enough, the robot that is there first keeps its goal, and the other stays
-/// beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve places
-/// (liveness/reservations.h); after all have arrived, a run goes on up to 60 s for those that were pushed off. A run ends
-/// when no robot goes on, or when nothing changes any more. Deterministic, with any number of threads and of ranks.
+/// stand aside within their tolerance; where that is not enough, the robot that is there first keeps its goal, and the
+/// other stays beside it. With `Liveness::plan` robots that have stalled, are pushed or rest at their goals reserve
+/// places (liveness/reservations.h); after all have arrived, a run goes on up to 60 s for those that were pushed off. A
+/// run ends when no robot goes on, or when nothing changes any more. Deterministic, with any number of threads and of
+/// ranks.
 ///
 /// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
 /// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
@@ -107,6 +108,9 @@ class CrowdSink {
   virtual ~CrowdSink() = default;
   /// The start, before the first step.
   virtual void begin(const Crowd& crowd) = 0;
+  /// Before a step, when preferred velocities are set: `Crowd::explain` says what it will decide. `steps`: taken so
+  /// far.
+  virtual void before_step(const Crowd& /*crowd*/, std::size_t /*steps*/) {}
   /// After every step; `steps` counts them from 1.
   virtual void add_step(const Crowd& crowd, std::size_t steps) = 0;
   /// For a snapshot, after a step: what it needs to go on from here. What it has taken so far must be safe then.
