@@ -127,7 +127,7 @@ def main():
                 if args.profile and not name.startswith(args.profile):
                     continue
                 if arguments[0] == "CROWD":
-                    subprocess.run([program, "-q", "simulate", arguments[1], "--engine", "crowd", "--record", "crowd.evr", "--every", "4"], cwd=place,
+                    subprocess.run([program, "-q", "simulate", arguments[1], "--decisions", "none", "--record", "crowd.evr", "--every", "4"], cwd=place,
                                    check=True, capture_output=True)
                     arguments = ["crowd.evr"]
                 subprocess.run([program, "-q", "view", *arguments, "--out", "page.html"], cwd=place, check=True, capture_output=True)

@@ -138,7 +138,8 @@ class Runs(Page):
     def compare(self, name, metrics):
         shown = self.run_script(
             "return Object.fromEntries([...document.querySelectorAll('td[data-metric]')].map((td) => [td.dataset.metric, td.textContent]))")
-        for key in ["jitter", "min_obstacle_clearance", "min_robot_clearance", "steps", "relaxed_steps"]:
+        for key in ["jitter", "min_obstacle_clearance", "min_robot_clearance", "steps", "decisions.relaxed"]:
+            metrics.setdefault("decisions.relaxed", metrics["decisions"]["relaxed"])
             if metrics[key] is not None:
                 self.assertAlmostEqual(float(shown[key].split()[0]), metrics[key], delta=1e-4 * (1 + abs(metrics[key])))
         step = json.loads((ARGS.data / "paper" / f"{name}.json").read_text())["time_step"]
@@ -529,7 +530,7 @@ class PageItself(Page):
                  "robots": [{"grid": {"columns": 20, "rows": 10, "spacing": 3, "corner": [0, 0], "goal": [50, 0]}, "radius": 0.5, "max_speed": 2}],
                  "obstacles": [{"id": "wall", "polyline": [[90, 0], [90, 9], [95, 9]]}]}
         (self.place / "crowd.json").write_text(json.dumps(crowd))
-        self.run_program("simulate", "crowd.json", "--engine", "crowd", "--record", "crowd.evr", "--every", "1")
+        self.run_program("simulate", "crowd.json", "--decisions", "none", "--record", "crowd.evr", "--every", "1")
         self.run_program("view", "crowd.evr", "--most-states", "2000", "--out", "evr.html")
         self.run_program("convert", "crowd.evr", "crowd.csv")
         last = (self.place / "crowd.csv").read_text().splitlines()[-1].split(",")
@@ -886,7 +887,7 @@ class Proofs(Page):
 
     def record(self):
         if not (self.place / "A7").exists():
-            self.run_program("simulate", ARGS.data / "paper" / "A7.json", "--record-all", "--no-figures", "--out", "A7")
+            self.run_program("simulate", ARGS.data / "paper" / "A7.json", "--decisions", "all", "--no-figures", "--out", "A7")
         return (self.place / "A7" / "recording.jsonl").read_text().splitlines()
 
     def altered(self, change):

@@ -326,7 +326,7 @@ class Ends(unittest.TestCase):
     def test_nothing_is_computed_from_a_recording_of_a_crowd(self):
         with open(os.path.join(self.place, "ring.json"), "w") as file:
             json.dump({"name": "ring", "time_limit": 2, "robots": [{"circle": {"count": 8, "radius": 5}}]}, file)
-        subprocess.run([ARGS.program, "simulate", "ring.json", "--engine", "crowd", "--record", "ring.evr"], cwd=self.place, check=True, capture_output=True)
+        subprocess.run([ARGS.program, "simulate", "ring.json", "--decisions", "none", "--record", "ring.evr"], cwd=self.place, check=True, capture_output=True)
         server = Served(self.place, "ring.evr")
         for what in ("decide", "run", "free"):
             status, answer = server.ask(what, run="ring--crowd")

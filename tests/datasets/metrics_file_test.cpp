@@ -36,7 +36,9 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
   EXPECT_EQ(keys_of(tree), (std::vector<std::string>{"scenario",
                                                      "method",
                                                      "controller",
+                                                     "arrived",
                                                      "all_arrived",
+                                                     "median_arrival_time",
                                                      "last_arrival_time",
                                                      "min_obstacle_clearance",
                                                      "min_robot_clearance",
@@ -50,16 +52,18 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "velocity_variation",
                                                      "peak_acceleration",
                                                      "heading_reversals",
-                                                     "active_set_switches",
-                                                     "relaxed_steps",
-                                                     "uncertified_half_planes",
+                                                     "decisions",
                                                      "steps",
+                                                     "time",
                                                      "wall_time",
+                                                     "digest",
                                                      "outcome",
+                                                     "not_measured",
                                                      "warnings",
                                                      "plans",
                                                      "routes",
                                                      "deadlock",
+                                                     "stands_still",
                                                      "stuck",
                                                      "lyapunov",
                                                      "robots",
@@ -67,6 +71,31 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
   EXPECT_EQ(keys_of(tree["robots"][0]),
             (std::vector<std::string>{"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance",
                                       "detour", "largest_slot_error"}));
+}
+
+TEST(MetricsFile, ARunOnACrowdHasTheSameKeysAndItsOwnCounts) {
+  formation::Metrics m = metrics();
+  RunInfo about = info();
+  about.decisions = "none";
+  const Json with = Json::parse(metrics_json(info(), m));
+  m.crowd.emplace();
+  m.crowd->cut_short = 7;
+  m.crowd->digest = 0xABC;
+  m.not_measured = {"clearances"};
+  const Json without = Json::parse(metrics_json(about, m));
+  EXPECT_EQ(keys_of(with), keys_of(without));
+  EXPECT_EQ(keys_of(with["decisions"]), keys_of(without["decisions"]));
+  EXPECT_EQ(with["decisions"]["recorded"], "binding");
+  EXPECT_EQ(without["decisions"]["recorded"], "none");
+  EXPECT_EQ(without["decisions"]["count"], 2 * 269);
+  EXPECT_TRUE(with["decisions"]["cut_short"].is_null());
+  EXPECT_EQ(without["decisions"]["cut_short"], 7);
+  EXPECT_EQ(with["decisions"]["active_set_switches"], 0);
+  EXPECT_TRUE(without["decisions"]["active_set_switches"].is_null());
+  EXPECT_EQ(without["digest"], "0000000000000abc");
+  EXPECT_TRUE(with["digest"].is_null() && with["stands_still"].is_null());
+  EXPECT_EQ(without["stands_still"], false);
+  EXPECT_EQ(without["not_measured"].dump(), R"(["clearances"])");
 }
 
 TEST(MetricsFile, ACollisionSaysWithWhomWhenAndHowDeep) {

@@ -37,6 +37,7 @@ def test_seeds_of_random_robots_and_a_table(tmp_path):
     scenario.write_text(json.dumps(crowd))
     rows = exactvo.sweep(scenario, {"/robots/0/random/seed": range(4)}, table=table, method="orca", liveness="off")
     assert len({row["jitter"] for row in rows}) == 4
+    assert all(row["decisions_count"] == 5 * row["steps"] and row["decisions_relaxed"] >= 0 for row in rows)
     with open(table, newline="") as file:
         read = list(csv.DictReader(file))
     assert [row["/robots/0/random/seed"] for row in read] == ["0", "1", "2", "3"]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulate --engine crowd over the ranks of mpirun: the bytes of one process, whatever happens to a rank.
+// simulate without recorded decisions over the ranks of mpirun: the bytes of one process, whatever happens to a rank.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(CrowdOverRanks, TwoThreeAndFourGiveTheBytesOfOne) {
   const Workplace here;
   here.write("mixed.json", kMixed);
   for (const std::string guidance : {"route", "none"}) {
-    const std::string run = "simulate mixed.json --engine crowd --json --guidance " + guidance + " --record ";
+    const std::string run = "simulate mixed.json --decisions none --json --guidance " + guidance + " --record ";
     const Outcome one = here.run(run + "one.evr");
     ASSERT_EQ(one.status, 0) << one.err;
     EXPECT_GT(results_of(one)["arrived"].get<int>(), 0);
@@ -66,6 +66,12 @@ TEST(CrowdOverRanks, TwoThreeAndFourGiveTheBytesOfOne) {
     }
   }
   EXPECT_EQ(here.run("audit one.evr").status, 0);
+  // Ranks imply it, and write one folder.
+  const Outcome folder = here.run("simulate mixed.json --no-figures --out out", over(2));
+  EXPECT_EQ(folder.status, 0) << folder.err;
+  EXPECT_EQ(count_of("wrote out", folder.err), 1U) << folder.err;
+  ASSERT_EQ(here.run("simulate mixed.json --decisions none --record alone.evr").status, 0);
+  EXPECT_TRUE(here.read("out/recording.evr") == here.read("alone.evr"));
 }
 
 /// Starts three ranks and, as soon as there is a new snapshot, sends `signal` to one of them, or to mpirun.
@@ -84,7 +90,7 @@ TEST(CrowdOverRanks, ARankThatDiesEndsTheRunWithAWordAndResumeGoesOnToTheSameByt
   const Workplace here;
   here.write("ring.json", kRing);
   write_killer(here);
-  const std::string options = "simulate ring.json --engine crowd --guidance none --every 10 --json";
+  const std::string options = "simulate ring.json --decisions none --guidance none --every 10 --json";
   const Outcome whole = here.run(options + " --record whole.evr");
   ASSERT_EQ(whole.status, 0) << whole.err;
   const std::string run = options + " --record killed.evr --snapshot-every 25 --resume";
@@ -113,7 +119,8 @@ TEST(CrowdOverRanks, AnMpirunThatIsToldToEndLeavesASnapshot) {
     "robots": [{"circle": {"count": 400, "radius": 100000}, "max_speed": 1}]})");
   write_killer(here);
   const Outcome stopped = here.run(
-      "simulate long.json --engine crowd --guidance none --every 1000 --record killed.evr --snapshot-every 25 --resume",
+      "simulate long.json --decisions none --guidance none --every 1000 --record killed.evr --snapshot-every 25 "
+      "--resume",
       kEnvironment + "sh kill.sh TERM mpirun");
   EXPECT_NE(stopped.status, 0);
   EXPECT_TRUE(stopped.out.empty()) << stopped.out;
@@ -126,7 +133,7 @@ TEST(CrowdOverRanks, OneProcessGoesOnWithWhatRanksLeft) {
   const Workplace here;
   here.write("ring.json", kRing);
   write_killer(here);
-  const std::string options = "simulate ring.json --engine crowd --guidance none --every 10 --json";
+  const std::string options = "simulate ring.json --decisions none --guidance none --every 10 --json";
   ASSERT_EQ(here.run(options + " --record whole.evr").status, 0);
   const std::string run = options + " --record killed.evr --snapshot-every 25 --resume";
   ASSERT_NE(here.run(run, kEnvironment + "sh kill.sh KILL 1").status, 0);
@@ -140,13 +147,14 @@ TEST(CrowdOverRanks, WhatIsWrongIsSaidOnce) {
   here.write("slow.json", R"({"name": "s", "robots": [{"id": "A", "position": [0, 0], "goal": [9, 0]},
       {"id": "B", "position": [5, 5], "goal": [9, 0], "max_speed": 1e-6}]})");
   const std::pair<const char*, const char*> cases[] = {
-      {"simulate mixed.json",
-       "--engine: found 'standard', expected crowd, the only engine that runs over ranks of MPI"},
-      {"simulate - --engine crowd", "scenario: found '-', expected a file"},
-      {"simulate none.json --engine crowd", "E_FILE_MISSING"},
-      {"simulate slow.json --engine crowd", "slow.json: robot B: max_speed: found "},
-      {"simulate mixed.json --engine crowd --out out", "--out cannot be combined with --engine crowd"},
-      {"simulate mixed.json --engine crowd --record mixed.json/out.evr", "E_FILE_UNWRITABLE"}};
+      {"simulate mixed.json --decisions binding",
+       "--decisions: found 'binding', expected none over ranks of MPI, which keep no decisions"},
+      {"simulate mixed.json --method ivo", "--method ivo cannot be combined with ranks of MPI"},
+      {"simulate - --decisions none", "scenario: found '-', expected a file"},
+      {"simulate none.json --decisions none", "E_FILE_MISSING"},
+      {"simulate slow.json --decisions none", "slow.json: robot B: max_speed: found "},
+      {"simulate mixed.json --decisions none --out out", "--out cannot be combined with --decisions none"},
+      {"simulate mixed.json --decisions none --record mixed.json/out.evr", "E_FILE_UNWRITABLE"}};
   for (const auto& [arguments, words] : cases) {
     const Outcome outcome = here.run(arguments, over(3));
     EXPECT_EQ(outcome.status, 2) << arguments;
@@ -162,7 +170,7 @@ TEST(CrowdOverRanks, ARankWithAnotherScenarioIsRefused) {
   here.write("a/s.json", kMixed);
   here.write("b/s.json", kRing);
   const std::string program = "-n 1 -wdir '" + here.path().string() + "/",
-                    run = " simulate s.json --engine crowd --record ../out.evr";
+                    run = " simulate s.json --decisions none --record ../out.evr";
   const Outcome outcome = here.run(run, kEnvironment + "mpirun --oversubscribe " + program +
                                             "a' '" EXACTVO_PROGRAM "' " + run + " : " + program + "b'");
   EXPECT_EQ(outcome.status, 2) << outcome.err;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulate --engine crowd as a user meets it, with audit and convert of what it records.
+// simulate without recorded decisions as a user meets it, with audit and convert of what it records.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "run_program.h"
 
@@ -23,13 +27,13 @@ constexpr const char* kRing = R"({"name": "ring", "time_step": 0.25, "time_limit
 TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
   const Workplace here;
   here.write("ring.json", kRing);
-  const Outcome run = here.run("simulate ring.json --engine crowd --record ring.evr --json");
+  const Outcome run = here.run("simulate ring.json --decisions none --record ring.evr --json");
   ASSERT_EQ(run.status, 0) << run.err;
   const json metrics = json::parse(run.out);
-  EXPECT_EQ(metrics["robots"], 40);
+  EXPECT_EQ(metrics["robots"].size(), 40U);
   EXPECT_EQ(metrics["arrived"], 40);
   EXPECT_EQ(metrics["provenance"]["inputs"][0]["path"], "ring.json");
-  const json same = json::parse(here.run("simulate ring.json --engine crowd --threads 2 --no-figures --json").out);
+  const json same = json::parse(here.run("simulate ring.json --decisions none --threads 2 --no-figures --json").out);
   EXPECT_EQ(same["digest"], metrics["digest"]);
 
   const Outcome audit = here.run("audit ring.evr --json");
@@ -50,22 +54,116 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
   EXPECT_TRUE(here.has("cut.csv"));
 }
 
-TEST(CrowdVerb, WhoRunsManyRobotsOnTheStandardEngineIsToldOfTheCrowd) {
+TEST(CrowdVerb, ManyRobotsAreRunWithoutRecordedDecisionsUnlessSomethingNeedsThem) {
   const Workplace here;
   const auto run = [&](int robots, const std::string& more, const std::string& options) {
     here.write("many.json", R"({"name": "many", "time_limit": 0.05, "robots": [{"circle": {"count": )" +
                                 std::to_string(robots) + R"(, "radius": 300}}])" + more + "}");
-    const Outcome outcome = here.run("simulate many.json " + options);
+    const Outcome outcome = here.run("simulate many.json --json " + options);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return outcome.err;
+    const json metrics = json::parse(outcome.out);
+    return std::pair(metrics["decisions"]["recorded"].get<std::string>() + " " + metrics["method"].get<std::string>(),
+                     outcome.err);
   };
-  const auto is_told = HasSubstr("note: 500 robots: --engine crowd can be");
-  EXPECT_THAT(run(500, "", ""), is_told);
-  EXPECT_THAT(run(499, "", ""), Not(HasSubstr("--engine crowd")));
-  EXPECT_EQ(run(500, "", "--quiet"), "");
-  EXPECT_THAT(run(500, "", "--engine crowd"), Not(HasSubstr("--engine crowd")));
-  EXPECT_THAT(run(500, R"(, "speed_bound": "box")", ""), Not(HasSubstr("--engine crowd"))) << "no crowd can run it";
-  EXPECT_THAT(run(500, R"(, "liveness": "plan")", ""), Not(HasSubstr("--engine crowd"))) << "nor make plans";
+  const std::string box = R"(, "speed_bound": "box")";
+  const std::tuple<int, std::string, std::string, std::string, std::string> cases[] = {
+      {200, "", "", "none orca",
+       "200 robots: places are recorded, not decisions, and the method is orca; --decisions binding"},
+      {199, "", "", "binding ivo", ""},
+      {200, "", "--quiet", "none orca", ""},
+      {200, "", "--method orca", "none orca", "200 robots: places are recorded"},
+      {200, "", "--method ivo", "binding ivo", "since --method ivo asks for it: that may take long; --decisions none"},
+      {200, "", "--decisions binding", "binding ivo", ""},
+      {200, "", "--decisions all", "all ivo", ""},
+      {199, "", "--decisions none", "none orca", ""},
+      {200, box, "", "binding ivo", "200 robots, and decisions are recorded, since /speed_bound is box"},
+      {200, R"(, "liveness": "plan")", "", "none orca", "200 robots: places are recorded"}};
+  for (const auto& [robots, more, options, made, words] : cases) {
+    const auto [found, said] = run(robots, more, options);
+    EXPECT_EQ(found, made) << robots << more << options;
+    if (words.empty())
+      EXPECT_THAT(said, Not(HasSubstr("robots"))) << robots << more << options;
+    else
+      EXPECT_THAT(said, HasSubstr(words)) << robots << more << options;
+  }
+}
+
+/// Members that both kinds of run have, in one order.
+TEST(CrowdVerb, MetricsHaveTheSameMembersWithAndWithoutDecisions) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const auto metrics_of = [&](const std::string& decisions) {
+    const Outcome run = here.run("simulate ring.json --json --decisions " + decisions);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return nlohmann::ordered_json::parse(run.out);
+  };
+  const auto keys_of = [](const nlohmann::ordered_json& object) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.push_back(key);
+    return keys;
+  };
+  const auto with = metrics_of("binding"), without = metrics_of("none");
+  EXPECT_EQ(keys_of(with), keys_of(without));
+  EXPECT_EQ(keys_of(with["decisions"]), keys_of(without["decisions"]));
+  EXPECT_GT(keys_of(with).size(), 30U);
+  for (const auto* m : {&with, &without}) {
+    EXPECT_EQ((*m)["robots"].size(), 40U);
+    EXPECT_EQ((*m)["arrived"], 40);
+    EXPECT_EQ((*m)["outcome"], "all robots arrived");
+    EXPECT_EQ((*m)["decisions"]["count"], 40 * (*m)["steps"].get<int>());
+    EXPECT_EQ((*m)["time"], 0.25 * (*m)["steps"].get<int>());
+    EXPECT_GE((*m)["min_robot_clearance"].get<double>(), 0.0);
+    EXPECT_GT((*m)["robots"][3]["min_obstacle_clearance"].get<double>(), 0.0);
+    EXPECT_GT((*m)["robots"][3]["detour"].get<double>(), 0.0);
+    EXPECT_EQ(keys_of((*m)["robots"][3]), keys_of(with["robots"][0]));
+  }
+  EXPECT_TRUE(with["decisions"]["cut_short"].is_null());
+  EXPECT_TRUE(without["decisions"]["active_set_switches"].is_null());
+}
+
+TEST(CrowdVerb, AFolderOfARunWithoutDecisionsHasAllThatOneWithThemHas) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const Outcome run =
+      here.run("simulate ring.json --decisions none --out out --fail-on-collision --fail-unless-arrived");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto files = here.files("out");
+  for (const char* name : {"recording.evr", "metrics.json", "trajectory.csv", "explorer.html", "figures/density.dat"})
+    EXPECT_EQ(files.count(name), 1U) << name;
+  EXPECT_EQ(here.run("audit out").status, 0);
+  EXPECT_EQ(here.run("view out --out page.html").status, 0);
+  EXPECT_EQ(here.run("draw out --out maps").status, 0);
+  EXPECT_TRUE(here.has("maps/flow.dat"));
+  // The decision is computed again, and is the one that was carried out.
+  const Outcome explained = here.run("explain out --time 4 --robot G1/7 --json");
+  ASSERT_EQ(explained.status, 0) << explained.err;
+  const json decision = json::parse(explained.out);
+  EXPECT_GT(decision["half_planes"].size(), 5U);
+  const auto place = [&](int step) {
+    const std::string table = here.read("out/trajectory.csv"), row = "\n" + std::to_string(step) + ",";
+    std::size_t at = table.find(row);
+    while (table.compare(table.find('\n', at + 1) - 6, 6, "\"G1/7\"") != 0) at = table.find(row, at + 1);
+    std::istringstream cells(table.substr(at + 1));
+    std::vector<std::string> cell(5);
+    for (std::string& c : cell) std::getline(cells, c, ',');
+    return std::pair(std::stod(cell[3]), std::stod(cell[4]));
+  };
+  const auto [x, y] = place(16);
+  const auto [next_x, next_y] = place(17);
+  EXPECT_EQ(decision["position"], json({x, y}));
+  EXPECT_NEAR(decision["chosen"][0].get<double>(), 4.0 * (next_x - x), 1e-9);
+  EXPECT_NEAR(decision["chosen"][1].get<double>(), 4.0 * (next_y - y), 1e-9);
+  EXPECT_EQ(here.run("explain ring.json --decisions none --time 4 --robot G1/7 --json").out, explained.out);
+  EXPECT_EQ(here.run("explain out --time 1000 --robot 0").status, 2);
+  EXPECT_EQ(here.run("view ring.json --decisions none --out made.html").status, 0);
+  here.write("ring.json", std::string(kRing) + " ");
+  EXPECT_THAT(here.run("explain out --time 4 --robot 0").err, HasSubstr("or was changed, expected explain SCENARIO"));
+  here.write("ring.json", kRing);
+  // Another run of the same scenario, whose recording and table replace these.
+  EXPECT_THAT(here.run("simulate ring.json --decisions binding --no-figures --out out").err, HasSubstr("E_OTHER_RUN"));
+  EXPECT_EQ(here.run("simulate ring.json --decisions binding --no-figures --force --out out").status, 0);
+  EXPECT_TRUE(here.has("out/recording.jsonl"));
+  EXPECT_FALSE(here.has("out/recording.evr") || here.has("out/explorer.html"));
 }
 
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
@@ -73,7 +171,7 @@ TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   here.write("ring.json", kRing);
   here.write("one.json", R"({"name": "one", "robots": [{"id": "R", "position": [0, 0], "goal": [3, 0]}]})");
   ASSERT_EQ(here.run("simulate one.json --no-figures --out all/one").status, 0);
-  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record all/ring.evr").status, 0);
+  ASSERT_EQ(here.run("simulate ring.json --decisions none --record all/ring.evr").status, 0);
   const Outcome both = here.run("audit all --json");
   EXPECT_EQ(both.status, 0) << both.err;
   const json verdict = json::parse(both.out);
@@ -92,7 +190,7 @@ TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
 TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {
   const Workplace here;
   here.write("ring.json", kRing);
-  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr --every 100").status, 0);
+  ASSERT_EQ(here.run("simulate ring.json --decisions none --record ring.evr --every 100").status, 0);
   for (const char* arguments :
        {"explain ring.evr --time 1 --robot 0", "trap ring.evr", "simulate ring.evr --out out"}) {
     const Outcome outcome = here.run(arguments);
@@ -105,7 +203,7 @@ TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {
 TEST(CrowdVerb, ViewSaysOnStderrThatARecordingWasCutOff) {
   const Workplace here;
   here.write("ring.json", kRing);
-  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0);
+  ASSERT_EQ(here.run("simulate ring.json --decisions none --record ring.evr").status, 0);
   EXPECT_THAT(here.run("view ring.evr --out whole.html").err, testing::Not(HasSubstr("cut off")));
   here.write("cut.evr", here.read("ring.evr").substr(0, 3000));
   const Outcome outcome = here.run("view cut.evr --out cut.html");
@@ -116,27 +214,31 @@ TEST(CrowdVerb, ViewSaysOnStderrThatARecordingWasCutOff) {
 TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const Workplace here;
   here.write("ring.json", kRing);
+  here.write("huge.json",
+             R"({"name": "huge", "time_limit": 1, "robots": {"circle": {"count": 2001, "radius": 2000}}})");
   here.write("box.json",
              R"({"name": "b", "speed_bound": "box", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   here.write("slow.json", R"({"name": "s", "robots": [{"id": "A", "position": [0, 0], "goal": [9, 0]},
       {"id": "B", "position": [5, 5], "goal": [9, 0], "max_speed": 1e-6}]})");
   const std::pair<const char*, const char*> cases[] = {
-      {"simulate ring.json --engine crwd", "one of standard crowd; did you mean 'crowd'?"},
+      {"simulate ring.json --decisions nne", "--decisions: found 'nne', expected one of none"},
       {"simulate ring.json --record out.evr",
-       "--record: found 'out.evr', expected - for stdout, or a pipe; --out DIR writes a recording to disk"},
+       "--record out.evr needs --decisions none: a recording of decisions goes to - or a pipe"},
       {"simulate ring.json --record out.jsonl --out out", "--record cannot be combined with --out: --out DIR already"},
-      {"simulate ring.json --engine crowd --method ivo", "--method: found 'ivo', expected orca"},
-      {"simulate ring.json --engine crowd --out out", "--out cannot be combined with --engine crowd: a crowd is"},
-      {"simulate ring.json --engine crowd --record-all",
-       "--record-all cannot be combined with --engine crowd: only the standard engine has that option"},
-      {"simulate ring.json --every 3", "--every needs --engine crowd: only that engine has the option"},
-      {"simulate ring.json --engine crowd --record ring.json",
+      {"simulate ring.json --decisions none --method ivo",
+       "--method ivo cannot be combined with --decisions none: without recorded decisions the method is orca"},
+      {"simulate ring.json --decisions none --record out.evr --out out", "--record cannot be combined with --out: "},
+      {"simulate ring.json --every 3", "--every needs --decisions none: audit proves of recorded decisions"},
+      {"simulate ring.json --precision double",
+       "--precision needs --decisions none: recorded decisions are made in doubles"},
+      {"simulate huge.json --fail-on-collision", "--fail-on-collision cannot be combined with a run of more than 2000"},
+      {"simulate ring.json --decisions none --record ring.json",
        "--record: found 'ring.json', expected a name that ends in .evr"},
-      {"simulate ring.json --engine crowd --precision half", "float or double"},
-      {"simulate ring.json --engine crowd --every 0 --record out.evr",
+      {"simulate ring.json --decisions none --precision half", "float or double"},
+      {"simulate ring.json --decisions none --every 0 --record out.evr",
        "--every: found '0', expected a whole number from 1 to 1000000"},
-      {"simulate slow.json --engine crowd", "slow.json: robot B: max_speed: found "},
-      {"simulate box.json --engine crowd --record out.evr", "/speed_bound"},
+      {"simulate slow.json --decisions none", "slow.json: robot B: max_speed: found "},
+      {"simulate box.json --decisions none --record out.evr", "/speed_bound"},
       {"audit ring.json --sample 3", ".evr"},
       {"audit none.evr", "E_FILE_MISSING"},
       {"convert none.evr out.geojson", "FILE.csv"},
@@ -155,45 +257,46 @@ TEST(CrowdVerb, ARunNamesRobotsWithoutARouteAndTheReason) {
   here.write("locked.json", R"({"name": "locked", "time_limit": 20, "horizons": {"least": 0.5}, "liveness": "off",
       "robots": [{"id": "free", "position": [-3, 0], "goal": [-9, 0]}, {"id": "locked", "position": [20, 0], "goal": [0, 8]}],
       "obstacles": [{"id": "box", "polyline": [[18, -2], [22, -2], [22, 2], [18, 2], [18, -2]]}]})");
-  const Outcome words = here.run("simulate locked.json --engine crowd");
+  const Outcome words = here.run("simulate locked.json --decisions none");
   EXPECT_EQ(words.status, 0) << words.err;
-  EXPECT_THAT(words.out, HasSubstr("1 of 2 robots arrived, 1 without a route\n  no route     locked: "));
+  EXPECT_THAT(words.out, HasSubstr("1 of 2 robots did not arrive; locked cannot reach its goal: "));
   EXPECT_THAT(words.out, HasSubstr("box"));
-  const json metrics = json::parse(here.run("simulate locked.json --engine crowd --json").out);
-  ASSERT_EQ(metrics["without_route"].size(), 1U);
-  EXPECT_EQ(metrics["without_route"][0]["robot"], "locked");
-  EXPECT_FALSE(metrics["without_route"][0]["why"].get<std::string>().empty());
+  const json metrics = json::parse(here.run("simulate locked.json --decisions none --json").out);
+  ASSERT_EQ(metrics["stuck"].size(), 1U);
+  EXPECT_THAT(metrics["stuck"][0].get<std::string>(), testing::StartsWith("locked cannot reach its goal: "));
   // Both goals are one place: the robot that comes second pushes off the first.
   here.write("one.json",
              R"({"name": "one", "time_limit": 60, "guidance": "none", "horizons": {"least": 0.5}, "liveness": "off",
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
-  const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
+  const json one = json::parse(here.run("simulate one.json --decisions none --json").out);
   EXPECT_EQ(one["arrived"], 1) << one;
+  EXPECT_THAT(one["stuck"][0].get<std::string>(), HasSubstr("from its goal, "));
 }
 
 TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
   const Workplace here;
   here.write("one.json", R"({"name": "one", "time_limit": 60, "horizons": {"least": 0.5},
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
-  const Outcome words = here.run("simulate one.json --engine crowd");
-  EXPECT_THAT(words.out, HasSubstr("1 of 2 robots arrived, 0 without a route, 1 whose goal is taken\n"
-                                   "  goal taken   b: stays: a was first at the goal that both have"));
-  const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
-  EXPECT_EQ(one["goal_taken"],
-            json::parse(
-                R"([{"robot": "b", "why": "stays: a was first at the goal that both have, which leaves no room for both"}])"));
+  const Outcome words = here.run("simulate one.json --decisions none");
+  EXPECT_THAT(words.out,
+              HasSubstr("1 of 2 robots did not arrive; b stays: a was first at the goal that "
+                        "both have"));
+  const json one = json::parse(here.run("simulate one.json --decisions none --json").out);
+  EXPECT_EQ(one["stuck"], json::parse(R"(["b stays: a was first at the goal that both have, which )"
+                                      R"(leaves no room for both"])"));
   EXPECT_LT(one["time"], 20.0);
   here.write("street.json", R"({"name": "street", "liveness": "bias", "robots": [
       {"id": "a", "position": [0, 0], "goal": [10, 0], "radius": 0.3}, {"id": "b", "position": [10, 0], "goal": [0, 0], "radius": 0.3}],
       "obstacles": [{"id": "u", "polyline": [[-2, 0.5], [12, 0.5]]}, {"id": "l", "polyline": [[-2, -0.5], [12, -0.5]]}]})");
-  EXPECT_THAT(here.run("simulate street.json --engine crowd").out, HasSubstr("  standstill   2 robots: nothing moves"));
-  EXPECT_EQ(json::parse(here.run("simulate street.json --engine crowd --json").out)["stands_still"], true);
+  EXPECT_THAT(here.run("simulate street.json --decisions none").out,
+              HasSubstr("; nothing moves, and every further step would repeat"));
+  EXPECT_EQ(json::parse(here.run("simulate street.json --decisions none --json").out)["stands_still"], true);
 }
 
 TEST(CrowdVerb, DrawMakesMapsAndSaysThatARecordingWasCutOff) {
   const Workplace here;
   here.write("ring.json", kRing);
-  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0);
+  ASSERT_EQ(here.run("simulate ring.json --decisions none --record ring.evr").status, 0);
   const Outcome drawn = here.run("draw ring.evr --out maps");
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   for (const char* name : {"density", "flow", "speed", "speeds", "paths"}) {
@@ -212,7 +315,7 @@ TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
   here.write("ring.json", R"({"name": "ring", "time_step": 0.05, "time_limit": 60, "horizons": {"least": 0.3},
     "robots": [{"circle": {"count": 400, "radius": 100}, "max_speed": 1.5}],
     "moving_obstacles": [{"id": "tram", "polygon": [[-1, -9], [1, -9], [1, -6], [-1, -6]], "path": [[0, -7], [0, 70]], "speed": 1.3}]})");
-  const std::string options = "simulate ring.json --engine crowd --guidance none --every 10 --json";
+  const std::string options = "simulate ring.json --decisions none --guidance none --every 10 --json";
   const Outcome whole = here.run(options + " --record whole.evr");
   ASSERT_EQ(whole.status, 0) << whole.err;
   json expected = json::parse(whole.out);
@@ -240,7 +343,7 @@ TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
 TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {
   const Workplace here;
   here.write("ring.json", kRing);
-  const std::string run = "simulate ring.json --engine crowd --record ring.evr --snapshot-every 5 --resume";
+  const std::string run = "simulate ring.json --decisions none --record ring.evr --snapshot-every 5 --resume";
   Outcome killed;
   for (int tries = 0; tries < 50 && !here.has("ring.evr.snapshot"); ++tries)
     killed = here.run(run + " --every 1", "timeout -s KILL 0.0" + std::to_string(3 + tries % 7));
@@ -248,20 +351,20 @@ TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {
   const Outcome other = here.run(run + " --every 2");
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("the snapshot of another run"));
-  EXPECT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0) << "without snapshots";
+  EXPECT_EQ(here.run("simulate ring.json --decisions none --record ring.evr").status, 0) << "without snapshots";
   EXPECT_EQ(here.run(run + " --every 1").status, 0);
 }
 
 TEST(CrowdVerb, OptionsOfSnapshotsNeedEachOther) {
   const Workplace here;
   here.write("ring.json", kRing);
-  const Outcome alone = here.run("simulate ring.json --engine crowd --snapshot-every 5");
+  const Outcome alone = here.run("simulate ring.json --decisions none --snapshot-every 5");
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("--snapshot-every needs --record FILE.evr: a snapshot"));
-  const Outcome resume = here.run("simulate ring.json --engine crowd --record ring.evr --resume");
+  EXPECT_THAT(alone.err, HasSubstr("--snapshot-every needs --out DIR or --record FILE.evr: a snapshot"));
+  const Outcome resume = here.run("simulate ring.json --decisions none --record ring.evr --resume");
   EXPECT_EQ(resume.status, 2);
   EXPECT_THAT(resume.err, HasSubstr("--resume needs --snapshot-every N: "));
-  EXPECT_EQ(here.run("simulate ring.json --resume").status, 2) << "of the standard engine";
+  EXPECT_EQ(here.run("simulate ring.json --resume").status, 2) << "with recorded decisions";
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(LpCheck, TheGapIsProvenAndCountsTheLoss) {
 
 TEST(LpCheck, EverySolverPassesAndItsAnswersMovedDoNot) {
   const Workplace here;
-  ASSERT_EQ(here.run("simulate " + data_file("paper/A7.json") + " --record-all --no-figures --out out").status, 0);
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A7.json") + " --decisions all --no-figures --out out").status, 0);
   const Outcome written = here.run("lp out --out problems.jsonl");
   ASSERT_EQ(written.status, 0) << written.err;
   EXPECT_EQ(here.run("lp out/recording.jsonl --out again.jsonl").status, 0);

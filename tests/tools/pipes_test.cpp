@@ -282,9 +282,10 @@ TEST(Pipes, ARunIsAuditedFromItsStandardOutput) {
   EXPECT_EQ(here.run("audit r.jsonl").out, of_file);
   EXPECT_EQ(status_of(here, "PROGRAM simulate s.json --record - >/dev/full 2>log"), 2);
   EXPECT_THAT(here.read("log"), HasSubstr("standard output: found No space left on device"));
-  for (const std::string other : {"--out o", "--engine crowd"})
+  for (const std::string other : {"--out o", "--decisions none"})
     EXPECT_EQ(here.run("simulate s.json --record - " + other).status, 2) << other;
-  EXPECT_THAT(here.run("simulate s.json --record r.jsonl").err, HasSubstr("expected - for stdout, or a pipe; --out DIR writes a recording"));
+  EXPECT_THAT(here.run("simulate s.json --record r.jsonl").err,
+              HasSubstr("a recording of decisions goes to - or a pipe, or to disk with --out DIR"));
 }
 
 /// Whatever keeps a run from beginning, who waits for its recording gets an end.
@@ -366,13 +367,13 @@ TEST(Pipes, ARunWhoseReaderLeavesEnds) {
   std::filesystem::copy_file(data_file("paper/A7.json"), here.path() / "s.json");
   make_pipe(here, "pipe");
   EXPECT_EQ(status_of(here,
-                      "PROGRAM simulate s.json --record-all --record pipe >log 2>&1 & "
+                      "PROGRAM simulate s.json --decisions all --record pipe >log 2>&1 & "
                       "head -c 100 pipe >beginning; wait $!"),
             2);
   EXPECT_THAT(here.read("log"), HasSubstr("pipe: found"));
   EXPECT_THAT(here.read("beginning"), HasSubstr("exactvo-recording"));
   EXPECT_EQ(
-      status_of(here, "( PROGRAM simulate s.json --record-all --record - 2>log; echo $? >status ) | head -c 100 >b"),
+      status_of(here, "( PROGRAM simulate s.json --decisions all --record - 2>log; echo $? >status ) | head -c 100 >b"),
       0);
   EXPECT_EQ(here.read("status"), "2\n");
   EXPECT_THAT(here.read("log"), HasSubstr("standard output: found Broken pipe"));

@@ -56,8 +56,7 @@ json run_of(const std::string& scenario, const std::string& method, const json& 
           {"formation_velocity_error", controller.is_null() ? json() : json(1e-12)},
           {"leader_arrival_time", 8.3},
           {"jitter", 100.0},
-          {"relaxed_steps", 0},
-          {"uncertified_half_planes", 0},
+          {"decisions", {{"relaxed", 0}, {"uncertified_half_planes", 0}}},
           {"lyapunov", nullptr}};
 }
 
@@ -97,7 +96,7 @@ struct Turn {
   Verdict turned;
   const char* scenario;  ///< of the run that is changed or taken away
   const char* judged;    ///< its method, or controller
-  const char* key;
+  const char* key;       ///< "decisions/relaxed" of an object in it
   json value;
 };
 
@@ -112,7 +111,7 @@ const std::vector<Turn>& turns() {
       {"Fig. 6, Section V.A", Verdict::holds, Verdict::holds_in_part, "A3", "ivo-edge", "all_arrived", false},
       {"Fig. 6(b), (c)", Verdict::holds, Verdict::holds_in_part, "A9", "ivo-edge", "min_obstacle_clearance", -0.1},
       {"Section V.A", Verdict::holds, Verdict::fails, "A7", "ivo-edge", "min_robot_clearance", -0.1},
-      {"Section III.B, (11)-(13)", Verdict::holds, Verdict::holds_in_part, "A7", "ivo-edge", "relaxed_steps", 3},
+      {"Section III.B, (11)-(13)", Verdict::holds, Verdict::holds_in_part, "A7", "ivo-edge", "decisions/relaxed", 3},
       {"Theorem 1, Section IV.B", Verdict::holds, Verdict::holds_in_part, "B1", "paper-signs",
        "formation_position_error", 0.2},
       {"Fig. 8(c)", Verdict::holds, Verdict::holds_in_part, "B2", "paper-signs", "formation_velocity_error", 0.2},
@@ -127,7 +126,7 @@ TEST(Claims, EachVerdictFollowsItsOwnNumbersBothWays) {
     EXPECT_EQ(claim_at(rosy, t.where).verdict, t.rosy) << t.where;
     json summary = rosy_summary();
     for (json& run : summary)
-      if (is_of(run, t)) run[t.key] = t.value;
+      if (is_of(run, t)) run[json::json_pointer(std::string("/") + t.key)] = t.value;
     EXPECT_EQ(claim_at(claims_of(summary), t.where).verdict, t.turned) << t.where;
   }
 }
@@ -158,7 +157,7 @@ TEST(Claims, ARunWithoutAClearanceShowsNoSafety) {
 TEST(Claims, TheDefaultDoesNotSpeakForThePapersMethod) {
   json summary = rosy_summary();
   for (json& run : summary)
-    if (run["method"] == "ivo" && run["controller"].is_null()) run["relaxed_steps"] = 5;
+    if (run["method"] == "ivo" && run["controller"].is_null()) run["decisions"]["relaxed"] = 5;
   EXPECT_EQ(claim_at(claims_of(summary), "Section III.B, (11)-(13)").verdict, Verdict::holds);
 }
 
@@ -342,8 +341,8 @@ TEST(Report, NoCertificateOfAnOptimumIsClaimed) {
 
 TEST(Report, CountsOfHalfPlanesAreThoseOfTheRuns) {
   json summary = rosy_summary();
-  summary[2]["uncertified_half_planes"] = 5;
-  summary[4]["relaxed_steps"] = 6;
+  summary[2]["decisions"]["uncertified_half_planes"] = 5;
+  summary[4]["decisions"]["relaxed"] = 6;
   EXPECT_THAT(line_of(report_of(summary), "| (10) |", "Equations"), HasSubstr("5 half-planes are not certified"));
   EXPECT_THAT(line_of(report_of(summary), "| (13) |", "Equations"), HasSubstr("6 decisions gave way"));
 }

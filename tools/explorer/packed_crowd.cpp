@@ -76,7 +76,8 @@ void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
 datasets::RecordingFile about_crowd(const CrowdRecordingHead& head) {
   datasets::RecordingFile about;
   about.info.scenario = about.scenario.name = head.scenario;
-  about.info.method = "orca, engine crowd";
+  about.info.method = "orca";
+  about.info.decisions = "none";
   about.info.provenance = datasets::make_provenance({}, 0);
   about.scenario.time_step = about.recording.time_step = head.time_step;
   about.scenario.obstacles = walls_of(head.edges);
@@ -114,7 +115,8 @@ void put(const CrowdRow& row, const CrowdRecordingHead& head, formation::Step& s
 
 }  // namespace
 
-PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits) {
+PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits,
+                         const std::string& metrics_json) {
   datasets::CrowdRecordingReader reader(path);
   datasets::RecordingFile about = about_crowd(reader.head());
   RunPacker packer(limits);
@@ -129,11 +131,14 @@ PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimit
   if (rows == 0)
     throw datasets::DataError(datasets::DataCode::format_syntax, path.string(), "", "no whole row",
                               "a recording of at least one row");
-  about.recording.outcome = fmt::format(
-      "a recording of a crowd: {} robots, {} rows, a row every {} of {:.4g} s", about.scenario.robots.size(), rows,
-      reader.head().every == 1 ? "step" : fmt::format("{} steps", reader.head().every), reader.head().time_step);
+  const auto metrics = nlohmann::json::parse(metrics_json, nullptr, false);
+  const std::string cadence = reader.head().every == 1 ? "step" : fmt::format("{} steps", reader.head().every);
+  about.recording.outcome = metrics.is_object() && metrics.contains("outcome") && metrics["outcome"].is_string()
+                                ? metrics["outcome"].get<std::string>()
+                                : fmt::format("{} robots, {} rows, a row every {} of {:.4g} s",
+                                              about.scenario.robots.size(), rows, cadence, reader.head().time_step);
   if (reader.is_cut_off()) about.recording.warnings.push_back("The recording was cut off after its last whole row.");
-  return {reader.head().scenario, packer.finish(about, ""), reader.is_cut_off()};
+  return {reader.head().scenario, packer.finish(about, metrics_json), reader.is_cut_off()};
 }
 
 }  // namespace exactvo::tools

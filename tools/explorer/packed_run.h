@@ -106,8 +106,10 @@ struct PackedCrowd {
 
 /// A recording of a crowd (datasets/crowd_recording.h) as a packed run: positions and which robots kept their
 /// half-planes, without goals and decisions, which such recordings do not have. Read row by row, in memory bounded by
-/// the limits. Throws datasets::DataError.
-PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits = {});
+/// the limits. `metrics_json`: of the run, as datasets::metrics_json writes it; empty where there is none. Throws
+/// datasets::DataError.
+PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits = {},
+                         const std::string& metrics_json = "");
 
 /// What the head of a packed run says of a recording beside its rows: the scene, the method, the bodies, the joint
 /// plans and the routes. Routes are planned again as the run did; null where it had none, or where that would take

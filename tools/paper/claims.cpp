@@ -166,7 +166,7 @@ Claim dynamic_obstacles(const ReportData& data) {
 
 Claim always_feasible(const ReportData& data) {
   const Runs paper = avoidance_runs(data, "ivo-edge"), ours = avoidance_runs(data, "ivo");
-  const auto relaxed = number("relaxed_steps"), uncertified = number("uncertified_half_planes");
+  const auto relaxed = number("decisions/relaxed"), uncertified = number("decisions/uncertified_half_planes");
   return {
       "Section III.B, (11)-(13)",
       "The feasible velocity half-planes form a convex region from which linear programming chooses the velocity.",

@@ -49,9 +49,9 @@ std::string recorded_words(const ReportData& data, const std::string& equation) 
     const auto total = total_of(data, key);
     return total ? fmt::format("; in these runs {:.0f} {}", *total, words) : std::string();
   };
-  if (equation == "(10)") return count("uncertified_half_planes", "half-planes are not certified");
+  if (equation == "(10)") return count("decisions/uncertified_half_planes", "half-planes are not certified");
   if (equation == "(12)") return "; no certificate of optimality is recorded";
-  if (equation == "(13)") return count("relaxed_steps", "decisions gave way");
+  if (equation == "(13)") return count("decisions/relaxed", "decisions gave way");
   return "";
 }
 
@@ -262,7 +262,7 @@ std::vector<std::string> formation_row(const Json& run, const char* scene, const
           whole("jitter"),
           whole("peak_acceleration"),
           whole("heading_reversals"),
-          whole("active_set_switches")};
+          whole("decisions/active_set_switches")};
 }
 
 void add_section_b(const ReportData& data, Document& d) {

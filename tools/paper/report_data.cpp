@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <utility>
 
@@ -66,10 +67,12 @@ class Place {
 };
 
 void check_numbers(const Place& run) {
-  for (const char* key :
-       {"last_arrival_time", "min_obstacle_clearance", "min_robot_clearance", "formation_position_error",
-        "formation_velocity_error", "leader_arrival_time", "jitter", "relaxed_steps", "uncertified_half_planes"})
+  for (const char* key : {"last_arrival_time", "min_obstacle_clearance", "min_robot_clearance",
+                          "formation_position_error", "formation_velocity_error", "leader_arrival_time", "jitter"})
     if (run.has(key)) run.at(key).number_or_none();
+  if (!run.has("decisions")) return;
+  for (const char* key : {"relaxed", "uncertified_half_planes"})
+    if (run.at("decisions").has(key)) run.at("decisions").at(key).number_or_none();
 }
 
 void check_provenance(const Place& run) {
@@ -194,6 +197,10 @@ const Json& ReportData::random(const std::string& kind, const std::string& varia
 }
 
 std::optional<double> value_of(const Json& run, const char* key) {
+  if (const char* below = std::strchr(key, '/')) {
+    const auto part = run.is_object() ? run.find(std::string(key, below)) : run.end();
+    return part == run.end() ? std::nullopt : value_of(*part, below + 1);
+  }
   if (run.is_null() || !run.contains(key) || !run[key].is_number()) return std::nullopt;
   return run[key].get<double>();
 }

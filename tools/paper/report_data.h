@@ -54,7 +54,7 @@ class ReportData {
   std::vector<SourceFile> sources_;
 };
 
-/// A number of a run; nothing where it is null or the run is.
+/// A number of a run, "decisions/relaxed" of an object in it; nothing where it is null or the run is.
 std::optional<double> value_of(const ReportData::Json& run, const char* key);
 /// "-" where there is none.
 std::string shown(const std::optional<double>& x, const char* format);

@@ -26,9 +26,16 @@ using formation::SimulationOptions;
 
 namespace {
 
-bool has_recording(const fs::path& folder) {
+/// With decisions, or without.
+std::optional<fs::path> recording_in(const fs::path& folder) {
   std::error_code unknown;
-  return fs::is_regular_file(folder / "recording.jsonl", unknown);
+  for (const char* name : {"recording.jsonl", "recording.evr"})
+    if (fs::is_regular_file(folder / name, unknown)) return folder / name;
+  return std::nullopt;
+}
+
+bool has_recording(const fs::path& folder) {
+  return recording_in(folder).has_value();
 }
 
 /// The folder of the run that this is a part of: a file that simulate wrote beside the recording, figures/ or a file of
@@ -94,7 +101,8 @@ std::string in_words(const datasets::RunInfo& run) {
 
 std::string method_words(const datasets::RunInfo& run) {
   return "method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
-         (run.guidance ? ", guidance " + *run.guidance : "") + (run.liveness ? ", liveness " + *run.liveness : "");
+         (run.guidance ? ", guidance " + *run.guidance : "") + (run.liveness ? ", liveness " + *run.liveness : "") +
+         (run.decisions == "none" ? ", decisions none" : "");
 }
 
 std::optional<datasets::RunInfo> run_in(const fs::path& folder) {
@@ -106,19 +114,23 @@ std::optional<datasets::RunInfo> run_in(const fs::path& folder) {
     if (found == metrics.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
   };
+  const auto decisions = metrics.find("decisions");
+  const bool is_none =
+      decisions != metrics.end() && decisions->is_object() && decisions->value("recorded", "") == "none";
   return datasets::RunInfo{text("scenario").value_or(""),
                            text("method").value_or(""),
                            text("controller"),
                            {},
                            {},
                            text("guidance"),
-                           text("liveness")};
+                           text("liveness"),
+                           is_none ? "none" : "binding"};
 }
 
 void check_same_run(const fs::path& folder, const datasets::RunInfo& run) {
   const std::optional<datasets::RunInfo> earlier = run_in(folder);
   const auto name = [](const datasets::RunInfo& r) {
-    return std::tie(r.scenario, r.method, r.controller, r.guidance, r.liveness);
+    return std::tuple(r.scenario, r.method, r.controller, r.guidance, r.liveness, r.decisions == "none");
   };
   if (!earlier || name(*earlier) == name(run)) return;
   throw datasets::DataError(datasets::DataCode::other_run, folder.string(), "",
@@ -136,8 +148,8 @@ void refuse_part_of_run(const fs::path& path) {
 std::optional<fs::path> recording_at(const fs::path& path) {
   refuse_part_of_run(path);
   std::error_code unknown;
-  if (fs::is_directory(path, unknown)) return path / "recording.jsonl";
-  return path.extension() == ".jsonl" ? std::optional(path) : std::nullopt;
+  if (fs::is_directory(path, unknown)) return recording_in(path).value_or(path / "recording.jsonl");
+  return path.extension() == ".jsonl" || path.extension() == ".evr" ? std::optional(path) : std::nullopt;
 }
 
 std::vector<fs::path> write_figures(const std::vector<Figure>& figures, const fs::path& folder) {

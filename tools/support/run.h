@@ -48,8 +48,8 @@ void check_same_run(const std::filesystem::path& folder, const datasets::RunInfo
 /// trajectory.csv: what is meant is the folder of the run, which is named.
 void refuse_part_of_run(const std::filesystem::path& path);
 
-/// The recording that a path means: `recording.jsonl` of a folder, or the file itself if its name ends in .jsonl.
-/// Throws as refuse_part_of_run.
+/// The recording that a path means: `recording.jsonl` or `recording.evr` of a folder, or the file itself if its name
+/// ends in .jsonl or .evr. Throws as refuse_part_of_run.
 std::optional<std::filesystem::path> recording_at(const std::filesystem::path& path);
 
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.

@@ -87,6 +87,7 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
                      help("Avoidance method (ivo: a way to drive, not the half-plane of vo --variant ivo)",
                           formation::method_names()))
           ->capture_default_str();
+  flags.method_option = method;
   flags.of_goals = {app.add_option(
       "--guidance,-g", flags.guidance,
       help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};

@@ -22,6 +22,7 @@ struct SimulationFlags {
   std::string ablation;               ///< a set by its name, instead of the controller's
   std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
+  const CLI::Option* method_option = nullptr;
   std::vector<const CLI::Option*> of_runs;        ///< all
   std::vector<const CLI::Option*> of_goals;       ///< --guidance, --liveness
   std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --ablation, --controller-option

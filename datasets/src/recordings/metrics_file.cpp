@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/metrics_file.h"
 
+#include <array>
+#include <cstdio>
 #include <utility>
 
 #include "json/json_text.h"
@@ -40,6 +42,38 @@ void append(JsonWriter& json, const formation::RoutesCourse& routes) {
   json.member("cut", routes.cut).member("nearest", routes.nearest).end_object();
 }
 
+/// What one way of making a run does not count is null.
+void append_decisions(JsonWriter& json, const RunInfo& info, const formation::Metrics& m) {
+  const formation::CrowdMetrics* crowd = m.crowd ? &*m.crowd : nullptr;
+  const auto of_crowd = [&](const char* key, std::size_t formation::CrowdMetrics::*count) {
+    json.member(key, crowd ? std::optional<std::size_t>(crowd->*count) : std::nullopt);
+  };
+  const auto of_recorded = [&](const char* key, std::size_t count) {
+    json.member(key, crowd ? std::nullopt : std::optional<std::size_t>(count));
+  };
+  json.begin_object().member("recorded", info.decisions).member("count", m.robots.size() * m.steps);
+  json.member("relaxed", m.relaxed_steps);
+  of_recorded("active_set_switches", m.active_set_switches);
+  of_recorded("uncertified_half_planes", m.uncertified_half_planes);
+  of_crowd("cut_short", &formation::CrowdMetrics::cut_short);
+  of_crowd("reserved", &formation::CrowdMetrics::reserved);
+  of_crowd("stopped", &formation::CrowdMetrics::stopped);
+  of_crowd("overlapping", &formation::CrowdMetrics::overlapping);
+  of_crowd("touching", &formation::CrowdMetrics::touching);
+  of_crowd("widened", &formation::CrowdMetrics::widened);
+  of_crowd("against_robots", &formation::CrowdMetrics::against_robots);
+  of_crowd("against_edges", &formation::CrowdMetrics::against_edges);
+  of_crowd("against_moving", &formation::CrowdMetrics::against_moving);
+  json.end_object();
+}
+
+std::optional<std::string> digest_of(const formation::Metrics& m) {
+  if (!m.crowd) return std::nullopt;
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(m.crowd->digest));
+  return digits.data();
+}
+
 void append_course(JsonWriter& json, const char* key, const formation::LyapunovCourse& c) {
   json.key(key).begin_inline_object().member("first", c.first).member("last", c.last).member("least", c.least);
   json.member("largest_rise", c.largest_rise).end_object();
@@ -76,6 +110,17 @@ RunInfo run_info(const formation::Scenario& scenario, const formation::Simulatio
   const formation::Liveness liveness = liveness_of(scenario, options);
   if (guidance != formation::Guidance::none) info.guidance = name(guidance);
   if (liveness != formation::Liveness::off) info.liveness = name(liveness);
+  if (options.record_all) info.decisions = "all";
+  return info;
+}
+
+RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::CrowdRunOptions& options,
+                       Provenance provenance) {
+  RunInfo info{scenario.name, name(formation::Method::orca), std::nullopt, std::nullopt, std::move(provenance)};
+  const formation::Guidance guidance = options.guidance.value_or(scenario.guidance);
+  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
+  if (scenario.liveness != formation::Liveness::off) info.liveness = name(scenario.liveness);
+  info.decisions = "none";
   return info;
 }
 
@@ -85,7 +130,8 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.begin_object();
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
   json.optional("guidance", info.guidance).optional("liveness", info.liveness);
-  json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
+  json.member("arrived", m.arrived).member("all_arrived", m.all_arrived);
+  json.member("median_arrival_time", m.median_arrival_time).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
   json.member("robot_margin", m.robot_margin, appended).member("collisions", m.collisions);
   json.member("formation_position_error", m.formation_position_error);
@@ -94,15 +140,16 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("formation_course", m.formation_course, appended);
   json.member("jitter", m.jitter);
   json.member("velocity_variation", m.velocity_variation).member("peak_acceleration", m.peak_acceleration);
-  json.member("heading_reversals", m.heading_reversals).member("active_set_switches", m.active_set_switches);
-  json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);
-  json.member("steps", m.steps).member("wall_time", m.wall_time);
-  json.member("outcome", m.outcome);
+  json.member("heading_reversals", m.heading_reversals);
+  append_decisions(json.key("decisions"), info, m);
+  json.member("steps", m.steps).member("time", m.time).member("wall_time", m.wall_time);
+  json.member("digest", digest_of(m)).member("outcome", m.outcome).member("not_measured", m.not_measured);
   json.member("warnings", m.warnings).member("plans", m.plans, appended).member("routes", m.routes, appended);
   if (m.deadlock.empty())
     json.key("deadlock").null();
   else
     json.member("deadlock", m.deadlock);
+  json.member("stands_still", m.crowd ? std::optional<bool>(m.crowd->stands_still) : std::nullopt);
   json.member("stuck", m.stuck).member("lyapunov", m.lyapunov, appended);
   json.list("robots", m.robots, [&](const formation::RobotMetrics& robot) { append_robot(json, robot); });
   json.key("provenance").raw(to_json(info.provenance));

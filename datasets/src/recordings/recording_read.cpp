@@ -33,6 +33,7 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   formation::Recording& recording = file.recording;
   if (file.scenario.formation) recording.controller_options.emplace();
   members(at, recording);
+  if (recording.all_half_planes) file.info.decisions = "all";
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)
     at.at("offsets").refuse(geometry::counted(slots, "offset") + ", one for each robot of a formation",
@@ -269,7 +270,7 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
   if (first_line.find(kKind) != std::string_view::npos) return;
   if (begins_crowd_recording(first_line))
     throw DataError(DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
-                    recording + "; audit, convert, draw and view read recordings of crowds");
+                    recording + " with --decisions binding; audit, convert, draw and view read recordings of crowds");
   for (const Packing& packing : kPackings)
     if (first_line.substr(0, packing.magic.size()) == packing.magic)
       throw DataError(DataCode::format_unknown, name, "", std::string("what ") + packing.name + " has packed",

@@ -109,7 +109,10 @@ class CrowdEngine final : public CrowdCore {
     words.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
     words.preferred = {static_cast<double>(static_cast<T>(preferred.x)),
                        static_cast<double>(static_cast<T>(preferred.y))};
-    words.widened = one_.decide(robot, words.preferred, s.one, &words).counts.widened > 0;
+    const CrowdDecision decision = one_.decide(robot, words.preferred, s.one, &words);
+    words.widened = decision.counts.widened > 0;
+    words.reserved = decision.motion.reserved;
+    words.ways = s.one.capsule_lines.size();
     words.wish = velocity_of(robots.wish_mx[robot], robots.wish_my[robot]);
     words.chosen = velocity_of(robots.next_mx[robot], robots.next_my[robot]);
     words.kept = (robots.next_kept[robot] & Robots::kIsKept) != 0;

@@ -15,6 +15,7 @@
 #include "motion/motion.h"
 #include "motion/moving_way.h"
 #include "scene/near_pairs.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -91,7 +92,7 @@ class ClearanceSweep::Sweep {
     }
   }
 
-  void add(const Step& row) {
+  void add(RowState row) {
     if (!rows_.empty()) {
       const std::size_t step = count_++;
       motions_.clear();
@@ -99,11 +100,11 @@ class ClearanceSweep::Sweep {
       for (std::size_t i = 0; i < least_.size(); ++i) lower_to_obstacles(step, row.time, i);
       lower_between(step, row.time);
     }
-    if (rows_.size() == 2)
+    if (rows_.size() == 2) {
       std::swap(rows_.front(), rows_.back());
-    else
-      rows_.emplace_back();
-    rows_.back().take(row);
+      rows_.pop_back();
+    }
+    rows_.push_back(std::move(row));
   }
 
   Clearances result() const {
@@ -114,27 +115,67 @@ class ClearanceSweep::Sweep {
     return out;
   }
 
- private:
-  /// What is kept of a row.
-  struct State {
-    struct Robot {
-      Vec2 position, velocity;
-      bool relaxed = false;
-    };
-    double time = 0.0;
-    std::vector<Robot> robots;
-
-    void take(const Step& row) {
-      time = row.time;
-      robots.clear();
-      for (const RobotStep& r : row.robots) robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+  /// What is known round a place is found again.
+  void put(crowd::SnapshotWriter& to) const {
+    to.fields(least_, between_, count_, rows_.size(), contacts_.size());
+    for (const RowState& row : rows_) {
+      to.put(row.time);
+      for (const RowState::Robot& r : row.robots) to.fields(r.position, r.velocity, r.relaxed);
     }
-  };
+    for (const auto& [pair, contacts] : contacts_) {
+      to.fields(pair.first, static_cast<int>(pair.second.first), pair.second.second, contacts.size());
+      for (const Contact& c : contacts) {
+        to.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.deepest.time);
+        for (const Motion& m : {c.deepest.robot, c.deepest.other})
+          to.fields(m.from, m.from_velocity, m.to, m.to_velocity);
+      }
+    }
+  }
+
+  void get(crowd::SnapshotReader& from) {
+    from.fields(least_, between_, count_);
+    const auto rows = from.get<std::size_t>(), pairs = from.get<std::size_t>();
+    require(least_.size() == quiet_.size() && rows <= 2);
+    rows_.assign(rows, {});
+    for (RowState& row : rows_) {
+      from.get(row.time);
+      row.robots.resize(quiet_.size());
+      for (RowState::Robot& r : row.robots) from.fields(r.position, r.velocity, r.relaxed);
+    }
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const auto robot = from.get<std::size_t>();
+      const int kind = from.get<int>();
+      const auto with = from.get<std::size_t>(), contacts = from.get<std::size_t>();
+      require(robot < quiet_.size() && exists(kind, with));
+      std::vector<Contact>& all = contacts_[{robot, {static_cast<CollisionKind>(kind), with}}];
+      for (std::size_t c = 0; c < contacts; ++c) all.push_back(get_contact(from));
+    }
+  }
+
+ private:
+  static void require(bool holds) {
+    if (!holds) crowd::refuse_snapshot("other bytes", "those of a run of this scenario");
+  }
+
+  bool exists(int kind, std::size_t index) const {
+    const std::size_t all[] = {scenario_.obstacles.size(), scenario_.moving_obstacles.size(), scenario_.robots.size()};
+    return kind >= 0 && kind < 3 && index < all[kind];
+  }
+
+  Contact get_contact(crowd::SnapshotReader& from) const {
+    Contact c;
+    from.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.deepest.time);
+    for (Motion* m : {&c.deepest.robot, &c.deepest.other}) {
+      Vec2 start, start_velocity, end, end_velocity;
+      from.fields(start, start_velocity, end, end_velocity);
+      *m = {run_.motion, decay_, start, start_velocity, end, end_velocity};
+    }
+    return c;
+  }
 
   /// From the last row to this one.
-  Motion motion_to(const Step& row, std::size_t robot) const {
-    const State::Robot& from = rows_.back().robots[robot];
-    const RobotStep& to = row.robots[robot];
+  Motion motion_to(const RowState& row, std::size_t robot) const {
+    const RowState::Robot &from = rows_.back().robots[robot], &to = row.robots[robot];
     return {run_.motion, decay_, from.position, from.velocity, to.position, to.velocity};
   }
 
@@ -257,7 +298,7 @@ class ClearanceSweep::Sweep {
     now.deepest = moment;
   }
 
-  static bool was_relaxed(const State& row, std::size_t robot, Other other) {
+  static bool was_relaxed(const RowState& row, std::size_t robot, Other other) {
     return row.robots[robot].relaxed || (other.first == CollisionKind::robot && row.robots[other.second].relaxed);
   }
 
@@ -423,8 +464,8 @@ class ClearanceSweep::Sweep {
   std::vector<double> least_;  ///< m, of each robot to obstacles
   double between_ = kInfinity;
   std::map<std::pair<std::size_t, Other>, std::vector<Contact>> contacts_;
-  std::vector<State> rows_;  ///< the last two
-  std::size_t count_ = 0;    ///< steps
+  std::vector<RowState> rows_;  ///< the last two
+  std::size_t count_ = 0;       ///< steps
   // Memory that a step leaves to the next.
   std::vector<Motion> motions_;
   std::vector<double> ways_of_step_;  ///< m
@@ -438,11 +479,71 @@ ClearanceSweep::ClearanceSweep(const Scenario& scenario, const Recording& run)
 ClearanceSweep::~ClearanceSweep() = default;
 
 void ClearanceSweep::add(const Step& row) {
-  sweep_->add(row);
+  RowState state;
+  state.time = row.time;
+  state.robots.reserve(row.robots.size());
+  for (const RobotStep& r : row.robots)
+    state.robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+  sweep_->add(std::move(state));
+}
+
+void ClearanceSweep::add(RowState row) {
+  sweep_->add(std::move(row));
 }
 
 Clearances ClearanceSweep::result() const {
   return sweep_->result();
+}
+
+void ClearanceSweep::put(crowd::SnapshotWriter& to) const {
+  sweep_->put(to);
+}
+
+void ClearanceSweep::get(crowd::SnapshotReader& from) {
+  sweep_->get(from);
+}
+
+namespace {
+
+/// Lower bounds are a little too low, so that of two in contact, which is proven to be no more than that or which
+/// rounding alone could explain, they lie just below 0: that is 0.
+std::optional<double> contact_is_zero(std::optional<double> clearance) {
+  if (clearance && *clearance < 0.0 && !touched(clearance)) clearance = 0.0;
+  return clearance;
+}
+
+/// "R1 overlapped moving obstacle 'cart' by 1.4 m at 2.5 s".
+std::string sentence(const Collision& c) {
+  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + number_text(c.depth, 3) + " m at " +
+         number_text(c.deepest_at, 3) + " s";
+}
+
+}  // namespace
+
+void write_clearances(Clearances clearances, Metrics& m) {
+  for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    const std::optional<double> mine = contact_is_zero(clearances.to_obstacles[i]);
+    m.robots[i].min_obstacle_clearance = mine;
+    if (mine) m.min_obstacle_clearance = std::min(*mine, m.min_obstacle_clearance.value_or(kInfinity));
+  }
+  m.min_robot_clearance = contact_is_zero(clearances.between_robots);
+  m.collisions = std::move(clearances.collisions);
+}
+
+std::string collision_words(const Metrics& m) {
+  if (m.collisions.empty()) return "";
+  const auto deepest = std::max_element(m.collisions.begin(), m.collisions.end(),
+                                        [](const Collision& a, const Collision& b) { return a.depth < b.depth; });
+  std::string text = "COLLISION: " + sentence(*deepest);
+  const auto relaxed = static_cast<std::size_t>(
+      std::count_if(m.collisions.begin(), m.collisions.end(), [](const Collision& c) { return c.relaxed; }));
+  const std::size_t all = m.collisions.size();
+  if (all > 1) text += ", the deepest of " + std::to_string(all) + " collisions";
+  if (relaxed > 0) {
+    text += all == 1 ? ", in a relaxed decision" : ", " + std::to_string(relaxed) + " of them in relaxed decisions";
+    text += " (no velocity kept every half-plane)";
+  }
+  return text + "; ";
 }
 
 }  // namespace exactvo::formation::detail

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
+#include "snapshot_bytes.h"
 
 namespace exactvo::formation::detail {
 
@@ -19,19 +20,40 @@ struct Clearances {
   std::vector<Collision> collisions;                ///< in the order of their beginnings
 };
 
-/// Takes the rows of a run one after the other, and keeps none.
+/// Where robots are in a row, and whose decision then could not keep every half-plane.
+struct RowState {
+  struct Robot {
+    Vec2 position, velocity;
+    bool relaxed = false;
+  };
+  double time = 0.0;
+  std::vector<Robot> robots;
+};
+
+/// Takes the rows of a run one after the other, and keeps the last two.
 class ClearanceSweep {
  public:
   /// Of `run` what is known before the first row: motion, time step, tracking gain. Both must outlive it.
   ClearanceSweep(const Scenario& scenario, const Recording& run);
   ~ClearanceSweep();
   void add(const Step& row);
+  void add(RowState row);
   /// Over all rows so far.
   Clearances result() const;
+
+  /// For a snapshot of a run along straight ways; `get` throws CrowdError (bad_snapshot).
+  void put(crowd::SnapshotWriter& to) const;
+  void get(crowd::SnapshotReader& from);
 
  private:
   class Sweep;
   std::unique_ptr<Sweep> sweep_;
 };
+
+/// The clearances of robots and of the run, and its collisions. REQUIRES: `m` has its robots.
+void write_clearances(Clearances clearances, Metrics& m);
+
+/// "COLLISION: R1 overlapped ...; ", of the deepest one; empty where there is none.
+std::string collision_words(const Metrics& m);
 
 }  // namespace exactvo::formation::detail

@@ -20,25 +20,6 @@
 namespace exactvo::formation {
 namespace {
 
-using geometry::kInfinity;
-
-/// Lower bounds are a little too low, so that of two in contact, which is proven to be no more than that or which
-/// rounding alone could explain, they lie just below 0: that is 0.
-std::optional<double> contact_is_zero(std::optional<double> clearance) {
-  if (clearance && *clearance < 0.0 && !touched(clearance)) clearance = 0.0;
-  return clearance;
-}
-
-void write_clearances(detail::Clearances clearances, Metrics& m) {
-  for (std::size_t i = 0; i < m.robots.size(); ++i) {
-    const std::optional<double> mine = contact_is_zero(clearances.to_obstacles[i]);
-    m.robots[i].min_obstacle_clearance = mine;
-    if (mine) m.min_obstacle_clearance = std::min(*mine, m.min_obstacle_clearance.value_or(kInfinity));
-  }
-  m.min_robot_clearance = contact_is_zero(clearances.between_robots);
-  m.collisions = std::move(clearances.collisions);
-}
-
 /// What is known of a run before its first row.
 Recording beginning_of(const Recording& run) {
   Recording known;
@@ -49,28 +30,6 @@ Recording beginning_of(const Recording& run) {
   known.offsets = run.offsets;
   known.controller_options = run.controller_options;
   return known;
-}
-
-/// "R1 overlapped moving obstacle 'cart' by 1.4 m at 2.5 s".
-std::string sentence(const Collision& c) {
-  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + detail::number_text(c.depth, 3) +
-         " m at " + detail::number_text(c.deepest_at, 3) + " s";
-}
-
-std::string of_collisions(const Metrics& m) {
-  if (m.collisions.empty()) return "";
-  const auto deepest = std::max_element(m.collisions.begin(), m.collisions.end(),
-                                        [](const Collision& a, const Collision& b) { return a.depth < b.depth; });
-  std::string text = "COLLISION: " + sentence(*deepest);
-  const auto relaxed = static_cast<std::size_t>(
-      std::count_if(m.collisions.begin(), m.collisions.end(), [](const Collision& c) { return c.relaxed; }));
-  const std::size_t all = m.collisions.size();
-  if (all > 1) text += ", the deepest of " + std::to_string(all) + " collisions";
-  if (relaxed > 0) {
-    text += all == 1 ? ", in a relaxed decision" : ", " + std::to_string(relaxed) + " of them in relaxed decisions";
-    text += " (no velocity kept every half-plane)";
-  }
-  return text + "; ";
 }
 
 std::string of_detours(const Metrics& m) {
@@ -90,7 +49,7 @@ std::string of_detours(const Metrics& m) {
 /// How a run ended, from its measurements and from what the run says: collisions first, so that nothing sounds like
 /// success where it was none; long detours of a formation last.
 std::string outcome_words(const Metrics& m, const std::string& end) {
-  return of_collisions(m) + end + of_detours(m);
+  return detail::collision_words(m) + end + of_detours(m);
 }
 
 }  // namespace
@@ -139,7 +98,7 @@ Evaluation Evaluator::finish(const Recording& run) {
   Metrics& m = found.metrics;
   for (const Robot& r : parts_->scenario.robots) m.robots.emplace_back().id = r.id;
   parts_->measures.write_to(m);
-  write_clearances(parts_->clearances.result(), m);
+  detail::write_clearances(parts_->clearances.result(), m);
   if (run.liveness)
     static_cast<LivenessCourse&>(*m.plans) = *run.liveness;
   else
@@ -202,7 +161,7 @@ bool is_safe(const Metrics& m) {
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot) {
   std::vector<double> series;
   for (const Step& row : recording.steps) {
-    double least = kInfinity;
+    double least = geometry::kInfinity;
     const Vec2 place = row.robots[robot].position;
     for (const SceneObstacle& o : scenario.obstacles)
       least = std::min(least, geometry::signed_distance(o.shape, place));

@@ -3,23 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "metrics/divergence.h"
-#include "scene/near_pairs.h"
 #include "scene/goals.h"
+#include "scene/near_pairs.h"
 
 namespace exactvo::formation::detail {
-
-namespace {
-
-/// rad: smaller turns have no sign worth counting.
-constexpr double kLeastTurn = 1e-3;
-
-/// Of the greatest speed: what is slower rests, and its heading is noise.
-constexpr double kLeastHeadway = 1e-3;
-
-}  // namespace
 
 MetricsAccumulator::MetricsAccumulator(const Scenario& scenario, const Recording& run)
     : scenario_(scenario), run_(run), robots_(scenario.robots.size()) {}
@@ -39,38 +28,20 @@ void MetricsAccumulator::add(const Step& row) {
     const RobotStep& step = row.robots[i];
     if (scenario_.formation)
       r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - leader_.position);
-    if (rows_ > 0) add_motion(r, step, kLeastHeadway * scenario_.robots[i].max_speed);
-    add_decision(r, step);
-    add_arrival(i, row);
+    if (rows_ > 0) {
+      const double at_rest = RobotCourse::kLeastHeadway * scenario_.robots[i].max_speed;
+      r.move_to(step.position, step.velocity, run_.time_step, at_rest);
+    }
     r.position = step.position;
     r.velocity = step.velocity;
+    add_decision(r, step);
+    add_arrival(i, row);
   }
   if (scenario_.formation) add_to_course(row);
   add_margins(row);
   leader_ = {row.leader_position, row.leader_velocity};
   time_ = row.time;
   ++rows_;
-}
-
-void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step, double at_rest) const {
-  r.path_length += norm(step.position - r.position);
-  const Vec2 acceleration = (step.velocity - r.velocity) / run_.time_step;
-  if (r.acceleration) r.jitter += norm(acceleration - *r.acceleration);
-  r.acceleration = acceleration;
-  const double size = norm(acceleration);
-  r.peak_acceleration = std::max(r.peak_acceleration, size);
-  r.velocity_variation += size * run_.time_step;
-  add_turn(r, step.velocity, at_rest);
-}
-
-void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity, double at_rest) const {
-  const double turn = std::atan2(cross(r.velocity, velocity), dot(r.velocity, velocity));
-  if (std::fabs(turn) < kLeastTurn || !(norm(r.velocity) > at_rest) || !(norm(velocity) > at_rest)) {
-    r.last_turn = 0.0;
-    return;
-  }
-  if (turn * r.last_turn < 0.0) ++r.reversals;
-  r.last_turn = turn;
 }
 
 MetricsAccumulator::ActiveSet MetricsAccumulator::active_set(const RobotStep& step) {
@@ -89,20 +60,12 @@ void MetricsAccumulator::add_decision(OfRobot& r, const RobotStep& step) {
   r.active = std::move(active);
 }
 
-/// A kinematic run passes at most one goal on the way a row, within the tolerance or the robot's radius.
 void MetricsAccumulator::add_arrival(std::size_t robot, const Step& row) {
   OfRobot& r = robots_[robot];
-  const Robot& spec = scenario_.robots[robot];
-  double error = std::numeric_limits<double>::infinity();
-  if (scenario_.formation) {
-    error = slot_error(row, run_.offsets, robot);
-  } else if (r.goal + 1 < spec.goals.size()) {
-    const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
-    if (norm(row.robots[robot].position - spec.goals[r.goal]) <= reach) ++r.goal;
-  } else {
-    error = norm(row.robots[robot].position - spec.goals.back());
-  }
-  r.settled.add(row.time, error, scenario_.arrival_tolerance);
+  if (scenario_.formation)
+    r.settled.add(row.time, slot_error(row, run_.offsets, robot), scenario_.arrival_tolerance);
+  else
+    r.arrive(scenario_.robots[robot], scenario_.arrival_tolerance, row.time, row.robots[robot].position);
 }
 
 void MetricsAccumulator::add_to_course(const Step& row) {
@@ -143,14 +106,7 @@ void MetricsAccumulator::add_margins(const Step& row) {
 void MetricsAccumulator::write_to(Metrics& m) const {
   if (scenario_.formation) write_formation(m);
   write_arrivals(m);
-  for (std::size_t i = 0; i < robots_.size(); ++i) {
-    const OfRobot& r = robots_[i];
-    m.robots[i].path_length = r.path_length;
-    m.jitter += r.jitter;
-    m.velocity_variation += r.velocity_variation;
-    m.peak_acceleration = std::max(m.peak_acceleration, r.peak_acceleration);
-    m.heading_reversals += r.reversals;
-  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i].write_to(m.robots[i], m);
   if (scenario_.formation) write_course(m);
   write_detours(m);
   m.plans.emplace();
@@ -165,6 +121,7 @@ void MetricsAccumulator::write_to(Metrics& m) const {
   m.uncertified_half_planes = counted_.uncertified;
   m.active_set_switches = counted_.switches;
   m.steps = rows_ - 1;
+  m.time = time_;
 }
 
 void MetricsAccumulator::write_formation(Metrics& m) const {
@@ -185,10 +142,18 @@ void MetricsAccumulator::write_arrivals(Metrics& m) const {
     out.arrived = out.arrival_time.has_value() && (!scenario_.formation || m.leader_arrival_time.has_value());
     if (!out.arrived) out.arrival_time.reset();
   }
-  m.all_arrived = std::all_of(m.robots.begin(), m.robots.end(), [](const auto& r) { return r.arrived; });
-  if (!m.all_arrived) return;
-  m.last_arrival_time = 0.0;
-  for (const RobotMetrics& r : m.robots) m.last_arrival_time = std::max(*m.last_arrival_time, *r.arrival_time);
+  write_arrivals_of_run(m);
+}
+
+void write_arrivals_of_run(Metrics& m) {
+  std::vector<double> times;
+  for (const RobotMetrics& r : m.robots)
+    if (r.arrived) times.push_back(*r.arrival_time);
+  std::sort(times.begin(), times.end());
+  m.arrived = times.size();
+  m.all_arrived = times.size() == m.robots.size();
+  if (2 * times.size() > m.robots.size()) m.median_arrival_time = times[m.robots.size() / 2];
+  if (m.all_arrived) m.last_arrival_time = times.empty() ? 0.0 : times.back();
 }
 
 /// Whom the formation lost, and since when it holds.
@@ -219,14 +184,7 @@ void MetricsAccumulator::write_detours(Metrics& m) const {
 
 /// m: from a robot's start to its goals, or to its slot and on with the leader.
 double MetricsAccumulator::direct_way(std::size_t robot) const {
-  if (scenario_.formation) return robots_[robot].direct_way;
-  double way = 0.0;
-  Vec2 here = scenario_.robots[robot].position;
-  for (const Vec2 goal : scenario_.robots[robot].goals) {
-    way += norm(goal - here);
-    here = goal;
-  }
-  return way;
+  return scenario_.formation ? robots_[robot].direct_way : way_to_goals(scenario_.robots[robot]);
 }
 
 }  // namespace exactvo::formation::detail

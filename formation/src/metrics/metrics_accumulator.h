@@ -9,25 +9,10 @@
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
+#include "metrics/robot_course.h"
 #include "motion/leader.h"
 
 namespace exactvo::formation::detail {
-
-/// Since when an error stays within a tolerance.
-class SettledSince {
- public:
-  void add(double time, double error, double tolerance) {
-    if (!(error <= tolerance)) {
-      since_.reset();
-    } else if (!since_) {
-      since_ = time;
-    }
-  }
-  const std::optional<double>& since() const { return since_; }
-
- private:
-  std::optional<double> since_;
-};
 
 /// Takes the rows of a run one after the other, and keeps of them what the next one needs.
 class MetricsAccumulator {
@@ -44,24 +29,13 @@ class MetricsAccumulator {
   using ActiveSet = std::vector<std::tuple<ConstraintSource, std::size_t, std::size_t>>;
   static ActiveSet active_set(const RobotStep& step);
 
-  struct OfRobot {
-    Vec2 position, velocity;  ///< in the last row
-    std::optional<Vec2> acceleration;
-    double path_length = 0.0;
-    std::size_t goal = 0;  ///< which it heads for
-    SettledSince settled;
+  struct OfRobot : RobotCourse {
     double direct_way = 0.0;  ///< m, of a formation: to its slot and on with the leader
     double largest_slot_error = 0.0, largest_slot_error_at = 0.0;
-    double jitter = 0.0, velocity_variation = 0.0, peak_acceleration = 0.0;
-    double last_turn = 0.0;
-    std::size_t reversals = 0;
     bool was_within_margin = false;  ///< nearer to another robot than the margin
     ActiveSet active;
   };
 
-  /// `at_rest`: m/s, what is slower has no heading.
-  void add_motion(OfRobot& r, const RobotStep& step, double at_rest) const;
-  void add_turn(OfRobot& r, Vec2 velocity, double at_rest) const;
   void add_decision(OfRobot& r, const RobotStep& step);
   void add_arrival(std::size_t robot, const Step& row);
   void add_to_course(const Step& row);

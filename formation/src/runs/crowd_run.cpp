@@ -382,6 +382,7 @@ class CrowdRun {
       preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
     share_preferred();
     crowd_.set_preferred(preferred_);
+    if (sink_) sink_->before_step(crowd_, report_.steps);
     const StepReport s = crowd_.step();
     ++report_.steps;
     report_.time = static_cast<double>(report_.steps) * scenario_.time_step;

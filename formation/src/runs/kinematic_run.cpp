@@ -15,6 +15,7 @@
 #include "runs/rows.h"
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
+#include "scene/goals.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
 #include "steering/guide.h"
@@ -294,13 +295,7 @@ class KinematicRun {
   std::string arrivals() const {
     std::size_t arrived = 0;
     for (std::size_t i = 0; i < ways_.size(); ++i) arrived += journeys_.at_goal(i);
-    const std::size_t all = ways_.size();
-    if (arrived == all) return all == 1 ? "the robot arrived" : "all robots arrived";
-    const std::string until = goes_on() ? " within the time limit" : "";
-    if (all == 1) return "the robot did not arrive" + until;
-    return (arrived == 0 ? "none of " + std::to_string(all) + " robots arrived"
-                         : std::to_string(all - arrived) + " of " + std::to_string(all) + " robots did not arrive") +
-           until;
+    return arrival_words(arrived, ways_.size(), goes_on());
   }
 
   const Scenario& scenario_;

@@ -48,4 +48,14 @@ inline std::string first_at_goal_words(const Robot& first, const Robot& other) {
          " from that of " + other.id;
 }
 
+/// "2 of 60 robots did not arrive within the time limit": how a run ended, for its outcome.
+inline std::string arrival_words(std::size_t arrived, std::size_t all, bool is_out_of_time) {
+  if (arrived == all) return all == 1 ? "the robot arrived" : "all robots arrived";
+  const std::string until = is_out_of_time ? " within the time limit" : "";
+  if (all == 1) return "the robot did not arrive" + until;
+  return (arrived == 0 ? "none of " + std::to_string(all) + " robots arrived"
+                       : std::to_string(all - arrived) + " of " + std::to_string(all) + " robots did not arrive") +
+         until;
+}
+
 }  // namespace exactvo::formation::detail

@@ -70,7 +70,7 @@ function fillRun() {
   const hasDecisions = run.decisionTime.length > 0;
   for (const e of document.querySelectorAll('.of-decisions')) e.hidden = !hasDecisions;
   if (hasDecisions && !about.all_half_planes)
-    partial.push('The recording has only the half-planes that bind or are violated and those against what could be met within a time step: simulate --record-all keeps the others too.');
+    partial.push('The recording has only the half-planes that bind or are violated and those against what could be met within a time step: simulate --decisions all keeps the others too.');
   if (run.head.decisions.every > 1) partial.push(`One row in ${run.head.decisions.every} has its decisions in this page.`);
   if (run.head.rows.every > 1) partial.push(`One row in ${run.head.rows.every} is in this page.`);
   $('partial').textContent = partial.join(' ');
@@ -84,8 +84,8 @@ const METRICS = [
   ['min_robot_clearance', 'least clearance between robots', 'm'], ['formation_position_error', 'formation position error', 'm'],
   ['formation_velocity_error', 'formation velocity error', 'm/s'], ['jitter', 'jitter', 'm/s\u00b2'],
   ['velocity_variation', 'velocity variation', 'm/s'], ['peak_acceleration', 'peak acceleration', 'm/s\u00b2'],
-  ['heading_reversals', 'heading reversals', ''], ['relaxed_steps', 'relaxed decisions', ''],
-  ['uncertified_half_planes', 'half-planes not certified', ''], ['steps', 'steps', ''],
+  ['heading_reversals', 'heading reversals', ''], ['decisions.relaxed', 'relaxed decisions', ''],
+  ['decisions.uncertified_half_planes', 'half-planes not certified', ''], ['steps', 'steps', ''],
 ];
 
 function metricRow(name, text, key) {
@@ -98,7 +98,7 @@ function metricRow(name, text, key) {
 function fillMetrics() {
   const metrics = page.run.head.metrics, rows = [];
   for (const [key, name, unit] of metrics ? METRICS : []) {
-    const value = metrics[key];
+    const value = key.split('.').reduce((part, name) => (part ? part[name] : undefined), metrics);
     if (value === null || value === undefined) continue;
     rows.push(metricRow(name, `${Number(value.toPrecision(5))}${unit ? ` ${unit}` : ''}`, key));
   }

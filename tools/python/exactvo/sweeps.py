@@ -69,8 +69,10 @@ def sweep(
                 _set(fields, name, value)
             else:
                 given[name] = value
-        metrics = simulate(fields, **given).metrics
+        metrics = dict(simulate(fields, **given).metrics)
         row = dict(zip(vary, chosen))
+        for name, count in metrics.pop("decisions").items():
+            row[f"decisions_{name}"] = count
         for key, value in metrics.items():
             if key not in _LEFT_OUT and not isinstance(value, dict):
                 row[key] = len(value) if isinstance(value, list) else value

@@ -4,16 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_files.h"
+#include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/run_info.h"
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/planned_routes.h"
 #include "exactvo/formation/stuck.h"
+#include "explain/crowd_decision.h"
 #include "explain/decision.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
@@ -26,6 +32,7 @@
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
+#include "support/way.h"
 #include "verb.h"
 #include "verbs/obstacles/map_figure.h"
 
@@ -38,6 +45,7 @@ namespace {
 struct ExplainFlags {
   std::string scenario;
   SimulationFlags simulation;
+  DecisionFlags decisions;
   double time = 0.0;
   std::string robot;
   std::string out;
@@ -176,8 +184,53 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
         "The recording has only the half-planes that bind or are violated and those against what could be met within a "
-        "time step: simulate --record-all keeps the others too, and explain of the scenario computes them.");
+        "time step: simulate --decisions all keeps the others too, and explain of the scenario computes them.");
   return explained;
+}
+
+/// How a run without recorded decisions was made.
+struct CrowdMade {
+  std::string scenario;  ///< its file
+  formation::CrowdRunOptions options;
+  std::optional<formation::Liveness> liveness;  ///< instead of the scenario's
+};
+
+Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, Scenario scenario) {
+  scenario.liveness = made.liveness.value_or(scenario.liveness);
+  const std::size_t robot = find_robot(scenario, flags.robot);
+  const TerminateOnSignal terminate_on_signal;
+  const std::string how = method_words(datasets::crowd_run_info(scenario, made.options, {}));
+  CrowdDecision found = crowd_decision(scenario, made.options, how, robot, flags.time);
+  if (!found.decision)
+    throw UsageError("--time", fmt::format("{}", flags.time), fmt::format("below {} s, when the run ends", found.end));
+  return {std::move(*found.decision), std::move(found.remarks)};
+}
+
+/// What the metrics.json beside a recording without decisions says. Throws DataError (E_FORMAT_UNKNOWN) where there is
+/// none, or the scenario was changed since.
+CrowdMade made_as(const std::filesystem::path& recording) {
+  using Json = nlohmann::json;
+  std::ifstream file(recording.parent_path() / "metrics.json");
+  const Json metrics = Json::parse(file, nullptr, false);
+  const Json::json_pointer first("/provenance/inputs/0"), command("/provenance/command_line");
+  std::error_code unknown;
+  CrowdMade made;
+  if (recording.filename() == "recording.evr" && metrics.is_object() && metrics.contains(first))
+    made.scenario = metrics[first].value("path", "");
+  if (!std::filesystem::is_regular_file(made.scenario, unknown) ||
+      datasets::sha256_of_file(made.scenario) != metrics[first].value("sha256", ""))
+    throw datasets::DataError(datasets::DataCode::format_unknown, recording.string(), "",
+                              "the recording of a crowd (.evr), without decisions, and its scenario is not where "
+                              "metrics.json says, or was changed",
+                              "explain SCENARIO, which computes the decision again, or a run with --decisions binding; "
+                              "audit, convert, draw and view read recordings of crowds");
+  made.options.guidance = formation::Guidance::none;
+  parse(metrics.value("guidance", "none"), *made.options.guidance);
+  made.liveness = formation::Liveness::off;
+  parse(metrics.value("liveness", "off"), *made.liveness);
+  if (metrics.value(command, Json()).dump().find("double") != std::string::npos)
+    made.options.precision = formation::CrowdPrecision::double_lines;
+  return made;
 }
 
 /// Of a recording, or of a scenario that is run until then.
@@ -187,13 +240,19 @@ Explained explained_by(const ExplainFlags& flags) {
   const auto read = recording ? std::vector{*recording} : datasets::files_read_with(flags.scenario, "scenario");
   check_figure_name("--out", flags.out, read);
   check_figure_name("--map", flags.map, read);
+  if (recording) note_recorded(flags.simulation);
+  if (recording && recording->extension() != ".evr") return decision_in(flags, *recording);
   if (recording) {
-    note_recorded(flags.simulation);
-    return decision_in(flags, *recording);
+    const CrowdMade made = made_as(*recording);
+    return decided_in_crowd(flags, made, read_scenario(made.scenario).scenario);
   }
   const Scenario scenario = read_scenario(flags.scenario).scenario;
+  const Way way = way_of(flags.decisions, flags.simulation, flags.scenario, scenario, "", false);
   note_unused(flags.simulation, scenario);
-  return decide(flags, scenario);
+  if (!way.is_crowd) return decide(flags, scenario);
+  CrowdMade made{flags.scenario, {}, simulation_options(flags.simulation).liveness};
+  made.options.guidance = simulation_options(flags.simulation).guidance;
+  return decided_in_crowd(flags, made, scenario);
 }
 
 // --- The route from there ---
@@ -317,7 +376,9 @@ ExitCode explain(const ExplainFlags& flags) {
 }
 
 void declare_explain(CLI::App& app, ExplainFlags& flags) {
-  app.add_option("scenario", flags.scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
+  app.add_option("scenario", flags.scenario,
+                 "JSON file, or - for stdin; or the recording of a run, or its folder. Of many robots the decision "
+                 "is computed again as simulate makes the run")
       ->required();
   app.add_option("--time,-t", flags.time, "Time of the decision, s")->required();
   app.add_option("--robot,-r", flags.robot, "The robot: its id, or its index from 0")->required();
@@ -326,6 +387,7 @@ void declare_explain(CLI::App& app, ExplainFlags& flags) {
                  "The same for a map: the robot's route, where it heads for, and what separates a goal out of reach");
   app.add_flag("--json", flags.json, "The decision, its half-planes and the remarks as JSON");
   declare_simulation_flags(app, flags.simulation);
+  declare_decisions(app, flags.decisions);
 }
 
 }  // namespace
@@ -333,7 +395,7 @@ void declare_explain(CLI::App& app, ExplainFlags& flags) {
 Verb explain_verb() {
   return {"explain", "Draw one robot's velocity space at one moment and explain which constraints are binding",
           "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n"
-          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
+          "  exactvo simulate datasets/data/paper/A7.json --decisions all --out out/A7\n"
           "  exactvo explain out/A7 --time 3 --robot R1\n"
           "  exactvo explain mine.json --time 2 --robot R1 --map out/route.svg\n",
           with_flags(declare_explain, explain)};

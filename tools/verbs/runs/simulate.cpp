@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo simulate: one scenario, one method, its metrics, recording and figures.
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "exactvo/datasets/ranks.h"
-#include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/crowd_metrics.h"
 #include "exactvo/formation/stability.h"
-#include "exactvo/geometry/counted.h"
+#include "explorer/packed_run.h"
 #include "explorer/page.h"
-#include "support/escape.h"
 #include "support/files.h"
 #include "support/rank_watch.h"
 #include "support/run.h"
+#include "support/run_summary.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
+#include "support/way.h"
 #include "verb.h"
 #include "verbs/runs/simulate_crowd.h"
 
@@ -27,106 +30,28 @@ namespace exactvo::tools {
 
 namespace {
 
+/// Whether `--record` means stdout: "-", or another name of it. Results go to stderr then.
+bool is_stdout(const std::string& path) {
+  struct stat there {};
+  struct stat standard {};
+  if (path == "-") return true;
+  return ::stat(path.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+         there.st_dev == standard.st_dev && there.st_ino == standard.st_ino;
+}
+
 struct SimulateFlags {
   std::string scenario;
   SimulationFlags simulation;
+  DecisionFlags decisions;
   CrowdFlags crowd;
+  std::string record;
   std::string out;
-  bool record_all = false;
   bool json = false;
   bool no_figures = false;
   bool fail_on_collision = false;
   bool fail_unless_arrived = false;
   bool force = false;
 };
-
-std::string or_dash(const std::optional<double>& value, const char* unit) {
-  return value ? fmt::format("{:.4g} {}", *value, unit) : "-";
-}
-
-/// A robot of a formation has no goal to arrive at.
-std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
-  std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
-  if (!has_goal) arrival.clear();
-  const std::string detour = robot.detour ? fmt::format(" ({:.3g} m more than {})", *robot.detour,
-                                                        has_goal ? "straight to its goals" : "its slot's")
-                                          : "";
-  const std::string slot =
-      robot.largest_slot_error ? fmt::format(", up to {:.3g} m from its slot", *robot.largest_slot_error) : "";
-  return fmt::format("  {:<12} {}path length {:.4g} m{}{}, minimum clearance to obstacles {}{}\n", shown(robot.id),
-                     arrival, robot.path_length, detour, slot, or_dash(robot.min_obstacle_clearance, "m"),
-                     formation::touched(robot.min_obstacle_clearance) ? ": overlapped an obstacle" : "");
-}
-
-/// The first of them; metrics.json has all.
-std::string collision_lines(const std::vector<formation::Collision>& all) {
-  constexpr std::size_t kMost = 10;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(all.size(), kMost); ++k) {
-    const formation::Collision& c = all[k];
-    text += fmt::format("  collision    {} with {} '{}' from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
-                        shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at);
-  }
-  if (all.size() > kMost) text += fmt::format("  collision    and {} more: see metrics.json\n", all.size() - kMost);
-  return text;
-}
-
-std::string formation_lines(const formation::Metrics& m) {
-  const formation::FormationCourse& course = *m.formation_course;
-  const std::string largest = course.largest_error > 0.0
-                                  ? fmt::format("largest error {:.3g} m, of {} at {:.4g} s", course.largest_error,
-                                                shown(course.largest_error_of), course.largest_error_at)
-                                  : std::string("no error at any time");
-  return fmt::format(
-      "  formation    position error {}, velocity error {} at the end; leader at the end of its path: {}\n"
-      "  formation    {}; first formed at {}, holds since {}\n"
-      "  formation    formed for {:.3g} % of the time, root mean square of slot errors {:.3g} m\n",
-      or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
-      or_dash(m.leader_arrival_time, "s"), largest, or_dash(course.first_formed, "s"),
-      or_dash(course.formed_since, "s"), 100.0 * course.share_formed, course.rms_error);
-}
-
-std::string course_words(const formation::LyapunovCourse& c) {
-  const std::string rise =
-      c.largest_rise > 0.0 ? fmt::format("rises by up to {:.3g} per step", c.largest_rise) : std::string("never rises");
-  return fmt::format("{:.4g} -> {:.4g}, minimum {:.4g}, {}", c.first, c.last, c.least, rise);
-}
-
-std::string lyapunov_lines(const formation::LyapunovSummary& s) {
-  return fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(s.paper), course_words(s.sound));
-}
-
-/// Where it was not kept.
-std::string margin_line(const formation::Metrics& m) {
-  if (!m.robot_margin || m.robot_margin->pair_rows == 0) return "";
-  const formation::RobotMarginCourse& margin = *m.robot_margin;
-  return fmt::format("  margin       {} of robots nearer to each other than margins.robot, {:.4g} m ({})\n",
-                     geometry::counted(margin.pair_rows, "pair-row"), margin.asked,
-                     geometry::counted(margin.robots, "robot"));
-}
-
-std::string summary(const FinishedRun& run) {
-  const formation::Metrics& m = run.metrics;
-  std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
-  if (run.file.info.guidance) text += fmt::format(", guidance {}", *run.file.info.guidance);
-  if (run.file.info.liveness) text += fmt::format(", liveness {}", *run.file.info.liveness);
-  if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
-  text += ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
-  for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
-  if (run.file.scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
-  for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
-  return text + fmt::format(
-                    "  clearance    to obstacles {}, between robots {}\n{}"
-                    "  jitter       {:.4g} m/s^2, {}, {}\n"
-                    "  velocity     total variation {:.4g} m/s, peak acceleration {:.4g} m/s^2\n"
-                    "  half-planes  {} not certified, relaxed in {}\n"
-                    "  steps        {} in {:.3g} s of wall time\n",
-                    or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), margin_line(m),
-                    m.jitter, geometry::counted(m.heading_reversals, "heading reversal"),
-                    geometry::counted(m.active_set_switches, "active-set switch", "active-set switches"),
-                    m.velocity_variation, m.peak_acceleration, m.uncertified_half_planes,
-                    geometry::counted(m.relaxed_steps, "decision"), m.steps, m.wall_time);
-}
 
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) message("warning: " + warning);
@@ -175,29 +100,54 @@ FinishedRun run_with_progress(const SimulateFlags& flags, const datasets::Loaded
   return run(scenario, options, provenance, output);
 }
 
-std::string results(const SimulateFlags& flags, const FinishedRun& finished) {
-  return flags.json ? finished.metrics_json() : summary(finished);
+std::string results(const SimulateFlags& flags, const FinishedRun& run) {
+  return flags.json ? run.metrics_json() : run_summary(run.file.info, run.file.scenario, run.metrics);
+}
+
+/// Of an earlier run that was made the other way, or whose table was small.
+void remove_other_recordings(const std::filesystem::path& target, const std::filesystem::path& staged) {
+  std::error_code ignored;
+  for (const char* name : {"recording.jsonl", "recording.evr", "trajectory.csv", "lyapunov.csv"})
+    if (!std::filesystem::exists(staged / name)) std::filesystem::remove(target / name, ignored);
+}
+
+void write_page(const FinishedRun& run, const std::string& packed, const std::filesystem::path& folder) {
+  ProgressLine line(0.0, "");
+  line.say("making explorer.html of " + run.file.scenario.name);
+  const std::string title = in_words(run.file.info);
+  write_text(folder / kPageName, explorer_page({{page_key(title), title, "", packed}}));
 }
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
+void publish(const SimulateFlags& flags, const FinishedRun& finished, StagedFolder& folder) {
+  if (interrupted()) throw Interrupted();
+  print(results(flags, finished));
+  const std::optional<datasets::RunInfo> replaced = run_in(flags.out);
+  if (flags.no_figures) remove_figures(flags.out);
+  remove_other_recordings(flags.out, folder.path());
+  folder.publish("metrics.json");
+  message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
+}
+
+/// Before the work, not after.
+void check_out(const SimulateFlags& flags, const datasets::RunInfo& info) {
+  if (flags.out.empty()) return;
+  check_output_folder(flags.out);
+  if (!flags.force) check_same_run(flags.out, info);
+}
+
+// --- With recorded decisions ---
+
 FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedScenario& read,
                             const formation::SimulationOptions& options) {
-  const std::optional<datasets::RunInfo> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
     const TerminateOnSignal terminate_on_signal;
     draw_figures_of(finished.file, folder.path() / "figures");
-    ProgressLine line(0.0, "");
-    line.say("making explorer.html of " + read.scenario.name);
-    const std::string title = in_words(datasets::run_info(read.scenario, options, {}));
-    write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
+    write_page(finished, finished.packed, folder.path());
   }
-  if (interrupted()) throw Interrupted();
-  print(results(flags, finished));
-  if (flags.no_figures) remove_figures(flags.out);
-  folder.publish("metrics.json");
-  message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
+  publish(flags, finished, folder);
   return finished;
 }
 
@@ -205,60 +155,126 @@ FinishedRun run_and_print(const SimulateFlags& flags, const datasets::LoadedScen
                           const formation::SimulationOptions& options,
                           std::shared_ptr<datasets::AtomicFile> recording) {
   FinishedRun finished = run_with_progress(flags, read, options, {}, std::move(recording));
-  is_stdout(flags.crowd.record) ? print_to_stderr(results(flags, finished)) : print(results(flags, finished));
+  is_stdout(flags.record) ? print_to_stderr(results(flags, finished)) : print(results(flags, finished));
   return finished;
 }
 
 /// What `--record` names, before anything can go wrong: who reads it waits for its end, whatever it is.
 std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) {
-  if (path.empty()) return nullptr;
   const bool has_other_end = is_stdout(path) || path.rfind("/dev/", 0) == 0;  // what a shell has made
   if (!has_other_end) message("begins once " + path + " is read");
   return std::make_shared<datasets::AtomicFile>(is_stdout(path) ? "-" : path, datasets::MissingFolder::is_made,
                                                 datasets::Unfinished::goes, datasets::Pipe::is_written);
 }
 
-/// From so many robots on, a step of two grids of them that cross takes more than 50 ms of a processor.
-constexpr std::size_t kManyRobots = 500;
-
-/// The engine is never chosen for the user, who may not know of the other one.
-void note_crowd(const datasets::LoadedScenario& read) {
+FinishedRun simulate_decisions(const SimulateFlags& flags, const datasets::LoadedScenario& read,
+                               const formation::SimulationOptions& options,
+                               std::shared_ptr<datasets::AtomicFile> recording) {
+  refuse_crowd_flags(flags.crowd);
+  if (!flags.record.empty() && !recording)
+    throw lacking("--record " + flags.record, "--decisions none",
+                  "a recording of decisions goes to - or a pipe, or to disk with --out DIR");
   const formation::Scenario& scenario = read.scenario;
-  const bool wants_plans = read.names_liveness && scenario.liveness != formation::Liveness::off;
-  if (scenario.robots.size() < kManyRobots || wants_plans || !crowd_problems(scenario).empty()) return;
-  message(
-      fmt::format("note: {} robots: --engine crowd can be more than a hundred times as fast, with method orca and "
-                  "without joint plans (docs/guide/crowd-recordings.md)",
-                  scenario.robots.size()));
+  note_unused(flags.simulation, scenario);
+  note_liveness(flags.simulation, scenario, options);
+  check_out(flags, datasets::run_info(scenario, options, {}));
+  announce(scenario, options);
+  return flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
+                           : run_into_folder(flags, read, options);
+}
+
+// --- Without ---
+
+/// Into the folder, whose recording stands beside it meanwhile where a run must be able to go on.
+std::optional<FinishedRun> crowd_into_folder(const SimulateFlags& flags, CrowdTask task) {
+  const bool is_first = !task.ranks || task.ranks->rank() == 0, has_snapshots = flags.crowd.snapshot_every > 0;
+  std::optional<StagedFolder> folder;
+  if (is_first) folder.emplace(flags.out);
+  std::filesystem::path beside(flags.out);
+  if (!beside.has_filename()) beside = beside.parent_path();
+  beside += ".evr";
+  if (has_snapshots || !is_first)
+    task.record = beside;
+  else
+    task.record = folder->path() / "recording.evr";
+  std::optional<FinishedRun> finished = run_on_crowd(task);
+  if (!finished) return std::nullopt;
+  const std::filesystem::path recording = folder->path() / "recording.evr";
+  if (has_snapshots) std::filesystem::rename(task.record, recording);
+  const std::string metrics = finished->metrics_json();
+  write_text(folder->path() / "metrics.json", metrics);
+  write_crowd_table(*finished, recording, folder->path());
+  if (!flags.no_figures) {
+    const TerminateOnSignal terminate_on_signal;
+    draw_crowd_figures(recording, folder->path() / "figures");
+    write_page(*finished, packed_crowd(recording, {}, metrics).packed, folder->path());
+  }
+  publish(flags, *finished, *folder);
+  return finished;
+}
+
+/// Nothing in ranks other than the first.
+std::optional<FinishedRun> simulate_crowd(const SimulateFlags& flags, const datasets::LoadedScenario& read,
+                                          formation::Ranks* ranks) {
+  if (flags.crowd.snapshot_every > 0 && flags.record.empty() && flags.out.empty())
+    throw lacking("--snapshot-every", "--out DIR or --record FILE.evr", "a snapshot is of the run that is recorded");
+  if (flags.crowd.resume && flags.crowd.snapshot_every == 0)
+    throw lacking("--resume", "--snapshot-every N", "give the options of the run that was interrupted");
+  if (!flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
+    throw UsageError("--record", flags.record, "a name that ends in .evr, of a recording without decisions");
+  if (flags.fail_on_collision && read.scenario.robots.size() > formation::kMostClearances)
+    throw conflict("--fail-on-collision", fmt::format("a run of more than {} robots", formation::kMostClearances),
+                   "their clearances are not measured; audit judges every motion of the recording, with its status");
+  note_unused(flags.simulation, read.scenario);
+  const CrowdTask task{flags.crowd, flags.simulation, flags.scenario, read, flags.record, ranks};
+  check_out(flags, crowd_info(task));
+  if (!flags.out.empty()) return crowd_into_folder(flags, task);
+  std::optional<FinishedRun> finished = run_on_crowd(task);
+  if (!finished) return std::nullopt;
+  if (!flags.record.empty()) message("wrote " + flags.record);
+  print(results(flags, *finished));
+  return finished;
+}
+
+// --- Both ---
+
+/// Whether the recording goes to somebody who reads it while it is made.
+bool is_streamed(const std::string& record) {
+  std::error_code unknown;
+  return !record.empty() && (is_stdout(record) || std::filesystem::is_fifo(record, unknown));
+}
+
+void check_record(const SimulateFlags& flags) {
+  refuse_both(!flags.record.empty() && !flags.out.empty(), "--record", "--out",
+              "--out DIR already writes the recording into the folder");
+  if (!flags.record.empty() && is_stdout(flags.record) && ::isatty(STDOUT_FILENO) == 1)
+    throw UsageError("--record", flags.record, "a reader of stdout, which is a terminal: --record - | exactvo audit -");
+}
+
+ExitCode status_of(const SimulateFlags& flags, const formation::Metrics& m) {
+  const bool overlapped = !m.collisions.empty() || (m.crowd && m.crowd->overlapping > 0);
+  const bool failed = (flags.fail_on_collision && overlapped) || (flags.fail_unless_arrived && !m.all_arrived);
+  return failed ? ExitCode::negative : ExitCode::success;
 }
 
 /// `ranks`: null where this process is alone.
 ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
-  const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
-  if (ranks && !is_crowd)
-    throw UsageError("--engine", flags.crowd.engine, "crowd, the only engine that runs over ranks of MPI");
+  check_record(flags);
   if (ranks && flags.scenario == "-")
     throw UsageError("scenario", "-", "a file: every rank reads it, and only the first has a stdin");
   formation::SimulationOptions options = simulation_options(flags.simulation);
-  options.record_all = flags.record_all;
+  const std::string needed = is_streamed(flags.record) ? "--record " + flags.record : std::string();
+  std::shared_ptr<datasets::AtomicFile> recording;
+  if (!needed.empty() && flags.decisions.recorded != "none" && !ranks) recording = opened_recording(flags.record);
+  datasets::LoadedScenario read = read_scenario(flags.scenario);
+  const Way way = way_of(flags.decisions, flags.simulation, flags.scenario, read.scenario, needed, ranks != nullptr);
+  if (!way.words.empty()) message(way.words);
+  options.record_all = way.records_all;
   options.threads = flags.crowd.threads;
-  std::shared_ptr<datasets::AtomicFile> recording = is_crowd ? nullptr : opened_recording(flags.crowd.record);
-  const datasets::LoadedScenario read = read_scenario(flags.scenario);
-  if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
-  const formation::Scenario& scenario = read.scenario;
-  note_unused(flags.simulation, scenario);
-  note_liveness(flags.simulation, scenario, options);
-  note_crowd(read);
-  if (!flags.out.empty()) {
-    check_output_folder(flags.out);
-    if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
-  }
-  announce(scenario, options);
-  const FinishedRun finished = flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
-                                                 : run_into_folder(flags, read, options);
-  const bool failed = (flags.fail_on_collision && !finished.metrics.collisions.empty()) ||
-                      (flags.fail_unless_arrived && !finished.metrics.all_arrived);
-  return failed ? ExitCode::negative : ExitCode::success;
+  if (!way.is_crowd) return status_of(flags, simulate_decisions(flags, read, options, recording).metrics);
+  read.scenario.liveness = options.liveness.value_or(read.scenario.liveness);
+  const std::optional<FinishedRun> finished = simulate_crowd(flags, read, ranks);
+  return finished ? status_of(flags, finished->metrics) : ExitCode::success;
 }
 
 /// Runs `work` in every rank. What the first that fails throws is thrown there; the others end quietly, with success:
@@ -280,7 +296,7 @@ ExitCode over_ranks(formation::Ranks& ranks, const std::function<ExitCode()>& wo
 
 /// In this process, or over the ranks that mpirun has started.
 ExitCode simulate_anywhere(const SimulateFlags& flags) {
-  const bool may_have_ranks = flags.crowd.engine == "crowd" || datasets::ranks_started() > 1;
+  const bool may_have_ranks = flags.decisions.recorded == "none" || datasets::ranks_started() > 1;
   const std::unique_ptr<formation::Ranks> ranks = may_have_ranks ? datasets::join_ranks() : nullptr;
   if (!ranks) return simulate(flags, nullptr);
   return over_ranks(*ranks, [&] { return simulate(flags, ranks.get()); });
@@ -289,21 +305,23 @@ ExitCode simulate_anywhere(const SimulateFlags& flags) {
 void declare_simulate(CLI::App& app, SimulateFlags& flags) {
   app.add_option("scenario", flags.scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags.simulation);
+  declare_decisions(app, flags.decisions);
   declare_out(app, flags.out,
-              "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
-              "explorer.html; "
-              "whole or not at all");
-  app.add_flag(
-      "--record-all", flags.record_all,
-      "Record every half-plane, not only the active ones and those of what the robot could reach within a time step");
+              "Folder for the recording (recording.jsonl, without decisions recording.evr), metrics.json, "
+              "trajectory.csv, lyapunov.csv (formations), figures/ and explorer.html; whole or not at all");
+  app.add_option("--record", flags.record,
+                 "The recording alone, without --out: with --decisions none FILE.evr; else a pipe that takes it as the "
+                 "run is made, or - for stdout (results go to stderr then)");
   app.add_flag("--json", flags.json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
-  app.add_flag("--fail-on-collision", flags.fail_on_collision, "Exit status 1 if a robot overlaps anything");
+  app.add_flag("--fail-on-collision", flags.fail_on_collision,
+               "Exit status 1 if a robot overlaps anything; without decisions of at most 2000 robots");
   app.add_flag("--fail-unless-arrived", flags.fail_unless_arrived,
                "Exit status 1 if a robot did not arrive: at its last goal, or, in a formation, at its slot with the "
                "leader at its end");
   app.add_flag("--force", flags.force,
-               "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
+               "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller, or one "
+               "with recorded decisions a run without");
   declare_crowd_flags(app, flags.crowd);
 }
 
@@ -315,10 +333,10 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/office/office.json --out out/office\n"
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --ablation 'no margins' --controller-option smoothing=on\n"
-          "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
+          "  exactvo simulate crowd.json --decisions none --every 10 --out out/crowd\n"
           "  exactvo simulate large.json --record - | exactvo audit -\n"
-          "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"
-          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
+          "  mpirun -n 4 exactvo simulate crowd.json --out out/crowd\n"
+          "  exactvo simulate datasets/data/paper/A7.json --decisions all --out out/A7 && exactvo audit out/A7\n",
           with_flags(declare_simulate, simulate_anywhere)};
 }
 

@@ -2,43 +2,57 @@
 #pragma once
 
 /// \file
-/// simulate --engine crowd: a scenario on the certified crowd (formation/crowd_run.h), recorded as .evr.
+/// simulate without recorded decisions: a scenario on the certified crowd (formation/crowd_run.h), recorded as .evr,
+/// with snapshots, alone or over ranks.
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/ranks.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
-#include "verb.h"
 
 namespace exactvo::tools {
 
 struct CrowdFlags {
-  std::string engine = "standard";
-  std::string record;
   std::uint32_t every = 1;
   std::size_t snapshot_every = 0;
   bool resume = false;
   int threads = 1;
   std::string precision = "float";
-  CLI::Option* method = nullptr;                    ///< of the verb
-  std::vector<CLI::Option*> of_crowd, of_standard;  ///< options that the other engine does not have
+  std::vector<CLI::Option*> without_decisions;  ///< what recorded decisions exclude
 };
 
-/// Whether `--record` means stdout: "-", or another name of it. Results go to stderr then.
-bool is_stdout(const std::string& path);
-
-/// After `declare_simulation_flags`.
+/// After `declare_decisions`.
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags);
 
-/// Throws UsageError where options of one engine are given for the other. `out`: of --out.
-bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out);
+/// Throws UsageError where one of the options that recorded decisions exclude was given, with why.
+void refuse_crowd_flags(const CrowdFlags& flags);
 
-/// `ranks`: who runs it together with this process, or null. Only the first prints and writes.
-ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
-                        const datasets::LoadedScenario& read, bool json, formation::Ranks* ranks);
+struct CrowdTask {
+  const CrowdFlags& flags;
+  const SimulationFlags& simulation;
+  std::string file;                      ///< of the scenario
+  const datasets::LoadedScenario& read;  ///< with the liveness of the command line
+  std::filesystem::path record = {};     ///< FILE.evr; empty: none. Snapshots stand beside it
+  formation::Ranks* ranks = nullptr;     ///< that run it together with this process
+};
+
+/// Runs it. Nothing in ranks other than the first. Throws DataError, UsageError, Interrupted.
+std::optional<FinishedRun> run_on_crowd(const CrowdTask& task);
+
+/// What was run, before it is.
+datasets::RunInfo crowd_info(const CrowdTask& task);
+
+/// The figures and the table of a recording of a crowd, into a folder: figures/, trajectory.csv where it has at most
+/// `kMostTableLines`.
+void draw_crowd_figures(const std::filesystem::path& recording, const std::filesystem::path& folder);
+inline constexpr std::size_t kMostTableLines = 1'000'000;
+void write_crowd_table(const FinishedRun& run, const std::filesystem::path& recording,
+                       const std::filesystem::path& folder);
 
 }  // namespace exactvo::tools

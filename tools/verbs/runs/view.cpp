@@ -17,11 +17,13 @@
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "support/files.h"
 #include "support/run.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/runs/simulate_crowd.h"
 
 namespace exactvo::tools {
 
@@ -90,7 +92,7 @@ std::vector<MadeRun> guided_scenes(const PackedRunLimits& limits) {
 
 /// Those that the run itself wrote; empty where it did not.
 std::string metrics_beside(const fs::path& recording) {
-  if (recording.filename() != "recording.jsonl") return "";
+  if (recording.filename() != "recording.jsonl" && recording.filename() != "recording.evr") return "";
   std::ifstream in(recording.parent_path() / "metrics.json");
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -129,19 +131,32 @@ MadeRun recorded(const PageFlags& flags, const fs::path& path) {
 }
 
 /// Nothing computes with it: it has neither goals nor decisions.
-MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
-  const PackedCrowd crowd = packed_crowd(path, flags.limits);
+MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path, const std::string& metrics) {
+  const PackedCrowd crowd = packed_crowd(path, flags.limits, metrics);
   if (crowd.is_cut_off) message("warning: " + path.string() + ": the recording was cut off after its last whole row");
-  const std::string title = crowd.scenario + ", crowd";
+  const std::string title = crowd.scenario + ", decisions none";
   return {{page_key(title), title, "", crowd.packed}, std::nullopt};
 }
 
-/// With every half-plane.
+/// Recorded for the page alone.
+MadeRun simulated_crowd(const PageFlags& flags, const std::string& path, datasets::LoadedScenario read) {
+  read.scenario.liveness = simulation_options(flags.simulation).liveness.value_or(read.scenario.liveness);
+  const StagedFolder folder(fs::temp_directory_path() / "exactvo-view");
+  const fs::path recording = folder.path() / "recording.evr";
+  const CrowdFlags crowd;
+  const std::optional<FinishedRun> run = run_on_crowd({crowd, flags.simulation, path, read, recording});
+  return recorded_crowd(flags, recording, run->metrics_json());
+}
+
+/// With every half-plane, or without decisions.
 MadeRun simulated(const PageFlags& flags, const std::string& path) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = true;
   const datasets::LoadedScenario read = read_scenario(path);
+  const Way way = way_of(flags.decisions, flags.simulation, path, read.scenario, "", false);
+  if (!way.words.empty()) message(way.words);
   note_unused(flags.simulation, read.scenario);
+  if (way.is_crowd) return simulated_crowd(flags, path, read);
   note_liveness(flags.simulation, read.scenario, options);
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(read.scenario.time_limit, "s simulated");
@@ -205,6 +220,7 @@ void declare_page_flags(CLI::App& app, PageFlags& flags, int most, const std::st
       ->capture_default_str()
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28));
   declare_simulation_flags(app, flags.simulation);
+  declare_decisions(app, flags.decisions);
 }
 
 std::vector<MadeRun> page_runs(const PageFlags& flags) {
@@ -213,10 +229,10 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
   bool any_simulated = false;
   std::vector<MadeRun> runs;
   for (const std::string& path : flags.runs) {
-    if (fs::path(path).extension() == ".evr") {
-      runs.push_back(recorded_crowd(flags, path));
-    } else if (const auto recording = recording_at(path)) {
-      runs.push_back(recorded(flags, *recording));
+    if (const auto recording = recording_at(path)) {
+      const bool is_crowd = recording->extension() == ".evr";
+      runs.push_back(is_crowd ? recorded_crowd(flags, *recording, metrics_beside(*recording))
+                              : recorded(flags, *recording));
     } else {
       any_simulated = true;
       runs.push_back(simulated(flags, path));
@@ -234,7 +250,7 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
 Verb view_verb() {
   return {"view", "Make a page to explore runs in a browser: the world, velocity space, the proofs",
           "  exactvo view --out start.html\n"
-          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
+          "  exactvo simulate datasets/data/paper/A7.json --decisions all --out out/A7\n"
           "  exactvo view out/A7 --out a7.html\n"
           "  exactvo view datasets/data/paper/A1.json --method orca --out a1.html\n",
           with_flags(declare_view, view)};

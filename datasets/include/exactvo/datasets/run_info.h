@@ -8,6 +8,7 @@
 #include <string>
 
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::datasets {
@@ -21,10 +22,14 @@ struct RunInfo {
   Provenance provenance;                               ///< program, libraries, inputs
   std::optional<std::string> guidance = std::nullopt;  ///< "route"; none where robots go without
   std::optional<std::string> liveness = std::nullopt;  ///< "bias"; none where nothing is done against waiting
+  std::string decisions = "binding";  ///< what is recorded of half-planes: "none", "binding" ones, or "all"
 };
 
 /// Of a run of `scenario`: what of `options` it depends on.
 RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                  Provenance provenance);
+/// The same of a run on a crowd.
+RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::CrowdRunOptions& options,
+                       Provenance provenance);
 
 }  // namespace exactvo::datasets

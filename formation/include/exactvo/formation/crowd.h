@@ -232,6 +232,9 @@ struct CrowdExplanation {
   bool kept = false;  ///< its velocity will provably satisfy all its half-planes
   /// More robots are in reach of the step than its kind's neighbours: all of them are listed, (5)
   bool widened = false;
+  /// It drives straight to a place that it has reserved: half-planes against other robots do not turn it.
+  bool reserved = false;
+  std::size_t ways = 0;  ///< half-planes, not listed, that keep it out of the ways of others to their reserved places
   std::vector<Neighbour> neighbours;  ///< nearest first
   std::vector<Edge> edges;            ///< nearest first, without those that an earlier half-plane excludes
   std::vector<Body> bodies;           ///< those at rest first, each kind in the order in which they were added

@@ -10,6 +10,7 @@
 /// (`kContactDepth`), is 0: contact. Where a robot overlaps an obstacle they are at most 0, and not its depth.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -81,9 +82,27 @@ struct RobotMarginCourse {
   std::size_t robots = 0;     ///< robots of such pairs
 };
 
+/// What is counted over all decisions of a run whose recording has none (crowd_metrics.h), and how it ended.
+struct CrowdMetrics {
+  std::size_t cut_short = 0;       ///< that did not get their wish, since another robot would be met in the step
+  std::size_t reserved = 0;        ///< of robots that drive to a reserved place, or stand there
+  std::size_t stopped = 0;         ///< to stay, for lack of anything else that meets no edge
+  std::size_t overlapping = 0;     ///< of robots that overlapped another: 0 after a legal start
+  std::size_t touching = 0;        ///< of robots that touched another
+  std::size_t widened = 0;         ///< with more than 10 neighbours
+  std::size_t against_robots = 0;  ///< half-planes
+  std::size_t against_edges = 0;   ///< half-planes against edges of obstacles
+  std::size_t against_moving = 0;  ///< half-planes against moving obstacles
+  bool stands_still = false;       ///< it ended early: no step changes anything any more (exact)
+  std::uint64_t digest = 0;        ///< Crowd::digest at the end
+};
+
 /// What a run came to.
 struct Metrics {
-  bool all_arrived = false;                        ///< every robot's `arrived`
+  std::size_t arrived = 0;   ///< robots that are at their goals at the end
+  bool all_arrived = false;  ///< every robot's `arrived`
+  /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
+  std::optional<double> median_arrival_time;
   std::optional<double> last_arrival_time;         ///< s
   std::optional<double> min_obstacle_clearance;    ///< m, swept; 0 in contact
   std::optional<double> min_robot_clearance;       ///< m, swept; 0 in contact
@@ -98,18 +117,21 @@ struct Metrics {
   std::size_t active_set_switches = 0;  ///< decisions whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
   std::size_t uncertified_half_planes = 0;          ///< half-planes of all decisions that could not be certified
+  std::optional<CrowdMetrics> crowd;                ///< of a run whose decisions are not kept; else none
   std::size_t steps = 0;                            ///< rows but the last
+  double time = 0.0;                                ///< s, simulated
   double wall_time = 0.0;                           ///< s
   std::vector<RobotMetrics> robots;                 ///< in the order of the scenario
   std::optional<LyapunovSummary> lyapunov;          ///< of a formation
   std::optional<FormationCourse> formation_course;  ///< of a formation
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
-  std::vector<std::string> warnings;   ///< the recording's
-  std::optional<PlanMetrics> plans;    ///< where robots may go by plan
-  std::optional<RoutesCourse> routes;  ///< where robots go along routes
-  std::vector<std::string> deadlock;   ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
-  std::vector<std::string> stuck;      ///< a sentence for each robot that stopped elsewhere (stuck.h)
+  std::vector<std::string> warnings;      ///< the recording's
+  std::vector<std::string> not_measured;  ///< what was not, and why, in words
+  std::optional<PlanMetrics> plans;       ///< where robots may go by plan
+  std::optional<RoutesCourse> routes;     ///< where robots go along routes
+  std::vector<std::string> deadlock;      ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
+  std::vector<std::string> stuck;         ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 
 /// The metrics of a recorded run. REQUIRES: a recording of this scenario, with a row.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Measurements of a run on a crowd (crowd_run.h), by the rules of metrics.h, from the places and velocities of its
+/// rows. What needs half-planes is not measured: `active_set_switches` and `uncertified_half_planes` are 0 and mean
+/// nothing.
+///
+/// See also: metrics.h measures runs whose decisions are kept.
+
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/metrics.h"
+
+namespace exactvo::formation {
+
+/// Clearances are measured of at most so many robots: with more they would take longer than the run.
+inline constexpr std::size_t kMostClearances = 2000;
+
+/// Takes the states of a run as it is made, in memory that does not grow with the run.
+class CrowdEvaluator : public CrowdSink {
+ public:
+  /// Hands everything on to `next`, if there is one. `scenario` and `next` must outlive it.
+  explicit CrowdEvaluator(const Scenario& scenario, CrowdSink* next = nullptr);
+  ~CrowdEvaluator() override;
+  void begin(const Crowd& crowd) override;
+  void add_step(const Crowd& crowd, std::size_t steps) override;
+  void save(std::ostream& to) override;
+  /// Throws CrowdError (bad_snapshot).
+  void restore(const Crowd& crowd, std::istream& from) override;
+
+  /// After the run. Clearances and collisions are certified as those of metrics.h, and null of more than
+  /// `kMostClearances` robots.
+  Metrics finish(const CrowdRunReport& report, std::vector<std::string> warnings) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace exactvo::formation

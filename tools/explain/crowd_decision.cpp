@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explain/crowd_decision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "support/terminal.h"
+
+namespace exactvo::tools {
+
+using formation::ConstraintSource;
+using formation::Crowd;
+using formation::CrowdExplanation;
+using formation::RobotStep;
+using formation::Scenario;
+
+namespace {
+
+/// m/s: a velocity of the lattice this near to a line counts as on it.
+constexpr double kOnLatticeLine = 1e-4;
+
+/// The obstacle that has these ends among its corners, if one has.
+std::vector<std::size_t> owner_of(const geometry::Segment& edge, const Scenario& scenario) {
+  for (std::size_t o = 0; o < scenario.obstacles.size(); ++o) {
+    const std::vector<Vec2> corners = geometry::vertices_of(scenario.obstacles[o].shape);
+    const auto has = [&](Vec2 p) { return std::find(corners.begin(), corners.end(), p) != corners.end(); };
+    if (has(edge.a) && has(edge.b)) return {o};
+  }
+  return {};
+}
+
+/// Takes one decision, right before it is carried out.
+class AtStep : public formation::CrowdSink {
+ public:
+  AtStep(const Scenario& scenario, std::string method, std::size_t robot, std::size_t step)
+      : scenario_(scenario), method_(std::move(method)), robot_(robot), step_(step) {}
+
+  void begin(const Crowd&) override {}
+  void add_step(const Crowd&, std::size_t) override {}
+  void before_step(const Crowd& crowd, std::size_t steps) override {
+    if (steps == step_) take(crowd);
+  }
+  CrowdDecision& taken() { return taken_; }
+
+ private:
+  void take(const Crowd& crowd) {
+    const CrowdExplanation e = crowd.explain(static_cast<formation::RobotId>(robot_));
+    formation::Step row = places(crowd);
+    RobotStep& step = row.robots[robot_];
+    step.preferred = e.preferred;
+    step.chosen = e.chosen;
+    // What does not turn it is not listed: the second level of the step slows it down.
+    const std::vector<CrowdExplanation::Neighbour> none;
+    if (e.reserved) step.note = "drives straight to a place that it has reserved; half-planes of robots do not turn it";
+    Decision& d = taken_.decision.emplace();
+    d.scenario = scenario_;
+    d.method = method_;
+    d.robot = robot_;
+    d.time = row.time;
+    for (const CrowdExplanation::Neighbour& n : e.reserved ? none : e.neighbours)
+      add(d, step, n.half_plane, ConstraintSource::robot, n.robot, geometry::Disc{{}, 0.0}, {n.robot}, n.touching);
+    for (const CrowdExplanation::Edge& edge : e.edges)
+      add(d, step, edge.half_plane, ConstraintSource::obstacle_edge, step.constraints.size(), edge.edge,
+          owner_of(edge.edge, scenario_), edge.touching);
+    for (const CrowdExplanation::Body& body : e.bodies) {
+      const std::size_t moving = moving_number(crowd, body.body);
+      add(d, step, body.half_plane, ConstraintSource::moving_obstacle, moving, geometry::Disc{{}, 0.0}, {moving},
+          body.touching);
+    }
+    step.status = e.kept || step.constraints.empty() ? lp::Status::optimal : lp::Status::relaxed;
+    for (const formation::DecisionConstraint& c : step.constraints) {
+      step.violation = std::max(step.violation, violation_of(c, step.chosen));
+      d.seen.push_back(formation::seen_body(scenario_, d.bodies, row, robot_, c));
+    }
+    d.step = std::move(step);
+    add_remarks(e);
+  }
+
+  formation::Step places(const Crowd& crowd) const {
+    std::vector<Vec2> position, velocity;
+    crowd.positions(position);
+    crowd.velocities(velocity);
+    formation::Step row;
+    row.time = static_cast<double>(step_) * scenario_.time_step;
+    row.robots.resize(position.size());
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      row.robots[i].position = row.robots[i].anchor = position[i];
+      row.robots[i].velocity = row.robots[i].anchor_velocity = velocity[i];
+    }
+    for (const formation::CrowdBodyState& body : crowd.bodies())
+      if (body.moves) row.moving.push_back({body.displacement, body.velocity});
+    return row;
+  }
+
+  /// Of those that move, in the order of the scenario.
+  static std::size_t moving_number(const Crowd& crowd, formation::ObstacleId id) {
+    std::size_t number = 0;
+    for (const formation::CrowdBodyState& body : crowd.bodies()) {
+      if (body.id == id) break;
+      number += body.moves;
+    }
+    return number;
+  }
+
+  void add(Decision& d, RobotStep& step, const geometry::HalfPlane& half_plane, ConstraintSource source,
+           std::size_t index, geometry::ConvexShape shape, std::vector<std::size_t> owners, bool touching) const {
+    formation::DecisionConstraint c;
+    c.half_plane = half_plane;
+    c.source = source;
+    c.index = index;
+    c.certified = !touching;
+    c.hard = source != ConstraintSource::robot;
+    c.active = violation_of(c, step.chosen) > -kOnLatticeLine;
+    c.time_horizon = scenario_.horizons.orca;
+    c.body = d.bodies.size();
+    step.constraints.push_back(c);
+    d.bodies.push_back({source, std::move(shape), {}, std::move(owners)});
+  }
+
+  void add_remarks(const CrowdExplanation& e) {
+    if (!(e.wish == e.chosen))
+      taken_.remarks.push_back(
+          fmt::format("Wished for ({:.3g}, {:.3g}) m/s, and does not get it: another robot would be met within the "
+                      "step, which counts more than any half-plane.",
+                      e.wish.x, e.wish.y));
+    taken_.remarks.push_back(
+        "Computed again: decisions of the run are not recorded, and the multipliers of its "
+        "half-planes are not known.");
+  }
+
+  const Scenario& scenario_;
+  std::string method_;
+  std::size_t robot_, step_;
+  CrowdDecision taken_;
+};
+
+}  // namespace
+
+CrowdDecision crowd_decision(const Scenario& scenario, formation::CrowdRunOptions options, const std::string& method,
+                             std::size_t robot, double time) {
+  constexpr double kSameRow = 1e-6;  // of a step
+  AtStep at(scenario, method, robot, static_cast<std::size_t>(time / scenario.time_step + kSameRow));
+  options.progress = [&](double) { return !interrupted() && !at.taken().decision; };
+  const formation::CrowdRunReport report = run_crowd(scenario, options, &at);
+  if (interrupted()) throw Interrupted();
+  at.taken().end = report.time;
+  return std::move(at.taken());
+}
+
+}  // namespace exactvo::tools
