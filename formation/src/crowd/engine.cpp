@@ -179,12 +179,12 @@ class CrowdEngine final : public CrowdCore {
   }
 
   void lay_out_capsules() {
-    if (reservations.empty()) return;
-    std::vector<Reservations::Capsule> capsules;
+    if (reserved_ways.empty()) return;
+    std::vector<ReservedWays::Capsule> capsules;
     for (std::size_t i = 0; i < robots.size(); ++i)
-      if (reservations.holds(robots.id[i]))
-        capsules.push_back({{position_of(i), reservations.place(robots.id[i])}, kinds[robots.kind(i)].radius});
-    reservations.lay_out(std::move(capsules));
+      if (reserved_ways.holds(robots.id[i]))
+        capsules.push_back({{position_of(i), reserved_ways.place(robots.id[i])}, kinds[robots.kind(i)].radius});
+    reserved_ways.lay_out(std::move(capsules));
   }
 
   /// What each rank decided for its share, to all of them.
@@ -502,8 +502,8 @@ class CrowdEngine final : public CrowdCore {
   /// Bit `lane`: drives straight to a reserved place.
   std::uint32_t reserved_lanes(const Pack& pack) const {
     std::uint32_t lanes = 0;
-    for (std::size_t lane = 0; !reservations.empty() && lane < pack.size(); ++lane)
-      lanes |= std::uint32_t{reservations.holds(robots.id[pack.begin + lane])} << lane;
+    for (std::size_t lane = 0; !reserved_ways.empty() && lane < pack.size(); ++lane)
+      lanes |= std::uint32_t{reserved_ways.holds(robots.id[pack.begin + lane])} << lane;
     return lanes;
   }
 

@@ -96,7 +96,7 @@ Motion HardLevel<T>::decide(std::size_t robot, int round, HardBuffers& b, OneRob
   if (round > 0 && safe == wish) return safe;
   if (!put_rows(robot, round, b, counts)) return safe;
   if (violated(b.rows, wish) == nullptr) return wish;
-  if (crowd_.reservations.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
+  if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
   return nearest(robot, safe, b, one);
 }
 
