@@ -169,12 +169,7 @@ class CrowdEngine final : public CrowdCore {
   void certify(std::size_t begin, std::size_t end, int round, Array<std::int32_t>& to_x, Array<std::int32_t>& to_y) {
     for_own_ranges(begin, end, [&](std::size_t first, std::size_t last, Scratch& s) {
       const Timed timed(options.time_phases, s.phases.hard);
-      for (std::size_t i = first; i < last; ++i) {
-        const Motion m = hard_.decide(i, round, s.hard_level, s.one, s.counts);
-        if (round == 0 && !s.hard_level.rows.empty()) robots.next_kept[i] |= Robots::kHasMet;
-        to_x[i] = m.x;
-        to_y[i] = m.y;
-      }
+      hard_.decide(first, last, round, s.hard_level, s.one, s.counts, robots, to_x.data(), to_y.data());
     });
   }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "exactvo/vo/lp/single.h"
 
@@ -13,12 +12,8 @@ using namespace crowd;
 
 namespace {
 
-/// Lattice steps by which a motion may be longer than the wish: what rounding to the lattice adds, and some.
-constexpr std::int64_t kRoundingRoom = 4;
-
-/// Lattice steps by which two robots in contact may overlap, as places and radii were rounded: they keep their
-/// distance. Two that overlap by more have come from elsewhere, and the first level leads them apart.
-constexpr std::int64_t kRoundedContact = 8;
+/// Robots that are decided together.
+constexpr std::size_t kTogether = 64;
 
 /// Half a lattice step in both coordinates, sqrt(1/2), rounded up: half-planes are moved inward by it before the linear
 /// program, so that its answer can be rounded.
@@ -29,17 +24,6 @@ constexpr int kCorrections = 6;
 
 /// Shares of the way back to the safe motion.
 constexpr double kShares[] = {0x1p-12, 0x1p-8, 0x1p-4, 0.25, 0.5, 0.75};
-
-/// At least |m|, by at most an eighth too much; no root.
-std::int64_t length_bound(Motion m) {
-  const std::int64_t x = std::abs(m.x), y = std::abs(m.y);
-  return std::max(x, y) + std::min(x, y) / 2 + 1;
-}
-
-/// How far a robot with this wish can get in the step, lattice steps.
-std::int64_t longest_way(Motion wish) {
-  return length_bound(wish) + kRoundingRoom;
-}
 
 double squared_length(Motion m) {
   const double x = m.x, y = m.y;
@@ -66,7 +50,7 @@ const MotionRow* violated(const std::vector<MotionRow>& rows, Motion m) {
 template <class T>
 void HardLevel<T>::take_kinds() {
   const double q = crowd_.options.position_step, dt = crowd_.options.time_step;
-  kinds_.clear();
+  steps_.clear();
   for (std::size_t k = 0; k < crowd_.kinds.size(); ++k) {
     const CrowdKind& kind = crowd_.kinds[k];
     StepsOfKind steps;
@@ -74,7 +58,7 @@ void HardLevel<T>::take_kinds() {
     steps.reach = std::sqrt(static_cast<double>(table_.reach[k])) * (1.0 + 0x1p-10);
     const double speed = kind.max_speed * dt / q;
     steps.squared_speed = speed * speed * (1.0 - 0x1p-46);
-    kinds_.push_back(steps);
+    steps_.add(steps);
   }
 }
 
@@ -90,61 +74,90 @@ Motion HardLevel<T>::safe_of(std::size_t robot, int round) const {
 }
 
 template <class T>
-Motion HardLevel<T>::decide(std::size_t robot, int round, HardBuffers& b, OneRobotBuffers<T>& one,
-                            StepReport& counts) const {
-  const Motion wish = wish_of(robot), safe = safe_of(robot, round);
-  if (round > 0 && safe == wish) return safe;
-  if (!put_rows(robot, round, b, counts)) return safe;
-  if (violated(b.rows, wish) == nullptr) return wish;
-  if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
-  return nearest(robot, safe, b, one);
+void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, HardBuffers& b, OneRobotBuffers<T>& one,
+                          StepReport& counts, Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const {
+  b.asked.clear();
+  for (std::size_t i = first; i < last; ++i) {
+    const Motion wish = wish_of(i);
+    if (round == 0 || safe_of(i, round) != wish) b.asked.push_back(static_cast<std::int32_t>(i));
+    to_x[i] = wish.x;
+    to_y[i] = wish.y;
+    if (b.asked.size() < kTogether && i + 1 < last) continue;
+    decide_asked(round, b, one, counts, robots, to_x, to_y);
+    b.asked.clear();
+  }
 }
 
-/// The rows of a robot; false where it has to keep its safe motion.
 template <class T>
-bool HardLevel<T>::put_rows(std::size_t robot, int round, HardBuffers& b, StepReport& counts) const {
-  const Robots& robots = crowd_.robots;
-  const StepsOfKind& kind = kinds_[robots.kind(robot)];
-  const std::int64_t own = kind.radius + longest_way(wish_of(robot));
-  const Window at{robots.x[robot], robots.x[robot], robots.y[robot], robots.y[robot]};
-  const Cells cells = robots.cells_of(grown(at, kind.reach));
-  b.rows.clear();
-  bool found = true, overlaps = false;
-  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
-    const Stretch stretch = robots.stretch(cells, row);
-    for (std::size_t j = stretch.from; j < stretch.to; ++j) {
-      const std::int64_t dx = std::int64_t{robots.x[robot]} - robots.x[j],
-                         dy = std::int64_t{robots.y[robot]} - robots.y[j];
-      const std::int64_t radius = kinds_[robots.kind(j)].radius, together = own + radius + longest_way(wish_of(j));
-      const std::int64_t squared = dx * dx + dy * dy;
-      if (j == robot || squared >= together * together) continue;
-      const std::int64_t apart = std::max<std::int64_t>(1, kind.radius + radius - kRoundedContact);
-      if (squared >= apart * apart)
-        put_row(robot, j, round, b, found);
-      else
-        overlaps = true;
+void HardLevel<T>::decide_asked(int round, HardBuffers& b, OneRobotBuffers<T>& one, StepReport& counts, Robots& robots,
+                                std::int32_t* to_x, std::int32_t* to_y) const {
+  find_near_pairs(robots, steps_, b.asked, round == 0, b.near);
+  put_pairs(round, b);
+  make_pair_rows(b.pairs);
+  std::size_t pair = 0, from = 0;
+  for (std::size_t k = 0; k < b.asked.size(); from = b.near.end[k++]) {
+    const auto robot = static_cast<std::size_t>(b.asked[k]);
+    const std::uint8_t state = b.near.state[k];
+    if (round == 0) {
+      counts.overlapping += (state & NearPairs::kOverlaps) != 0;
+      if (state & NearPairs::kMeets) robots.next_kept[robot] |= Robots::kHasMet;
     }
+    if ((state & NearPairs::kHindered) == 0) continue;
+    const Motion safe = safe_of(robot, round);
+    const bool found = take_rows(robot, from, b.near.end[k], pair, b);
+    pair += b.near.end[k] - from;
+    const Motion m = found ? within_rows(robot, safe, b, one) : safe;
+    to_x[robot] = m.x;
+    to_y[robot] = m.y;
   }
-  if (round == 0) counts.overlapping += overlaps;
+}
+
+/// The pairs of all robots that are hindered.
+template <class T>
+void HardLevel<T>::put_pairs(int round, HardBuffers& b) const {
+  const Robots& robots = crowd_.robots;
+  b.pairs.clear(round == 0);
+  std::size_t from = 0;
+  for (std::size_t k = 0; k < b.asked.size(); ++k)
+    for (; from < b.near.end[k]; ++from) {
+      const auto robot = static_cast<std::size_t>(b.asked[k]), other = static_cast<std::size_t>(b.near.other[from]);
+      const bool first = robots.id[robot] < robots.id[other];
+      const std::size_t i = first ? robot : other, j = first ? other : robot;
+      PairInStep pair;
+      pair.dx = std::int64_t{robots.x[i]} - robots.x[j];
+      pair.dy = std::int64_t{robots.y[i]} - robots.y[j];
+      pair.radius = steps_.kinds[robots.kind(i)].radius + steps_.kinds[robots.kind(j)].radius;
+      pair.wish_a = wish_of(i);
+      pair.wish_b = wish_of(j);
+      pair.safe_a = safe_of(i, round);
+      pair.safe_b = safe_of(j, round);
+      b.pairs.add(pair);
+    }
+}
+
+/// Into b.rows those of a robot: its pairs begin at `pair`, its others stand from `first` to `last` in b.near. False
+/// where it has to keep its safe motion.
+template <class T>
+bool HardLevel<T>::take_rows(std::size_t robot, std::size_t first, std::size_t last, std::size_t pair,
+                             HardBuffers& b) const {
+  const auto& id = crowd_.robots.id;
+  bool found = true;
+  b.rows.clear();
+  for (std::size_t k = first; k < last; ++k, ++pair) {
+    found = found && b.pairs.found(pair);
+    const bool is_first = id[robot] < id[static_cast<std::size_t>(b.near.other[k])];
+    b.rows.push_back(is_first ? b.pairs.row_a(pair) : b.pairs.row_b(pair));
+  }
   return found;
 }
 
+/// The motion nearest to the wish that b.rows allow.
 template <class T>
-void HardLevel<T>::put_row(std::size_t robot, std::size_t other, int round, HardBuffers& b, bool& found) const {
-  const Robots& robots = crowd_.robots;
-  const bool first = robots.id[robot] < robots.id[other];
-  const std::size_t i = first ? robot : other, j = first ? other : robot;
-  PairInStep pair;
-  pair.dx = std::int64_t{robots.x[i]} - robots.x[j];
-  pair.dy = std::int64_t{robots.y[i]} - robots.y[j];
-  pair.radius = kinds_[robots.kind(i)].radius + kinds_[robots.kind(j)].radius;
-  pair.wish_a = wish_of(i);
-  pair.wish_b = wish_of(j);
-  pair.safe_a = safe_of(i, round);
-  pair.safe_b = safe_of(j, round);
-  const PairRows rows = pair_rows(pair);
-  found = found && rows.found;
-  b.rows.push_back(first ? rows.a : rows.b);
+Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const {
+  const Motion wish = wish_of(robot);
+  if (violated(b.rows, wish) == nullptr) return wish;
+  if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
+  return nearest(robot, safe, b, one);
 }
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
@@ -160,7 +173,7 @@ Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers
   }
   for (int k = 0; k < kCorrections; ++k, share *= 1.0 - 0x1p-10) {
     const Motion m = between(safe, wish, share);
-    if (squared_length(m) <= kinds_[crowd_.robots.kind(robot)].squared_speed && violated(b.rows, m) == nullptr &&
+    if (squared_length(m) <= steps_.kinds[crowd_.robots.kind(robot)].squared_speed && violated(b.rows, m) == nullptr &&
         one_.keeps_obstacles(robot, obstacles, one, m.x, m.y))
       return m;
     if (share == 0.0) break;
@@ -211,8 +224,9 @@ Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, HardBuffers& b, One
 template <class T>
 Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, std::size_t obstacles, const HardBuffers& b,
                              const OneRobotBuffers<T>& one) const {
-  const double fastest = kinds_[crowd_.robots.kind(robot)].squared_speed;
-  const std::int64_t longest = longest_way(wish_of(robot));
+  const double fastest = steps_.kinds[crowd_.robots.kind(robot)].squared_speed;
+  const Motion wish = wish_of(robot);
+  const std::int64_t longest = longest_way(wish.x, wish.y);
   const auto holds = [&](Motion m) {
     return squared_length(m) <= std::min(fastest, static_cast<double>(longest * longest)) &&
            violated(b.rows, m) == nullptr && one_.keeps_obstacles(robot, obstacles, one, m.x, m.y);

@@ -16,6 +16,19 @@ namespace {
 
 using test::SeededRandom;
 
+struct PairRows {
+  MotionRow a, b;
+  bool found;
+};
+
+PairRows pair_rows(const PairInStep& pair) {
+  PairTable table;
+  table.clear(pair.safe_a == Motion{} && pair.safe_b == Motion{});
+  table.add(pair);
+  make_pair_rows(table);
+  return {table.row_a(0), table.row_b(0), table.found(0)};
+}
+
 std::string text(const PairInStep& p) {
   std::string all = "D (" + std::to_string(p.dx) + ", " + std::to_string(p.dy) + "), R " + std::to_string(p.radius);
   const auto add = [&](const char* name, Motion m) {
