@@ -26,7 +26,7 @@ namespace exactvo::formation {
 
 /// Of a thread.
 struct HardBuffers {
-  std::vector<std::int32_t> asked;  ///< robots that are decided together
+  std::vector<crowd::AskedRobot> asked;  ///< robots that are decided together
   crowd::NearPairs near;
   crowd::PairTable pairs;  ///< of those that are hindered, robot by robot
   std::vector<crowd::MotionRow> rows;
@@ -44,19 +44,22 @@ class HardLevel {
 
   /// The motions of robots, into `to_x` and `to_y` by robot. Their wishes, and those of all robots near them, stand in
   /// Robots::wish_mx and wish_my. `round`: 0: from rest on; says in Robots::next_kept which have met another; 1: from
-  /// Robots::safe_mx and safe_my on.
-  void decide(std::size_t first, std::size_t last, int round, HardBuffers& b, OneRobotBuffers<T>& one,
-              StepReport& counts, crowd::Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const;
+  /// Robots::safe_mx and safe_my on. `lists`: of these robots.
+  void decide(std::size_t first, std::size_t last, int round, const crowd::NearLists& lists, HardBuffers& b,
+              OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
+              std::int32_t* to_y) const;
 
  private:
   crowd::Motion wish_of(std::size_t robot) const;
   crowd::Motion safe_of(std::size_t robot, int round) const;
-  void decide_asked(int round, HardBuffers& b, OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots,
-                    std::int32_t* to_x, std::int32_t* to_y) const;
+  void decide_asked(std::size_t first, int round, const crowd::NearLists& lists, HardBuffers& b,
+                    OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
+                    std::int32_t* to_y) const;
   void put_pairs(int round, HardBuffers& b) const;
-  bool take_rows(std::size_t robot, std::size_t first, std::size_t last, std::size_t pair, HardBuffers& b) const;
-  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
-  crowd::Motion nearest(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
+  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
+                            OneRobotBuffers<T>& one) const;
+  crowd::Motion nearest(std::size_t robot, crowd::Motion safe, std::size_t first, HardBuffers& b,
+                        OneRobotBuffers<T>& one) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   crowd::Motion rounded(std::size_t robot, crowd::Motion safe, std::size_t obstacles, const HardBuffers& b,
                         const OneRobotBuffers<T>& one) const;
@@ -64,7 +67,7 @@ class HardLevel {
   const CrowdCore& crowd_;
   const crowd::KindTable<T>& table_;
   const OneRobot<T>& one_;
-  crowd::StepTable steps_;
+  std::vector<crowd::StepsOfKind> kinds_;
 };
 
 }  // namespace exactvo::formation

@@ -31,6 +31,12 @@ HWY_INLINE N load(const std::int32_t* column) {
   return hn::PromoteTo(Numbers(), hn::LoadU(Whole(), column));
 }
 
+HWY_INLINE std::uint32_t bits_of_mask(M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Numbers(), mask, bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
 struct Point {
   N x, y;
 };
@@ -107,21 +113,6 @@ struct Split {
   M separates;
 
   HWY_INLINE M contents_both() const { return hn::Le(hn::Add(need_a, need_b), room); }
-};
-
-/// The rows of pairs.
-struct Rows {
-  Point normal;
-  N least_a, least_b;
-
-  /// Into the lanes of a block from k on.
-  HWY_INLINE void store(PairBlock& to, std::size_t k) const {
-    const Numbers d;
-    hn::Store(normal.x, d, to.normal_x + k);
-    hn::Store(normal.y, d, to.normal_y + k);
-    hn::Store(least_a, d, to.least_a + k);
-    hn::Store(least_b, d, to.least_b + k);
-  }
 };
 
 /// As many pairs as there are lanes.
@@ -202,11 +193,30 @@ class PairLanes {
     return hn::Min(hn::Max(part, number(0.0)), s.room);
   }
 
-  /// Of a normal that separates.
-  HWY_INLINE Rows rows_of(const Split& s) const {
-    const N part = part_a(s), rest = hn::Sub(s.room, part);
-    if constexpr (kAtRest) return {s.normal, hn::Neg(part), hn::Neg(rest)};
-    return {s.normal, hn::Sub(dot(s.normal, safe_a_), part), hn::Sub(hn::Neg(dot(s.normal, safe_b_)), rest)};
+  /// Into lanes k and after of a block the rows of a normal that separates, elsewhere `otherwise` as normals of rows
+  /// through 0.
+  HWY_INLINE void put_rows(const Split& s, Point otherwise, PairBlock& to, std::size_t k) const {
+    const Numbers d;
+    const N zero = number(0.0), part = part_a(s), rest = hn::Sub(s.room, part);
+    const M is_a = hn::Ne(load(to.is_a + k), zero);
+    Point normal = choose(is_a, s.normal, {hn::Neg(s.normal.x), hn::Neg(s.normal.y)});
+    N least = hn::Neg(hn::IfThenElse(is_a, part, rest));
+    if constexpr (!kAtRest) least = hn::Add(dot(normal, choose(is_a, safe_a_, safe_b_)), least);
+    const M grants = hn::And(s.separates, hn::Ge(dot(normal, choose(is_a, wish_a_, wish_b_)), least));
+    otherwise = choose(is_a, otherwise, {hn::Neg(otherwise.x), hn::Neg(otherwise.y)});
+    normal = choose(s.separates, normal, otherwise);
+    const M found = hn::Or(hn::Ne(normal.x, zero), hn::Ne(normal.y, zero));
+    hn::Store(normal.x, d, to.normal_x + k);
+    hn::Store(normal.y, d, to.normal_y + k);
+    least = hn::IfThenElseZero(s.separates, least);
+    hn::Store(least, d, to.least + k);
+    const N length = hn::Sqrt(dot(normal, normal));
+    hn::Store(hn::Div(normal.x, length), d, to.unit_x + k);
+    hn::Store(hn::Div(normal.y, length), d, to.unit_y + k);
+    hn::Store(hn::Div(least, length), d, to.unit_least + k);
+    if (k == 0) to.found = to.grants = 0;
+    to.found |= bits_of_mask(found) << k;
+    to.grants |= bits_of_mask(grants) << k;
   }
 
   /// Lemma 3. In one place: the lower id leaves to the left. Where u is not rest: no normal.
@@ -233,23 +243,13 @@ class PairLanes {
   N radius_;
 };
 
-HWY_INLINE std::uint32_t bits_of_mask(M mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Numbers(), mask, bytes);
-  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
-}
-
-/// Other rows for the first `count` pairs of the block, where there are better ones. Bit `lane`: there are.
+/// Other rows for the first `count` pairs of the block, where there are better ones.
 template <bool kAtRest>
-std::uint32_t bend(PairBlock& block, std::size_t count) {
-  std::uint32_t found = 0;
+void bend(PairBlock& block, std::size_t count) {
   for (std::size_t k = 0; k < count; k += hn::Lanes(Numbers())) {
     const PairLanes<kAtRest> pairs(block, k);
-    const Split s = pairs.bent();
-    pairs.rows_of(s).store(block, k);
-    found |= bits_of_mask(s.separates) << k;
+    pairs.put_rows(pairs.bent(), {number(0.0), number(0.0)}, block, k);
   }
-  return found & ((1U << count) - 1U);
 }
 
 /// Pairs that have no room for both wishes along their centres: they wait until a block is full.
@@ -259,17 +259,25 @@ class Hindered {
   explicit Hindered(PairBlock* of) : of_(of) {}
 
   void add(std::size_t block, std::size_t k) {
-    some_.put(count_, of_[block].pair(k, kAtRest), kAtRest);
+    some_.copy(count_, of_[block], k, kAtRest);
     at_[count_] = block * kPack + k;
     if (++count_ == kPack) bend_all();
   }
 
   void bend_all() {
-    for (std::uint32_t found = bend<kAtRest>(some_, count_); found != 0; found &= found - 1) {
-      const auto k = static_cast<std::size_t>(__builtin_ctz(found)), to = at_[k] % kPack;
+    bend<kAtRest>(some_, count_);
+    for (std::size_t k = 0; k < count_; ++k) {
+      if ((some_.found >> k & 1U) == 0) continue;
+      const std::size_t to = at_[k] % kPack;
       PairBlock& block = of_[at_[k] / kPack];
-      block.normal_x[to] = some_.normal_x[k], block.normal_y[to] = some_.normal_y[k];
-      block.least_a[to] = some_.least_a[k], block.least_b[to] = some_.least_b[k];
+      block.normal_x[to] = some_.normal_x[k];
+      block.normal_y[to] = some_.normal_y[k];
+      block.least[to] = some_.least[k];
+      block.unit_x[to] = some_.unit_x[k];
+      block.unit_y[to] = some_.unit_y[k];
+      block.unit_least[to] = some_.unit_least[k];
+      block.found |= 1U << to;
+      block.grants = (block.grants & ~(1U << to)) | (some_.grants >> k & 1U) << to;
     }
     count_ = 0;
   }
@@ -290,16 +298,38 @@ void make_rows(PairBlock* blocks, std::size_t count) {
     const std::size_t lane = k % kPack;
     const PairLanes<kAtRest> pairs(block, lane);
     const Split s = pairs.split_along(pairs.centre());
-    Rows rows = pairs.rows_of(s);
-    rows.normal = choose(s.separates, rows.normal, pairs.last_resort());
-    rows.least_a = hn::IfThenElseZero(s.separates, rows.least_a);
-    rows.least_b = hn::IfThenElseZero(s.separates, rows.least_b);
-    rows.store(block, lane);
+    pairs.put_rows(s, pairs.last_resort(), block, lane);
     std::uint32_t rest = bits_of_mask(hn::Not(hn::And(s.separates, s.contents_both())));
     if (count - k < hn::Lanes(Numbers())) rest &= (1U << (count - k)) - 1U;
     for (; rest != 0; rest &= rest - 1) hindered.add(k / kPack, lane + static_cast<std::size_t>(__builtin_ctz(rest)));
   }
   hindered.bend_all();
+}
+
+void gather(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
+            PairBlock* to) {
+  using Words = hn::CappedTag<std::int32_t, kPack>;
+  const Words d;
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    PairBlock& block = to[k / kPack];
+    const std::size_t lane = k % kPack;
+    const auto own = hn::LoadU(d, robot + k), its = hn::LoadU(d, other + k);
+    const auto is_a = hn::Lt(hn::GatherIndex(d, from.id, own), hn::GatherIndex(d, from.id, its));
+    const auto a = hn::IfThenElse(is_a, own, its), b = hn::IfThenElse(is_a, its, own);
+    const auto put = [&](auto value, std::int32_t* column) { hn::Store(value, d, column + lane); };
+    put(hn::VecFromMask(d, is_a), block.is_a);
+    put(hn::Sub(hn::GatherIndex(d, from.x, a), hn::GatherIndex(d, from.x, b)), block.dx);
+    put(hn::Sub(hn::GatherIndex(d, from.y, a), hn::GatherIndex(d, from.y, b)), block.dy);
+    put(hn::GatherIndex(d, from.wish_x, a), block.wish_ax);
+    put(hn::GatherIndex(d, from.wish_y, a), block.wish_ay);
+    put(hn::GatherIndex(d, from.wish_x, b), block.wish_bx);
+    put(hn::GatherIndex(d, from.wish_y, b), block.wish_by);
+    if (from.safe_x == nullptr) continue;
+    put(hn::GatherIndex(d, from.safe_x, a), block.safe_ax);
+    put(hn::GatherIndex(d, from.safe_y, a), block.safe_ay);
+    put(hn::GatherIndex(d, from.safe_x, b), block.safe_bx);
+    put(hn::GatherIndex(d, from.safe_y, b), block.safe_by);
+  }
 }
 
 void make_all_rows(PairBlock* blocks, std::size_t count, bool at_rest) {
@@ -312,7 +342,34 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace exactvo::formation::crowd {
 
+HWY_EXPORT(gather);
 HWY_EXPORT(make_all_rows);
+
+void PairBlock::copy(std::size_t k, const PairBlock& of, std::size_t from, bool at_rest) {
+  dx[k] = of.dx[from], dy[k] = of.dy[from], radius[k] = of.radius[from], is_a[k] = of.is_a[from];
+  wish_ax[k] = of.wish_ax[from], wish_ay[k] = of.wish_ay[from];
+  wish_bx[k] = of.wish_bx[from], wish_by[k] = of.wish_by[from];
+  if (at_rest) return;
+  safe_ax[k] = of.safe_ax[from], safe_ay[k] = of.safe_ay[from];
+  safe_bx[k] = of.safe_bx[from], safe_by[k] = of.safe_by[from];
+}
+
+void PairTable::put(std::size_t k, const PairInStep& pair, bool is_a) {
+  PairBlock& to = blocks_[k / kPack];
+  const std::size_t at = k % kPack;
+  to.dx[at] = static_cast<std::int32_t>(pair.dx), to.dy[at] = static_cast<std::int32_t>(pair.dy);
+  to.radius[at] = static_cast<double>(pair.radius), to.is_a[at] = is_a ? -1 : 0;
+  to.wish_ax[at] = pair.wish_a.x, to.wish_ay[at] = pair.wish_a.y;
+  to.wish_bx[at] = pair.wish_b.x, to.wish_by[at] = pair.wish_b.y;
+  to.safe_ax[at] = pair.safe_a.x, to.safe_ay[at] = pair.safe_a.y;
+  to.safe_bx[at] = pair.safe_b.x, to.safe_by[at] = pair.safe_b.y;
+}
+
+void gather_pairs(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
+                  PairTable& to) {
+  to.lay_out(count, from.safe_x == nullptr);
+  HWY_DYNAMIC_DISPATCH(gather)(from, robot, other, count, to.blocks());
+}
 
 void make_pair_rows(PairTable& pairs) {
   HWY_DYNAMIC_DISPATCH(make_all_rows)(pairs.blocks(), pairs.size(), pairs.at_rest());

@@ -48,6 +48,11 @@ struct MotionRow {
   bool allows(Motion m) const { return at(m) >= least; }
 };
 
+/// A row over the length of its normal, rounded: |(x, y)| = 1, least in lattice steps.
+struct UnitRow {
+  double x, y, least;
+};
+
 /// A pair in the order of ids.
 struct PairInStep {
   std::int64_t dx = 0, dy = 0;  ///< p_a - p_b, below 2^31
@@ -56,30 +61,26 @@ struct PairInStep {
   Motion safe_a, safe_b;        ///< u
 };
 
-/// kPack pairs in columns, and their rows.
+/// Columns of robots that pairs are gathered from.
+struct MotionColumns {
+  const std::int32_t *id = nullptr, *x = nullptr, *y = nullptr, *wish_x = nullptr, *wish_y = nullptr;
+  const std::int32_t *safe_x = nullptr, *safe_y = nullptr;  ///< u; null: rest
+};
+
+/// kPack pairs in columns; of each the row of one of its robots, the one that decides.
 struct PairBlock {
   alignas(64) std::int32_t dx[kPack], dy[kPack];
   std::int32_t wish_ax[kPack], wish_ay[kPack], wish_bx[kPack], wish_by[kPack];
-  std::int32_t safe_ax[kPack], safe_ay[kPack], safe_bx[kPack], safe_by[kPack];  ///< not at rest
+  std::int32_t safe_ax[kPack], safe_ay[kPack], safe_bx[kPack], safe_by[kPack];  ///< only where u is not rest
+  std::int32_t is_a[kPack];                                                     ///< -1: a decides, 0: b does
   double radius[kPack];
-  double normal_x[kPack], normal_y[kPack], least_a[kPack], least_b[kPack];  ///< of the rows, whole
+  double normal_x[kPack], normal_y[kPack], least[kPack];  ///< of the row, whole
+  double unit_x[kPack], unit_y[kPack], unit_least[kPack];
+  std::uint32_t found = 0;   ///< bit k: pair k has a row; without one both robots have to keep u
+  std::uint32_t grants = 0;  ///< bit k: its row surely allows the wish
 
-  void put(std::size_t k, const PairInStep& pair, bool at_rest) {
-    dx[k] = static_cast<std::int32_t>(pair.dx), dy[k] = static_cast<std::int32_t>(pair.dy);
-    radius[k] = static_cast<double>(pair.radius);
-    wish_ax[k] = pair.wish_a.x, wish_ay[k] = pair.wish_a.y;
-    wish_bx[k] = pair.wish_b.x, wish_by[k] = pair.wish_b.y;
-    if (at_rest) return;
-    safe_ax[k] = pair.safe_a.x, safe_ay[k] = pair.safe_a.y;
-    safe_bx[k] = pair.safe_b.x, safe_by[k] = pair.safe_b.y;
-  }
-  /// What was put at k.
-  PairInStep pair(std::size_t k, bool at_rest) const {
-    PairInStep p{dx[k], dy[k], static_cast<std::int64_t>(radius[k]), {wish_ax[k], wish_ay[k]}, {wish_bx[k], wish_by[k]},
-                 {},    {}};
-    if (!at_rest) p.safe_a = {safe_ax[k], safe_ay[k]}, p.safe_b = {safe_bx[k], safe_by[k]};
-    return p;
-  }
+  /// Puts pair `from` of another block to k.
+  void copy(std::size_t k, const PairBlock& of, std::size_t from, bool at_rest);
 };
 
 /// Pairs, and their rows.
@@ -87,33 +88,39 @@ class PairTable {
  public:
   std::size_t size() const { return size_; }
   bool at_rest() const { return at_rest_; }
-  /// For pairs whose u is all 0, or for any.
-  void clear(bool at_rest) { size_ = 0, at_rest_ = at_rest; }
-  void add(const PairInStep& pair) {
-    if (size_ == kPack * blocks_.size()) blocks_.emplace_back();
-    blocks_[size_ / kPack].put(size_ % kPack, pair, at_rest_);
-    ++size_;
+  /// The number of pairs, which are then put into `blocks`, and whether their u are all rest.
+  void lay_out(std::size_t pairs, bool at_rest) {
+    size_ = pairs, at_rest_ = at_rest;
+    if (blocks_.size() * kPack < pairs) blocks_.resize(pairs / kPack + 1 + blocks_.size());
   }
   PairBlock* blocks() { return blocks_.data(); }
+  /// Pair k, of which a or b decides.
+  void put(std::size_t k, const PairInStep& pair, bool is_a);
 
-  /// After `make_pair_rows`. False: no normal was found for u != 0, and both robots have to keep it.
-  bool found(std::size_t k) const { return normal_x(k) != 0.0 || normal_y(k) != 0.0; }
-  MotionRow row_a(std::size_t k) const { return row(normal_x(k), normal_y(k), blocks_[k / kPack].least_a[k % kPack]); }
-  MotionRow row_b(std::size_t k) const {
-    return row(-normal_x(k), -normal_y(k), blocks_[k / kPack].least_b[k % kPack]);
+  bool found(std::size_t k) const { return (block(k).found >> k % kPack & 1U) != 0; }
+  bool grants(std::size_t k) const { return (block(k).grants >> k % kPack & 1U) != 0; }
+  MotionRow row(std::size_t k) const {
+    const std::size_t at = k % kPack;
+    return {static_cast<std::int64_t>(block(k).normal_x[at]), static_cast<std::int64_t>(block(k).normal_y[at]),
+            static_cast<std::int64_t>(block(k).least[at])};
+  }
+  UnitRow unit_row(std::size_t k) const {
+    const std::size_t at = k % kPack;
+    return {block(k).unit_x[at], block(k).unit_y[at], block(k).unit_least[at]};
   }
 
  private:
-  static MotionRow row(double x, double y, double least) {
-    return {static_cast<std::int64_t>(x), static_cast<std::int64_t>(y), static_cast<std::int64_t>(least)};
-  }
-  double normal_x(std::size_t k) const { return blocks_[k / kPack].normal_x[k % kPack]; }
-  double normal_y(std::size_t k) const { return blocks_[k / kPack].normal_y[k % kPack]; }
+  const PairBlock& block(std::size_t k) const { return blocks_[k / kPack]; }
 
   Array<PairBlock> blocks_;
   std::size_t size_ = 0;
   bool at_rest_ = true;
 };
+
+/// Lays out the pairs of robot[k], which decide, with other[k], all but their radii; both arrays are read to a multiple
+/// of kPack.
+void gather_pairs(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
+                  PairTable& to);
 
 /// Makes the rows of all pairs. Exact. REQUIRES: of every pair u = 0, or a motion for which it had rows at an earlier
 /// u.
