@@ -150,7 +150,7 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
   }
   unsorted = unchecked = true;
   core->forget_preference(id);
-  core->reservations.forget(static_cast<std::int32_t>(id));
+  core->reserved_ways.forget(static_cast<std::int32_t>(id));
   return id;
 }
 
@@ -185,7 +185,7 @@ void CrowdBody::remove_robot(RobotId robot) {
   places[last] = static_cast<std::uint32_t>(at);
   places[robot] = kNowhere;
   free_ids.push_back(robot);
-  core->reservations.forget(static_cast<std::int32_t>(robot));
+  core->reserved_ways.forget(static_cast<std::int32_t>(robot));
   unsorted = true;
 }
 
@@ -481,7 +481,7 @@ void Crowd::set_reservations(const std::vector<Vec2>& place, const std::vector<s
       throw CrowdError(CrowdProblem::not_finite, "reserved place of robot " + std::to_string(id) +
                                                      ": found a coordinate that is no number, expected metres");
   const auto end = static_cast<std::ptrdiff_t>(id_end());
-  body_->core->reservations.set({place.begin(), place.begin() + end}, {reserved.begin(), reserved.begin() + end});
+  body_->core->reserved_ways.set({place.begin(), place.begin() + end}, {reserved.begin(), reserved.begin() + end});
   body_->core->changed();
 }
 

@@ -119,7 +119,11 @@ class CrowdEngine final : public CrowdCore {
     return words;
   }
 
-  std::size_t bytes() const override { return robots.bytes() + preferred_.capacity() * sizeof(T); }
+  std::size_t bytes() const override {
+    std::size_t lists = 0;
+    for (const NearLists& l : near_lists_) lists += l.bytes();
+    return robots.bytes() + preferred_.capacity() * sizeof(T) + lists;
+  }
 
  private:
   using Scratch = CrowdScratch<T>;
@@ -133,8 +137,10 @@ class CrowdEngine final : public CrowdCore {
     const std::vector<std::size_t> ends = share_ends(robots.size(), ranks ? ranks->size() : 1);
     const std::size_t own = ranks ? static_cast<std::size_t>(ranks->rank()) : 0, begin = own > 0 ? ends[own - 1] : 0;
     lay_out_capsules();
-    for_own_ranges(begin, ends[own],
-                   [this](std::size_t first, std::size_t last, Scratch& s) { decide_range(first, last, s); });
+    near_lists_.resize(ranges_of(ends[own] - begin));
+    for_own_ranges(begin, ends[own], [&](std::size_t first, std::size_t last, Scratch& s) {
+      decide_range(first, last, near_lists_of(first - begin, ends[own] - begin), s);
+    });
     share(ranks, ends, {&robots.wish_mx, &robots.wish_my, &robots.hint});
     if (options.certified) {
       certify(begin, ends[own], 0, robots.safe_mx, robots.safe_my);
@@ -159,11 +165,18 @@ class CrowdEngine final : public CrowdCore {
     return report;
   }
 
+  /// Robots a range of so many.
+  std::size_t grain_of(std::size_t count) const {
+    const std::size_t share = count / (8 * static_cast<std::size_t>(tasks.threads()));
+    return range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
+  }
+  std::size_t ranges_of(std::size_t count) const { return (count + grain_of(count) - 1) / grain_of(count); }
+  /// Of the range that begins `before` robots after the first of `count`.
+  NearLists& near_lists_of(std::size_t before, std::size_t count) { return near_lists_[before / grain_of(count)]; }
+
   template <class Do>
   void for_own_ranges(std::size_t begin, std::size_t end, const Do& what) {
-    const std::size_t count = end - begin, share = count / (8 * static_cast<std::size_t>(tasks.threads()));
-    const std::size_t grain = range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
-    tasks.for_ranges(count, grain, [&](std::size_t first, std::size_t last, int thread) {
+    tasks.for_ranges(end - begin, grain_of(end - begin), [&](std::size_t first, std::size_t last, int thread) {
       what(begin + first, begin + last, *scratch_[static_cast<std::size_t>(thread)]);
     });
   }
@@ -172,22 +185,18 @@ class CrowdEngine final : public CrowdCore {
   void certify(std::size_t begin, std::size_t end, int round, Array<std::int32_t>& to_x, Array<std::int32_t>& to_y) {
     for_own_ranges(begin, end, [&](std::size_t first, std::size_t last, Scratch& s) {
       const Timed timed(options.time_phases, s.phases.hard);
-      for (std::size_t i = first; i < last; ++i) {
-        const Motion m = hard_.decide(i, round, s.hard_level, s.one, s.counts);
-        if (round == 0 && !s.hard_level.rows.empty()) robots.next_kept[i] |= Robots::kHasMet;
-        to_x[i] = m.x;
-        to_y[i] = m.y;
-      }
+      const NearLists& lists = near_lists_of(first - begin, end - begin);
+      hard_.decide(first, last, round, lists, s.hard_level, s.one, s.counts, robots, to_x.data(), to_y.data());
     });
   }
 
   void lay_out_capsules() {
-    if (reservations.empty()) return;
-    std::vector<Reservations::Capsule> capsules;
+    if (reserved_ways.empty()) return;
+    std::vector<ReservedWays::Capsule> capsules;
     for (std::size_t i = 0; i < robots.size(); ++i)
-      if (reservations.holds(robots.id[i]))
-        capsules.push_back({{position_of(i), reservations.place(robots.id[i])}, kinds[robots.kind(i)].radius});
-    reservations.lay_out(std::move(capsules));
+      if (reserved_ways.holds(robots.id[i]))
+        capsules.push_back({{position_of(i), reserved_ways.place(robots.id[i])}, kinds[robots.kind(i)].radius});
+    reserved_ways.lay_out(std::move(capsules));
   }
 
   /// What each rank decided for its share, to all of them.
@@ -273,12 +282,14 @@ class CrowdEngine final : public CrowdCore {
 
   // --- Packs ---
 
-  void decide_range(std::size_t first, std::size_t last, Scratch& s) {
+  void decide_range(std::size_t first, std::size_t last, NearLists& lists, Scratch& s) {
     Pack packs[kGroupPacks];
+    lists.clear(last - first);
     for (std::size_t b = first; b < last;) {
       std::size_t count = 0;
       for (; b < last && count < kGroupPacks; b = packs[count++].end) {
         find(b, last, packs[count], s);
+        if (options.certified) list_near(packs[count], s, lists);
         lines_of(packs[count], count * kPack, s);
       }
       put_preferred(packs, count, s);
@@ -294,6 +305,26 @@ class CrowdEngine final : public CrowdCore {
   void find(std::size_t begin, std::size_t last, Pack& pack, Scratch& s) {
     const Timed timed(options.time_phases, s.phases.search);
     find_pack(robots, table_, begin, last, pack, s.found);
+  }
+
+  /// Who stands so near to the robots of a pack that the second level looks at the pair.
+  void list_near(const Pack& pack, Scratch& s, NearLists& lists) const {
+    const Timed timed(options.time_phases, s.phases.hard);
+    const Ranked& ranked = s.found.ranked;
+    const std::int32_t* const robot = s.found.others.robot;
+    for (std::size_t lane = 0; lane < pack.size(); ++lane) {
+      const auto kind = static_cast<std::size_t>(s.found.limits.kind[lane]);
+      const float meeting = table_.meeting[kind];
+      const auto most = static_cast<std::size_t>(table_.neighbours[kind]);
+      std::int32_t others[kMostNeighbours];
+      std::size_t count = 0;
+      for (; count < most && ranked.key[count + 1][lane] < meeting; ++count)
+        others[count] = robot[bits_of(ranked.key[count + 1][lane]) & kIndexBits];
+      if (count < most && pack.is_searched() && meeting <= table_.none[kind])
+        lists.add(pack.begin + lane, others, count);
+      else
+        lists.add_unknown();
+    }
   }
 
   void lines_of(Pack& pack, std::size_t slot, Scratch& s) {
@@ -505,8 +536,8 @@ class CrowdEngine final : public CrowdCore {
   /// Bit `lane`: drives straight to a reserved place.
   std::uint32_t reserved_lanes(const Pack& pack) const {
     std::uint32_t lanes = 0;
-    for (std::size_t lane = 0; !reservations.empty() && lane < pack.size(); ++lane)
-      lanes |= std::uint32_t{reservations.holds(robots.id[pack.begin + lane])} << lane;
+    for (std::size_t lane = 0; !reserved_ways.empty() && lane < pack.size(); ++lane)
+      lanes |= std::uint32_t{reserved_ways.holds(robots.id[pack.begin + lane])} << lane;
     return lanes;
   }
 
@@ -544,6 +575,7 @@ class CrowdEngine final : public CrowdCore {
   const OneRobot<T> one_{*this, table_};
   HardLevel<T> hard_{*this, table_, one_};
   Array<T> preferred_;
+  std::vector<NearLists> near_lists_;  ///< of each range of robots
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };
 

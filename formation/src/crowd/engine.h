@@ -18,7 +18,7 @@
 #include "crowd/edges.h"
 #include "crowd/kinds.h"
 #include "crowd/lines.h"
-#include "crowd/reservations.h"
+#include "crowd/reserved_ways.h"
 #include "crowd/robots.h"
 #include "exactvo/formation/crowd.h"
 
@@ -54,9 +54,9 @@ class CrowdCore {
   CrowdOptions options;
   std::vector<CrowdKind> kinds;
   crowd::Robots robots;
-  crowd::EdgeGrid edges;             ///< laid out
-  crowd::Bodies bodies;              ///< laid out
-  crowd::Reservations reservations;  ///< laid out
+  crowd::EdgeGrid edges;              ///< laid out
+  crowd::Bodies bodies;               ///< laid out
+  crowd::ReservedWays reserved_ways;  ///< laid out
   crowd::Tasks tasks;
   Steering steering;
   CrowdPhases phases;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "exactvo/vo/lp/single.h"
 
@@ -13,12 +12,8 @@ using namespace crowd;
 
 namespace {
 
-/// Lattice steps by which a motion may be longer than the wish: what rounding to the lattice adds, and some.
-constexpr std::int64_t kRoundingRoom = 4;
-
-/// Lattice steps by which two robots in contact may overlap, as places and radii were rounded: they keep their
-/// distance. Two that overlap by more have come from elsewhere, and the first level leads them apart.
-constexpr std::int64_t kRoundedContact = 8;
+/// Robots that are decided together.
+constexpr std::size_t kTogether = 64;
 
 /// Half a lattice step in both coordinates, sqrt(1/2), rounded up: half-planes are moved inward by it before the linear
 /// program, so that its answer can be rounded.
@@ -30,24 +25,19 @@ constexpr int kCorrections = 6;
 /// Shares of the way back to the safe motion.
 constexpr double kShares[] = {0x1p-12, 0x1p-8, 0x1p-4, 0.25, 0.5, 0.75};
 
-/// At least |m|, by at most an eighth too much; no root.
-std::int64_t length_bound(Motion m) {
-  const std::int64_t x = std::abs(m.x), y = std::abs(m.y);
-  return std::max(x, y) + std::min(x, y) / 2 + 1;
-}
-
-/// How far a robot with this wish can get in the step, lattice steps.
-std::int64_t longest_way(Motion wish) {
-  return length_bound(wish) + kRoundingRoom;
-}
-
 double squared_length(Motion m) {
   const double x = m.x, y = m.y;
   return x * x + y * y;
 }
 
+/// std::nearbyint, which is a call on targets before SSE4.1. |value| < 2^51.
+double nearest_whole(double value) {
+  constexpr double kWholeOnly = 0x1.8p52;
+  return (value + kWholeOnly) - kWholeOnly;
+}
+
 Motion whole(double x, double y) {
-  return {static_cast<std::int32_t>(std::nearbyint(x)), static_cast<std::int32_t>(std::nearbyint(y))};
+  return {static_cast<std::int32_t>(nearest_whole(x)), static_cast<std::int32_t>(nearest_whole(y))};
 }
 
 Motion between(Motion from, Motion to, double share) {
@@ -66,12 +56,16 @@ const MotionRow* violated(const std::vector<MotionRow>& rows, Motion m) {
 template <class T>
 void HardLevel<T>::take_kinds() {
   const double q = crowd_.options.position_step, dt = crowd_.options.time_step;
+  double largest = 0.0, fastest = 0.0;
+  for (const CrowdKind& kind : crowd_.kinds) {
+    largest = std::max(largest, kind.radius);
+    fastest = std::max(fastest, kind.max_speed);
+  }
   kinds_.clear();
-  for (std::size_t k = 0; k < crowd_.kinds.size(); ++k) {
-    const CrowdKind& kind = crowd_.kinds[k];
+  for (const CrowdKind& kind : crowd_.kinds) {
     StepsOfKind steps;
     steps.radius = static_cast<std::int64_t>(std::ceil(kind.radius / q));  // q is a power of two: exact
-    steps.reach = std::sqrt(static_cast<double>(table_.reach[k])) * (1.0 + 0x1p-10);
+    steps.reach = reach_of_pairs(kind, crowd_.options, largest, fastest);
     const double speed = kind.max_speed * dt / q;
     steps.squared_speed = speed * speed * (1.0 - 0x1p-46);
     kinds_.push_back(steps);
@@ -90,61 +84,89 @@ Motion HardLevel<T>::safe_of(std::size_t robot, int round) const {
 }
 
 template <class T>
-Motion HardLevel<T>::decide(std::size_t robot, int round, HardBuffers& b, OneRobotBuffers<T>& one,
-                            StepReport& counts) const {
-  const Motion wish = wish_of(robot), safe = safe_of(robot, round);
-  if (round > 0 && safe == wish) return safe;
-  if (!put_rows(robot, round, b, counts)) return safe;
-  if (violated(b.rows, wish) == nullptr) return wish;
-  if (crowd_.reservations.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
-  return nearest(robot, safe, b, one);
-}
-
-/// The rows of a robot; false where it has to keep its safe motion.
-template <class T>
-bool HardLevel<T>::put_rows(std::size_t robot, int round, HardBuffers& b, StepReport& counts) const {
-  const Robots& robots = crowd_.robots;
-  const StepsOfKind& kind = kinds_[robots.kind(robot)];
-  const std::int64_t own = kind.radius + longest_way(wish_of(robot));
-  const Window at{robots.x[robot], robots.x[robot], robots.y[robot], robots.y[robot]};
-  const Cells cells = robots.cells_of(grown(at, kind.reach));
-  b.rows.clear();
-  bool found = true, overlaps = false;
-  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
-    const Stretch stretch = robots.stretch(cells, row);
-    for (std::size_t j = stretch.from; j < stretch.to; ++j) {
-      const std::int64_t dx = std::int64_t{robots.x[robot]} - robots.x[j],
-                         dy = std::int64_t{robots.y[robot]} - robots.y[j];
-      const std::int64_t radius = kinds_[robots.kind(j)].radius, together = own + radius + longest_way(wish_of(j));
-      const std::int64_t squared = dx * dx + dy * dy;
-      if (j == robot || squared >= together * together) continue;
-      const std::int64_t apart = std::max<std::int64_t>(1, kind.radius + radius - kRoundedContact);
-      if (squared >= apart * apart)
-        put_row(robot, j, round, b, found);
-      else
-        overlaps = true;
-    }
+void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, const NearLists& lists, HardBuffers& b,
+                          OneRobotBuffers<T>& one, StepReport& counts, Robots& robots, std::int32_t* to_x,
+                          std::int32_t* to_y) const {
+  const std::int32_t *wish_x = robots.wish_mx.data(), *wish_y = robots.wish_my.data();
+  const std::int32_t *safe_x = robots.safe_mx.data(), *safe_y = robots.safe_my.data();
+  const std::uint8_t* const listed = lists.count.data();
+  b.asked.resize(kTogether);
+  std::size_t list = 0, asked = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    to_x[i] = wish_x[i];
+    to_y[i] = wish_y[i];
+    if (round == 0 || safe_x[i] != wish_x[i] || safe_y[i] != wish_y[i]) b.asked[asked++] = {i, list};
+    if (listed[i - first] != NearLists::kUnknown) list += listed[i - first];
+    if (asked < kTogether && i + 1 < last) continue;
+    b.asked.resize(asked);
+    decide_asked(first, round, lists, b, one, counts, robots, to_x, to_y);
+    b.asked.resize(kTogether);
+    asked = 0;
   }
-  if (round == 0) counts.overlapping += overlaps;
-  return found;
 }
 
 template <class T>
-void HardLevel<T>::put_row(std::size_t robot, std::size_t other, int round, HardBuffers& b, bool& found) const {
+void HardLevel<T>::decide_asked(std::size_t first, int round, const NearLists& lists, HardBuffers& b,
+                                OneRobotBuffers<T>& one, StepReport& counts, Robots& robots, std::int32_t* to_x,
+                                std::int32_t* to_y) const {
+  find_near_pairs(robots, kinds_, lists, first, b.asked, round == 0, b.near);
+  put_pairs(round, b);
+  make_pair_rows(b.pairs);
+  std::size_t from = 0;
+  for (std::size_t k = 0; k < b.asked.size(); from = b.near.end[k++]) {
+    const std::size_t robot = b.asked[k].robot;
+    const std::uint8_t state = b.near.state[k];
+    if (round == 0) {
+      counts.overlapping += (state & NearPairs::kOverlaps) != 0;
+      if (state & NearPairs::kMeets) robots.next_kept[robot] |= Robots::kHasMet;
+    }
+    if ((state & NearPairs::kHindered) == 0) continue;
+    const Motion m = within_rows(robot, safe_of(robot, round), from, b.near.end[k], b, one);
+    to_x[robot] = m.x;
+    to_y[robot] = m.y;
+  }
+}
+
+/// The pairs of all robots that are hindered.
+template <class T>
+void HardLevel<T>::put_pairs(int round, HardBuffers& b) const {
   const Robots& robots = crowd_.robots;
-  const bool first = robots.id[robot] < robots.id[other];
-  const std::size_t i = first ? robot : other, j = first ? other : robot;
-  PairInStep pair;
-  pair.dx = std::int64_t{robots.x[i]} - robots.x[j];
-  pair.dy = std::int64_t{robots.y[i]} - robots.y[j];
-  pair.radius = kinds_[robots.kind(i)].radius + kinds_[robots.kind(j)].radius;
-  pair.wish_a = wish_of(i);
-  pair.wish_b = wish_of(j);
-  pair.safe_a = safe_of(i, round);
-  pair.safe_b = safe_of(j, round);
-  const PairRows rows = pair_rows(pair);
-  found = found && rows.found;
-  b.rows.push_back(first ? rows.a : rows.b);
+  const std::size_t count = b.near.pairs();
+  MotionColumns columns{robots.id.data(),      robots.x.data(), robots.y.data(), robots.wish_mx.data(),
+                        robots.wish_my.data(), nullptr,         nullptr};
+  if (round > 0) columns.safe_x = robots.safe_mx.data(), columns.safe_y = robots.safe_my.data();
+  gather_pairs(columns, b.near.robot.data(), b.near.other.data(), count, b.pairs);
+  PairBlock* const blocks = b.pairs.blocks();
+  if (kinds_.size() == 1) {
+    for (std::size_t k = 0; k < count; k += kPack)
+      std::fill(blocks[k / kPack].radius, blocks[k / kPack].radius + kPack,
+                2.0 * static_cast<double>(kinds_[0].radius));
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t own = robots.kind(static_cast<std::size_t>(b.near.robot[k])),
+                      its = robots.kind(static_cast<std::size_t>(b.near.other[k]));
+    blocks[k / kPack].radius[k % kPack] = static_cast<double>(kinds_[own].radius + kinds_[its].radius);
+  }
+}
+
+/// The motion nearest to the wish that a robot's rows allow; those of pairs `first` to `last`.
+template <class T>
+Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
+                                 OneRobotBuffers<T>& one) const {
+  bool found = true, grants = true;
+  for (std::size_t k = first; k < last; ++k) {
+    found &= b.pairs.found(k);
+    grants &= b.pairs.grants(k);
+  }
+  if (!found) return safe;
+  const Motion wish = wish_of(robot);
+  if (grants) return wish;
+  b.rows.clear();
+  for (std::size_t k = first; k < last; ++k) b.rows.push_back(b.pairs.row(k));
+  if (violated(b.rows, wish) == nullptr) return wish;
+  if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
+  return nearest(robot, safe, first, b, one);
 }
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
@@ -168,25 +190,26 @@ Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers
   return safe;
 }
 
+/// `first`: of the robot's pairs, whose rows are b.rows.
 template <class T>
-Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const {
+Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, HardBuffers& b,
+                             OneRobotBuffers<T>& one) const {
   const double unit = table_.velocity_step, inward = kHalfDiagonal * unit;
   const std::size_t obstacles = one_.put_obstacles(robot, one), hard = obstacles + b.rows.size();
   const std::size_t moving = one.body_lines.size() - one.still, lines = hard + moving;
   const std::size_t room = (lines / lp::kSinglePadding + 1) * lp::kSinglePadding;
-  for (auto* column : {&b.x, &b.y, &b.offset}) column->assign(room, 0.0);
+  for (auto* column : {&b.x, &b.y, &b.offset})
+    if (column->size() < room) column->resize(2 * room);
   for (std::size_t k = 0; k < obstacles; ++k) {
     b.x[k] = static_cast<double>(one.row_x[k * kPack]);
     b.y[k] = static_cast<double>(one.row_y[k * kPack]);
     b.offset[k] = static_cast<double>(one.row_c[k * kPack]);
   }
   for (std::size_t k = 0; k < b.rows.size(); ++k) {
-    const MotionRow& row = b.rows[k];
-    const double nx = static_cast<double>(row.nx), ny = static_cast<double>(row.ny),
-                 length = std::sqrt(nx * nx + ny * ny);
-    b.x[obstacles + k] = nx / length;
-    b.y[obstacles + k] = ny / length;
-    b.offset[obstacles + k] = static_cast<double>(row.least) / length * unit + inward;
+    const UnitRow row = b.pairs.unit_row(first + k);
+    b.x[obstacles + k] = row.x;
+    b.y[obstacles + k] = row.y;
+    b.offset[obstacles + k] = row.least * unit + inward;
   }
   for (std::size_t k = 0; k < moving; ++k) {
     const BodyLine& line = one.body_lines[one.still + k];
@@ -212,7 +235,8 @@ template <class T>
 Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, std::size_t obstacles, const HardBuffers& b,
                              const OneRobotBuffers<T>& one) const {
   const double fastest = kinds_[crowd_.robots.kind(robot)].squared_speed;
-  const std::int64_t longest = longest_way(wish_of(robot));
+  const Motion wish = wish_of(robot);
+  const std::int64_t longest = longest_way(wish.x, wish.y);
   const auto holds = [&](Motion m) {
     return squared_length(m) <= std::min(fastest, static_cast<double>(longest * longest)) &&
            violated(b.rows, m) == nullptr && one_.keeps_obstacles(robot, obstacles, one, m.x, m.y);

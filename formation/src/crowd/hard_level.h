@@ -17,21 +17,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/near_pairs.h"
 #include "crowd/one_robot.h"
 #include "crowd/pair_row.h"
 #include "exactvo/vo/lp/solution.h"
 
 namespace exactvo::formation {
 
-/// What the second level looks up of each kind, lattice steps.
-struct StepsOfKind {
-  std::int64_t radius = 0;     ///< rounded up
-  double reach = 0.0;          ///< farther than this no robot can be met within the step
-  double squared_speed = 0.0;  ///< (max_speed dt / q)^2, rounded down
-};
-
 /// Of a thread.
 struct HardBuffers {
+  std::vector<crowd::AskedRobot> asked;  ///< robots that are decided together
+  crowd::NearPairs near;
+  crowd::PairTable pairs;  ///< of those that are hindered, robot by robot
   std::vector<crowd::MotionRow> rows;
   std::vector<double> x, y, offset;  ///< of the linear program
   lp::Solution answer;
@@ -45,16 +42,24 @@ class HardLevel {
 
   void take_kinds();
 
-  /// The motion of a robot whose wish, and those of all robots near it, stand in Robots::wish_mx and wish_my. `round`:
-  /// 0: from rest on; 1: from Robots::safe_mx and safe_my on.
-  crowd::Motion decide(std::size_t robot, int round, HardBuffers& b, OneRobotBuffers<T>& one, StepReport& counts) const;
+  /// The motions of robots, into `to_x` and `to_y` by robot. Their wishes, and those of all robots near them, stand in
+  /// Robots::wish_mx and wish_my. `round`: 0: from rest on; says in Robots::next_kept which have met another; 1: from
+  /// Robots::safe_mx and safe_my on. `lists`: of these robots.
+  void decide(std::size_t first, std::size_t last, int round, const crowd::NearLists& lists, HardBuffers& b,
+              OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
+              std::int32_t* to_y) const;
 
  private:
   crowd::Motion wish_of(std::size_t robot) const;
   crowd::Motion safe_of(std::size_t robot, int round) const;
-  bool put_rows(std::size_t robot, int round, HardBuffers& b, StepReport& counts) const;
-  void put_row(std::size_t robot, std::size_t other, int round, HardBuffers& b, bool& found) const;
-  crowd::Motion nearest(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
+  void decide_asked(std::size_t first, int round, const crowd::NearLists& lists, HardBuffers& b,
+                    OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
+                    std::int32_t* to_y) const;
+  void put_pairs(int round, HardBuffers& b) const;
+  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
+                            OneRobotBuffers<T>& one) const;
+  crowd::Motion nearest(std::size_t robot, crowd::Motion safe, std::size_t first, HardBuffers& b,
+                        OneRobotBuffers<T>& one) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   crowd::Motion rounded(std::size_t robot, crowd::Motion safe, std::size_t obstacles, const HardBuffers& b,
                         const OneRobotBuffers<T>& one) const;
@@ -62,7 +67,7 @@ class HardLevel {
   const CrowdCore& crowd_;
   const crowd::KindTable<T>& table_;
   const OneRobot<T>& one_;
-  std::vector<StepsOfKind> kinds_;
+  std::vector<crowd::StepsOfKind> kinds_;
 };
 
 }  // namespace exactvo::formation

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "crowd/layout.h"
+#include "crowd/near_pairs.h"
 
 namespace exactvo::formation::crowd {
 namespace {
@@ -29,6 +30,11 @@ T rounded_down(double value) {
 
 float without_number(float squared) {
   return float_of(bits_of(squared) & ~kIndexBits);
+}
+
+double reach_of_pairs(const CrowdKind& kind, const CrowdOptions& options, double largest, double fastest) {
+  const double ways = kLongerWay * (kind.max_speed + fastest) * options.time_step;
+  return (kind.radius + largest + ways) * (1.0 + 0x1p-20) / options.position_step + 2.0 * (kWayMargin + 1.0);
 }
 
 template <class T>
@@ -61,6 +67,9 @@ KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind
     // A squared distance in float is off by 3 u, 2^-22; cut, it is below that. Twice 2^-20 is put on.
     const double reach = (k.radius + largest + (k.max_speed + fastest) * dt) * (1.0 + 0x1p-20) / q + 1.0;
     table.reach.push_back(rounded_up<float>(reach * reach * (1.0 + 0x1p-20)));
+    const double meeting = reach_of_pairs(k, options, largest, fastest) + 1.0;
+    // A key's number adds 2^-15 to a squared distance at most.
+    table.meeting.push_back(rounded_up<float>(meeting * meeting * (1.0 + 0x1p-14)));
     // Beyond what cutting takes off: 2^-15 of the square.
     const double within = std::min(std::max(k.neighbour_distance / q, reach * (1.0 + 0x1p-10)), 0x1p31);
     table.none.push_back(without_number(static_cast<float>(within * within)));

@@ -17,6 +17,7 @@ namespace exactvo::formation::crowd {
 struct ReachTable {
   std::vector<float> none;     ///< squared lattice steps, without the bits of a number: keys from here on do not count
   std::vector<float> reach;    ///< squared lattice steps, rounded up: who is farther cannot be met within the step
+  std::vector<float> meeting;  ///< squared lattice steps, rounded up: as far as the second level looks (near_pairs.h)
   std::vector<double> window;  ///< lattice steps, how far a search goes at most
   std::vector<std::int32_t> whole_window;  ///< the same, down to a whole number, 2^30 at most
   std::vector<int> neighbours;
@@ -47,6 +48,10 @@ struct KindTable : ReachTable {
 
 template <class T>
 KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind>& kinds);
+
+/// Lattice steps: farther than this from a robot of the kind no other is in a pair that could meet, by
+/// `longest_way` of near_pairs.h. `largest`: m, radius of any kind; `fastest`: m/s.
+double reach_of_pairs(const CrowdKind& kind, const CrowdOptions& options, double largest, double fastest);
 
 /// The least T that is at least `value`.
 template <class T>

@@ -51,6 +51,7 @@ using Array = std::vector<A, boost::alignment::aligned_allocator<A, 64>>;
 struct Candidates {
   static constexpr std::size_t kRoom = kMostCandidates + kPadding;
   alignas(64) std::int32_t x[kRoom], y[kRoom], mx[kRoom], my[kRoom], kind[kRoom];
+  std::int32_t robot[kRoom];  ///< its place in the sorted order
   std::size_t count = 0;
 };
 

@@ -146,6 +146,9 @@ void OneRobot<T>::lay_out_rows(std::size_t rows, Buffers& b) const {
 
 template <class T>
 std::size_t OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b) const {
+  b.body_lines.clear();
+  b.still = 0;
+  if (crowd_.edges.empty() && !has_bodies()) return 0;
   const std::size_t edges = lines_of_edges(robot, b);
   b.near.clear();
   lines_of_bodies(robot, b);
@@ -220,10 +223,10 @@ template <class T>
 void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
   b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
   b.capsule_lines.clear();
-  if (crowd_.reservations.empty() || is_reserved(robot)) return;
+  if (crowd_.reserved_ways.empty() || is_reserved(robot)) return;
   const CrowdKind& kind = kind_of(robot);
-  crowd_.reservations.add_lines(crowd_.position_of(robot), kind.radius, kind.max_speed, crowd_.options.time_step,
-                                b.capsule_lines);
+  crowd_.reserved_ways.add_lines(crowd_.position_of(robot), kind.radius, kind.max_speed, crowd_.options.time_step,
+                                 b.capsule_lines);
   b.body_lines.insert(b.body_lines.begin() + static_cast<std::ptrdiff_t>(b.still), b.capsule_lines.begin(),
                       b.capsule_lines.end());
   b.still += b.capsule_lines.size();
@@ -250,7 +253,7 @@ void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b
     const BodyLine& line = b.body_lines[k];
     const std::size_t row = edges + k + (k < b.still ? 0 : b.near.size()), at = row * kPack;
     put(line, robot, b.row_x[at], b.row_y[at], b.row_c[at]);
-    if (words && line.obstacle != Reservations::kCapsule)
+    if (words && line.obstacle != ReservedWays::kCapsule)
       words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});
   }
 }

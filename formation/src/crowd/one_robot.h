@@ -79,9 +79,9 @@ class OneRobot {
     query.least[lane] = table_.least_offset[crowd_.robots.kind(robot)];
   }
 
-  /// Into b.body_lines and b.still, those against capsules of reservations among them.
+  /// Into b.body_lines and b.still, those against capsules of reserved ways among them.
   void lines_of_bodies(std::size_t robot, Buffers& b) const;
-  bool has_bodies() const { return !crowd_.bodies.empty() || !crowd_.reservations.empty(); }
+  bool has_bodies() const { return !crowd_.bodies.empty() || !crowd_.reserved_ways.empty(); }
 
   /// The half-planes against edges and bodies at rest, in the first rows of lane 0; how many.
   std::size_t put_obstacles(std::size_t robot, Buffers& b) const;
@@ -105,7 +105,7 @@ class OneRobot {
 
  private:
   const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
-  bool is_reserved(std::size_t robot) const { return crowd_.reservations.holds(crowd_.robots.id[robot]); }
+  bool is_reserved(std::size_t robot) const { return crowd_.reserved_ways.holds(crowd_.robots.id[robot]); }
   /// s: a robot that drives to a reserved place stops there, and looks no farther than the step.
   double obstacle_horizon(std::size_t robot) const {
     return is_reserved(robot) ? crowd_.options.time_step : edge_horizon(kind_of(robot));

@@ -24,7 +24,7 @@ class PackSearch {
     query.ranks = ranks_sought(table_.most_neighbours + 1);
     query.mixed = mixed_;
     for (;;) {
-      if (pack.candidates > kMostCandidates) return give_up(pack, out);
+      if (!pack.is_searched()) return give_up(pack, out);
       load_lanes(pack, out);
       collect(pack, out);
       query.lanes = pack.lanes();

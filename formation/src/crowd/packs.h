@@ -35,6 +35,8 @@ struct Pack {
   std::size_t size() const { return end - begin; }
   /// Bit `lane`: holds a robot.
   std::uint32_t lanes() const { return (1U << size()) - 1U; }
+  /// False: one robot with too many candidates.
+  bool is_searched() const { return candidates <= kMostCandidates; }
   void clear() { ranks = 0, alone = touching = 0; }
 };
 

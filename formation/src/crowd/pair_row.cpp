@@ -2,14 +2,20 @@
 #include "crowd/pair_row.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "exactvo/geometry/vec2.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "crowd/pair_row.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
-namespace exactvo::formation::crowd {
-namespace {
+HWY_BEFORE_NAMESPACE();
+namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
-using geometry::Vec2;
+namespace hn = hwy::HWY_NAMESPACE;
+using Numbers = hn::CappedTag<double, kPack>;
+using Whole = hn::Rebind<std::int32_t, Numbers>;
+using N = hn::Vec<Numbers>;
+using M = hn::Mask<Numbers>;
 
 /// Length of normals in lattice steps. D is below 2^31, so N.D is below 2^52: whole in double too.
 constexpr double kNormalLength = 0x1p20;
@@ -17,165 +23,357 @@ constexpr double kNormalLength = 0x1p20;
 /// Halvings between the normal that hinders least and one that separates.
 constexpr int kBends = 5;
 
-Vec2 number(Motion m) {
-  return {static_cast<double>(m.x), static_cast<double>(m.y)};
+HWY_INLINE N number(double value) {
+  return hn::Set(Numbers(), value);
+}
+
+HWY_INLINE N load(const std::int32_t* column) {
+  return hn::PromoteTo(Numbers(), hn::LoadU(Whole(), column));
+}
+
+HWY_INLINE std::uint32_t bits_of_mask(M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Numbers(), mask, bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
+struct Point {
+  N x, y;
+};
+
+HWY_INLINE Point operator+(Point a, Point b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y)};
+}
+HWY_INLINE Point operator-(Point a, Point b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y)};
+}
+HWY_INLINE Point operator*(N s, Point a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y)};
+}
+HWY_INLINE N dot(Point a, Point b) {
+  return hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y));
+}
+HWY_INLINE N cross(Point a, Point b) {
+  return hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x));
+}
+HWY_INLINE Point choose(M first, Point a, Point b) {
+  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y)};
 }
 
 /// The point nearest to 0 of the segment ab.
-Vec2 nearest_of_segment(Vec2 a, Vec2 b) {
-  const Vec2 along = b - a;
-  const double length = squared_norm(along);
-  if (!(length > 0.0)) return a;
-  return a + std::clamp(-dot(a, along) / length, 0.0, 1.0) * along;
+HWY_INLINE Point nearest_of_segment(Point a, Point b) {
+  const N zero = number(0.0);
+  const Point along = b - a;
+  const N length = dot(along, along);
+  const N share = hn::Div(hn::Neg(dot(a, along)), length);
+  const Point inside = a + hn::Min(hn::Max(share, zero), number(1.0)) * along;
+  return choose(hn::Gt(length, zero), inside, a);
 }
 
 /// The point nearest to 0 of { from + s a - t b : s, t in [0, 1] }, 0 where 0 is inside.
-Vec2 nearest_of_parallelogram(Vec2 from, Vec2 a, Vec2 b) {
-  const Vec2 corners[4] = {from, from + a, from + a - b, from - b};
-  Vec2 nearest = from;
-  int left = 0, right = 0;
+HWY_INLINE Point nearest_of_parallelogram(Point from, Point a, Point b) {
+  const N zero = number(0.0);
+  const Point corners[5] = {from, from + a, from + a - b, from - b, from};
+  Point nearest = from;
+  N least = dot(from, from);
+  M left = hn::Lt(zero, zero), right = left;
   for (int k = 0; k < 4; ++k) {
-    const Vec2 p = corners[k], q = corners[(k + 1) % 4], x = nearest_of_segment(p, q);
-    if (squared_norm(x) < squared_norm(nearest)) nearest = x;
-    const double side = cross(p, q);
-    left += side > 0.0;
-    right += side < 0.0;
+    const Point p = corners[k], q = corners[k + 1], x = nearest_of_segment(p, q);
+    const N squared = dot(x, x);
+    const M is_nearer = hn::Lt(squared, least);
+    nearest = choose(is_nearer, x, nearest);
+    least = hn::IfThenElse(is_nearer, squared, least);
+    const N side = cross(p, q);
+    left = hn::Or(left, hn::Gt(side, zero));
+    right = hn::Or(right, hn::Lt(side, zero));
   }
-  const bool inside = cross(a, b) != 0.0 && (left == 0 || right == 0);
-  return inside ? Vec2{} : nearest;
+  const M inside = hn::AndNot(hn::And(left, right), hn::Ne(cross(a, b), zero));
+  return choose(inside, {zero, zero}, nearest);
 }
 
 /// ORCA's normal for the relative motion m with the step as horizon: the boundary of the velocity obstacle nearest to
 /// m.
-Vec2 reciprocal_normal(Vec2 d, Vec2 m, double radius) {
-  const Vec2 end = d + m;
-  const double along = dot(end, d), squared_end = squared_norm(end), squared = squared_norm(d);
-  if (along > 0.0 && along * along >= radius * radius * squared_end) return end;
-  const double leg = std::sqrt(std::max(0.0, squared - radius * radius));
-  const double turn = cross(d, end) >= 0.0 ? leg : -leg;
-  return {radius * d.x - turn * d.y, radius * d.y + turn * d.x};
+HWY_INLINE Point reciprocal_normal(Point d, Point m, N radius) {
+  const N zero = number(0.0);
+  const Point end = d + m;
+  const N along = dot(end, d), squared_end = dot(end, end), squared = dot(d, d), contact = hn::Mul(radius, radius);
+  const M at_end = hn::And(hn::Gt(along, zero), hn::Ge(hn::Mul(along, along), hn::Mul(contact, squared_end)));
+  const N leg = hn::Sqrt(hn::Max(zero, hn::Sub(squared, contact)));
+  const N turn = hn::IfThenElse(hn::Ge(cross(d, end), zero), leg, hn::Neg(leg));
+  const Point of_leg = {hn::Sub(hn::Mul(radius, d.x), hn::Mul(turn, d.y)),
+                        hn::Add(hn::Mul(radius, d.y), hn::Mul(turn, d.x))};
+  return choose(at_end, end, of_leg);
 }
 
-/// Searches the normal of a pair, and shares its room out.
-class PairSearch {
+/// Of a normal what is left between the two robots along it.
+struct Split {
+  Point normal;
+  N room;            ///< N.(D + u_a - u_b) - bar, >= 0 where the normal separates
+  N need_a, need_b;  ///< of it, for the wishes
+  M separates;
+
+  HWY_INLINE M contents_both() const { return hn::Le(hn::Add(need_a, need_b), room); }
+};
+
+/// As many pairs as there are lanes.
+template <bool kAtRest>
+class PairLanes {
  public:
-  explicit PairSearch(const PairInStep& pair)
-      : pair_(pair),
-        d_{static_cast<double>(pair.dx), static_cast<double>(pair.dy)},
-        safe_end_(d_ + number(pair.safe_a) - number(pair.safe_b)),
-        more_a_(number(pair.wish_a) - number(pair.safe_a)),
-        more_b_(number(pair.wish_b) - number(pair.safe_b)),
-        radius_(static_cast<double>(pair.radius)),
-        at_rest_(pair.safe_a == Motion{} && pair.safe_b == Motion{}) {}
-
-  PairRows rows() const {
-    if (overlaps()) return at_rest_ ? not_nearer() : PairRows{{}, {}, false};
-    const Vec2 centre = at_rest_ ? d_ : nearest_of_segment(d_, safe_end_);
-    Split across;
-    const bool separates = try_normal(centre, across);
-    if (separates && across.contents_both()) return rows_of(across);
-    Split best;
-    if (try_bent(centre, best)) return rows_of(best);
-    if (separates) return rows_of(across);
-    return at_rest_ ? not_nearer() : PairRows{{}, {}, false};
+  /// Those from lane k of a block on.
+  HWY_INLINE PairLanes(const PairBlock& t, std::size_t k)
+      : d_{load(t.dx + k), load(t.dy + k)},
+        wish_a_{load(t.wish_ax + k), load(t.wish_ay + k)},
+        wish_b_{load(t.wish_bx + k), load(t.wish_by + k)},
+        radius_(hn::Load(Numbers(), t.radius + k)) {
+    if constexpr (kAtRest) {
+      safe_a_ = safe_b_ = {number(0.0), number(0.0)};
+      safe_end_ = d_;
+      more_a_ = wish_a_;
+      more_b_ = wish_b_;
+    } else {
+      safe_a_ = {load(t.safe_ax + k), load(t.safe_ay + k)};
+      safe_b_ = {load(t.safe_bx + k), load(t.safe_by + k)};
+      safe_end_ = d_ + safe_a_ - safe_b_;
+      more_a_ = wish_a_ - safe_a_;
+      more_b_ = wish_b_ - safe_b_;
+    }
   }
 
- private:
-  /// A normal that separates, and what is left between the two along it.
-  struct Split {
-    std::int64_t nx = 0, ny = 0;
-    std::int64_t bar = 0;                 ///< >= R |N|
-    std::int64_t across = 0;              ///< N.D
-    std::int64_t room = 0;                ///< N.(D + u_a - u_b) - bar, >= 0
-    std::int64_t need_a = 0, need_b = 0;  ///< of it, for the wishes
+  /// Between the two centres: separates the two, unless they touch or u leads round.
+  HWY_INLINE Point centre() const { return kAtRest ? d_ : nearest_of_segment(d_, safe_end_); }
 
-    bool contents_both() const { return need_a + need_b <= room; }
-  };
-
-  bool overlaps() const { return pair_.dx * pair_.dx + pair_.dy * pair_.dy < pair_.radius * pair_.radius; }
-
-  /// Lemma 3. In one place: the lower id leaves to the left.
-  PairRows not_nearer() const {
-    const bool together = pair_.dx == 0 && pair_.dy == 0;
-    const std::int64_t nx = together ? -1 : pair_.dx, ny = pair_.dy;
-    return {{nx, ny, 0}, {-nx, -ny, 0}, true};
-  }
-
-  /// The whole normal along `direction`; false where it does not separate the two, or has no length.
-  bool try_normal(Vec2 direction, Split& out) const {
-    const double length = std::sqrt(squared_norm(direction));
-    if (!(length > 0.0)) return false;
-    const Vec2 whole{std::nearbyint(kNormalLength / length * direction.x),
-                     std::nearbyint(kNormalLength / length * direction.y)};
+  /// The whole normal along `direction`. Does not separate where that has no length.
+  HWY_INLINE Split split_along(Point direction) const {
+    const N zero = number(0.0), per_length = hn::Div(number(kNormalLength), hn::Sqrt(dot(direction, direction)));
+    Split s;
+    s.normal = {hn::Round(hn::Mul(per_length, direction.x)), hn::Round(hn::Mul(per_length, direction.y))};
     // R |N| in double is off by at most 2^-52 of less than 2^52: by less than 2.
-    const double bar = std::floor(radius_ * std::sqrt(squared_norm(whole))) + 2.0;
-    const double across = dot(whole, d_), at_end = dot(whole, safe_end_);
-    if (!(across >= bar && at_end >= bar)) return false;
-    out.nx = static_cast<std::int64_t>(whole.x);
-    out.ny = static_cast<std::int64_t>(whole.y);
-    out.bar = static_cast<std::int64_t>(bar);
-    out.across = static_cast<std::int64_t>(across);
-    out.room = static_cast<std::int64_t>(at_end) - out.bar;
-    out.need_a = static_cast<std::int64_t>(std::max(0.0, -dot(whole, more_a_)));
-    out.need_b = static_cast<std::int64_t>(std::max(0.0, dot(whole, more_b_)));
-    return true;
+    const N bar = hn::Add(hn::Floor(hn::Mul(radius_, hn::Sqrt(dot(s.normal, s.normal)))), number(2.0));
+    const N across = dot(s.normal, d_), at_end = kAtRest ? across : dot(s.normal, safe_end_);
+    s.separates = hn::And(hn::Ge(across, bar), hn::Ge(at_end, bar));
+    s.room = hn::Sub(at_end, bar);
+    s.need_a = hn::Max(zero, hn::Neg(dot(s.normal, more_a_)));
+    s.need_b = hn::Max(zero, dot(s.normal, more_b_));
+    return s;
   }
 
-  /// The normal that hinders the wishes least, bent towards `centre` until it separates.
-  bool try_bent(Vec2 centre, Split& out) const {
-    Vec2 wanted = nearest_of_parallelogram(safe_end_, more_a_, more_b_);
-    if (squared_norm(wanted) < 1.0) {
-      const Vec2 relative = number(pair_.wish_a) - number(pair_.wish_b);
-      wanted = reciprocal_normal(d_, relative, radius_);
-    }
-    if (try_normal(wanted, out)) return true;
-    const double far = std::sqrt(squared_norm(wanted)), near = std::sqrt(squared_norm(centre));
-    if (!(far > 0.0 && near > 0.0)) return false;
-    const Vec2 from = 1.0 / near * centre, to = 1.0 / far * wanted;
-    double low = 0.0, high = 1.0;  // low separates, if `centre` does
-    bool found = false;
+  /// The normal that hinders the wishes least, bent towards the centres until it separates.
+  HWY_INLINE Split bent() const {
+    const N one = number(1.0), zero = number(0.0);
+    Point wanted = nearest_of_parallelogram(safe_end_, more_a_, more_b_);
+    const M crosses = hn::Lt(dot(wanted, wanted), one);
+    if (!hn::AllFalse(Numbers(), crosses))
+      wanted = choose(crosses, reciprocal_normal(d_, wish_a_ - wish_b_, radius_), wanted);
+    Split best = split_along(wanted);
+    const M bends = hn::Not(best.separates);
+    if (hn::AllFalse(Numbers(), bends)) return best;
+    const Point middle = centre();
+    const N far = hn::Sqrt(dot(wanted, wanted)), near = hn::Sqrt(dot(middle, middle));
+    const M has_lengths = hn::And(hn::Gt(far, zero), hn::Gt(near, zero));
+    const Point from = hn::Div(one, near) * middle, to = hn::Div(one, far) * wanted;
+    N low = zero, high = one;  // low separates, if the centres do
     for (int k = 0; k < kBends; ++k) {
-      const double share = (low + high) / 2.0;
-      Split bent;
-      if (try_normal((1.0 - share) * from + share * to, bent)) {
-        out = bent;
-        found = true;
-        low = share;
-      } else {
-        high = share;
-      }
+      const N share = hn::Mul(hn::Add(low, high), number(0.5));
+      Split s = split_along(hn::Sub(one, share) * from + share * to);
+      s.separates = hn::And(s.separates, has_lengths);
+      low = hn::IfThenElse(s.separates, share, low);
+      high = hn::IfThenElse(s.separates, high, share);
+      take(hn::And(s.separates, bends), s, best);
     }
-    return found;
+    return best;
   }
 
   /// Lemma 2. A robot whose wish has room gets what it needs; what is left is halved, what is missing shared in
   /// proportion.
-  PairRows rows_of(const Split& s) const {
-    std::int64_t part = s.need_a;
-    if (s.contents_both())
-      part += (s.room - s.need_a - s.need_b) / 2;
-    else
-      part = static_cast<std::int64_t>(static_cast<double>(s.room) * static_cast<double>(s.need_a) /
-                                       static_cast<double>(s.need_a + s.need_b));
-    part = std::clamp<std::int64_t>(part, 0, s.room);
-    PairRows rows;
-    rows.a = {s.nx, s.ny, 0};
-    rows.b = {-s.nx, -s.ny, 0};
-    rows.a.least = rows.a.at(pair_.safe_a) - part;
-    rows.b.least = rows.b.at(pair_.safe_b) - (s.room - part);
-    return rows;
+  HWY_INLINE N part_a(const Split& s) const {
+    const N needs = hn::Add(s.need_a, s.need_b);
+    const N halved = hn::Add(s.need_a, hn::Floor(hn::Mul(hn::Sub(s.room, needs), number(0.5))));
+    const N shared = hn::Floor(hn::Div(hn::Mul(s.room, s.need_a), needs));
+    const N part = hn::IfThenElse(s.contents_both(), halved, shared);
+    return hn::Min(hn::Max(part, number(0.0)), s.room);
   }
 
-  const PairInStep& pair_;
-  Vec2 d_, safe_end_, more_a_, more_b_;
-  double radius_;
-  bool at_rest_;
+  /// Into lanes k and after of a block the rows of a normal that separates, elsewhere `otherwise` as normals of rows
+  /// through 0.
+  HWY_INLINE void put_rows(const Split& s, Point otherwise, PairBlock& to, std::size_t k) const {
+    const Numbers d;
+    const N zero = number(0.0), part = part_a(s), rest = hn::Sub(s.room, part);
+    const M is_a = hn::Ne(load(to.is_a + k), zero);
+    Point normal = choose(is_a, s.normal, {hn::Neg(s.normal.x), hn::Neg(s.normal.y)});
+    N least = hn::Neg(hn::IfThenElse(is_a, part, rest));
+    if constexpr (!kAtRest) least = hn::Add(dot(normal, choose(is_a, safe_a_, safe_b_)), least);
+    const M grants = hn::And(s.separates, hn::Ge(dot(normal, choose(is_a, wish_a_, wish_b_)), least));
+    otherwise = choose(is_a, otherwise, {hn::Neg(otherwise.x), hn::Neg(otherwise.y)});
+    normal = choose(s.separates, normal, otherwise);
+    const M found = hn::Or(hn::Ne(normal.x, zero), hn::Ne(normal.y, zero));
+    hn::Store(normal.x, d, to.normal_x + k);
+    hn::Store(normal.y, d, to.normal_y + k);
+    least = hn::IfThenElseZero(s.separates, least);
+    hn::Store(least, d, to.least + k);
+    const N length = hn::Sqrt(dot(normal, normal));
+    hn::Store(hn::Div(normal.x, length), d, to.unit_x + k);
+    hn::Store(hn::Div(normal.y, length), d, to.unit_y + k);
+    hn::Store(hn::Div(least, length), d, to.unit_least + k);
+    if (k == 0) to.found = to.grants = 0;
+    to.found |= bits_of_mask(found) << k;
+    to.grants |= bits_of_mask(grants) << k;
+  }
+
+  /// Lemma 3. In one place: the lower id leaves to the left. Where u is not rest: no normal.
+  HWY_INLINE Point last_resort() const {
+    const N zero = number(0.0);
+    const M together = hn::And(hn::Eq(d_.x, zero), hn::Eq(d_.y, zero));
+    const Point apart = {hn::IfThenElse(together, number(-1.0), d_.x), d_.y};
+    if constexpr (kAtRest) return apart;
+    const Point moves = {hn::Or(hn::Abs(safe_a_.x), hn::Abs(safe_a_.y)),
+                         hn::Or(hn::Abs(safe_b_.x), hn::Abs(safe_b_.y))};
+    return choose(hn::Eq(hn::Or(moves.x, moves.y), zero), apart, {zero, zero});
+  }
+
+ private:
+  static HWY_INLINE void take(M lanes, const Split& from, Split& to) {
+    to.normal = choose(lanes, from.normal, to.normal);
+    to.room = hn::IfThenElse(lanes, from.room, to.room);
+    to.need_a = hn::IfThenElse(lanes, from.need_a, to.need_a);
+    to.need_b = hn::IfThenElse(lanes, from.need_b, to.need_b);
+    to.separates = hn::Or(to.separates, lanes);
+  }
+
+  Point d_, wish_a_, wish_b_, safe_a_, safe_b_, safe_end_, more_a_, more_b_;
+  N radius_;
 };
 
-}  // namespace
+/// Other rows for the first `count` pairs of the block, where there are better ones.
+template <bool kAtRest>
+void bend(PairBlock& block, std::size_t count) {
+  for (std::size_t k = 0; k < count; k += hn::Lanes(Numbers())) {
+    const PairLanes<kAtRest> pairs(block, k);
+    pairs.put_rows(pairs.bent(), {number(0.0), number(0.0)}, block, k);
+  }
+}
 
-PairRows pair_rows(const PairInStep& pair) {
-  return PairSearch(pair).rows();
+/// Pairs that have no room for both wishes along their centres: they wait until a block is full.
+template <bool kAtRest>
+class Hindered {
+ public:
+  explicit Hindered(PairBlock* of) : of_(of) {}
+
+  void add(std::size_t block, std::size_t k) {
+    some_.copy(count_, of_[block], k, kAtRest);
+    at_[count_] = block * kPack + k;
+    if (++count_ == kPack) bend_all();
+  }
+
+  void bend_all() {
+    bend<kAtRest>(some_, count_);
+    for (std::size_t k = 0; k < count_; ++k) {
+      if ((some_.found >> k & 1U) == 0) continue;
+      const std::size_t to = at_[k] % kPack;
+      PairBlock& block = of_[at_[k] / kPack];
+      block.normal_x[to] = some_.normal_x[k];
+      block.normal_y[to] = some_.normal_y[k];
+      block.least[to] = some_.least[k];
+      block.unit_x[to] = some_.unit_x[k];
+      block.unit_y[to] = some_.unit_y[k];
+      block.unit_least[to] = some_.unit_least[k];
+      block.found |= 1U << to;
+      block.grants = (block.grants & ~(1U << to)) | (some_.grants >> k & 1U) << to;
+    }
+    count_ = 0;
+  }
+
+ private:
+  PairBlock* of_;
+  PairBlock some_ = {};
+  std::size_t at_[kPack], count_ = 0;
+};
+
+/// Rows along the centres, which are the best ones where both wishes have room; of the other pairs those of the best
+/// normal that separates.
+template <bool kAtRest>
+void make_rows(PairBlock* blocks, std::size_t count) {
+  Hindered<kAtRest> hindered(blocks);
+  for (std::size_t k = 0; k < count; k += hn::Lanes(Numbers())) {
+    PairBlock& block = blocks[k / kPack];
+    const std::size_t lane = k % kPack;
+    const PairLanes<kAtRest> pairs(block, lane);
+    const Split s = pairs.split_along(pairs.centre());
+    pairs.put_rows(s, pairs.last_resort(), block, lane);
+    std::uint32_t rest = bits_of_mask(hn::Not(hn::And(s.separates, s.contents_both())));
+    if (count - k < hn::Lanes(Numbers())) rest &= (1U << (count - k)) - 1U;
+    for (; rest != 0; rest &= rest - 1) hindered.add(k / kPack, lane + static_cast<std::size_t>(__builtin_ctz(rest)));
+  }
+  hindered.bend_all();
+}
+
+void gather(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
+            PairBlock* to) {
+  using Words = hn::CappedTag<std::int32_t, kPack>;
+  const Words d;
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    PairBlock& block = to[k / kPack];
+    const std::size_t lane = k % kPack;
+    const auto own = hn::LoadU(d, robot + k), its = hn::LoadU(d, other + k);
+    const auto is_a = hn::Lt(hn::GatherIndex(d, from.id, own), hn::GatherIndex(d, from.id, its));
+    const auto a = hn::IfThenElse(is_a, own, its), b = hn::IfThenElse(is_a, its, own);
+    const auto put = [&](auto value, std::int32_t* column) { hn::Store(value, d, column + lane); };
+    put(hn::VecFromMask(d, is_a), block.is_a);
+    put(hn::Sub(hn::GatherIndex(d, from.x, a), hn::GatherIndex(d, from.x, b)), block.dx);
+    put(hn::Sub(hn::GatherIndex(d, from.y, a), hn::GatherIndex(d, from.y, b)), block.dy);
+    put(hn::GatherIndex(d, from.wish_x, a), block.wish_ax);
+    put(hn::GatherIndex(d, from.wish_y, a), block.wish_ay);
+    put(hn::GatherIndex(d, from.wish_x, b), block.wish_bx);
+    put(hn::GatherIndex(d, from.wish_y, b), block.wish_by);
+    if (from.safe_x == nullptr) continue;
+    put(hn::GatherIndex(d, from.safe_x, a), block.safe_ax);
+    put(hn::GatherIndex(d, from.safe_y, a), block.safe_ay);
+    put(hn::GatherIndex(d, from.safe_x, b), block.safe_bx);
+    put(hn::GatherIndex(d, from.safe_y, b), block.safe_by);
+  }
+}
+
+void make_all_rows(PairBlock* blocks, std::size_t count, bool at_rest) {
+  at_rest ? make_rows<true>(blocks, count) : make_rows<false>(blocks, count);
+}
+
+}  // namespace exactvo::formation::crowd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace exactvo::formation::crowd {
+
+HWY_EXPORT(gather);
+HWY_EXPORT(make_all_rows);
+
+void PairBlock::copy(std::size_t k, const PairBlock& of, std::size_t from, bool at_rest) {
+  dx[k] = of.dx[from], dy[k] = of.dy[from], radius[k] = of.radius[from], is_a[k] = of.is_a[from];
+  wish_ax[k] = of.wish_ax[from], wish_ay[k] = of.wish_ay[from];
+  wish_bx[k] = of.wish_bx[from], wish_by[k] = of.wish_by[from];
+  if (at_rest) return;
+  safe_ax[k] = of.safe_ax[from], safe_ay[k] = of.safe_ay[from];
+  safe_bx[k] = of.safe_bx[from], safe_by[k] = of.safe_by[from];
+}
+
+void PairTable::put(std::size_t k, const PairInStep& pair, bool is_a) {
+  PairBlock& to = blocks_[k / kPack];
+  const std::size_t at = k % kPack;
+  to.dx[at] = static_cast<std::int32_t>(pair.dx), to.dy[at] = static_cast<std::int32_t>(pair.dy);
+  to.radius[at] = static_cast<double>(pair.radius), to.is_a[at] = is_a ? -1 : 0;
+  to.wish_ax[at] = pair.wish_a.x, to.wish_ay[at] = pair.wish_a.y;
+  to.wish_bx[at] = pair.wish_b.x, to.wish_by[at] = pair.wish_b.y;
+  to.safe_ax[at] = pair.safe_a.x, to.safe_ay[at] = pair.safe_a.y;
+  to.safe_bx[at] = pair.safe_b.x, to.safe_by[at] = pair.safe_b.y;
+}
+
+void gather_pairs(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
+                  PairTable& to) {
+  to.lay_out(count, from.safe_x == nullptr);
+  HWY_DYNAMIC_DISPATCH(gather)(from, robot, other, count, to.blocks());
+}
+
+void make_pair_rows(PairTable& pairs) {
+  HWY_DYNAMIC_DISPATCH(make_all_rows)(pairs.blocks(), pairs.size(), pairs.at_rest());
 }
 
 }  // namespace exactvo::formation::crowd
+#endif  // HWY_ONCE

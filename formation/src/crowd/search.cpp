@@ -136,6 +136,8 @@ void add_near(const RobotColumns& robots, const CandidateRule& rule, const Candi
     hn::StoreU(hn::Compress(y, taken), words, to.y + to.count);
     hn::StoreU(hn::Compress(hn::LoadU(words, robots.mx + i), taken), words, to.mx + to.count);
     hn::StoreU(hn::Compress(hn::LoadU(words, robots.my + i), taken), words, to.my + to.count);
+    const auto robot = hn::Iota(words, static_cast<std::int32_t>(i));
+    hn::StoreU(hn::Compress(robot, taken), words, to.robot + to.count);
     to.count += hn::CountTrue(words, taken);
   }
 }
@@ -148,6 +150,7 @@ void add_all(const RobotColumns& robots, const CandidateStretch& s, bool with_ki
     hn::StoreU(hn::LoadU(words, robots.y + i), words, to.y + k);
     hn::StoreU(hn::LoadU(words, robots.mx + i), words, to.mx + k);
     hn::StoreU(hn::LoadU(words, robots.my + i), words, to.my + k);
+    hn::StoreU(hn::Iota(words, static_cast<std::int32_t>(i)), words, to.robot + k);
     if (with_kinds) {
       const auto tag = hn::PromoteTo(words, hn::LoadU(tags, robots.tag + i));
       hn::StoreU(hn::And(tag, hn::Set(words, kKindBits)), words, to.kind + k);

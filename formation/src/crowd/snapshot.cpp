@@ -125,8 +125,8 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
   for (const auto* column : columns_of(r)) out.put_all(column->data(), r.size());
   out.put_all(r.tag.data(), r.size());
   put_counted(out, core.preferred());
-  put_counted(out, core.reservations.places());
-  put_counted(out, core.reservations.reserved());
+  put_counted(out, core.reserved_ways.places());
+  put_counted(out, core.reserved_ways.reserved());
   out.fields(body.next_obstacle, static_cast<std::uint32_t>(body.obstacles.size()));
   for (const auto& [id, edges] : body.obstacles) {
     out.put(id);
@@ -204,7 +204,7 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
     preferred.resize(std::max<std::size_t>(preferred.size(), id_end));
     core.set_preferred(preferred);
   }
-  core.reservations.set(places, reserved);
+  core.reserved_ways.set(places, reserved);
   body.unsorted = true;
   body.unchecked = false;
 }

@@ -16,6 +16,25 @@ namespace {
 
 using test::SeededRandom;
 
+struct PairRows {
+  MotionRow a, b;
+  bool found;
+};
+
+/// The row of a, and that of b.
+PairRows pair_rows(const PairInStep& pair) {
+  PairTable table;
+  table.lay_out(2, pair.safe_a == Motion{} && pair.safe_b == Motion{});
+  table.put(0, pair, true);
+  table.put(1, pair, false);
+  make_pair_rows(table);
+  const PairRows rows{table.row(0), table.row(1), table.found(0)};
+  EXPECT_EQ(table.found(1), rows.found);
+  EXPECT_TRUE(!table.grants(0) || rows.a.allows(pair.wish_a));
+  EXPECT_TRUE(!table.grants(1) || rows.b.allows(pair.wish_b));
+  return rows;
+}
+
 std::string text(const PairInStep& p) {
   std::string all = "D (" + std::to_string(p.dx) + ", " + std::to_string(p.dy) + "), R " + std::to_string(p.radius);
   const auto add = [&](const char* name, Motion m) {

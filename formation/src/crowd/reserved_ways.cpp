@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "crowd/reservations.h"
+#include "crowd/reserved_ways.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,19 +19,19 @@ Vec2 nearest_of(const geometry::Segment& s, Vec2 p) {
 
 }  // namespace
 
-void Reservations::set(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved) {
+void ReservedWays::set(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved) {
   place_ = place;
   reserved_ = reserved;
   holders_ = static_cast<std::size_t>(std::count_if(reserved.begin(), reserved.end(), [](auto r) { return r != 0; }));
 }
 
-void Reservations::forget(std::int32_t id) {
+void ReservedWays::forget(std::int32_t id) {
   if (!holds(id)) return;
   reserved_[static_cast<std::size_t>(id)] = 0;
   --holders_;
 }
 
-void Reservations::lay_out(std::vector<Capsule> capsules) {
+void ReservedWays::lay_out(std::vector<Capsule> capsules) {
   capsules_ = std::move(capsules);
   std::vector<geometry::Box> boxes;
   boxes.reserve(capsules_.size());
@@ -46,7 +46,7 @@ void Reservations::lay_out(std::vector<Capsule> capsules) {
   grid_ = geometry::BoxGrid(std::move(boxes));
 }
 
-void Reservations::add_lines(Vec2 at, double radius, double max_speed, double horizon,
+void ReservedWays::add_lines(Vec2 at, double radius, double max_speed, double horizon,
                              std::vector<BodyLine>& out) const {
   if (capsules_.empty()) return;
   const double reach = radius + widest_ + kCapsuleMargin + max_speed * horizon;

@@ -15,7 +15,7 @@
 
 namespace exactvo::formation::crowd {
 
-class Reservations {
+class ReservedWays {
  public:
   /// Of BodyLine: it is against a capsule.
   static constexpr std::uint32_t kCapsule = 0xFFFFFFFFU;
