@@ -49,7 +49,7 @@ std::vector<MotionEvent> all_against_all(const std::vector<Trajectory>& trajecto
   const auto add = [&](const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
     if (v.encounter == Encounter::clear) return;
     by_pair[{body, with_obstacle, other}].push_back(
-        {v.encounter, body, with_obstacle, other, v.first, v.last, v.clearance, v.nearest_time, v.place});
+        {v.encounter, body, with_obstacle, other, v.first, v.last, v.clearance, v.nearest_time, v.place, {}, {}});
   };
   for (std::size_t i = 0; i < trajectories.size(); ++i)
     for (const StraightMotion& m : pieces_of(trajectories[i], between)) {
@@ -158,6 +158,7 @@ TEST(MotionCheck, AnOverlapOverSeveralPiecesIsOneEvent) {
   EXPECT_NEAR(events[0].first.low, 4.0, 1e-9);
   EXPECT_NEAR(events[0].last.high, 6.0, 1e-9);
   EXPECT_LE(events[0].clearance.low, -1.0);
+  EXPECT_NEAR(norm(events[0].at - events[0].other_at), 0.0, 1e-9);
 }
 
 TEST(MotionCheck, ListsAllPairsThatComeNear) {

@@ -249,10 +249,10 @@ class Events {
   Events(std::function<void(const MotionEvent&)> report, MotionCheck& check)
       : report_(std::move(report)), check_(check) {}
 
-  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
+  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other, Vec2 at, Vec2 other_at) {
     const Key key{body, with_obstacle, other};
-    const MotionEvent event{v.encounter, body,        with_obstacle,  other,  v.first,
-                            v.last,      v.clearance, v.nearest_time, v.place};
+    const MotionEvent event{v.encounter, body,           with_obstacle, other, v.first, v.last,
+                            v.clearance, v.nearest_time, v.place,       at,    other_at};
     const auto [last, is_new] = last_of_pair_.try_emplace(key, next_number_);
     if (!is_new && event.first.low <= open_.at(last->second).last.high) {
       join(open_.at(last->second), event);
@@ -289,6 +289,8 @@ class Events {
     if (next.clearance.low < open.clearance.low) {
       open.nearest_time = next.nearest_time;
       open.place = next.place;
+      open.at = next.at;
+      open.other_at = next.other_at;
     }
     open.clearance = {std::min(open.clearance.low, next.clearance.low),
                       std::min(open.clearance.high, next.clearance.high)};
@@ -476,7 +478,7 @@ class Sweep {
       approaches_.add(verdict, piece.body, true, k);
       if (verdict.encounter == Encounter::clear) continue;
       body.outside = false;
-      events_.add(verdict, piece.body, true, k);
+      events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
     }
   }
 
@@ -498,7 +500,9 @@ class Sweep {
     if (near_ == 0.0 && encounter(a.motion, body.shape, b.motion, other.shape) == Encounter::clear) return;
     const MotionVerdict verdict = examine(a.motion, body.shape, b.motion, other.shape);
     approaches_.add(verdict, a.body, false, b.body);
-    if (verdict.encounter != Encounter::clear) events_.add(verdict, a.body, false, b.body);
+    if (verdict.encounter == Encounter::clear) return;
+    const double t = verdict.nearest_time;
+    events_.add(verdict, a.body, false, b.body, position_at(a.motion, t), position_at(b.motion, t));
   }
 
   static void keep_each_once(std::vector<std::size_t>& list) {

@@ -60,6 +60,8 @@ struct MotionEvent {
   Bounds clearance;                          ///< m, certified: the least, so its negative is the greatest depth
   double nearest_time = 0.0;                 ///< s, rounded: a moment of least clearance
   Vec2 place;                                ///< m, rounded: where, at that moment
+  Vec2 at;                                   ///< m, rounded: the body's reference point at that moment
+  Vec2 other_at;                             ///< m, rounded: the other body's; (0, 0) of obstacles
 };
 
 /// Two bodies, or a body and an obstacle, that come nearer to each other than `near`, over all time.
