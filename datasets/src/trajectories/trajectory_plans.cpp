@@ -47,6 +47,9 @@ void read_mapf_yaml(const std::filesystem::path& path, TrajectorySink& out) {
   if (!schedule || !schedule.IsMap())
     out.refuse(DataCode::key_missing, 1, "no schedule", "schedule: with the steps of each agent");
   for (const auto& agent : schedule) {
+    if (!agent.first.IsScalar() || !agent.second.IsSequence())
+      out.refuse(DataCode::wrong_type, static_cast<std::uint64_t>(agent.first.Mark().line + 1), "no list of steps",
+                 "an agent with a list of steps");
     const std::size_t number = out.agent(agent.first.Scalar());
     for (const YAML::Node& step : agent.second)
       out.row(number, number_of(step, "t", out), {number_of(step, "x", out), number_of(step, "y", out)},

@@ -113,9 +113,9 @@ void CheckAnswer::add(const MotionEvent& e) {
     json["place"] = json_point(e.place);
     return out_.add(line_of(json));
   }
-  const std::string when = e.first.low == e.last.high
-                               ? fmt::format("at {} s", seconds(e.first.low))
-                               : fmt::format("from {} s to {} s", seconds(e.first.low), seconds(e.last.high));
+  const std::string first = seconds(e.first.low), last = seconds(e.last.high);
+  const std::string when =
+      first == last ? fmt::format("at {} s", first) : fmt::format("from {} s to {} s", first, last);
   std::string text =
       fmt::format("{}: {} and {}, {}", word_of(e.encounter), name_of(e.body), other_of(e.with_obstacle, e.other), when);
   if (e.encounter == Encounter::overlap)

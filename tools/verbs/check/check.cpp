@@ -207,8 +207,9 @@ class Placing {
 
 class CertificateFile {
  public:
-  CertificateFile(const std::string& file, const Bodies& bodies, const CheckMap& map)
-      : out_(file, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
+  CertificateFile(const std::string& path, const TrajectoryFile& file, const Bodies& bodies, const CheckMap& map)
+      : out_(path, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
+        file_(file),
         bodies_(bodies),
         map_(map) {}
 
@@ -216,20 +217,19 @@ class CertificateFile {
     const BodyInMotion a{pair.motion, &bodies_.of_agent[pair.body]};
     const geometry::Motion motion = pair.motion, other = pair.other_motion;
     if (pair.with_obstacle) {
-      const auto proof = geometry::certify(motion, *a.body, map_.shapes[pair.other]);
-      if (proof) return write(certificate_json(*proof, a, map_.obstacles[pair.other]));
-    } else {
-      const BodyInMotion b{pair.other_motion, &bodies_.of_agent[pair.other]};
-      const auto proof = geometry::certify(motion, *a.body, other, *b.body);
-      if (proof) return write(certificate_json(*proof, a, b));
+      const formation::SceneObstacle& obstacle = map_.obstacles[pair.other];
+      const auto proof = geometry::certify(motion, *a.body, obstacle.shape);
+      return proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
     }
-    ++without_;
+    const BodyInMotion b{pair.other_motion, &bodies_.of_agent[pair.other]};
+    const auto proof = geometry::certify(motion, *a.body, other, *b.body);
+    proof ? write(certificate_json(*proof, a, b)) : write_none(pair);
   }
   void finish() {
     put({{"summary", {{"certificates", count_}, {"without", without_}}}});
     out_.commit();
-    message(fmt::format("{} of motions that come near; {} have none, since they touch",
-                        geometry::counted(count_, "certificate"), geometry::counted(without_, "pair")));
+    message(fmt::format("{} for motions that come near and stay clear, none for {} that {}",
+                        geometry::counted(count_, "certificate"), without_, without_ == 1 ? "touches" : "touch"));
   }
 
  private:
@@ -237,10 +237,20 @@ class CertificateFile {
     ++count_;
     put({{"certificate", std::move(certificate)}});
   }
+  void write_none(const MetPair& pair) {
+    ++without_;
+    put({{"certificate", nullptr},
+         {"from",
+          pair.with_obstacle ? pair.motion.from.time : std::max(pair.motion.from.time, pair.other_motion.from.time)},
+         {"body", file_.agents[pair.body]},
+         {pair.with_obstacle ? "obstacle" : "other",
+          pair.with_obstacle ? map_.obstacles[pair.other].id : file_.agents[pair.other]}});
+  }
   void put(const OrderedJson& json) {
     out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
   }
   datasets::AtomicFile out_;
+  const TrajectoryFile& file_;
   const Bodies& bodies_;
   const CheckMap& map_;
   std::size_t count_ = 0, without_ = 0;
@@ -312,7 +322,7 @@ ExitCode check(const CheckFlags& flags) {
   answer.begin();
 
   std::optional<CertificateFile> certificates;
-  if (!flags.certificates.empty()) certificates.emplace(flags.certificates, bodies, map);
+  if (!flags.certificates.empty()) certificates.emplace(flags.certificates, file, bodies, map);
   std::optional<CheckPicture> picture;
   if (!flags.figure.empty()) picture.emplace(asked, map.shapes, bodies.of_agent);
   geometry::MotionCheckOptions options{between, asked.near, {}};

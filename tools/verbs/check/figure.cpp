@@ -54,6 +54,14 @@ Box square_round(const Box& box) {
   return {middle - Vec2{half, half}, middle + Vec2{half, half}};
 }
 
+std::string line_style_of(double width, const char* colour) {
+  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
+}
+
+std::string body_style_of(const char* colour) {
+  return fmt::format("with filledcurves closed fs transparent solid 0.3 border lc rgb '{0}' fc rgb '{0}'", colour);
+}
+
 /// One panel: data sets and the command that draws them.
 class Panel {
  public:
@@ -68,6 +76,14 @@ class Panel {
     const int index = data_.begin(title, "x, y [m]");
     data_.rows(points);
     plot_.data(index, origin_.using_columns() + " " + style);
+  }
+  /// With its rows. gnuplot draws no line between two points that are out of view.
+  void way(const std::string& title, const Points& way, const char* colour) {
+    std::vector<Points> seen;
+    for (std::size_t k = 1; k < way.size(); ++k)
+      if (Points piece = segment_within(view_, way[k - 1], way[k]); !piece.empty()) seen.push_back(std::move(piece));
+    curves(title, seen, line_style_of(1.4, colour), false);
+    points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
   }
   void map(const std::vector<geometry::Obstacle>& obstacles) {
     std::vector<Points> solids, walls;
@@ -95,14 +111,6 @@ class Panel {
   DataFile& data_;
   PlotCommand plot_;
 };
-
-std::string line_style_of(double width, const char* colour) {
-  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
-}
-
-std::string body_style_of(const char* colour) {
-  return fmt::format("with filledcurves closed fs transparent solid 0.35 border lc rgb '{0}' fc rgb '{0}'", colour);
-}
 
 constexpr const char* kPlaceStyle = "with points pt 6 ps 1.4 lw 2 lc rgb '#e00000'";
 
@@ -165,15 +173,13 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
     for (const auto* rings : {&body, &other})
       for (const Points& ring : *rings)
         for (const Vec2 p : ring) near.add(p);
-    near = near.grown(0.35 * std::max(near.width(), near.height()));
+    near = near.grown(0.6 * std::max(near.width(), near.height()));
     Panel panel(square_round(near), data);
     panel.map(map_);
     panel.curves("first body", body, body_style_of(kFirstColour), true);
     panel.curves("other body", other, body_style_of(kOtherColour), true);
-    panel.curves("way of the first", {c.way},
-                 fmt::format("with linespoints pt 7 ps 0.4 lw 1.4 lc rgb '{}'", kFirstColour), false);
-    panel.curves("way of the other", {c.other_way},
-                 fmt::format("with linespoints pt 7 ps 0.4 lw 1.4 lc rgb '{}'", kOtherColour), false);
+    panel.way("way of the first", c.way, kFirstColour);
+    panel.way("way of the other", c.other_way, kOtherColour);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
     const std::string names = c.event.with_obstacle
                                   ? asked_.file.agents[c.event.body] + " and an obstacle"
@@ -188,15 +194,14 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   sheet.columns = close_.empty() ? 1 : close_.size() <= 1 ? 2 : 3;
   sheet.panel_width = sheet.panel_height = close_.empty() ? 560.0 : 300.0;
   sheet.gap = 60.0;
-  sheet.legend = {{std::string("keyentry ") + line_style_of(0.8, kWayColour), "way"},
+  sheet.legend = {{"keyentry " + line_style_of(0.8, kWayColour), "way"},
                   {std::string("keyentry ") + kPlaceStyle, "where an overlap is deepest"}};
   if (!close_.empty()) {
     sheet.legend.push_back(
-        {fmt::format("keyentry with boxes fs transparent solid 0.35 noborder fc rgb '{}'", kFirstColour),
-         "first body"});
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kFirstColour),
+         "first body; dots are its rows"});
     sheet.legend.push_back(
-        {fmt::format("keyentry with boxes fs transparent solid 0.35 noborder fc rgb '{}'", kOtherColour),
-         "other body"});
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kOtherColour), "other body"});
   }
   return sheet_figure("check", data.text(), "Ways of agents, and where they overlap.", sheet);
 }
