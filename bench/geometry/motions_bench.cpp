@@ -4,8 +4,9 @@
 //
 //     bench_motions [AGENTS] [STEPS] [ROUNDS]      by default 1000 agents, 1000 steps: 10^6 motions, 10^4 edges
 //
-// The scene: 2500 square blocks of 2 m, a street of 2 m between neighbours. Agents of radius 0.3 m walk along the
-// streets on the right, at 1.1 to 1.5 m/s, and turn at crossings; a step lasts 0.1 s.
+// The scene: 2500 square blocks, turned at random, 4 m from middle to middle. Agents of radius 0.3 m walk round blocks
+// on circles of 2 m at 1.1 to 1.5 m/s, 5 cm from the corners, and change to a neighbour's circle where the two touch. A
+// step lasts 0.1 s.
 //
 // Two textbook loops, both with doubles and the hashed grid of the check, adapted: `same boxes` has the grid hold the
 // boxes of motions, as the check does, and samples each pair whose boxes meet at ten moments; `grid a sample` has it
@@ -37,7 +38,7 @@ using geometry::Segment;
 using geometry::StraightMotion;
 using geometry::Vec2;
 
-constexpr double kRadius = 0.3, kStep = 0.1, kSpacing = 4.0, kBlock = 2.0;  // m, s
+constexpr double kRadius = 0.3, kStep = 0.1, kSpacing = 4.0, kCorner = 1.65;  // m, s
 constexpr int kBlocksASide = 50;
 constexpr int kSamples = 10;
 
@@ -48,15 +49,19 @@ struct Scene {
   std::vector<std::vector<Vec2>> at;  ///< of each step, of each agent
 };
 
-/// Agents go along the middle of streets, `kLane` to the right of it, and turn where streets cross.
+/// Neighbouring circles turn in opposite directions, so that an agent can change from one to the other.
 Scene scene_of(int agents, int steps) {
-  constexpr double kLane = 0.45, kScatter = 0.1;
+  constexpr double kQuarter = 0.5 * geometry::kPi;
   Scene scene;
+  Stream stream(7);
+  const auto middle = [](int x, int y) { return Vec2{kSpacing * x, kSpacing * y}; };
   for (int y = 0; y < kBlocksASide; ++y)
     for (int x = 0; x < kBlocksASide; ++x) {
-      const Vec2 low{kSpacing * x + 1.0, kSpacing * y + 1.0};
-      scene.map.emplace_back(
-          geometry::Polygon{{low, low + Vec2{kBlock, 0}, low + Vec2{kBlock, kBlock}, low + Vec2{0, kBlock}}, {}});
+      const double turn = kQuarter * stream.uniform();
+      geometry::Polygon block;
+      for (int k = 0; k < 4; ++k)
+        block.outer.push_back(middle(x, y) + geometry::rotated({kCorner, 0.0}, turn + kQuarter * k));
+      scene.map.emplace_back(block);
     }
   for (std::size_t k = 0; k < scene.map.size(); ++k)
     for (const Segment& edge : geometry::edges_of(scene.map[k])) {
@@ -64,36 +69,28 @@ Scene scene_of(int agents, int steps) {
       scene.owner.push_back(k);
     }
   struct Walker {
-    int x, y, dx, dy;  // the crossing that it left, and its direction
-    double along, speed, aside;
+    int x, y;               // its block
+    double angle, turning;  // rad, rad a step
   };
-  Stream stream(7);
-  std::vector<Walker> walkers;
   const auto below = [&](int n) { return static_cast<int>(stream.uniform() * n); };
-  for (int a = 0; a < agents; ++a) {
-    const bool level = below(2) == 0;
-    const int sign = below(2) == 0 ? 1 : -1;
-    walkers.push_back({1 + below(kBlocksASide - 1), 1 + below(kBlocksASide - 1), level ? sign : 0, level ? 0 : sign,
-                       kSpacing * stream.uniform(), 1.1 + 0.4 * stream.uniform(),
-                       kLane + kScatter * (stream.uniform() - 0.5)});
-  }
+  const auto sense = [](int x, int y) { return (x + y) % 2 == 0 ? 1.0 : -1.0; };
+  std::vector<Walker> walkers;
+  for (int a = 0; a < agents; ++a)
+    walkers.push_back({below(kBlocksASide), below(kBlocksASide), 4.0 * kQuarter * stream.uniform(),
+                       (1.1 + 0.4 * stream.uniform()) * kStep / (0.5 * kSpacing)});
   for (int k = 0; k <= steps; ++k) {
     std::vector<Vec2> row;
     for (Walker& w : walkers) {
-      const Vec2 direction{static_cast<double>(w.dx), static_cast<double>(w.dy)};
-      row.push_back(Vec2{kSpacing * w.x, kSpacing * w.y} + w.along * direction +
-                    w.aside * Vec2{direction.y, -direction.x});
-      w.along += w.speed * kStep;
-      if (w.along < kSpacing) continue;
-      w.along -= kSpacing;
-      w.x += w.dx;
-      w.y += w.dy;
-      const int turn = below(4);
-      if (turn == 0) std::tie(w.dx, w.dy) = std::make_tuple(w.dy, -w.dx);
-      if (w.x + w.dx < 0 || w.x + w.dx > kBlocksASide || w.y + w.dy < 0 || w.y + w.dy > kBlocksASide) {
-        w.dx = -w.dx;
-        w.dy = -w.dy;
-      }
+      row.push_back(middle(w.x, w.y) + geometry::rotated({0.5 * kSpacing, 0.0}, w.angle));
+      const double before = std::floor(w.angle / kQuarter);
+      w.angle += sense(w.x, w.y) * w.turning;
+      const double after = std::floor(w.angle / kQuarter);
+      if (before == after || below(2) == 0) continue;
+      const double passed = kQuarter * std::max(before, after);
+      const int x = w.x + static_cast<int>(std::lround(std::cos(passed)));
+      const int y = w.y + static_cast<int>(std::lround(std::sin(passed)));
+      if (x < 0 || y < 0 || x >= kBlocksASide || y >= kBlocksASide) continue;
+      w = {x, y, 2.0 * passed + 2.0 * kQuarter - w.angle, w.turning};
     }
     scene.at.push_back(row);
   }

@@ -137,7 +137,7 @@ TEST(MotionCheck, FindsWhatAllAgainstAllFinds) {
           << "round " << round;
       ASSERT_EQ(found[i].first.low, expected[i].first.low);
       ASSERT_EQ(found[i].last.high, expected[i].last.high);
-      ASSERT_EQ(found[i].clearance.low, expected[i].clearance.low);
+      ASSERT_NEAR(found[i].clearance.low, expected[i].clearance.low, 1e-11);
     }
     judged += found.size();
     overlaps += check.overlaps;
@@ -181,8 +181,9 @@ TEST(MotionCheck, ListsAllPairsThatComeNear) {
         ASSERT_LT(next, check.approaches.size());
         const geometry::Approach& found = check.approaches[next++];
         ASSERT_EQ(std::tie(found.body, found.other), std::tie(i, j));
-        ASSERT_EQ(found.clearance.low, least.low);
-        ASSERT_EQ(found.clearance.high, least.high);
+        // Enclosures of one number. The check leaves out moments at which both bodies go on, this loop does not.
+        ASSERT_NEAR(found.clearance.low, least.low, 1e-11);
+        ASSERT_NEAR(found.clearance.high, least.high, 1e-11);
       }
     ASSERT_EQ(next, check.approaches.size());
     judged += next;
@@ -276,6 +277,17 @@ TEST(MotionStream, GivesWhatAllTogetherGivesAndForgetsWhatHasEnded) {
     judged += streamed.size();
   }
   EXPECT_GE(judged, 100u);
+}
+
+TEST(MotionStream, ForgetsPiecesThatNothingFollows) {
+  geometry::MotionStream stream(kMap, {}, [](const MotionEvent&) {});
+  for (int b = 0; b < 10; ++b) stream.add_body(geometry::disc_body(0.1));
+  for (int k = 0; k < 3000; ++k)
+    for (std::size_t b = 0; b < 10; ++b)
+      stream.add(b, geometry::held({0.125 * k, {20.0 + static_cast<double>(b), 0.01 * k}}, 0.125 * k + 0.125));
+  const MotionCheck check = stream.finish();
+  EXPECT_EQ(check.pieces, 30000u);
+  EXPECT_LE(check.most_held, 1100u);
 }
 
 TEST(MotionStream, PiecesOutOfOrderAreAMistake) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <unordered_map>
@@ -43,6 +44,8 @@ struct SweptBody {
   bool is_disc = false;             ///< round the reference point
   bool outside = false;             ///< of all polygons, at `last`
   TimedPoint last{-kInfinity, {}};  ///< where its last piece ended
+  std::uint64_t serial = 0;         ///< of its last piece
+  std::uint64_t continued = 0;      ///< the piece that its last one continues
 };
 
 SweptBody swept_body(RigidBody shape) {
@@ -63,37 +66,43 @@ SweptBody swept_body(RigidBody shape) {
 struct Piece {
   Box box;  ///< holds the body all the time
   StraightMotion motion;
-  std::uint64_t serial = 0;  ///< rising as pieces come
+  std::uint64_t serial = 0;  ///< from 1, rising as pieces come
   std::uint32_t body = 0;
+  bool continues = false;  ///< begins when and where the body's piece before it ends
+  /// Continues, and lasts: what is met at its first moment is met by the piece before it, too. (A way that is gone in
+  /// no time meets others as a whole.)
+  bool follows = false;
 };
 
-/// Holds the body and half of what counts as near; rounded outward.
+/// Holds the body and half of what counts as near; rounded outward: three roundings of 2^-53 are less than 2^-50.
 Box swept_box(const StraightMotion& m, double body_reach, double near) {
-  const double reach = std::nextafter(body_reach + 0.5 * near, kInfinity);
+  constexpr double kOutward = 0x1p-50;
+  const double reach = body_reach + 0.5 * near;
   Box box;
   box.add(m.from.at);
   box.add(m.to.at);
-  const auto down = [&](double x) { return std::nextafter(x - reach, -kInfinity); };
-  const auto up = [&](double x) { return std::nextafter(x + reach, kInfinity); };
+  const auto down = [&](double x) { return x - reach - kOutward * (std::fabs(x) + reach); };
+  const auto up = [&](double x) { return x + reach + kOutward * (std::fabs(x) + reach); };
   return {{down(box.low.x), down(box.low.y)}, {up(box.high.x), up(box.high.y)}};
 }
 
 /// The pieces that are under way, by place. Cells are hashed, so that the world has no bounds; their side follows the
-/// boxes. Boxes of many cells stand in a list of their own.
+/// boxes. Boxes of many cells stand in a list of their own. A piece that follows the one before it takes its place.
 class MovingGrid {
  public:
   /// Calls visit(other) once for each piece of another body that is under way as this one begins and whose box meets
   /// this one's, in the order in which they came; then adds it. REQUIRES: no piece before began later.
   template <class Visit>
   void meet_and_add(const Piece& piece, const Visit& visit) {
-    forget_ended(piece.motion.from.time);
+    now_ = piece.motion.from.time;
+    if (++since_swept_ > kept_ + kLeastTable) forget_ended();
     adapt_side(piece.box);
     const Cells own = cells_of(piece.box);
     find(piece, own);
     if (found_.size() > 1)
       std::sort(found_.begin(), found_.end(),
-                [&](std::uint32_t a, std::uint32_t b) { return pool_[a].serial < pool_[b].serial; });
-    for (const std::uint32_t k : found_) visit(pool_[k]);
+                [&](std::uint32_t a, std::uint32_t b) { return pool_[a].piece.serial < pool_[b].piece.serial; });
+    for (const std::uint32_t k : found_) visit(pool_[k].piece);
     found_.clear();
     add(piece, own);
   }
@@ -103,18 +112,26 @@ class MovingGrid {
  private:
   static constexpr std::int64_t kMostCells = 64;
   static constexpr std::size_t kLeastTable = std::size_t{1} << 10;
+  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
   struct Cells {
     std::int64_t x0, y0, x1, y1;
     bool is_large() const {
       return x1 - x0 >= kMostCells || y1 - y0 >= kMostCells || (x1 - x0 + 1) * (y1 - y0 + 1) > kMostCells;
     }
+    bool operator==(const Cells& c) const { return x0 == c.x0 && y0 == c.y0 && x1 == c.x1 && y1 == c.y1; }
   };
-  using End = std::pair<double, std::uint32_t>;  ///< when a piece ends, and its place in the pool
+  struct Held {
+    Piece piece;
+    Cells cells{};
+    bool is_free = false;
+  };
 
   Cells cells_of(const Box& box) const {
     const auto cell = [&](double x) {
       constexpr double kMost = 0x1p60;
-      return static_cast<std::int64_t>(std::clamp(std::floor(x * per_side_), -kMost, kMost));
+      const double scaled = std::clamp(x * per_side_, -kMost, kMost);
+      const auto whole = static_cast<std::int64_t>(scaled);
+      return whole - (static_cast<double>(whole) > scaled ? 1 : 0);
     };
     return {cell(box.low.x), cell(box.low.y), cell(box.high.x), cell(box.high.y)};
   }
@@ -130,12 +147,13 @@ class MovingGrid {
   }
 
   void find(const Piece& piece, const Cells& own) {
-    const auto meets = [&](const Piece& other) {
-      return other.body != piece.body && geometry::meet(other.box, piece.box);
+    const auto meets = [&](const Held& held) {
+      const Piece& other = held.piece;
+      return other.body != piece.body && geometry::meet(other.box, piece.box) && other.motion.to.time >= now_;
     };
     if (own.is_large()) {
-      for (const End& end : all_)
-        if (meets(pool_[end.second])) found_.push_back(end.second);
+      for (std::uint32_t k = 0; k < pool_.size(); ++k)
+        if (!pool_[k].is_free && meets(pool_[k])) found_.push_back(k);
       return;
     }
     for (const std::uint32_t k : large_)
@@ -144,88 +162,142 @@ class MovingGrid {
       for (const std::uint32_t k : list_of(x, y)) {
         if (!meets(pool_[k])) continue;
         // Of the cells that both have, the first; cells that share a list are told apart by this, too.
-        const Cells other = cells_of(pool_[k].box);
+        const Cells& other = pool_[k].cells;
         if (x == std::max(own.x0, other.x0) && y == std::max(own.y0, other.y0)) found_.push_back(k);
       }
     });
   }
 
   void add(const Piece& piece, const Cells& own) {
+    if (piece.body >= place_of_.size()) place_of_.resize(piece.body + 1, kNoPlace);
+    std::uint32_t& place = place_of_[piece.body];
+    // Of a way that is gone in no time the next piece has the end only.
+    if (place != kNoPlace && piece.follows && pool_[place].piece.motion.from.time < now_) {
+      Held& held = pool_[place];
+      sum_of_widths_ += width_of(piece.box) - width_of(held.piece.box);
+      held.piece = piece;
+      if (held.cells == own) return;
+      unlist(place);
+      held.cells = own;
+      return list(place);
+    }
     if (free_.empty()) {
       free_.push_back(static_cast<std::uint32_t>(pool_.size()));
       pool_.emplace_back();
     }
-    const std::uint32_t k = free_.back();
+    place = free_.back();
     free_.pop_back();
-    pool_[k] = piece;
+    pool_[place] = {piece, own, false};
     sum_of_widths_ += width_of(piece.box);
-    all_.emplace_back(piece.motion.to.time, k);
-    std::push_heap(all_.begin(), all_.end(), std::greater<>());
-    list(k, own);
+    list(place);
   }
-  void list(std::uint32_t k, const Cells& own) {
+  void list(std::uint32_t k) {
+    const Cells& own = pool_[k].cells;
     if (own.is_large()) return large_.push_back(k);
     for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
       std::vector<std::uint32_t>& cell = list_of(x, y);
       if (cell.empty() || cell.back() != k) cell.push_back(k);
     });
   }
+  void unlist(std::uint32_t k) {
+    const auto take_from = [&](std::vector<std::uint32_t>& list) {
+      const auto at = std::find(list.begin(), list.end(), k);
+      if (at == list.end()) return;
+      *at = list.back();
+      list.pop_back();
+    };
+    const Cells& own = pool_[k].cells;
+    if (own.is_large()) return take_from(large_);
+    for_each_cell(own, [&](std::int64_t x, std::int64_t y) { take_from(list_of(x, y)); });
+  }
 
-  void forget_ended(double now) {
-    while (!all_.empty() && all_.front().first < now) {
-      const std::uint32_t k = all_.front().second;
-      std::pop_heap(all_.begin(), all_.end(), std::greater<>());
-      all_.pop_back();
-      sum_of_widths_ -= width_of(pool_[k].box);
-      const Cells own = cells_of(pool_[k].box);
-      const auto take_from = [&](std::vector<std::uint32_t>& list) {
-        const auto at = std::find(list.begin(), list.end(), k);
-        if (at == list.end()) return;
-        *at = list.back();
-        list.pop_back();
-      };
-      if (own.is_large()) {
-        take_from(large_);
-      } else {
-        for_each_cell(own, [&](std::int64_t x, std::int64_t y) { take_from(list_of(x, y)); });
-      }
+  void forget_ended() {
+    since_swept_ = 0;
+    for (std::uint32_t k = 0; k < pool_.size(); ++k) {
+      Held& held = pool_[k];
+      if (held.is_free || held.piece.motion.to.time >= now_) continue;
+      unlist(k);
+      sum_of_widths_ -= width_of(held.piece.box);
+      if (place_of_[held.piece.body] == k) place_of_[held.piece.body] = kNoPlace;
+      held.is_free = true;
       free_.push_back(k);
     }
+    kept_ = pool_.size() - free_.size();
   }
 
   static double width_of(const Box& box) { return std::max(box.high.x - box.low.x, box.high.y - box.low.y); }
 
   /// Lists all anew where cells are far from twice as wide as the mean of the boxes, or pieces are more than lists.
   void adapt_side(const Box& next) {
-    const double wanted = 2.0 * (sum_of_widths_ + width_of(next)) / static_cast<double>(all_.size() + 1);
-    const bool fits = wanted * per_side_ > 0.25 && wanted * per_side_ < 4.0;
-    if ((fits || !(wanted > 0.0) || !std::isfinite(1.0 / wanted)) && all_.size() < lists_.size()) return;
-    if (!fits && wanted > 0.0 && std::isfinite(1.0 / wanted)) per_side_ = 1.0 / wanted;
+    const std::size_t held = pool_.size() - free_.size();
+    const double wanted = 2.0 * (sum_of_widths_ + width_of(next)) / static_cast<double>(held + 1);
+    const bool is_usable = wanted > 0.0 && std::isfinite(1.0 / wanted);
+    const bool fits = !is_usable || (wanted * per_side_ > 0.25 && wanted * per_side_ < 4.0);
+    if (fits && held < lists_.size()) return;
+    if (!fits) per_side_ = 1.0 / wanted;
     std::size_t table = lists_.size();
-    while (table <= all_.size()) table *= 4;
+    while (table <= held) table *= 4;
     lists_.assign(table, {});
     large_.clear();
     sum_of_widths_ = 0.0;
-    for (const End& end : all_) {
-      list(end.second, cells_of(pool_[end.second].box));
-      sum_of_widths_ += width_of(pool_[end.second].box);
+    for (std::uint32_t k = 0; k < pool_.size(); ++k) {
+      if (pool_[k].is_free) continue;
+      pool_[k].cells = cells_of(pool_[k].piece.box);
+      list(k);
+      sum_of_widths_ += width_of(pool_[k].piece.box);
     }
   }
 
+  double now_ = -kInfinity;
   double per_side_ = 1.0;  ///< cells a metre
   double sum_of_widths_ = 0.0;
-  std::vector<Piece> pool_;
+  std::size_t since_swept_ = 0;  ///< pieces that came
+  std::size_t kept_ = 0;         ///< pieces, when those that had ended were forgotten
+  std::vector<Held> pool_;
   std::vector<std::uint32_t> free_;
-  std::vector<End> all_;  ///< a heap, the next to end first
+  std::vector<std::uint32_t> place_of_;  ///< of each body's last piece in the pool
   std::vector<std::vector<std::uint32_t>> lists_{kLeastTable};
   std::vector<std::uint32_t> large_, found_;
 };
+
+/// A quick filter in plain doubles. For vectors whose coordinates are differences of two doubles, rounded, a dot or
+/// cross product is wrong by at most 4 * 2^-53 of the sum of the sizes of its two products, and a bit; the root that
+/// makes a length by 2 * 2^-53 of itself. `kQuick` is more than twice as much. What underflows may be wrong by some
+/// 2^-1074, which is nothing beside `kQuick` of kLeastSize.
+constexpr double kQuick = 0x1p-49;
+constexpr double kLeastSize = 0x1p-900;
+
+/// Whether n.v > reach |n| for certain. `length`: |n|, rounded.
+bool surely_beyond(Vec2 n, double length, Vec2 v, double reach) {
+  const double x = n.x * v.x, y = n.y * v.y, wanted = reach * length;
+  return wanted > kLeastSize && x + y > wanted + kQuick * (std::fabs(x) + std::fabs(y) + wanted);
+}
+
+/// Whether two discs are apart by more than `reach` all the time, between the lines across one of the ends of their
+/// difference. False where this is not certain.
+bool quickly_apart(const StraightMotion& a, const StraightMotion& b, double reach) {
+  const Vec2 from = a.from.at - b.from.at, to = a.to.at - b.to.at;
+  const double first = norm(from), last = norm(to);
+  return (surely_beyond(from, first, from, reach) && surely_beyond(from, first, to, reach)) ||
+         (surely_beyond(to, last, from, reach) && surely_beyond(to, last, to, reach));
+}
+
+/// Whether a disc stays beside an edge's line, or before one of its ends. False where this is not certain.
+bool quickly_beside(const StraightMotion& m, const Segment& edge, double reach) {
+  const Vec2 along = edge.b - edge.a, across{-along.y, along.x};
+  const double length = norm(along);
+  const auto beyond = [&](Vec2 n, Vec2 origin) {
+    return surely_beyond(n, length, m.from.at - origin, reach) && surely_beyond(n, length, m.to.at - origin, reach);
+  };
+  return beyond(across, edge.a) || beyond(-across, edge.a) || beyond(-along, edge.a) || beyond(along, edge.b);
+}
 
 using Filtered = Vector<RunningError>;
 
 /// Whether the filter clears two discs over the same span of time by more than `more`.
 bool surely_clear(const StraightMotion& a, double radius_a, const StraightMotion& b, double radius_b, double more) {
   if (a.from.time != b.from.time || a.to.time != b.to.time) return false;
+  if (quickly_apart(a, b, radius_a + radius_b + more)) return true;
   const Filtered origin{RunningError(0.0), RunningError(0.0)};
   const Filtered way =
       detail::difference<RunningError>(a.to.at, a.from.at) - detail::difference<RunningError>(b.to.at, b.from.at);
@@ -235,6 +307,7 @@ bool surely_clear(const StraightMotion& a, double radius_a, const StraightMotion
 }
 
 bool surely_clear_of(const StraightMotion& a, double radius, const Segment& edge, double more) {
+  if (quickly_beside(a, edge, radius + more)) return true;
   const Filtered from{RunningError(0.0), RunningError(0.0)};
   const Filtered to = detail::difference<RunningError>(a.to.at, a.from.at);
   const GrownHull<RunningError> hull{
@@ -429,16 +502,35 @@ class Sweep {
             std::isfinite(motion.from.time) && std::isfinite(motion.to.time) && is_finite(motion.from.at) &&
             is_finite(motion.to.at),
         hex_text(motion.from.time) + " " + hex_text(motion.to.time) + " " + excerpt({motion.from.at, motion.to.at}));
-    now_ = motion.from.time;
-    events_.advance(now_);
-    const Piece piece{swept_box(motion, body.reach, near_), motion, check_.pieces++,
-                      static_cast<std::uint32_t>(number)};
+    if (now_ < motion.from.time) {
+      meet_at_ends();
+      now_ = motion.from.time;
+      events_.advance(now_);
+    }
+    const bool continues = body.last.time == motion.from.time && body.last.at == motion.from.at;
+    const Piece piece{swept_box(motion, body.reach, near_), motion,    ++check_.pieces,
+                      static_cast<std::uint32_t>(number),   continues, continues && motion.from.time < motion.to.time};
+    if (piece.follows) {
+      body.continued = body.serial;
+    } else {
+      meet_at_ends(number);
+    }
     meet_map(piece, body);
     body.last = motion.to;
-    grid_.meet_and_add(piece, [&](const Piece& other) { meet_body(piece, other); });
+    body.serial = piece.serial;
+    grid_.meet_and_add(piece, [&](const Piece& other) {
+      const bool has_ended = other.motion.to.time == now_ && other.motion.from.time < now_;
+      // Where the other goes on, its next piece is met at this moment too.
+      if (has_ended && bodies_[other.body].serial == other.serial) {
+        at_ends_.push_back({piece, other});
+      } else {
+        meet_body(piece, other);
+      }
+    });
   }
 
   MotionCheck finish() {
+    meet_at_ends();
     events_.finish();
     check_.most_held = grid_.most_held();
     check_.approaches = approaches_.sorted();
@@ -446,9 +538,28 @@ class Sweep {
   }
 
  private:
+  /// A piece, and one of another body that ends as it begins.
+  struct AtEnd {
+    Piece piece, ended;
+  };
+
+  /// Those whose other body has not gone on; of one body only where it is given, and then no more.
+  void meet_at_ends(std::optional<std::size_t> body = {}) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < at_ends_.size(); ++k) {
+      const AtEnd& pair = at_ends_[k];
+      if (body && pair.ended.body != *body) {
+        at_ends_[kept++] = pair;
+      } else if (bodies_[pair.ended.body].continued != pair.ended.serial) {
+        meet_body(pair.piece, pair.ended);
+      }
+    }
+    at_ends_.resize(kept);
+  }
+
   void meet_map(const Piece& piece, SweptBody& body) {
     const StraightMotion& m = piece.motion;
-    const bool stays_outside = body.outside && body.last.time == m.from.time && body.last.at == m.from.at;
+    const bool stays_outside = body.outside && piece.continues;
     suspects_.clear();
     met_.clear();
     map_.for_each_edge(swept_box(m, body.reach, 2.0 * near_), [&](const Segment& edge, std::size_t k) {
@@ -519,6 +630,7 @@ class Sweep {
   MovingGrid grid_;
   std::vector<SweptBody> bodies_;
   std::vector<std::size_t> suspects_, met_;
+  std::vector<AtEnd> at_ends_;
   double now_ = -kInfinity;
 };
 
