@@ -13,6 +13,7 @@ Verb paper_verb();
 Verb lp_verb();
 Verb vo_verb();
 Verb audit_verb();
+Verb check_verb();
 Verb trap_verb();
 Verb route_verb();
 Verb validate_verb();
@@ -23,10 +24,10 @@ Verb generate_verb();
 Verb segment_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {simulate_verb(), explain_verb(),  draw_verb(),   view_verb(),    serve_verb(),
-                                        paper_verb(),    lp_verb(),       vo_verb(),     audit_verb(),   trap_verb(),
-                                        route_verb(),    validate_verb(), repair_verb(), convert_verb(), batch_verb(),
-                                        generate_verb(), segment_verb()};
+  static const std::vector<Verb> all = {
+      simulate_verb(), explain_verb(), draw_verb(),    view_verb(),  serve_verb(),    paper_verb(),
+      lp_verb(),       vo_verb(),      audit_verb(),   check_verb(), trap_verb(),     route_verb(),
+      validate_verb(), repair_verb(),  convert_verb(), batch_verb(), generate_verb(), segment_verb()};
   return all;
 }
 

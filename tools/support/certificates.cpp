@@ -20,6 +20,7 @@
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "support/fields.h"
+#include "support/motion_certificates.h"
 #include "support/route_certificates.h"
 #include "support/unsigned_zero.h"
 
@@ -219,6 +220,7 @@ class TreeChecker {
       for (const Json& item : value) walk(item);
     if (!value.is_object()) return;
     if (RouteChecker::is_one(value)) return checked_.all.push_back(routes_.check_one(value, nullptr));
+    if (is_motion_certificate(value)) return checked_.all.push_back(check_motion_certificate(value));
     if (RouteChecker::lacks_one(value)) return checked_.all.push_back({"no certificate", "", false});
     for (const auto& [key, member] : value.items()) {
       if (key == "certificate") {
@@ -234,6 +236,8 @@ class TreeChecker {
       ++checked_.none;
     } else if (RouteChecker::is_one(certificate)) {
       checked_.all.push_back(routes_.check_one(certificate, object));
+    } else if (is_motion_certificate(certificate)) {
+      checked_.all.push_back(check_motion_certificate(certificate));
     } else {
       checked_.all.push_back(checked_beside(text_in(certificate).value_or(""), object));
     }

@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// Certificates of half-planes and of containment as text, and of routes as JSON (route_certificates.h), checked by the
-/// checkers of vo/certificate.h, vo/containment.h and geometry/route_certificate.h, which share nothing with what makes
-/// them.
+/// Certificates of half-planes and of containment as text, and of routes (route_certificates.h) and motions
+/// (motion_certificates.h) as JSON, checked by the checkers of vo/certificate.h, vo/containment.h,
+/// geometry/route_certificate.h and geometry/motion_certificate.h, which share nothing with what makes them.
 
 #include <cstddef>
 #include <string>

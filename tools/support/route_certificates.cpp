@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
+#include "support/certificate_json.h"
 
 namespace exactvo::tools {
 
@@ -18,8 +19,6 @@ using geometry::ChainPoint;
 using geometry::EdgeName;
 using geometry::ExactPoint;
 using geometry::Obstacle;
-using geometry::Polygon;
-using geometry::Polyline;
 using geometry::Route;
 using geometry::RouteAnswer;
 using geometry::RouteQuestion;
@@ -49,25 +48,11 @@ OrderedJson json_of(const ChainPoint& p) {
   return {{"point", json_of(p.point)}, {"obstacle", p.on.obstacle}, {"edge", p.on.edge}, {"gap", p.gap_follows}};
 }
 
-OrderedJson json_of(const formation::SceneObstacle& obstacle);
-
 template <typename Value>
 OrderedJson json_of(const std::vector<Value>& values) {
   OrderedJson list = OrderedJson::array();
   for (const Value& value : values) list.push_back(json_of(value));
   return list;
-}
-
-OrderedJson json_of(const formation::SceneObstacle& obstacle) {
-  OrderedJson json{{"id", obstacle.id}};
-  if (const auto* wall = std::get_if<Polyline>(&obstacle.shape)) {
-    json["polyline"] = json_of(wall->points);
-    return json;
-  }
-  const auto& polygon = std::get<Polygon>(obstacle.shape);
-  json["polygon"] = json_of(polygon.outer);
-  if (!polygon.holes.empty()) json["holes"] = json_of(polygon.holes);
-  return json;
 }
 
 void add(const Route& route, OrderedJson& json) {
@@ -87,27 +72,7 @@ void add(const Blocked& blocked, OrderedJson& json) {
   if (!blocked.inside) json["edge"] = blocked.by.edge;
 }
 
-// --- Reading. Whatever cannot be read throws OrderedJson::exception or std::invalid_argument. (No number that was
-// parsed is infinite.) ---
-
-void require_readable(bool holds) {
-  if (!holds) throw std::invalid_argument("");
-}
-
-/// Nothing where `read` throws either.
-template <typename Read>
-auto read_or_nothing(const Read& read) -> std::optional<decltype(read())> try {
-  return read();
-} catch (const OrderedJson::exception&) {
-  return std::nullopt;
-} catch (const std::invalid_argument&) {
-  return std::nullopt;
-}
-
-Vec2 pair_in(const OrderedJson& json) {
-  require_readable(json.is_array() && json.size() == 2);
-  return {json[0].get<double>(), json[1].get<double>()};
-}
+// --- Reading (certificate_json.h) ---
 
 ExactPoint point_in(const OrderedJson& json) {
   require_readable(json.is_array() && (json.size() == 2 || json.size() == 4));
@@ -116,26 +81,6 @@ ExactPoint point_in(const OrderedJson& json) {
   json[2].get_to(point.x);
   json[3].get_to(point.y);
   return point;
-}
-
-/// A list of what `read` reads, at least `least` long.
-template <typename Read>
-auto list_in(const OrderedJson& json, std::size_t least, const Read& read) {
-  require_readable(json.is_array() && json.size() >= least);
-  std::vector<decltype(read(json))> list;
-  for (const OrderedJson& item : json) list.push_back(read(item));
-  return list;
-}
-
-Obstacle obstacle_in(const OrderedJson& json) {
-  constexpr std::size_t kLeastOfWall = 2, kLeastOfRing = 3;
-  const bool is_wall = json.contains("polyline");
-  require_readable(is_wall != json.contains("polygon"));
-  if (is_wall) return Polyline{list_in(json["polyline"], kLeastOfWall, pair_in)};
-  const auto ring_in = [](const OrderedJson& ring) { return list_in(ring, kLeastOfRing, pair_in); };
-  Polygon polygon{ring_in(json["polygon"]), {}};
-  if (json.contains("holes")) polygon.holes = list_in(json["holes"], 0, ring_in);
-  return polygon;
 }
 
 /// Neither negative nor a fraction, which `get` would convert.
@@ -169,13 +114,6 @@ RouteQuestion question_in(const OrderedJson& json) {
   const RouteQuestion question{json.at("radius").get<double>(), pair_in(json.at("start")), pair_in(json.at("goal"))};
   require_readable(question.radius >= 0.0);
   return question;
-}
-
-/// Null where there is none.
-const OrderedJson* member(const OrderedJson& object, const char* key) {
-  if (!object.is_object()) return nullptr;
-  const auto found = object.find(key);
-  return found == object.end() ? nullptr : &*found;
 }
 
 bool is_status(const OrderedJson* json) {
@@ -282,7 +220,8 @@ OrderedJson certificate_json(const RouteQuestion& question, const RouteAnswer& a
                    {"goal", json_of(question.goal)}};
   std::visit([&](const auto& kind) { add(kind, json); }, answer);
   if (obstacles == nullptr) return json;
-  json["obstacles"] = json_of(*obstacles);
+  json["obstacles"] = OrderedJson::array();
+  for (const formation::SceneObstacle& obstacle : *obstacles) json["obstacles"].push_back(obstacle_json(obstacle));
   return json;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 
 #include "files/system_error.h"
 
@@ -151,6 +152,17 @@ std::string read_beginning(const std::filesystem::path& path, std::size_t count)
   std::string text;
   while (text.size() < count && input.append(text, std::min(kBlock, count - text.size()))) continue;
   return text;
+}
+
+void copy_input(const std::string& input, const std::filesystem::path& to) {
+  Input in = input == "-" ? Input() : Input(input);
+  std::ofstream out(to, std::ios::binary);
+  for (std::string block; in.append(block, kBlock); block.clear()) {
+    call_wait_hook();
+    if (!out.write(block.data(), static_cast<std::streamsize>(block.size()))) break;
+  }
+  out.close();
+  if (!out) throw cannot_write(to, errno);
 }
 
 std::string read_text_file(const std::filesystem::path& path) {

@@ -19,6 +19,9 @@ bool is_pipe(const std::filesystem::path& path);
 /// The first `count` bytes of a regular file, or all. Refuses a pipe as well: what was read of it would be lost.
 std::string read_beginning(const std::filesystem::path& path, std::size_t count);
 
+/// Copies a regular file, a pipe or standard input ("-") as it comes, in memory of one block. Throws DataError.
+void copy_input(const std::string& input, const std::filesystem::path& to);
+
 /// "line 3, column 7", both from 1; columns count bytes.
 std::string line_and_column(std::string_view text, std::size_t byte);
 

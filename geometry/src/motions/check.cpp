@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <unordered_map>
@@ -19,20 +20,12 @@ namespace {
 
 void require_trajectory(const Trajectory& t) {
   EXACTVO_REQUIRE(!t.points.empty(), "no points");
-  EXACTVO_REQUIRE(t.radius >= 0.0 && std::isfinite(t.radius), hex_text(t.radius));
   for (std::size_t i = 0; i < t.points.size(); ++i) {
     const TimedPoint& p = t.points[i];
     EXACTVO_REQUIRE(is_finite(p.at) && std::isfinite(p.time), hex_text(p.time) + " " + excerpt({p.at}));
     EXACTVO_REQUIRE(i == 0 || t.points[i - 1].time <= p.time, hex_text(t.points[i - 1].time) + " " + hex_text(p.time));
   }
 }
-
-/// One motion of one body; `number` counts the body's.
-struct TimedPiece {
-  Box box;  ///< holds the disc all the time
-  double start, end;
-  std::uint32_t body, number;
-};
 
 std::size_t pieces_of(const Trajectory& t, Between between) {
   return between == Between::hold ? t.points.size() : std::max<std::size_t>(1, t.points.size() - 1);
@@ -44,132 +37,295 @@ StraightMotion motion_of(const Trajectory& t, Between between, std::size_t numbe
   return between == Between::hold ? held(from, to.time) : StraightMotion{from, to};
 }
 
-/// Holds the disc and half of what counts as near; rounded outward.
-Box swept_box(const StraightMotion& m, double radius, double near) {
-  const double reach = std::nextafter(radius + 0.5 * near, kInfinity);
+/// A body, and what the sweep wants to know of it.
+struct SweptBody {
+  RigidBody shape;
+  double reach = 0.0;               ///< m: a disc round the reference point that holds it; rounded up
+  bool is_disc = false;             ///< round the reference point
+  bool outside = false;             ///< of all polygons, at `last`
+  TimedPoint last{-kInfinity, {}};  ///< where its last piece ended
+  std::uint64_t serial = 0;         ///< of its last piece
+  std::uint64_t continued = 0;      ///< the piece that its last one continues
+};
+
+SweptBody swept_body(RigidBody shape) {
+  SweptBody body;
+  body.is_disc = shape.size() == 1 && shape[0].corners.size() == 1 && shape[0].corners[0] == Vec2{};
+  for (const RoundedPolygon& part : shape)
+    for (const Vec2 c : part.corners) {
+      // The norm is right to a few ulps, the sum to one.
+      constexpr double kUp = 1.0 + 0x1p-48;
+      const double reach = body.is_disc ? part.radius : (norm(c) + part.radius) * kUp;
+      body.reach = std::max(body.reach, reach);
+    }
+  body.shape = std::move(shape);
+  return body;
+}
+
+/// One motion of one body that is under way.
+struct Piece {
+  Box box;  ///< holds the body all the time
+  StraightMotion motion;
+  std::uint64_t serial = 0;  ///< from 1, rising as pieces come
+  std::uint32_t body = 0;
+  bool continues = false;  ///< begins when and where the body's piece before it ends
+  /// Continues, and lasts: what is met at its first moment is met by the piece before it, too. (A way that is gone in
+  /// no time meets others as a whole.)
+  bool follows = false;
+};
+
+/// Holds the body and half of what counts as near; rounded outward: three roundings of 2^-53 are less than 2^-50.
+Box swept_box(const StraightMotion& m, double body_reach, double near) {
+  constexpr double kOutward = 0x1p-50;
+  const double reach = body_reach + 0.5 * near;
   Box box;
   box.add(m.from.at);
   box.add(m.to.at);
-  const auto down = [&](double x) { return std::nextafter(x - reach, -kInfinity); };
-  const auto up = [&](double x) { return std::nextafter(x + reach, kInfinity); };
+  const auto down = [&](double x) { return x - reach - kOutward * (std::fabs(x) + reach); };
+  const auto up = [&](double x) { return x + reach + kOutward * (std::fabs(x) + reach); };
   return {{down(box.low.x), down(box.low.y)}, {up(box.high.x), up(box.high.y)}};
 }
 
-/// Boxes by place, into which pieces come as time goes on and from which they go. Cells are hashed, so that the world
-/// has no bounds; boxes of many cells stand in a list of their own.
+/// The pieces that are under way, by place. Cells are hashed, so that the world has no bounds; their side follows the
+/// boxes. Boxes of many cells stand in a list of their own. A piece that follows the one before it takes its place.
 class MovingGrid {
  public:
-  MovingGrid(const std::vector<TimedPiece>& pieces, double side) : pieces_(pieces), side_(side), cells_(kTable) {}
-
-  /// Calls visit(j) once for each piece that is still there at `now` and whose box meets this one's; then adds it.
+  /// Calls visit(other) once for each piece of another body that is under way as this one begins and whose box meets
+  /// this one's, in the order in which they came; then adds it. REQUIRES: no piece before began later.
   template <class Visit>
-  void meet_and_add(std::uint32_t i, const Visit& visit) {
-    const double now = pieces_[i].start;
-    const Cells own = cells_of(pieces_[i].box);
-    look_through(large_, i, now, [&](std::uint32_t j) { visit(j); });
-    if (own.is_large()) {
-      for (std::vector<std::uint32_t>& cell : cells_)
-        look_through(cell, i, now, [&](std::uint32_t j) { some_.push_back(j); });
-      std::sort(some_.begin(), some_.end());
-      some_.erase(std::unique(some_.begin(), some_.end()), some_.end());
-      for (const std::uint32_t j : some_) visit(j);
-      some_.clear();
-      large_.push_back(i);
-      return;
-    }
-    for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
-      look_through(cells_[slot(x, y)], i, now, [&](std::uint32_t j) {
-        // Of the cells that both have, the first; cells that share a slot are told apart by this, too.
-        const Cells other = cells_of(pieces_[j].box);
-        if (x == std::max(own.x0, other.x0) && y == std::max(own.y0, other.y0)) visit(j);
-      });
-    });
-    for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
-      std::vector<std::uint32_t>& cell = cells_[slot(x, y)];
-      if (cell.empty() || cell.back() != i) cell.push_back(i);
-    });
+  void meet_and_add(const Piece& piece, const Visit& visit) {
+    now_ = piece.motion.from.time;
+    if (++since_swept_ > kept_ + kLeastTable) forget_ended();
+    adapt_side(piece.box);
+    const Cells own = cells_of(piece.box);
+    find(piece, own);
+    if (found_.size() > 1)
+      std::sort(found_.begin(), found_.end(),
+                [&](std::uint32_t a, std::uint32_t b) { return pool_[a].piece.serial < pool_[b].piece.serial; });
+    for (const std::uint32_t k : found_) visit(pool_[k].piece);
+    found_.clear();
+    add(piece, own);
   }
 
+  std::size_t most_held() const { return pool_.size(); }
+
  private:
-  static constexpr std::size_t kTable = 1u << 16;
   static constexpr std::int64_t kMostCells = 64;
+  static constexpr std::size_t kLeastTable = std::size_t{1} << 10;
+  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
   struct Cells {
     std::int64_t x0, y0, x1, y1;
     bool is_large() const {
       return x1 - x0 >= kMostCells || y1 - y0 >= kMostCells || (x1 - x0 + 1) * (y1 - y0 + 1) > kMostCells;
     }
+    bool operator==(const Cells& c) const { return x0 == c.x0 && y0 == c.y0 && x1 == c.x1 && y1 == c.y1; }
+  };
+  struct Held {
+    Piece piece;
+    Cells cells{};
+    bool is_free = false;
   };
 
   Cells cells_of(const Box& box) const {
     const auto cell = [&](double x) {
       constexpr double kMost = 0x1p60;
-      return static_cast<std::int64_t>(std::clamp(std::floor(x / side_), -kMost, kMost));
+      const double scaled = std::clamp(x * per_side_, -kMost, kMost);
+      const auto whole = static_cast<std::int64_t>(scaled);
+      return whole - (static_cast<double>(whole) > scaled ? 1 : 0);
     };
     return {cell(box.low.x), cell(box.low.y), cell(box.high.x), cell(box.high.y)};
   }
-  static std::size_t slot(std::int64_t x, std::int64_t y) {
+  std::vector<std::uint32_t>& list_of(std::int64_t x, std::int64_t y) {
     const auto mixed =
         static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15ULL ^ static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4FULL;
-    return static_cast<std::size_t>(mixed ^ (mixed >> 29)) % kTable;
+    return lists_[static_cast<std::size_t>(mixed ^ (mixed >> 29)) & (lists_.size() - 1)];
   }
   template <class Visit>
   static void for_each_cell(const Cells& c, const Visit& visit) {
     for (std::int64_t y = c.y0; y <= c.y1; ++y)
       for (std::int64_t x = c.x0; x <= c.x1; ++x) visit(x, y);
   }
-  /// Forgets pieces that have ended before `now`.
-  template <class Visit>
-  void look_through(std::vector<std::uint32_t>& list, std::uint32_t i, double now, const Visit& visit) {
-    const TimedPiece& piece = pieces_[i];
-    for (std::size_t k = 0; k < list.size();) {
-      const TimedPiece& other = pieces_[list[k]];
-      if (other.end < now) {
-        list[k] = list.back();
-        list.pop_back();
-        continue;
+
+  void find(const Piece& piece, const Cells& own) {
+    const auto meets = [&](const Held& held) {
+      const Piece& other = held.piece;
+      return other.body != piece.body && geometry::meet(other.box, piece.box) && other.motion.to.time >= now_;
+    };
+    if (own.is_large()) {
+      for (std::uint32_t k = 0; k < pool_.size(); ++k)
+        if (!pool_[k].is_free && meets(pool_[k])) found_.push_back(k);
+      return;
+    }
+    for (const std::uint32_t k : large_)
+      if (meets(pool_[k])) found_.push_back(k);
+    for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
+      for (const std::uint32_t k : list_of(x, y)) {
+        if (!meets(pool_[k])) continue;
+        // Of the cells that both have, the first; cells that share a list are told apart by this, too.
+        const Cells& other = pool_[k].cells;
+        if (x == std::max(own.x0, other.x0) && y == std::max(own.y0, other.y0)) found_.push_back(k);
       }
-      if (other.body != piece.body && geometry::meet(other.box, piece.box)) visit(list[k]);
-      ++k;
+    });
+  }
+
+  void add(const Piece& piece, const Cells& own) {
+    if (piece.body >= place_of_.size()) place_of_.resize(piece.body + 1, kNoPlace);
+    std::uint32_t& place = place_of_[piece.body];
+    // Of a way that is gone in no time the next piece has the end only.
+    if (place != kNoPlace && piece.follows && pool_[place].piece.motion.from.time < now_) {
+      Held& held = pool_[place];
+      sum_of_widths_ += width_of(piece.box) - width_of(held.piece.box);
+      held.piece = piece;
+      if (held.cells == own) return;
+      unlist(place);
+      held.cells = own;
+      return list(place);
+    }
+    if (free_.empty()) {
+      free_.push_back(static_cast<std::uint32_t>(pool_.size()));
+      pool_.emplace_back();
+    }
+    place = free_.back();
+    free_.pop_back();
+    pool_[place] = {piece, own, false};
+    sum_of_widths_ += width_of(piece.box);
+    list(place);
+  }
+  void list(std::uint32_t k) {
+    const Cells& own = pool_[k].cells;
+    if (own.is_large()) return large_.push_back(k);
+    for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
+      std::vector<std::uint32_t>& cell = list_of(x, y);
+      if (cell.empty() || cell.back() != k) cell.push_back(k);
+    });
+  }
+  void unlist(std::uint32_t k) {
+    const auto take_from = [&](std::vector<std::uint32_t>& list) {
+      const auto at = std::find(list.begin(), list.end(), k);
+      if (at == list.end()) return;
+      *at = list.back();
+      list.pop_back();
+    };
+    const Cells& own = pool_[k].cells;
+    if (own.is_large()) return take_from(large_);
+    for_each_cell(own, [&](std::int64_t x, std::int64_t y) { take_from(list_of(x, y)); });
+  }
+
+  void forget_ended() {
+    since_swept_ = 0;
+    for (std::uint32_t k = 0; k < pool_.size(); ++k) {
+      Held& held = pool_[k];
+      if (held.is_free || held.piece.motion.to.time >= now_) continue;
+      unlist(k);
+      sum_of_widths_ -= width_of(held.piece.box);
+      if (place_of_[held.piece.body] == k) place_of_[held.piece.body] = kNoPlace;
+      held.is_free = true;
+      free_.push_back(k);
+    }
+    kept_ = pool_.size() - free_.size();
+  }
+
+  static double width_of(const Box& box) { return std::max(box.high.x - box.low.x, box.high.y - box.low.y); }
+
+  /// Lists all anew where cells are far from twice as wide as the mean of the boxes, or pieces are more than lists.
+  void adapt_side(const Box& next) {
+    const std::size_t held = pool_.size() - free_.size();
+    const double wanted = 2.0 * (sum_of_widths_ + width_of(next)) / static_cast<double>(held + 1);
+    const bool is_usable = wanted > 0.0 && std::isfinite(1.0 / wanted);
+    const bool fits = !is_usable || (wanted * per_side_ > 0.25 && wanted * per_side_ < 4.0);
+    if (fits && held < lists_.size()) return;
+    if (!fits) per_side_ = 1.0 / wanted;
+    std::size_t table = lists_.size();
+    while (table <= held) table *= 4;
+    lists_.assign(table, {});
+    large_.clear();
+    sum_of_widths_ = 0.0;
+    for (std::uint32_t k = 0; k < pool_.size(); ++k) {
+      if (pool_[k].is_free) continue;
+      pool_[k].cells = cells_of(pool_[k].piece.box);
+      list(k);
+      sum_of_widths_ += width_of(pool_[k].piece.box);
     }
   }
 
-  const std::vector<TimedPiece>& pieces_;
-  double side_;
-  std::vector<std::vector<std::uint32_t>> cells_;
-  std::vector<std::uint32_t> large_, some_;
+  double now_ = -kInfinity;
+  double per_side_ = 1.0;  ///< cells a metre
+  double sum_of_widths_ = 0.0;
+  std::size_t since_swept_ = 0;  ///< pieces that came
+  std::size_t kept_ = 0;         ///< pieces, when those that had ended were forgotten
+  std::vector<Held> pool_;
+  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> place_of_;  ///< of each body's last piece in the pool
+  std::vector<std::vector<std::uint32_t>> lists_{kLeastTable};
+  std::vector<std::uint32_t> large_, found_;
 };
+
+/// A quick filter in plain doubles. For vectors whose coordinates are differences of two doubles, rounded, a dot or
+/// cross product is wrong by at most 4 * 2^-53 of the sum of the sizes of its two products, and a bit; the root that
+/// makes a length by 2 * 2^-53 of itself. `kQuick` is more than twice as much. What underflows may be wrong by some
+/// 2^-1074, which is nothing beside `kQuick` of kLeastSize.
+constexpr double kQuick = 0x1p-49;
+constexpr double kLeastSize = 0x1p-900;
+
+/// Whether n.v > reach |n| for certain. `length`: |n|, rounded.
+bool surely_beyond(Vec2 n, double length, Vec2 v, double reach) {
+  const double x = n.x * v.x, y = n.y * v.y, wanted = reach * length;
+  return wanted > kLeastSize && x + y > wanted + kQuick * (std::fabs(x) + std::fabs(y) + wanted);
+}
+
+/// Whether two discs are apart by more than `reach` all the time, between the lines across one of the ends of their
+/// difference. False where this is not certain.
+bool quickly_apart(const StraightMotion& a, const StraightMotion& b, double reach) {
+  const Vec2 from = a.from.at - b.from.at, to = a.to.at - b.to.at;
+  const double first = norm(from), last = norm(to);
+  return (surely_beyond(from, first, from, reach) && surely_beyond(from, first, to, reach)) ||
+         (surely_beyond(to, last, from, reach) && surely_beyond(to, last, to, reach));
+}
+
+/// Whether a disc stays beside an edge's line, or before one of its ends. False where this is not certain.
+bool quickly_beside(const StraightMotion& m, const Segment& edge, double reach) {
+  const Vec2 along = edge.b - edge.a, across{-along.y, along.x};
+  const double length = norm(along);
+  const auto beyond = [&](Vec2 n, Vec2 origin) {
+    return surely_beyond(n, length, m.from.at - origin, reach) && surely_beyond(n, length, m.to.at - origin, reach);
+  };
+  return beyond(across, edge.a) || beyond(-across, edge.a) || beyond(-along, edge.a) || beyond(along, edge.b);
+}
 
 using Filtered = Vector<RunningError>;
 
-/// Whether the filter clears two discs over the same span of time by more than `near`.
-bool surely_clear(const StraightMotion& a, double radius_a, const StraightMotion& b, double radius_b, double near) {
+/// Whether the filter clears two discs over the same span of time by more than `more`.
+bool surely_clear(const StraightMotion& a, double radius_a, const StraightMotion& b, double radius_b, double more) {
   if (a.from.time != b.from.time || a.to.time != b.to.time) return false;
+  if (quickly_apart(a, b, radius_a + radius_b + more)) return true;
   const Filtered origin{RunningError(0.0), RunningError(0.0)};
   const Filtered way =
       detail::difference<RunningError>(a.to.at, a.from.at) - detail::difference<RunningError>(b.to.at, b.from.at);
-  const RunningError reach = RunningError(radius_a) + RunningError(radius_b) + RunningError(near);
+  const RunningError reach = RunningError(radius_a) + RunningError(radius_b) + RunningError(more);
   return beside(detail::difference<RunningError>(b.from.at, a.from.at), origin, way, RunningError(reach * reach)) ==
          Known::positive;
 }
 
-bool surely_clear_of(const StraightMotion& a, double radius, const Segment& edge) {
+bool surely_clear_of(const StraightMotion& a, double radius, const Segment& edge, double more) {
+  if (quickly_beside(a, edge, radius + more)) return true;
   const Filtered from{RunningError(0.0), RunningError(0.0)};
   const Filtered to = detail::difference<RunningError>(a.to.at, a.from.at);
   const GrownHull<RunningError> hull{
       {detail::difference<RunningError>(edge.a, a.from.at), detail::difference<RunningError>(edge.b, a.from.at)},
-      RunningError(radius)};
+      RunningError(radius) + RunningError(more)};
   return straight_gap(from, to, hull) == Known::positive;
 }
 
 /// Joins the pieces' verdicts to events and hands these on as soon as nothing more can be added to them.
 class Events {
  public:
-  Events(const std::function<void(const MotionEvent&)>& report, MotionCheck& check) : report_(report), check_(check) {}
+  Events(std::function<void(const MotionEvent&)> report, MotionCheck& check)
+      : report_(std::move(report)), check_(check) {}
 
-  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
+  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other, Vec2 at, Vec2 other_at) {
     const Key key{body, with_obstacle, other};
-    const MotionEvent event{v.encounter, body,        with_obstacle,  other,  v.first,
-                            v.last,      v.clearance, v.nearest_time, v.place};
+    const MotionEvent event{v.encounter, body,           with_obstacle, other, v.first, v.last,
+                            v.clearance, v.nearest_time, v.place,       at,    other_at};
     const auto [last, is_new] = last_of_pair_.try_emplace(key, next_number_);
     if (!is_new && event.first.low <= open_.at(last->second).last.high) {
       join(open_.at(last->second), event);
@@ -206,12 +362,14 @@ class Events {
     if (next.clearance.low < open.clearance.low) {
       open.nearest_time = next.nearest_time;
       open.place = next.place;
+      open.at = next.at;
+      open.other_at = next.other_at;
     }
     open.clearance = {std::min(open.clearance.low, next.clearance.low),
                       std::min(open.clearance.high, next.clearance.high)};
     open.encounter = std::max(open.encounter, next.encounter);
   }
-  const std::function<void(const MotionEvent&)>& report_;
+  std::function<void(const MotionEvent&)> report_;
   MotionCheck& check_;
   std::map<Key, std::uint64_t> last_of_pair_;
   std::unordered_map<std::uint64_t, MotionEvent> open_;  ///< by number, rising as they begin
@@ -245,19 +403,15 @@ class Map {
     if (!extents_.empty()) solids_ = BoxGrid(extents_);
   }
 
-  /// Adds the obstacles that may be met, each once. Where it is not known that the body begins outside of all polygons,
-  /// those round its way are among them.
-  void add_suspects(const StraightMotion& m, double radius, const Box& box, bool begins_outside,
-                    std::vector<std::size_t>& suspects, MotionCheck& check) const {
-    if (edges_.empty()) return;
-    grid_.for_each_meeting(box, [&](std::size_t i) {
-      ++check.edge_pairs;
-      if (!surely_clear_of(m, radius, edges_[i])) suspects.push_back(owner_[i]);
-    });
-    if (!begins_outside && !extents_.empty())
-      solids_.for_each_meeting(box, [&](std::size_t i) { suspects.push_back(solid_[i]); });
-    std::sort(suspects.begin(), suspects.end());
-    suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+  /// Calls visit(edge, obstacle) for each edge whose box meets this one.
+  template <class Visit>
+  void for_each_edge(const Box& box, const Visit& visit) const {
+    if (!edges_.empty()) grid_.for_each_meeting(box, [&](std::size_t i) { visit(edges_[i], owner_[i]); });
+  }
+  /// Calls visit(obstacle) for each polygon whose extent meets this box.
+  template <class Visit>
+  void for_each_polygon(const Box& box, const Visit& visit) const {
+    if (!solid_.empty()) solids_.for_each_meeting(box, [&](std::size_t i) { visit(solid_[i]); });
   }
 
   const Obstacle& operator[](std::size_t k) const { return obstacles_[k]; }
@@ -270,91 +424,21 @@ class Map {
   BoxGrid grid_, solids_;
 };
 
-class Sweep {
+/// The least approach of each pair so far.
+class Approaches {
  public:
-  Sweep(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& obstacles,
-        const MotionCheckOptions& options, const std::function<void(const MotionEvent&)>& report)
-      : trajectories_(trajectories),
-        between_(options.between),
-        near_(options.near),
-        map_(obstacles),
-        events_(report, check_) {
-    EXACTVO_REQUIRE(near_ >= 0.0 && std::isfinite(near_), hex_text(near_));
-    for (std::size_t b = 0; b < trajectories.size(); ++b) {
-      require_trajectory(trajectories[b]);
-      for (std::size_t k = 0; k < pieces_of(trajectories[b], between_); ++k) {
-        const StraightMotion m = motion(b, k);
-        pieces_.push_back({swept_box(m, trajectories[b].radius, near_), m.from.time, m.to.time,
-                           static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(k)});
-      }
-    }
-    std::sort(pieces_.begin(), pieces_.end(), [](const TimedPiece& x, const TimedPiece& y) {
-      return std::tie(x.start, x.body, x.number) < std::tie(y.start, y.body, y.number);
-    });
-    outside_.assign(trajectories.size(), false);
-  }
+  explicit Approaches(double near) : near_(near) {}
 
-  MotionCheck run() {
-    check_.pieces = pieces_.size();
-    MovingGrid grid(pieces_, cell_side());
-    for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
-      events_.advance(pieces_[i].start);
-      meet_map(pieces_[i]);
-      grid.meet_and_add(i, [&](std::uint32_t j) { meet_body(pieces_[i], pieces_[j]); });
-    }
-    events_.finish();
-    if (near_ > 0.0)
-      for (const auto& [pair, approach] : approaches_) check_.approaches.push_back(approach);
-    return check_;
+  /// m: what comes no nearer than that says nothing new.
+  double limit(std::size_t body, bool with_obstacle, std::size_t other) const {
+    if (near_ == 0.0) return 0.0;
+    const auto found = all_.find(Key{body, with_obstacle, other});
+    return found == all_.end() ? near_ : std::max(0.0, found->second.clearance.high);
   }
-
- private:
-  StraightMotion motion(std::size_t body, std::size_t number) const {
-    return motion_of(trajectories_[body], between_, number);
-  }
-
-  /// Twice the mean width of the boxes.
-  double cell_side() const {
-    double sum = 0.0;
-    for (const TimedPiece& p : pieces_) sum += std::max(p.box.width(), p.box.high.y - p.box.low.y);
-    const double side = 2.0 * sum / std::max<double>(1.0, static_cast<double>(pieces_.size()));
-    return side > 0.0 && std::isfinite(side) ? side : 1.0;
-  }
-
-  void meet_map(const TimedPiece& piece) {
-    const StraightMotion m = motion(piece.body, piece.number);
-    const double radius = trajectories_[piece.body].radius;
-    const bool continues = between_ == Between::straight && piece.number > 0;
-    suspects_.clear();
-    map_.add_suspects(m, radius, piece.box, continues && outside_[piece.body], suspects_, check_);
-    outside_[piece.body] = true;
-    for (const std::size_t k : suspects_) {
-      ++check_.examined;
-      const RigidBody body = disc_body(radius);
-      if (encounter(m, body, map_[k]) == Encounter::clear) continue;
-      outside_[piece.body] = false;
-      events_.add(examine(m, body, map_[k]), piece.body, true, k);
-    }
-  }
-
-  void meet_body(const TimedPiece& one, const TimedPiece& another) {
-    ++check_.pairs;
-    const bool in_order = one.body < another.body;
-    const TimedPiece &a = in_order ? one : another, &b = in_order ? another : one;
-    const StraightMotion m = motion(a.body, a.number), other = motion(b.body, b.number);
-    const double radius = trajectories_[a.body].radius, other_radius = trajectories_[b.body].radius;
-    if (surely_clear(m, radius, other, other_radius, near_)) return;
-    ++check_.examined;
-    const RigidBody body = disc_body(radius), other_body = disc_body(other_radius);
-    if (near_ == 0.0 && encounter(m, body, other, other_body) == Encounter::clear) return;
-    const MotionVerdict verdict = examine(m, body, other, other_body);
-    if (verdict.clearance.low < near_) add_approach(verdict, a.body, b.body);
-    if (verdict.encounter != Encounter::clear) events_.add(verdict, a.body, false, b.body);
-  }
-
-  void add_approach(const MotionVerdict& v, std::size_t body, std::size_t other) {
-    const auto [place, is_new] =
-        approaches_.try_emplace({body, other}, Approach{body, other, v.clearance, v.nearest_time, v.place});
+  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
+    if (!(v.clearance.low < near_)) return;
+    const auto [place, is_new] = all_.try_emplace(
+        Key{body, with_obstacle, other}, Approach{body, with_obstacle, other, v.clearance, v.nearest_time, v.place});
     if (is_new) return;
     Approach& least = place->second;
     if (v.clearance.low < least.clearance.low) {
@@ -364,25 +448,237 @@ class Sweep {
     least.clearance = {std::min(least.clearance.low, v.clearance.low),
                        std::min(least.clearance.high, v.clearance.high)};
   }
+  std::vector<Approach> sorted() const {
+    std::vector<Approach> list;
+    list.reserve(all_.size());
+    for (const auto& [pair, approach] : all_) list.push_back(approach);
+    std::sort(list.begin(), list.end(), [](const Approach& a, const Approach& b) {
+      return std::tie(a.body, a.with_obstacle, a.other) < std::tie(b.body, b.with_obstacle, b.other);
+    });
+    return list;
+  }
 
-  const std::vector<Trajectory>& trajectories_;
-  const Between between_;
+ private:
+  struct Key {
+    std::size_t body;
+    bool with_obstacle;
+    std::size_t other;
+    bool operator==(const Key& k) const {
+      return body == k.body && with_obstacle == k.with_obstacle && other == k.other;
+    }
+  };
+  struct Hash {
+    std::size_t operator()(const Key& k) const {
+      return (k.body * 0x9E3779B97F4A7C15ULL) ^ (2 * k.other + (k.with_obstacle ? 1 : 0)) * 0xC2B2AE3D27D4EB4FULL;
+    }
+  };
+  double near_;
+  std::unordered_map<Key, Approach, Hash> all_;
+};
+
+class Sweep {
+ public:
+  Sweep(const std::vector<Obstacle>& obstacles, MotionCheckOptions options,
+        std::function<void(const MotionEvent&)> report)
+      : options_(std::move(options)),
+        near_(options_.near),
+        map_(obstacles),
+        events_(std::move(report), check_),
+        approaches_(near_) {
+    EXACTVO_REQUIRE(near_ >= 0.0 && std::isfinite(near_), hex_text(near_));
+  }
+
+  std::size_t add_body(RigidBody shape) {
+    encounter(StraightMotion{}, shape, StraightMotion{}, disc_body(0.0));  // requires a valid body
+    bodies_.push_back(swept_body(std::move(shape)));
+    return bodies_.size() - 1;
+  }
+
+  void add(std::size_t number, const StraightMotion& motion) {
+    EXACTVO_REQUIRE(number < bodies_.size(), std::to_string(number));
+    SweptBody& body = bodies_[number];
+    EXACTVO_REQUIRE(
+        now_ <= motion.from.time && body.last.time <= motion.from.time && motion.from.time <= motion.to.time &&
+            std::isfinite(motion.from.time) && std::isfinite(motion.to.time) && is_finite(motion.from.at) &&
+            is_finite(motion.to.at),
+        hex_text(motion.from.time) + " " + hex_text(motion.to.time) + " " + excerpt({motion.from.at, motion.to.at}));
+    if (now_ < motion.from.time) {
+      meet_at_ends();
+      now_ = motion.from.time;
+      events_.advance(now_);
+    }
+    const bool continues = body.last.time == motion.from.time && body.last.at == motion.from.at;
+    const Piece piece{swept_box(motion, body.reach, near_), motion,    ++check_.pieces,
+                      static_cast<std::uint32_t>(number),   continues, continues && motion.from.time < motion.to.time};
+    if (piece.follows) {
+      body.continued = body.serial;
+    } else {
+      meet_at_ends(number);
+    }
+    meet_map(piece, body);
+    body.last = motion.to;
+    body.serial = piece.serial;
+    grid_.meet_and_add(piece, [&](const Piece& other) {
+      const bool has_ended = other.motion.to.time == now_ && other.motion.from.time < now_;
+      // Where the other goes on, its next piece is met at this moment too.
+      if (has_ended && bodies_[other.body].serial == other.serial) {
+        at_ends_.push_back({piece, other});
+      } else {
+        meet_body(piece, other);
+      }
+    });
+  }
+
+  MotionCheck finish() {
+    meet_at_ends();
+    events_.finish();
+    check_.most_held = grid_.most_held();
+    check_.approaches = approaches_.sorted();
+    return std::move(check_);
+  }
+
+ private:
+  /// A piece, and one of another body that ends as it begins.
+  struct AtEnd {
+    Piece piece, ended;
+  };
+
+  /// Those whose other body has not gone on; of one body only where it is given, and then no more.
+  void meet_at_ends(std::optional<std::size_t> body = {}) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < at_ends_.size(); ++k) {
+      const AtEnd& pair = at_ends_[k];
+      if (body && pair.ended.body != *body) {
+        at_ends_[kept++] = pair;
+      } else if (bodies_[pair.ended.body].continued != pair.ended.serial) {
+        meet_body(pair.piece, pair.ended);
+      }
+    }
+    at_ends_.resize(kept);
+  }
+
+  void meet_map(const Piece& piece, SweptBody& body) {
+    const StraightMotion& m = piece.motion;
+    const bool stays_outside = body.outside && piece.continues;
+    suspects_.clear();
+    met_.clear();
+    map_.for_each_edge(swept_box(m, body.reach, 2.0 * near_), [&](const Segment& edge, std::size_t k) {
+      ++check_.edge_pairs;
+      if (options_.met) met_.push_back(k);
+      if (surely_clear_of(m, body.reach, edge, 0.0)) {
+        if (near_ > 0.0) approach_edge(piece, body, edge, k);
+      } else {
+        suspects_.push_back(k);
+      }
+    });
+    if (!stays_outside)
+      map_.for_each_polygon(piece.box, [&](std::size_t k) {
+        suspects_.push_back(k);
+        met_.push_back(k);
+      });
+    keep_each_once(suspects_);
+    if (options_.met) {
+      keep_each_once(met_);
+      for (const std::size_t k : met_) options_.met({piece.body, m, true, k, {}});
+    }
+    body.outside = true;
+    for (const std::size_t k : suspects_) {
+      ++check_.examined;
+      if (near_ == 0.0 && encounter(m, body.shape, map_[k]) == Encounter::clear) continue;
+      const MotionVerdict verdict = examine(m, body.shape, map_[k]);
+      approaches_.add(verdict, piece.body, true, k);
+      if (verdict.encounter == Encounter::clear) continue;
+      body.outside = false;
+      events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
+    }
+  }
+
+  /// An edge that is not touched, but may be near.
+  void approach_edge(const Piece& piece, const SweptBody& body, const Segment& edge, std::size_t k) {
+    if (surely_clear_of(piece.motion, body.reach, edge, approaches_.limit(piece.body, true, k))) return;
+    ++check_.examined;
+    approaches_.add(examine(piece.motion, body.shape, Polyline{{edge.a, edge.b}}), piece.body, true, k);
+  }
+
+  void meet_body(const Piece& one, const Piece& another) {
+    ++check_.pairs;
+    const bool in_order = one.body < another.body;
+    const Piece &a = in_order ? one : another, &b = in_order ? another : one;
+    const SweptBody &body = bodies_[a.body], &other = bodies_[b.body];
+    if (options_.met) options_.met({a.body, a.motion, false, b.body, b.motion});
+    if (surely_clear(a.motion, body.reach, b.motion, other.reach, approaches_.limit(a.body, false, b.body))) return;
+    ++check_.examined;
+    if (near_ == 0.0 && encounter(a.motion, body.shape, b.motion, other.shape) == Encounter::clear) return;
+    const MotionVerdict verdict = examine(a.motion, body.shape, b.motion, other.shape);
+    approaches_.add(verdict, a.body, false, b.body);
+    if (verdict.encounter == Encounter::clear) return;
+    const double t = verdict.nearest_time;
+    events_.add(verdict, a.body, false, b.body, position_at(a.motion, t), position_at(b.motion, t));
+  }
+
+  static void keep_each_once(std::vector<std::size_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+
+  const MotionCheckOptions options_;
   const double near_;
   MotionCheck check_;
   Map map_;
   Events events_;
-  std::vector<TimedPiece> pieces_;
-  std::map<std::pair<std::size_t, std::size_t>, Approach> approaches_;
-  std::vector<bool> outside_;  ///< of each body: of all polygons as its next piece begins
-  std::vector<std::size_t> suspects_;
+  Approaches approaches_;
+  MovingGrid grid_;
+  std::vector<SweptBody> bodies_;
+  std::vector<std::size_t> suspects_, met_;
+  std::vector<AtEnd> at_ends_;
+  double now_ = -kInfinity;
 };
 
 }  // namespace
 }  // namespace motions
 
+struct MotionStream::State {
+  motions::Sweep sweep;
+};
+
+MotionStream::MotionStream(const std::vector<Obstacle>& map, MotionCheckOptions options,
+                           std::function<void(const MotionEvent&)> report)
+    : state_(new State{{map, std::move(options), std::move(report)}}) {}
+
+MotionStream::~MotionStream() = default;
+
+std::size_t MotionStream::add_body(RigidBody body) {
+  return state_->sweep.add_body(std::move(body));
+}
+
+void MotionStream::add(std::size_t body, const StraightMotion& piece) {
+  state_->sweep.add(body, piece);
+}
+
+MotionCheck MotionStream::finish() {
+  return state_->sweep.finish();
+}
+
 MotionCheck check_motions(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& map,
                           const MotionCheckOptions& options, const std::function<void(const MotionEvent&)>& report) {
-  return motions::Sweep(trajectories, map, options, report).run();
+  struct Begin {
+    double time;
+    std::uint32_t body, number;
+  };
+  motions::Sweep sweep(map, options, report);
+  std::vector<Begin> begins;
+  for (std::size_t b = 0; b < trajectories.size(); ++b) {
+    motions::require_trajectory(trajectories[b]);
+    sweep.add_body(trajectories[b].body);
+    for (std::size_t k = 0; k < motions::pieces_of(trajectories[b], options.between); ++k)
+      begins.push_back({trajectories[b].points[k].time, static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(k)});
+  }
+  std::sort(begins.begin(), begins.end(), [](const Begin& x, const Begin& y) {
+    return std::tie(x.time, x.body, x.number) < std::tie(y.time, y.body, y.number);
+  });
+  for (const Begin& begin : begins)
+    sweep.add(begin.body, motions::motion_of(trajectories[begin.body], options.between, begin.number));
+  return sweep.finish();
 }
 
 }  // namespace exactvo::geometry

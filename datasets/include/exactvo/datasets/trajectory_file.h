@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Trajectories from files: where each agent was at which time, whatever program wrote it. Rows go to the caller one by
+/// one, so that memory grows with the number of agents and not with the file; a file can be read again.
+///
+/// Of one agent times rise in the order of the file. A row that repeats the one before it is left out and counted. A
+/// time that goes back, a second place at one time, and a number that is not finite are refused with file and line.
+///
+/// See also: trajectory_survey.h (speeds, gaps and jumps of what was read), obstacle_file.h (maps).
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/vec2.h"
+
+namespace exactvo::datasets {
+
+/// One agent at one time.
+struct TrajectoryRow {
+  std::size_t agent = 0;  ///< its number, in the order in which agents come up in the file
+  double time = 0.0;      ///< s
+  geometry::Vec2 at;      ///< m
+  double heading = std::numeric_limits<double>::quiet_NaN();  ///< rad, counter-clockwise from x; NaN: not in the file
+  std::uint64_t line = 0;                                     ///< in the file, from 1; of recordings the row, from 1
+};
+
+/// How a file is read.
+struct TrajectoryOptions {
+  std::string format;       ///< a name of `trajectory_formats()`; empty: chosen by content
+  double frame_rate = 0.0;  ///< frames a second, of files that count frames; 0: as the file says, else 1
+  double scale = 1.0;       ///< m, > 0: of the file's unit of length
+};
+
+/// What a file says besides its rows.
+struct TrajectoryFile {
+  std::string file;                                 ///< as the caller named it
+  std::string format;                               ///< the one that was used
+  std::string row_word = "line";                    ///< what `TrajectoryRow::line` counts
+  std::vector<std::string> agents;                  ///< their ids, by number
+  std::vector<double> radii;                        ///< m, of the agents; empty where the file has none
+  std::vector<formation::SceneObstacle> obstacles;  ///< that stand in the file; of recordings only
+  bool in_cells = false;           ///< x counts columns and y rows of a grid, from the top; `scale` is a cell's side
+  std::uint64_t repeated = 0;      ///< rows that repeat the one before, left out
+  std::vector<std::string> notes;  ///< what a reader should know, in words
+};
+
+/// A file of trajectories that can be read several times. What comes through a pipe is kept in a temporary file.
+class TrajectoryReader {
+ public:
+  /// "-" is standard input. Throws DataError: E_FILE_MISSING, E_FORMAT_UNKNOWN, E_OPTION, ...
+  explicit TrajectoryReader(const std::string& file, TrajectoryOptions options = {});
+  ~TrajectoryReader();
+  TrajectoryReader(const TrajectoryReader&) = delete;
+  TrajectoryReader& operator=(const TrajectoryReader&) = delete;
+
+  /// Reads the file from its beginning; `take` gets every row, in the order of the file. Throws DataError.
+  const TrajectoryFile& read(const std::function<void(const TrajectoryRow&)>& take);
+  /// What is known so far: while a file is read, its format and the agents that have come up.
+  const TrajectoryFile& file() const;
+  /// Throws DataError for a row.
+  [[noreturn]] void refuse(DataCode code, std::uint64_t line, const std::string& found,
+                           const std::string& expected) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The names that `TrajectoryOptions::format` takes.
+std::vector<std::string> trajectory_formats();
+
+}  // namespace exactvo::datasets

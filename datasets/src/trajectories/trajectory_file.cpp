@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/trajectory_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/input_text.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/require.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
+#include "trajectories/trajectory_readers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+constexpr std::size_t kProbe = 4096;
+
+/// What came through a pipe, in a file that goes with the object: a long one must not lie in memory.
+class SpooledInput {
+ public:
+  explicit SpooledInput(const std::string& input) {
+    std::string path = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
+    const int descriptor = ::mkstemp(path.data());
+    if (descriptor < 0) throw cannot_write(path, errno);
+    ::close(descriptor);
+    path_ = path;
+    try {
+      copy_input(input, path_);
+    } catch (...) {
+      remove();
+      throw;
+    }
+  }
+  ~SpooledInput() { remove(); }
+  SpooledInput(const SpooledInput&) = delete;
+  SpooledInput& operator=(const SpooledInput&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void remove() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  std::filesystem::path path_;
+};
+
+const TrajectoryFormat& format_named(const std::string& name, const std::string& file) {
+  for (const TrajectoryFormat& format : trajectory_readers())
+    if (name == format.name) return format;
+  throw DataError(DataCode::not_an_option, file, "format", "\"" + name + "\"",
+                  "one of " + boost::join(trajectory_formats(), ", "));
+}
+
+const TrajectoryFormat& format_for(std::string_view beginning, const std::string& file) {
+  for (const TrajectoryFormat& format : trajectory_readers())
+    if (format.matches(beginning)) return format;
+  throw DataError(
+      DataCode::format_unknown, file, "", excerpt(beginning, 0),
+      "a file of trajectories, such as CSV with the columns t,id,x,y; if its format is one of these, name it "
+      "with --format: " +
+          boost::join(trajectory_formats(), ", "));
+}
+
+bool looks_like_crowd(std::string_view beginning) {
+  return begins_crowd_recording(beginning);
+}
+
+}  // namespace
+
+const std::vector<TrajectoryFormat>& trajectory_readers() {
+  static const std::vector<TrajectoryFormat> kReaders{
+      {"crowd-recording", looks_like_crowd, read_crowd_trajectories},
+      {"recording", looks_like_recording, read_recorded_trajectories},
+      {"trajnet", looks_like_trajnet, read_trajnet},
+      {"sumo-fcd", looks_like_sumo_fcd, read_sumo_fcd},
+      {"mapf-paths", looks_like_mapf_paths, read_mapf_paths},
+      {"mapf-yaml", looks_like_mapf_yaml, read_mapf_yaml},
+      {"jupedsim-txt", looks_like_jupedsim_text, read_jupedsim_text},
+      {"csv", looks_like_trajectory_csv, read_trajectory_csv},
+      {"obsmat", looks_like_obsmat, read_obsmat},
+      {"frame-id-x-y", looks_like_four_columns, read_four_columns},
+  };
+  return kReaders;
+}
+
+std::vector<std::string> trajectory_formats() {
+  std::vector<std::string> names;
+  for (const TrajectoryFormat& format : trajectory_readers()) names.emplace_back(format.name);
+  return names;
+}
+
+// --- The sink ---
+
+std::size_t TrajectorySink::agent(std::string_view id) {
+  id_.assign(id);
+  const auto [at, is_new] = numbers_.try_emplace(id_, numbers_.size());
+  if (is_new) {
+    file_.agents.push_back(id_);
+    last_.push_back({-std::numeric_limits<double>::infinity(), {}, 0});
+  }
+  return at->second;
+}
+
+void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line, double heading) {
+  const geometry::Vec2 metres = options_.scale * at;
+  if (!std::isfinite(time)) refuse(DataCode::not_finite, line, number_text(time), "a finite time");
+  if (!is_finite(metres))
+    refuse(DataCode::not_finite, line, number_text(at.x) + ", " + number_text(at.y), "a place of finite numbers");
+  if (std::fabs(metres.x) > kLargestCoordinate || std::fabs(metres.y) > kLargestCoordinate ||
+      std::fabs(time) > kLargestCoordinate)
+    refuse(DataCode::out_of_range, line, "a number beyond 2^100", "places in m and times in s up to 2^100");
+  Last& last = last_[agent];
+  const auto words = [&](double t) { return number_text(t) + " s of agent " + file_.agents[agent]; };
+  const auto place_of_last = [&] { return file_.row_word + " " + std::to_string(last.line); };
+  if (time < last.time)
+    refuse(DataCode::out_of_range, line, words(time),
+           "no time before that of " + place_of_last() + ", " + number_text(last.time) + " s");
+  if (time == last.time) {
+    if (metres != last.at)
+      refuse(DataCode::out_of_range, line, "a second place at " + words(time),
+             "one place at a time; " + place_of_last() + " has another");
+    ++file_.repeated;
+    return;
+  }
+  last = {time, metres, line};
+  take_({agent, time, metres, heading, line});
+}
+
+double TrajectorySink::time_of_frame(double frame, double of_file) {
+  if (options_.frame_rate > 0.0) return frame / options_.frame_rate;
+  if (of_file > 0.0) return frame / of_file;
+  if (!rate_noted_)
+    file_.notes.emplace_back("times are frames, since no frame rate is known: one frame counts as 1 s (--frame-rate)");
+  rate_noted_ = true;
+  return frame;
+}
+
+void TrajectorySink::refuse(DataCode code, std::uint64_t line, const std::string& found,
+                            const std::string& expected) const {
+  throw DataError(code, file_.file, file_.row_word + " " + std::to_string(line), found, expected);
+}
+
+double TrajectorySink::number(std::string_view field, const char* what, std::uint64_t line) const {
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size())
+    refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
+  if (!std::isfinite(value))
+    refuse(DataCode::not_finite, line, excerpt(field, 0), std::string("a finite number as ") + what);
+  return value;
+}
+
+// --- The reader ---
+
+struct TrajectoryReader::State {
+  TrajectoryOptions options;
+  std::optional<SpooledInput> spooled;
+  std::filesystem::path path;
+  const TrajectoryFormat* format = nullptr;
+  TrajectoryFile file;
+};
+
+TrajectoryReader::TrajectoryReader(const std::string& file, TrajectoryOptions options)
+    : state_(std::make_unique<State>()) {
+  EXACTVO_REQUIRE(options.scale > 0.0 && std::isfinite(options.scale), number_text(options.scale));
+  EXACTVO_REQUIRE(options.frame_rate >= 0.0 && std::isfinite(options.frame_rate), number_text(options.frame_rate));
+  State& s = *state_;
+  s.options = std::move(options);
+  s.file.file = name_of_input(file);
+  if (file == "-" || is_pipe(file)) s.spooled.emplace(file);
+  s.path = s.spooled ? s.spooled->path() : std::filesystem::path(file);
+  const std::string beginning = read_beginning(s.path, kProbe);
+  if (beginning.empty())
+    throw DataError(DataCode::format_unknown, s.file.file, "", "an empty file", "a file of trajectories");
+  s.format =
+      s.options.format.empty() ? &format_for(beginning, s.file.file) : &format_named(s.options.format, s.file.file);
+  s.file.format = s.format->name;
+}
+
+TrajectoryReader::~TrajectoryReader() = default;
+
+const TrajectoryFile& TrajectoryReader::read(const std::function<void(const TrajectoryRow&)>& take) {
+  State& s = *state_;
+  TrajectoryFile fresh;
+  fresh.file = s.file.file;
+  fresh.format = s.file.format;
+  s.file = std::move(fresh);
+  TrajectorySink sink(s.options, take, s.file);
+  try {
+    s.format->read(s.path, sink);
+  } catch (const DataError& error) {
+    if (error.file() == s.file.file) throw;
+    throw DataError(error.code(), s.file.file, error.place(), error.found(), error.expected());
+  }
+  if (s.file.agents.empty())
+    throw DataError(DataCode::format_syntax, s.file.file, "", "no row", "at least one row of a trajectory");
+  return s.file;
+}
+
+const TrajectoryFile& TrajectoryReader::file() const {
+  return state_->file;
+}
+
+void TrajectoryReader::refuse(DataCode code, std::uint64_t line, const std::string& found,
+                              const std::string& expected) const {
+  throw DataError(code, state_->file.file, state_->file.row_word + " " + std::to_string(line), found, expected);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trajectories as tables: CSV with a header, the text of JuPedSim and PedPy, obsmat.txt of ETH and UCY, and four
+// columns of numbers (frame, id, x, y).
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+
+#include "exactvo/datasets/input_text.h"
+#include "files/text_file.h"
+#include "readers/line_reader.h"
+#include "trajectories/trajectory_readers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// No row of a trajectory is longer.
+constexpr std::size_t kLongestRow = std::size_t{1} << 16;
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
+}
+
+/// The fields of a line, into memory that is used again. Blanks part fields where `separator` is one.
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
+  if (separator == ' ') {
+    constexpr std::string_view kBlanks = " \t\r";
+    for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+      fields.push_back(line.substr(at, end - at));
+      at = end;
+    }
+    return;
+  }
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// The first lines that are neither blank nor begin with `comment`.
+std::string_view first_line(std::string_view text, char comment = '\0') {
+  text = without_mark(text);
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    if (!line.empty() && line.front() != comment) return line;
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return {};
+}
+
+bool is_number(std::string_view field) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return !field.empty() && error == std::errc() && end == field.data() + field.size();
+}
+
+/// How many numbers, and nothing else, a line holds, parted by blanks.
+std::size_t numbers_in(std::string_view line) {
+  std::vector<std::string_view> fields;
+  split(line, ' ', fields);
+  return std::all_of(fields.begin(), fields.end(), is_number) ? fields.size() : 0;
+}
+
+/// Ids that are whole numbers in the form 1.0000000e+00 get their plain form.
+std::string_view plain_id(std::string_view field, std::string& memory) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  constexpr double kLargestWhole = 0x1p53;
+  if (error != std::errc() || end != field.data() + field.size() || value != std::floor(value) ||
+      std::fabs(value) > kLargestWhole)
+    return field;
+  memory = std::to_string(static_cast<std::int64_t>(value));
+  return memory;
+}
+
+// --- Columns ---
+
+enum Column : std::size_t { kTimeColumn, kFrameColumn, kIdColumn, kXColumn, kYColumn, kHeadingColumn, kColumnKinds };
+constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+using Columns = std::array<std::size_t, kColumnKinds>;
+
+/// The names by which columns are known, the best first.
+const std::array<std::vector<std::string>, kColumnKinds> kColumnNames{
+    {{"t", "time", "time_s", "timestamp", "timestamp_s", "t_s", "time/s", "t/s"},
+     {"frame", "frame_id", "fr", "f"},
+     {"id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"},
+     {"x", "x_m", "x/m", "pos_x", "position_x", "x/cm"},
+     {"y", "y_m", "y/m", "pos_y", "position_y", "y/cm"},
+     {"theta", "heading", "yaw", "theta_rad", "heading_rad", "yaw_rad", "psi_rad"}}};
+
+/// Where each column stands; a name of `kColumnNames` that comes twice counts the first time.
+Columns columns_in(const std::vector<std::string_view>& header) {
+  Columns columns;
+  columns.fill(kNoColumn);
+  std::vector<std::string> names;
+  for (const std::string_view field : header) names.push_back(lower_case(field));
+  for (std::size_t c = 0; c < kColumnKinds; ++c)
+    for (const std::string& name : kColumnNames[c]) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end()) continue;
+      columns[c] = static_cast<std::size_t>(at - names.begin());
+      break;
+    }
+  return columns;
+}
+bool has_place_and_time(const Columns& c) {
+  return c[kXColumn] != kNoColumn && c[kYColumn] != kNoColumn &&
+         (c[kTimeColumn] != kNoColumn || c[kFrameColumn] != kNoColumn);
+}
+
+char separator_of(std::string_view header) {
+  for (const char c : {',', ';', '\t'})
+    if (header.find(c) != std::string_view::npos) return c;
+  return ' ';
+}
+
+/// The rows behind a header.
+class TableRows {
+ public:
+  TableRows(const Columns& columns, std::size_t count, TrajectorySink& out)
+      : columns_(columns), count_(count), out_(out) {
+    if (columns_[kIdColumn] == kNoColumn) out.file().notes.emplace_back("no column of ids: all rows are of one agent");
+  }
+
+  /// Frames a second, where the file says; units of length in m.
+  double frame_rate = 0.0, unit = 1.0;
+
+  void add(const std::vector<std::string_view>& fields, std::uint64_t line) {
+    if (fields.size() < count_)
+      out_.refuse(DataCode::wrong_count, line, std::to_string(fields.size()) + " fields",
+                  std::to_string(count_) + " fields, as the header has");
+    const auto number = [&](Column c, const char* what) { return out_.number(fields[columns_[c]], what, line); };
+    const double time = columns_[kTimeColumn] != kNoColumn
+                            ? number(kTimeColumn, "a time")
+                            : out_.time_of_frame(number(kFrameColumn, "a frame"), frame_rate);
+    const double heading = columns_[kHeadingColumn] == kNoColumn ? std::numeric_limits<double>::quiet_NaN()
+                                                                 : number(kHeadingColumn, "a heading");
+    const std::string_view id =
+        columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : plain_id(fields[columns_[kIdColumn]], memory_);
+    if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
+    out_.row(out_.agent(id), time, {unit * number(kXColumn, "x"), unit * number(kYColumn, "y")}, line, heading);
+  }
+
+ private:
+  Columns columns_;
+  std::size_t count_;
+  TrajectorySink& out_;
+  std::string memory_;
+};
+
+constexpr double kMetresOfCentimetre = 0.01;
+
+/// Rows of numbers without a header.
+void read_numbers(const std::filesystem::path& path, const Columns& columns, std::size_t count, TrajectorySink& out) {
+  TextLines lines(path.string(), kLongestRow);
+  TableRows rows(columns, count, out);
+  std::vector<std::string_view> fields;
+  for (std::string_view line; lines.next(line);) {
+    split(lines.number() == 1 ? without_mark(line) : line, ' ', fields);
+    if (!fields.empty() && fields.front().front() != '#') rows.add(fields, lines.number());
+  }
+}
+
+}  // namespace
+
+bool looks_like_trajectory_csv(std::string_view beginning) {
+  const std::string_view header = first_line(beginning, '#');
+  std::vector<std::string_view> fields;
+  split(header, separator_of(header), fields);
+  return has_place_and_time(columns_in(fields));
+}
+
+void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out) {
+  TextLines lines(path.string(), kLongestRow);
+  std::optional<TableRows> rows;
+  std::vector<std::string_view> fields;
+  std::optional<std::vector<std::string>> quoted;
+  char separator = ',';
+  for (std::string_view line; lines.next(line);) {
+    line = trimmed(lines.number() == 1 ? without_mark(line) : line);
+    if (line.empty() || line.front() == '#') continue;
+    if (!rows) separator = separator_of(line);
+    if (separator == ',' && line.find('"') != std::string_view::npos) {
+      quoted = csv_fields_of(line);
+      if (!quoted) out.refuse(DataCode::format_syntax, lines.number(), "a quotation mark that is not closed", "CSV");
+      fields.assign(quoted->begin(), quoted->end());
+    } else {
+      split(line, separator, fields);
+    }
+    if (rows) {
+      rows->add(fields, lines.number());
+      continue;
+    }
+    const Columns columns = columns_in(fields);
+    if (!has_place_and_time(columns))
+      out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60),
+                 "a header with the columns t,id,x,y and, where there is one, theta");
+    rows.emplace(columns, fields.size(), out);
+  }
+}
+
+bool looks_like_jupedsim_text(std::string_view beginning) {
+  const std::string_view text = without_mark(beginning);
+  if (text.substr(0, 1) != "#") return false;
+  const std::string lower = lower_case(text);
+  return lower.find("framerate") != std::string::npos || lower.find("#id\t") != std::string::npos ||
+         lower.find("# id ") != std::string::npos;
+}
+
+void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) {
+  Columns columns;
+  columns.fill(kNoColumn);
+  columns[kIdColumn] = 0;
+  columns[kFrameColumn] = 1;
+  columns[kXColumn] = 2;
+  columns[kYColumn] = 3;
+  std::size_t count = 4;
+  double frame_rate = 0.0, unit = 1.0;
+  TextLines lines(path.string(), kLongestRow);
+  std::optional<TableRows> rows;
+  std::vector<std::string_view> fields;
+  for (std::string_view line; lines.next(line);) {
+    line = trimmed(lines.number() == 1 ? without_mark(line) : line);
+    if (line.empty()) continue;
+    if (line.front() != '#') {
+      if (!rows) {
+        rows.emplace(columns, count, out);
+        rows->frame_rate = frame_rate;
+        rows->unit = unit;
+      }
+      split(line, ' ', fields);
+      rows->add(fields, lines.number());
+      continue;
+    }
+    if (rows) continue;
+    line = trimmed(line.substr(1));
+    const std::string lower = lower_case(line);
+    if (lower.rfind("framerate", 0) == 0) {
+      const std::size_t number = lower.find_first_of("0123456789");
+      if (number == std::string::npos)
+        out.refuse(DataCode::number, lines.number(), excerpt(line, 0, 40), "frames a second");
+      frame_rate = out.number(line.substr(number, line.find_first_of(" \tf", number) - number), "frames a second",
+                              lines.number());
+      continue;
+    }
+    split(line, ' ', fields);
+    const Columns named = columns_in(fields);
+    if (!has_place_and_time(named) || named[kIdColumn] == kNoColumn) continue;
+    columns = named;
+    columns[kHeadingColumn] = kNoColumn;  // JuPedSim's ANGLE is that of an ellipse of its model
+    count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
+                          named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
+    if (lower_case(fields[named[kXColumn]]) == "x/cm") unit = kMetresOfCentimetre;
+  }
+}
+
+bool looks_like_obsmat(std::string_view beginning) {
+  constexpr std::size_t kFields = 8;
+  return numbers_in(first_line(beginning)) == kFields;
+}
+
+void read_obsmat(const std::filesystem::path& path, TrajectorySink& out) {
+  // frame, pedestrian, x, z, y, and three of the velocity
+  Columns columns;
+  columns.fill(kNoColumn);
+  columns[kFrameColumn] = 0;
+  columns[kIdColumn] = 1;
+  columns[kXColumn] = 2;
+  columns[kYColumn] = 4;
+  read_numbers(path, columns, 8, out);
+}
+
+bool looks_like_four_columns(std::string_view beginning) {
+  return numbers_in(first_line(beginning)) == 4;
+}
+
+void read_four_columns(const std::filesystem::path& path, TrajectorySink& out) {
+  Columns columns;
+  columns.fill(kNoColumn);
+  columns[kFrameColumn] = 0;
+  columns[kIdColumn] = 1;
+  columns[kXColumn] = 2;
+  columns[kYColumn] = 3;
+  read_numbers(path, columns, 4, out);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trajectories in JSON and XML: TrajNet++ (a JSON object a line), SUMO's floating car data, and recordings of this
+// program.
+#include <cmath>
+#include <pugixml.hpp>
+
+#include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/input_text.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/pi.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
+#include "readers/readers.h"
+#include "trajectories/trajectory_readers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+// --- XML, a tag at a time ---
+
+/// The tags of a text of XML, one after the other: neither content nor a tree is kept.
+class XmlTags {
+ public:
+  explicit XmlTags(const std::filesystem::path& path) : lines_(path) {}
+
+  /// The next tag without its brackets; false at the end. Comments and declarations are passed over.
+  bool next() {
+    for (;;) {
+      if (!seek("<")) return false;
+      line_ = lines_.number();
+      if (starts_with("<!--")) {
+        seek("-->");
+        continue;
+      }
+      tag_.clear();
+      char quote = '\0';
+      for (;; ++at_) {
+        while (at_ >= text_.size()) {
+          if (!refill()) return false;
+        }
+        const char c = text_[at_];
+        if (quote == '\0' && c == '>') break;
+        if (c == '"' || c == '\'') quote = quote == '\0' ? c : quote == c ? '\0' : quote;
+        tag_ += c;
+      }
+      ++at_;
+      tag_.erase(0, 1);
+      return true;
+    }
+  }
+  const std::string& tag() const { return tag_; }
+  std::uint64_t line() const { return line_; }
+
+ private:
+  bool refill() {
+    std::string_view line;
+    if (!lines_.next(line)) return false;
+    text_.assign(line).push_back('\n');
+    at_ = 0;
+    return true;
+  }
+  bool starts_with(std::string_view word) const { return text_.compare(at_, word.size(), word) == 0; }
+  /// Moves to the word; behind it where it is no bracket that opens.
+  bool seek(std::string_view word) {
+    for (;;) {
+      const std::size_t found = at_ < text_.size() ? text_.find(word, at_) : std::string::npos;
+      if (found != std::string::npos) {
+        at_ = word == "<" ? found : found + word.size();
+        return true;
+      }
+      if (!refill()) return false;
+    }
+  }
+
+  TextLines lines_;
+  std::string text_, tag_;
+  std::size_t at_ = 0;
+  std::uint64_t line_ = 0;
+};
+
+bool is_element(const std::string& tag, std::string_view name) {
+  return tag.compare(0, name.size(), name) == 0 &&
+         (tag.size() == name.size() || tag[name.size()] == ' ' || tag[name.size()] == '\n' ||
+          tag[name.size()] == '\t' || tag[name.size()] == '/');
+}
+
+/// The attributes of one tag.
+class TagAttributes {
+ public:
+  TagAttributes(const std::string& tag, std::uint64_t line, const TrajectorySink& out) : line_(line), out_(out) {
+    const std::string text = "<" + tag + (tag.back() == '/' ? ">" : "/>");
+    const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size());
+    if (!result)
+      out.refuse(DataCode::format_syntax, line, excerpt(text, 0, 40), std::string("XML: ") + result.description());
+  }
+  bool has(const char* name) const { return !document_.first_child().attribute(name).empty(); }
+  std::string_view text(const char* name) const {
+    const pugi::xml_attribute attribute = document_.first_child().attribute(name);
+    if (attribute.empty())
+      out_.refuse(DataCode::key_missing, line_, std::string("no attribute ") + name, std::string(name) + "=\"...\"");
+    return attribute.value();
+  }
+  double number(const char* name) const { return out_.number(text(name), name, line_); }
+
+ private:
+  std::uint64_t line_;
+  const TrajectorySink& out_;
+  pugi::xml_document document_;
+};
+
+// --- Obstacles of crowds ---
+
+void add_bodies(const std::vector<CrowdBodyRecord>& bodies, TrajectoryFile& file) {
+  std::size_t left_out = 0;
+  for (const CrowdBodyRecord& body : bodies) {
+    const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
+    if (polygon == nullptr || body.moves) {
+      ++left_out;
+      continue;
+    }
+    file.obstacles.push_back(
+        {"body " + std::to_string(file.obstacles.size() + 1), geometry::Polygon{polygon->vertices, {}}});
+  }
+  if (left_out > 0)
+    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are round were left out of the map");
+}
+
+}  // namespace
+
+bool looks_like_trajnet(std::string_view beginning) {
+  const std::size_t end = beginning.find('\n');
+  const std::string_view line = beginning.substr(0, end);
+  const std::size_t first = line.find_first_not_of(" \t\xEF\xBB\xBF");
+  if (first == std::string_view::npos || line[first] != '{') return false;
+  return line.find("\"scene\"") != std::string_view::npos || line.find("\"track\"") != std::string_view::npos;
+}
+
+void read_trajnet(const std::filesystem::path& path, TrajectorySink& out) {
+  TextLines lines(path);
+  std::size_t predictions = 0;
+  const std::string& name = out.file().file;
+  std::string id;
+  for (std::string_view line; lines.next(line);) {
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    const Json json = parse_json_line(line, name, lines.number());
+    const JsonCursor cursor(json, name, "line " + std::to_string(lines.number()));
+    if (!cursor.has("track")) continue;
+    const JsonCursor track = cursor.at("track");
+    if (track.has("prediction_number") && track.at("prediction_number").json() != 0) {
+      ++predictions;
+      continue;
+    }
+    id = track.at("p").json().is_string() ? track.at("p").text() : number_text(track.at("p").number());
+    const double time = out.time_of_frame(track.at("f").number(), 0.0);
+    out.row(out.agent(id), time, {track.at("x").number(), track.at("y").number()}, lines.number());
+  }
+  if (predictions > 0)
+    out.file().notes.push_back(geometry::counted(predictions, "row") + " of further predictions left out");
+}
+
+bool looks_like_sumo_fcd(std::string_view beginning) {
+  return first_element_is(std::string(beginning), "fcd-export");
+}
+
+void read_sumo_fcd(const std::filesystem::path& path, TrajectorySink& out) {
+  XmlTags tags(path);
+  double time = 0.0;
+  bool has_time = false, has_headings = false;
+  while (tags.next()) {
+    if (tags.tag().compare(0, 7, "!ENTITY") == 0 || tags.tag().find("<!ENTITY") != std::string::npos)
+      out.refuse(DataCode::format_syntax, tags.line(), "an entity", "XML without entities of its own");
+    if (is_element(tags.tag(), "timestep")) {
+      time = TagAttributes(tags.tag(), tags.line(), out).number("time");
+      has_time = true;
+    }
+    if (!is_element(tags.tag(), "vehicle") && !is_element(tags.tag(), "person")) continue;
+    if (!has_time) out.refuse(DataCode::format_syntax, tags.line(), excerpt(tags.tag(), 0), "a timestep round it");
+    const TagAttributes vehicle(tags.tag(), tags.line(), out);
+    double heading = std::numeric_limits<double>::quiet_NaN();
+    if (vehicle.has("angle")) {
+      // SUMO's: degrees clockwise from north.
+      constexpr double kDegree = geometry::kPi / 180.0;
+      heading = (90.0 - vehicle.number("angle")) * kDegree;
+      has_headings = true;
+    }
+    out.row(out.agent(vehicle.text("id")), time, {vehicle.number("x"), vehicle.number("y")}, tags.line(), heading);
+  }
+  if (has_headings)
+    out.file().notes.emplace_back("places of vehicles are the middle of the front bumper, as SUMO has it");
+}
+
+bool looks_like_recording(std::string_view beginning) {
+  return beginning.find("exactvo-recording") != std::string_view::npos;
+}
+
+void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySink& out) {
+  TrajectoryFile& file = out.file();
+  file.row_word = "row";
+  std::uint64_t number = 0;
+  const auto begin = [&](const formation::Scenario& scenario) {
+    for (const formation::Robot& robot : scenario.robots) {
+      out.agent(robot.id);
+      file.radii.push_back(robot.radius);
+    }
+    file.obstacles = scenario.obstacles;
+    if (!scenario.moving_obstacles.empty())
+      file.notes.push_back(geometry::counted(scenario.moving_obstacles.size(), "moving obstacle") + " left out");
+  };
+  read_recording(path, [&](const RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*) {
+    if (number++ == 0) {
+      begin(so_far.scenario);
+      if (so_far.recording.motion != formation::MotionLaw::straight)
+        file.notes.emplace_back(
+            "robots of this formation moved on curves between rows, which exactvo audit judges; here they go straight");
+    }
+    for (std::size_t i = 0; i < row.robots.size(); ++i) out.row(i, row.time, row.robots[i].position, number);
+  });
+}
+
+void read_crowd_trajectories(const std::filesystem::path& path, TrajectorySink& out) {
+  TrajectoryFile& file = out.file();
+  file.row_word = "row";
+  CrowdRecordingReader reader(path);
+  const CrowdRecordingHead& head = reader.head();
+  for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
+    out.agent(head.name_of(i));
+    file.radii.push_back(head.kinds[head.kind_of[i]].radius);
+  }
+  for (const geometry::Segment& edge : head.edges)
+    file.obstacles.push_back(
+        {"edge " + std::to_string(file.obstacles.size() + 1), geometry::Polyline{{edge.a, edge.b}}});
+  add_bodies(head.bodies, file);
+  CrowdRow row;
+  for (std::uint64_t number = 1; reader.next(row); ++number) {
+    call_wait_hook();
+    for (std::size_t i = 0; i < row.x.size(); ++i)
+      out.row(i, row.step * head.time_step, {row.x[i] * head.position_step, row.y[i] * head.position_step}, number);
+  }
+  if (reader.is_cut_off()) file.notes.emplace_back("the recording is cut off after its last row");
+  if (head.every > 1)
+    file.notes.push_back("the recording has every " + std::to_string(head.every) +
+                         "th step only: between rows robots are taken to go straight");
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trajectories from files of ten formats: what is read, and what is refused with file and line.
+#include "exactvo/datasets/trajectory_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/trajectory_survey.h"
+
+namespace exactvo::test {
+namespace {
+
+using datasets::DataCode;
+using datasets::DataError;
+using datasets::TrajectoryFile;
+using datasets::TrajectoryOptions;
+using datasets::TrajectoryReader;
+using datasets::TrajectoryRow;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class TextFile {
+ public:
+  explicit TextFile(const std::string& text) {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("exactvo-trajectories-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+    std::ofstream(path_, std::ios::binary) << text;
+  }
+  ~TextFile() { std::filesystem::remove(path_); }
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Content {
+  TrajectoryFile file;
+  std::vector<TrajectoryRow> rows;
+};
+
+Content content_of(const std::string& text, const TrajectoryOptions& options = {}) {
+  const TextFile file(text);
+  TrajectoryReader reader(file.path(), options);
+  Content content;
+  reader.read([&](const TrajectoryRow& row) { content.rows.push_back(row); });
+  content.file = reader.file();
+  return content;
+}
+
+/// The refusal of a text.
+DataError refusal_of(const std::string& text, const TrajectoryOptions& options = {}) {
+  try {
+    content_of(text, options);
+  } catch (const DataError& error) {
+    return error;
+  }
+  return {DataCode::file_missing, "", "", "no refusal", ""};
+}
+
+void expect_row(const TrajectoryRow& row, std::size_t agent, double time, double x, double y, std::uint64_t line) {
+  EXPECT_EQ(row.agent, agent);
+  EXPECT_DOUBLE_EQ(row.time, time);
+  EXPECT_DOUBLE_EQ(row.at.x, x);
+  EXPECT_DOUBLE_EQ(row.at.y, y);
+  EXPECT_EQ(row.line, line);
+}
+
+// --- Formats ---
+
+TEST(TrajectoryFile, ReadsCsvWithColumnsInAnyOrder) {
+  const Content c = content_of("# made by hand\ny,id,theta,t,x\n2,\"A, the first\",0.5,0,1\n\n4,B,1,0.5,3\r\n");
+  EXPECT_EQ(c.file.format, "csv");
+  EXPECT_THAT(c.file.agents, ElementsAre("A, the first", "B"));
+  ASSERT_EQ(c.rows.size(), 2u);
+  expect_row(c.rows[0], 0, 0.0, 1.0, 2.0, 3);
+  expect_row(c.rows[1], 1, 0.5, 3.0, 4.0, 5);
+  EXPECT_EQ(c.rows[0].heading, 0.5);
+}
+
+TEST(TrajectoryFile, ReadsTheTableOfARun) {
+  const Content c =
+      content_of("time_s,robot,x_m,y_m,vx_m_s,vy_m_s,status\n0,R1,1,2,0,0,best\n0.05,R1,1.5,2,0,0,best\n");
+  EXPECT_THAT(c.file.agents, ElementsAre("R1"));
+  expect_row(c.rows[1], 0, 0.05, 1.5, 2.0, 3);
+  EXPECT_TRUE(std::isnan(c.rows[1].heading));
+}
+
+TEST(TrajectoryFile, ReadsJuPedSimAndPedPy) {
+  const Content c = content_of(
+      "#framerate: "
+      "8.00\n#ID\tFR\tX\tY\tZ\tA\tB\tANGLE\tCOLOR\n7\t0\t1.5\t2\t0\t1\t1\t90\t255\n7\t4\t2\t2\t0\t1\t1\t0\t0\n");
+  EXPECT_EQ(c.file.format, "jupedsim-txt");
+  EXPECT_THAT(c.file.agents, ElementsAre("7"));
+  expect_row(c.rows[1], 0, 0.5, 2.0, 2.0, 4);
+  EXPECT_TRUE(std::isnan(c.rows[1].heading));
+  const Content pedpy = content_of("# PeTrack\n# framerate: 25 fps\n# id frame x/cm y/cm z/m\n1 25 150 -200 1.7\n");
+  EXPECT_EQ(pedpy.file.format, "jupedsim-txt");
+  expect_row(pedpy.rows[0], 0, 1.0, 1.5, -2.0, 4);
+}
+
+TEST(TrajectoryFile, ReadsObsmatAndFourColumns) {
+  const Content c = content_of(
+      "  7.8000000e+02  1.0000000e+00  8.4568443e+00 0 3.5880664e+00 1.6 0 -0.2\n"
+      "786 1 9.5 0 3.4 1 0 0\n",
+      {"", 15.0, 1.0});
+  EXPECT_EQ(c.file.format, "obsmat");
+  EXPECT_THAT(c.file.agents, ElementsAre("1"));
+  expect_row(c.rows[0], 0, 52.0, 8.4568443, 3.5880664, 1);
+  EXPECT_TRUE(c.file.notes.empty());
+  const Content four = content_of("0.0\t2.0\t1.5\t-3\n10.0\t2.0\t1.75\t-3\n");
+  EXPECT_EQ(four.file.format, "frame-id-x-y");
+  EXPECT_THAT(four.file.agents, ElementsAre("2"));
+  expect_row(four.rows[1], 0, 10.0, 1.75, -3.0, 2);
+  ASSERT_EQ(four.file.notes.size(), 1u);
+  EXPECT_THAT(four.file.notes[0], HasSubstr("frame rate"));
+}
+
+TEST(TrajectoryFile, ReadsTrajNet) {
+  const Content c = content_of(R"({"scene": {"id": 0, "p": 1, "s": 0, "e": 20, "fps": 2.5}}
+{"track": {"f": 10, "p": 1, "x": 0.5, "y": -1}}
+{"track": {"f": 20, "p": 1, "x": 1.5, "y": -1}}
+{"track": {"f": 20, "p": 1, "x": 9, "y": 9, "prediction_number": 1, "scene_id": 0}}
+)",
+                               {"", 25.0, 1.0});
+  EXPECT_EQ(c.file.format, "trajnet");
+  ASSERT_EQ(c.rows.size(), 2u);
+  expect_row(c.rows[1], 0, 0.8, 1.5, -1.0, 3);
+  ASSERT_EQ(c.file.notes.size(), 1u);
+}
+
+TEST(TrajectoryFile, ReadsSumo) {
+  const Content c = content_of(R"(<?xml version="1.0"?>
+<!-- generated <timestep> -->
+<fcd-export><timestep time="0.00">
+  <vehicle id="a>b" x="1" y="2" angle="90.00" speed="3"/><person id='p'
+    x="5" y="6"/></timestep>
+<timestep time="1.5"/><timestep time="2"><vehicle id="a>b" x="4" y="2" angle="0"></vehicle></timestep>
+</fcd-export>
+)");
+  EXPECT_EQ(c.file.format, "sumo-fcd");
+  EXPECT_THAT(c.file.agents, ElementsAre("a>b", "p"));
+  ASSERT_EQ(c.rows.size(), 3u);
+  expect_row(c.rows[0], 0, 0.0, 1.0, 2.0, 4);
+  EXPECT_DOUBLE_EQ(c.rows[0].heading, 0.0);
+  expect_row(c.rows[1], 1, 0.0, 5.0, 6.0, 4);
+  expect_row(c.rows[2], 0, 2.0, 4.0, 2.0, 6);
+  EXPECT_NEAR(c.rows[2].heading, 1.5707963267948966, 1e-15);
+}
+
+TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
+  const Content c = content_of(
+      "statistics:\n  cost: 3\nschedule:\n  agent0:\n    - x: 0\n      y: 1\n      t: 0\n    - x: 0\n      y: 2\n      "
+      "t: 1\n");
+  EXPECT_EQ(c.file.format, "mapf-yaml");
+  EXPECT_TRUE(c.file.in_cells);
+  expect_row(c.rows[1], 0, 1.0, 0.0, 2.0, 8);
+  const Content paths = content_of("Agent 0: (1,2)->(1,3)->\nAgent 1: (4,5)->(4,5)->(4,6)\n");
+  EXPECT_EQ(paths.file.format, "mapf-paths");
+  ASSERT_EQ(paths.rows.size(), 5u);
+  expect_row(paths.rows[1], 0, 1.0, 3.0, 1.0, 1);
+  expect_row(paths.rows[4], 1, 2.0, 6.0, 4.0, 2);
+}
+
+TEST(TrajectoryFile, ScalesAndReadsAgain) {
+  const TextFile file("t,id,x,y\n0,A,100,200\n");
+  TrajectoryReader reader(file.path(), {"", 0.0, 0.01});
+  for (int round = 0; round < 2; ++round) {
+    std::vector<TrajectoryRow> rows;
+    reader.read([&](const TrajectoryRow& row) { rows.push_back(row); });
+    ASSERT_EQ(rows.size(), 1u);
+    expect_row(rows[0], 0, 0.0, 1.0, 2.0, 2);
+    EXPECT_THAT(reader.file().agents, ElementsAre("A"));
+  }
+}
+
+TEST(TrajectoryFile, RepeatedRowsAreLeftOutAndCounted) {
+  const Content c = content_of("t,id,x,y\n0,A,1,2\n0,B,1,2\n0,A,1,2\n1,A,1,2\n");
+  EXPECT_EQ(c.rows.size(), 3u);
+  EXPECT_EQ(c.file.repeated, 1u);
+}
+
+// --- Refusals ---
+
+TEST(TrajectoryFile, RefusalsNameTheLine) {
+  struct Bad {
+    const char* text;
+    DataCode code;
+    const char* words;
+  };
+  const Bad all[] = {
+      {"t,id,x,y\n0,A,1,2\n1,A,nan,2\n", DataCode::not_finite, "line 3"},
+      {"t,id,x,y\n0,A,1,2\ninf,A,1,2\n", DataCode::not_finite, "line 3"},
+      {"t,id,x,y\n0,A,1,2\n1,A,one,2\n", DataCode::number, "line 3"},
+      {"t,id,x,y\n0,A,1,2\n1,A,,2\n", DataCode::number, "line 3"},
+      {"t,id,x,y\n0,A,1,2\n1,A,1\n", DataCode::wrong_count, "line 3"},
+      {"t,id,x,y\n0,A,1,2\n1,,1,2\n", DataCode::format_syntax, "line 3"},
+      {"t,id,x,y\n1,A,1,2\n0.5,A,1,2\n", DataCode::out_of_range, "no time before that of line 2"},
+      {"t,id,x,y\n1,A,1,2\n1,A,1,3\n", DataCode::out_of_range, "line 2 has another"},
+      {"t,id,x,y\n1,A,1e40,2\n", DataCode::out_of_range, "2^100"},
+      {"t,id,x,y\n", DataCode::format_syntax, "no row"},
+      {"t,id,x,y\n0,\"A,1,2\n", DataCode::format_syntax, "quotation mark"},
+      {"", DataCode::format_unknown, "an empty file"},
+      {"hello\n", DataCode::format_unknown, "--format"},
+      {"#framerate: x\n#ID FR X Y\n", DataCode::number, "line 1"},
+      {"#framerate: 10\n#ID FR X Y\n1 0 1\n", DataCode::wrong_count, "line 3"},
+      {"1 2 3 0 4 0 0 0\n2 2 3 0\n", DataCode::wrong_count, "line 2"},
+      {"{\"track\": {\"f\": 1, \"p\": 1, \"x\": 1}}\n", DataCode::key_missing, "line 1"},
+      {"{\"track\": {\"f\": 1, \"p\": 1, \"x\": 1\n", DataCode::json_syntax, "line 1"},
+      {"<fcd-export><timestep time=\"0\">\n<vehicle id=\"a\" x=\"1\"/>", DataCode::key_missing, "line 2"},
+      {"<fcd-export><timestep time=\"0\">\n<vehicle id=\"a\" x=\"1\" y=\"b\"/>", DataCode::number, "line 2"},
+      {"<fcd-export>\n<vehicle id=\"a\" x=\"1\" y=\"1\"/>", DataCode::format_syntax, "line 2"},
+      {"schedule:\n  a:\n    - x: 1\n      y: 1\n", DataCode::key_missing, "line 3"},
+      {"schedule: [\n", DataCode::format_syntax, "YAML"},
+      {"Agent 0: (1,2)->(1,x)->\n", DataCode::number, "line 1"},
+      {"Agent 0: (1,2)->\nnothing\n", DataCode::format_syntax, "line 2"},
+  };
+  std::size_t judged = 0;
+  for (const Bad& bad : all) {
+    const DataError error = refusal_of(bad.text);
+    EXPECT_EQ(error.code(), bad.code) << bad.text << error.what();
+    EXPECT_THAT(error.what(), HasSubstr(bad.words)) << bad.text;
+    ++judged;
+  }
+  EXPECT_EQ(judged, std::size(all));
+  EXPECT_EQ(refusal_of("t,id,x,y\n0,A,1,2\n", {"sumo-fcs", 0.0, 1.0}).code(), DataCode::not_an_option);
+}
+
+TEST(TrajectoryFile, CutAndChangedFilesNeverEndInAnythingButAnAnswer) {
+  const std::string texts[] = {
+      "t,id,x,y,theta\n0,A,1,2,0\n1,A,2,2,0\n0.5,\"B\",3,4,0\n",
+      "#framerate: 8.00\n#ID\tFR\tX\tY\n7\t0\t1.5\t2\n7\t4\t2\t2\n",
+      "780 1 8.4 0 3.5 1.6 0 -0.2\n786 1 9.5 0 3.4 1 0 0\n",
+      "{\"track\": {\"f\": 10, \"p\": 1, \"x\": 0.5, \"y\": -1}}\n",
+      "<fcd-export><timestep time=\"0\"><vehicle id=\"a\" x=\"1\" y=\"2\" angle=\"9\"/></timestep></fcd-export>\n",
+      "schedule:\n  a:\n    - x: 1\n      y: 1\n      t: 0\n",
+      "Agent 0: (1,2)->(1,3)->\n",
+  };
+  std::size_t read = 0, refused = 0;
+  const std::string bytes("\0\xff<>\"'{}[](),;:#\n -+e9", 22);
+  for (const std::string& text : texts)
+    for (std::size_t at = 0; at < text.size(); ++at) {
+      std::vector<std::string> changed{text.substr(0, at)};
+      std::string other = text;
+      other[at] = bytes[at % bytes.size()];
+      changed.push_back(other);
+      for (const std::string& one : changed) {
+        try {
+          content_of(one);
+          ++read;
+        } catch (const DataError& error) {
+          EXPECT_THAT(error.what(), HasSubstr("[E_"));
+          ++refused;
+        }
+      }
+    }
+  EXPECT_GE(read, 100u);
+  EXPECT_GE(refused, 100u);
+}
+
+// --- Survey ---
+
+datasets::TrajectorySurvey survey_of(const std::string& text) {
+  datasets::TrajectorySurvey survey;
+  for (const TrajectoryRow& row : content_of(text).rows) survey.add(row);
+  return survey;
+}
+
+TEST(TrajectorySurvey, KnowsSpeedsAccelerationsAndOrder) {
+  const auto s = survey_of("t,id,x,y\n0,A,0,0\n0,B,5,5\n1,A,3,4\n2,A,3,4\n4,B,5,5\n3,A,3,4\n");
+  EXPECT_FALSE(s.is_in_order());
+  EXPECT_EQ(s.rows(), 6u);
+  EXPECT_EQ(s.first(), 0.0);
+  EXPECT_EQ(s.last(), 4.0);
+  EXPECT_DOUBLE_EQ(s.agents()[0].speed.value, 5.0);
+  EXPECT_EQ(s.agents()[0].speed.line, 4u);
+  EXPECT_DOUBLE_EQ(s.agents()[0].acceleration.value, 5.0);
+  EXPECT_EQ(s.agents()[1].speed.line, 0u);
+  EXPECT_TRUE(std::isinf(s.jump_speed()));
+}
+
+TEST(TrajectorySurvey, BoundsForJumpsAndGapsAreRobust) {
+  std::string text = "t,id,x,y\n";
+  double x = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    x += k == 50 ? 30.0 : 0.1;                                                          // 1 m/s, and once 300 m/s
+    if (k != 70) text += std::to_string(0.1 * k) + ",A," + std::to_string(x) + ",0\n";  // one row is missing
+  }
+  const auto s = survey_of(text);
+  EXPECT_GE(s.jump_speed(), 3.0);
+  EXPECT_LE(s.jump_speed(), 3.0 * 1.1);
+  EXPECT_GE(s.gap_of(0), 0.15);
+  EXPECT_LE(s.gap_of(0), 0.15 * 1.1);
+  EXPECT_NEAR(s.usual_interval(), 0.1, 0.01);
+}
+
+TEST(TrajectorySurvey, EachAgentHasItsOwnUsualInterval) {
+  std::string text = "t,id,x,y\n";
+  for (int k = 0; k < 40; ++k) {
+    text += std::to_string(0.1 * k) + ",fast,0,0\n";
+    if (k % 10 == 0) text += std::to_string(0.1 * k) + ",slow,0,0\n";
+  }
+  text += "5,slow,0,0\n6,slow,0,0\n";
+  const auto s = survey_of(text);
+  EXPECT_LE(s.gap_of(0), 0.17);
+  EXPECT_GE(s.gap_of(1), 1.4);
+}
+
+TEST(TrajectorySurvey, NamesTheRowAtWhichAHeadingTurns) {
+  const auto s = survey_of("t,id,x,y,theta\n0,A,0,0,1\n0,B,5,5,2\n1,A,3,4,1\n1,B,5,5,2.5\n");
+  EXPECT_TRUE(s.has_headings());
+  EXPECT_EQ(s.agents()[0].turns_at, 0u);
+  EXPECT_EQ(s.agents()[0].heading, 1.0);
+  EXPECT_EQ(s.agents()[1].turns_at, 5u);
+}
+
+}  // namespace
+}  // namespace exactvo::test

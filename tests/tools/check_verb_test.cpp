@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verb `check` as a user meets it: events, findings, maps, footprints, certificates, long files, bad input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two agents whose rows are 7 m apart, and who meet between them; C passes by A at 0.4 m.
+constexpr const char* kCrossing =
+    "t,id,x,y\n0,A,0,0\n0,B,5,-5\n1,A,10,0\n1,B,5,5\n2,A,10,0\n2,C,9,0.9\n3,C,11,0.9\n3,A,10,0\n";
+
+std::vector<json> json_lines(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
+  return lines;
+}
+
+Outcome checked(const std::string& text, const std::string& arguments) {
+  const Workplace here;
+  here.write("t.csv", text);
+  return here.run("check t.csv " + arguments);
+}
+
+// --- Events ---
+
+TEST(CheckVerb, FindsWhatHappensBetweenTwoRows) {
+  const Outcome outcome = checked(kCrossing, "--radius 0.25");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("overlap: A and B, from 0.464645 s to 0.535355 s, 0.5 m deep at 0.5 s, at (5, 0)\n"),
+                    HasSubstr("straight and uniform from each row to the next"),
+                    HasSubstr("1 overlap, 0 contacts, 0 jumps, 0 gaps\n")));
+  const Outcome held = checked(kCrossing, "--radius 0.25 --between hold");
+  EXPECT_EQ(held.status, 0);
+  EXPECT_THAT(held.out, AllOf(HasSubstr("rests at a row until its next row"), HasSubstr("0 overlaps")));
+}
+
+TEST(CheckVerb, ContactIsClearAndIsSaid) {
+  const Outcome outcome = checked("t,id,x,y\n0,A,0,0\n1,A,4,0\n0,B,2,1\n1,B,2,1\n", "--radius 0.5");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("contact: A and B, at 0.5 s, at (2, 0.5)"), HasSubstr("1 contact,")));
+}
+
+TEST(CheckVerb, JsonEnclosesMomentsAndDepth) {
+  const Outcome outcome = checked(kCrossing, "--radius 0.25 --json --near 1");
+  EXPECT_EQ(outcome.status, 1);
+  const std::vector<json> lines = json_lines(outcome.out);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[0]["event"], "overlap");
+  const double first = 0.5 - std::sqrt(0.5) / 20.0;
+  EXPECT_LE(lines[0]["first"][0], first);
+  EXPECT_GE(lines[0]["first"][1], first);
+  EXPECT_LE(lines[0]["clearance"][0], -0.5);
+  EXPECT_EQ(lines[2]["approach"][0].get<double>() > 0.39, true);
+  EXPECT_EQ(lines[2]["other"], "C");
+  EXPECT_LE(lines[2]["approach"][0], 0.4);
+  EXPECT_GE(lines[2]["approach"][1], 0.4 - 1e-12);
+  const json& whole = lines[3]["summary"];
+  EXPECT_EQ(whole["overlaps"], 1);
+  EXPECT_EQ(whole["between"], "straight");
+  EXPECT_EQ(whole["bodies"].size(), 3u);
+  EXPECT_EQ(whole["bodies"][0]["speed"]["value"], 10.0);
+}
+
+TEST(CheckVerb, MapsAreLookedAt) {
+  const Workplace here;
+  here.write("t.csv", "t,id,x,y\n0,A,0,0\n1,A,10,0\n");
+  here.write("map.wkt", "LINESTRING (5 -1, 5 1)\nPOLYGON ((7 0.4, 8 0.4, 8 2, 7 2, 7 0.4))\n");
+  const Outcome outcome = here.run("check t.csv --radius 0.3 --map map.wkt");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("overlap: A and wall 1, from 0.47 s to 0.53 s"),
+                                 HasSubstr("near: A and polygon 2, 0.1 m apart")));
+}
+
+TEST(CheckVerb, FootprintsKeepTheirHeading) {
+  const char* const rows = "t,id,x,y,theta\n0,A,0,0,1.5707963267948966\n1,A,10,0,1.5707963267948966\n";
+  const Workplace here;
+  here.write("t.csv", rows);
+  here.write("map.wkt", "LINESTRING (0 0.7, 10 0.7)\n");
+  const std::string long_body = "'POLYGON ((-1 -0.5, 1 -0.5, 1 0.5, -1 0.5, -1 -0.5))'";
+  EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint " + long_body).status, 1);
+  here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,0\n1,A,10,0,0\n");
+  EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint " + long_body).status, 0);
+  here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,0\n1,A,10,0,0.1\n");
+  const Outcome turning = here.run("check t.csv --map map.wkt --footprint " + long_body);
+  EXPECT_EQ(turning.status, 2);
+  EXPECT_THAT(turning.err, AllOf(HasSubstr("line 3"), HasSubstr("turns"), HasSubstr("[E_RANGE]")));
+  const Outcome disc = here.run("check t.csv --map map.wkt --radius 0.5");
+  EXPECT_EQ(disc.status, 0);
+  EXPECT_THAT(disc.out, HasSubstr("which have no heading"));
+  EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint 'LINESTRING (0 -1, 0 1)' --radius 0.1").status, 2);
+}
+
+TEST(CheckVerb, PlansOfCellsLieOnTheirMap) {
+  const Workplace here;
+  here.write("grid.map", "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n");
+  here.write("free.paths", "Agent 0: (0,0)->(0,1)->(0,2)->\nAgent 1: (2,3)->(1,3)->\n");
+  here.write("through.paths", "Agent 0: (0,1)->(1,1)->\n");
+  here.write("swap.paths", "Agent 0: (0,0)->(0,1)->\nAgent 1: (0,1)->(0,0)->\n");
+  EXPECT_EQ(here.run("check free.paths --radius 0.4 --map grid.map").status, 0);
+  EXPECT_EQ(here.run("check through.paths --radius 0.4 --map grid.map").status, 1);
+  const Outcome swap = here.run("check swap.paths --radius 0.4 --map grid.map");
+  EXPECT_EQ(swap.status, 1);
+  EXPECT_THAT(swap.out, HasSubstr("at (1, 2.5)"));
+}
+
+// --- Findings ---
+
+TEST(CheckVerb, JumpsAndGapsAreFindings) {
+  std::string text = "t,id,x,y\n";
+  for (int k = 0; k < 60; ++k)
+    if (k != 40) text += std::to_string(k) + ",A," + std::to_string(k + (k >= 20 ? 50 : 0)) + ",0\n";
+  const Outcome outcome = checked(text, "--radius 0.2");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("jump: A, line 22: 51 m in 1 s, 51 m/s\n"),
+                                 HasSubstr("gap: A, line 42: no row from 39 s to 41 s\n"), HasSubstr("1 jump (faster"),
+                                 HasSubstr("1 gap\n")));
+  EXPECT_THAT(checked(text, "--radius 0.2 --max-speed 100").out, HasSubstr("0 jumps (faster than 100 m/s), 1 gap\n"));
+}
+
+TEST(CheckVerb, AnAgentIsAwayInAGapWhereAsked) {
+  const char* const text = "t,id,x,y\n0,A,0,0\n1,A,1,0\n9,A,9,0\n10,A,10,0\n0,B,5,0\n10,B,5,0\n";
+  EXPECT_EQ(checked(text, "--radius 0.2").status, 1);
+  const Outcome away = checked(text, "--radius 0.2 --max-gap 5");
+  EXPECT_EQ(away.status, 0);
+  EXPECT_THAT(away.out, HasSubstr("away where it has no row for more than 5 s"));
+}
+
+TEST(CheckVerb, RowsInTheOrderOfAgentsGiveTheSameAnswer) {
+  std::string by_time = "t,id,x,y\n", by_agent = by_time;
+  const auto row = [](int k, int a) {
+    const double x = a == 0 ? 0.1 * k : 10.0 - 0.1 * k, y = 0.3 * std::sin(0.37 * k + a);
+    return std::to_string(0.25 * k) + "," + std::to_string(a) + "," + std::to_string(x) + "," + std::to_string(y) +
+           "\n";
+  };
+  for (int k = 0; k < 100; ++k)
+    for (int a = 0; a < 2; ++a) by_time += row(k, a);
+  for (int a = 0; a < 2; ++a)
+    for (int k = 0; k < 100; ++k) by_agent += row(k, a);
+  const Outcome one = checked(by_time, "--radius 0.3"), other = checked(by_agent, "--radius 0.3");
+  EXPECT_EQ(one.status, 1);
+  EXPECT_THAT(one.err, Not(HasSubstr("memory")));
+  EXPECT_THAT(other.err, HasSubstr("not in the order of time"));
+  const auto events = [](const std::string& text) {
+    return text.substr(text.find("overlap"), text.find("greatest") - text.find("overlap"));
+  };
+  EXPECT_EQ(events(one.out), events(other.out));
+}
+
+// --- Recordings ---
+
+TEST(CheckVerb, RecordingsBringTheirRadiiAndObstacles) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out run --no-figures").status, 0);
+  const Outcome outcome = here.run("check run/recording.jsonl --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json whole = json_lines(outcome.out).back()["summary"];
+  EXPECT_EQ(whole["format"], "recording");
+  EXPECT_EQ(whole["footprint"], "discs of the file's radii");
+  EXPECT_GT(whole["pieces"], 100);
+  EXPECT_FALSE(whole["map"].is_null());
+  const Outcome table = here.run("check run/trajectory.csv --radius 0.5 --json");
+  EXPECT_EQ(json_lines(table.out).back()["summary"]["rows"], whole["rows"]);
+}
+
+TEST(CheckVerb, RecordingsOfCrowdsAreChecked) {
+  const Workplace here;
+  here.write("c.json", R"({"name": "c", "robots": [{"id": "a", "position": [0, 0], "goal": [4, 0]},
+    {"id": "b", "position": [4, 0.1], "goal": [0, 0.1]}], "time_limit": 20,
+    "obstacles": [{"id": "wall", "polyline": [[0, 3], [4, 3]]}]})");
+  ASSERT_EQ(here.run("simulate c.json --engine crowd --record c.evr").status, 0);
+  const Outcome outcome = here.run("check c.evr --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+  EXPECT_EQ(json_lines(outcome.out).back()["summary"]["format"], "crowd-recording");
+}
+
+// --- Certificates and figures ---
+
+TEST(CheckVerb, CertificatesAreAcceptedByTheAudit) {
+  const Workplace here;
+  here.write("t.csv", kCrossing);
+  here.write("map.wkt", "POLYGON ((8 0.6, 8.5 0.6, 8.5 2, 8 2, 8 0.6))\n");
+  const Outcome outcome = here.run("check t.csv --radius 0.25 --near 1 --map map.wkt --certificates proofs.jsonl");
+  EXPECT_EQ(outcome.status, 1);
+  const Outcome audit = here.run("audit --certificate proofs.jsonl --json");
+  EXPECT_EQ(audit.status, 0) << audit.err;
+  const json counts = json::parse(audit.out);
+  EXPECT_GE(counts["certificates"], 3);
+  EXPECT_EQ(counts["certificates"], counts["valid"]);
+  EXPECT_EQ(counts["none"], 1);  // A and B
+  // A changed number is no proof.
+  std::string text = here.read("proofs.jsonl");
+  const std::size_t radius = text.find("\"radius\":0.25");
+  ASSERT_NE(radius, std::string::npos);
+  here.write("wrong.jsonl", text.replace(radius, 13, "\"radius\":0.95"));
+  EXPECT_EQ(here.run("audit --certificate wrong.jsonl").status, 1);
+}
+
+TEST(CheckVerb, TheFigureShowsTheOverlaps) {
+  const Workplace here;
+  here.write("t.csv", kCrossing);
+  const Outcome outcome = here.run("check t.csv --radius 0.25 --figure out/check.svg");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(here.has("out/check.png"));
+  EXPECT_THAT(here.read("out/check.gp"), AllOf(HasSubstr("t.csv: 1 overlap"), HasSubstr("A and B, t = 0.5 s")));
+  EXPECT_EQ(here.run("check t.csv --radius 0.25 --figure t.csv").status, 2);
+}
+
+// --- Long files ---
+
+TEST(CheckVerb, AMillionRowsThroughAPipeNeedLittleMemory) {
+  const Workplace here;
+  here.write("rows.awk",
+             "BEGIN { print \"t,id,x,y\"; for (k = 0; k < 10000; ++k) for (a = 0; a < 100; ++a) "
+             "printf \"%d,%d,%.3f,%d\\n\", k, a, 0.01 * k, 3 * a }\n");
+  // 1,000,000 rows take 48 MB as rows and more as pieces; the program alone maps some 200 MB of libraries.
+  const Outcome outcome = here.run("check - --radius 0.3 --json; }", "awk -f rows.awk | { ulimit -v 400000;");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json whole = json_lines(outcome.out).back()["summary"];
+  EXPECT_EQ(whole["rows"], 1000000);
+  EXPECT_LE(whole["most_held"], 300);
+}
+
+// --- Bad input ---
+
+TEST(CheckVerb, BadInputIsNamed) {
+  struct Bad {
+    const char* rows;
+    const char* arguments;
+    const char* words;
+  };
+  const Bad all[] = {
+      {kCrossing, "", "--radius or --footprint"},
+      {kCrossing, "--radius -1", "--radius"},
+      {kCrossing, "--radius nan", "--radius"},
+      {kCrossing, "--radius 0.2 --between cubic", "one of straight hold"},
+      {kCrossing, "--radius 0.2 --scale 0", "--scale"},
+      {kCrossing, "--radius 0.2 --max-gap -1", "--max-gap"},
+      {kCrossing, "--radius 0.2 --format obsmatt", "did you mean 'obsmat'?"},
+      {kCrossing, "--radius 0.2 --map nothing.wkt", "E_FILE_MISSING"},
+      {kCrossing, "--footprint 'POLYGON ((0 0, 1 0))'", "E_TOO_FEW_POINTS"},
+      {kCrossing, "--footprint 'LINESTRING (0 0, 1 0)'", "--radius"},
+      {"t,id,x,y\n0,A,1,2\n1,A,nan,2\n", "--radius 1", "line 3"},
+      {"t,id,x,y\n1,A,1,2\n0,A,1,2\n", "--radius 1", "line 3"},
+      {"t,id,x,y\n0,A,1,2\n0,A,1,3\n", "--radius 1", "line 3"},
+  };
+  std::size_t judged = 0;
+  for (const Bad& bad : all) {
+    const Outcome outcome = checked(bad.rows, bad.arguments);
+    EXPECT_EQ(outcome.status, 2) << bad.arguments << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(bad.words)) << bad.arguments;
+    ++judged;
+  }
+  EXPECT_EQ(judged, std::size(all));
+}
+
+TEST(CheckVerb, OnePointIsAnAnswer) {
+  const Outcome outcome = checked("t,id,x,y\n0,A,1,2\n", "--radius 1");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("0 overlaps, 0 contacts, 0 jumps, 0 gaps\n"));
+  const Outcome two = checked("t,id,x,y\n0,A,1,2\n0,B,1,2.5\n", "--radius 1");
+  EXPECT_EQ(two.status, 1);
+  EXPECT_THAT(two.out, HasSubstr("overlap: A and B, at 0 s"));
+}
+
+}  // namespace
+}  // namespace exactvo::test

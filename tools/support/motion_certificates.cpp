@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/motion_certificates.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "support/certificate_json.h"
+
+namespace exactvo::tools {
+
+using geometry::MotionCertificate;
+using geometry::RigidBody;
+using geometry::RoundedPolygon;
+using geometry::Separation;
+using geometry::StraightMotion;
+using geometry::TimedPoint;
+
+namespace {
+
+constexpr const char* kKind = "clear";
+
+OrderedJson timed_json(const TimedPoint& p) {
+  return OrderedJson::array({p.time, p.at.x, p.at.y});
+}
+
+OrderedJson moving_json(const BodyInMotion& moving) {
+  OrderedJson parts = OrderedJson::array();
+  for (const RoundedPolygon& part : *moving.body)
+    parts.push_back({{"corners", points_json(part.corners)}, {"radius", part.radius}});
+  return {{"from", timed_json(moving.motion.from)}, {"to", timed_json(moving.motion.to)}, {"body", parts}};
+}
+
+OrderedJson json_with(const MotionCertificate& certificate, const BodyInMotion& a, const char* key, OrderedJson other) {
+  OrderedJson separations = OrderedJson::array();
+  for (const Separation& s : certificate.separations)
+    separations.push_back({{"part", s.part},
+                           {"other", s.other},
+                           {"from", s.from},
+                           {"to", s.to},
+                           {"direction", json_point(s.direction)},
+                           {"margin", s.margin}});
+  return {{"kind", kKind}, {"a", moving_json(a)}, {key, std::move(other)}, {"separations", separations}};
+}
+
+// --- Reading (certificate_json.h) ---
+
+std::size_t index_in(const OrderedJson& json) {
+  return json.get_ref<const OrderedJson::number_unsigned_t&>();
+}
+
+TimedPoint timed_in(const OrderedJson& json) {
+  require_readable(json.is_array() && json.size() == 3);
+  return {json[0].get<double>(), {json[1].get<double>(), json[2].get<double>()}};
+}
+
+RoundedPolygon part_in(const OrderedJson& json) {
+  return {list_in(json.at("corners"), 1, pair_in), json.at("radius").get<double>()};
+}
+
+struct Moving {
+  StraightMotion motion;
+  RigidBody body;
+};
+
+Moving moving_in(const OrderedJson& json) {
+  return {{timed_in(json.at("from")), timed_in(json.at("to"))}, list_in(json.at("body"), 1, part_in)};
+}
+
+Separation separation_in(const OrderedJson& json) {
+  return {index_in(json.at("part")),   index_in(json.at("other")),    json.at("from").get<double>(),
+          json.at("to").get<double>(), pair_in(json.at("direction")), json.at("margin").get<double>()};
+}
+
+struct Read {
+  MotionCertificate certificate;
+  Moving a;
+  std::optional<Moving> b;
+  std::optional<geometry::Obstacle> obstacle;
+};
+
+Read certificate_in(const OrderedJson& json) {
+  Read read{{list_in(json.at("separations"), 0, separation_in)}, moving_in(json.at("a")), {}, {}};
+  require_readable(json.contains("b") != json.contains("obstacle"));
+  if (json.contains("b")) read.b = moving_in(json["b"]);
+  if (json.contains("obstacle")) read.obstacle = obstacle_in(json["obstacle"]);
+  return read;
+}
+
+bool proves(const Read& read) {
+  const geometry::Motion a = read.a.motion;
+  if (read.obstacle) return proves_clear(read.certificate, a, read.a.body, *read.obstacle);
+  return proves_clear(read.certificate, a, read.a.body, geometry::Motion(read.b->motion), read.b->body);
+}
+
+}  // namespace
+
+OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a, const BodyInMotion& b) {
+  return json_with(certificate, a, "b", moving_json(b));
+}
+
+OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a,
+                             const formation::SceneObstacle& obstacle) {
+  return json_with(certificate, a, "obstacle", obstacle_json(obstacle));
+}
+
+bool is_motion_certificate(const OrderedJson& certificate) {
+  const OrderedJson* kind = member(certificate, "kind");
+  return kind != nullptr && *kind == kKind;
+}
+
+CheckedCertificate check_motion_certificate(const OrderedJson& certificate) {
+  const auto read = read_or_nothing([&] { return certificate_in(certificate); });
+  if (!read) return {"not a certificate", "", false};
+  const StraightMotion& m = read->a.motion;
+  const std::string claim = fmt::format(
+      "clear of {}, from ({:.6g}, {:.6g}) at {:.6g} s to ({:.6g}, {:.6g}) at {:.6g} s",
+      read->b ? "another body" : "an obstacle", m.from.at.x, m.from.at.y, m.from.time, m.to.at.x, m.to.at.y, m.to.time);
+  try {
+    return proves(*read) ? CheckedCertificate{"valid", claim, true} : CheckedCertificate{"not proven", claim, false};
+  } catch (const std::logic_error&) {
+    return {"not a certificate", claim, false};  // times that fall, a radius below 0
+  }
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/check/answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/geometry/counted.h"
+#include "support/escape.h"
+#include "support/json_layout.h"
+
+namespace exactvo::tools {
+
+using datasets::AgentSurvey;
+using datasets::Extreme;
+using datasets::Move;
+using geometry::Approach;
+using geometry::Bounds;
+using geometry::counted;
+using geometry::Encounter;
+using geometry::MotionEvent;
+
+namespace {
+
+/// Jumps, gaps and approaches that are listed in words; further ones are counted.
+constexpr std::size_t kMostListed = 20;
+
+/// s, to a microsecond, without zeros at the end.
+std::string seconds(double time) {
+  std::string text = fmt::format("{:.6f}", time);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string place_text(geometry::Vec2 p) {
+  return fmt::format("({:.6g}, {:.6g})", p.x, p.y);
+}
+
+/// A depth or a distance from its bounds: one number where they agree in six digits.
+std::string between_text(double low, double high) {
+  const std::string a = fmt::format("{:.6g}", low), b = fmt::format("{:.6g}", high);
+  return a == b ? a + " m" : fmt::format("{} to {} m", a, b);
+}
+
+const char* word_of(Encounter encounter) {
+  return encounter == Encounter::overlap ? "overlap" : "contact";
+}
+
+const char* word_of(geometry::Between between) {
+  return between == geometry::Between::hold ? "hold" : "straight";
+}
+
+/// Infinite bounds are left out.
+OrderedJson number_or_null(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson();
+}
+
+OrderedJson bounds_json(const Bounds& b) {
+  return OrderedJson::array({number_or_null(b.low), number_or_null(b.high)});
+}
+
+OrderedJson extreme_json(const Extreme& e) {
+  return {{"value", e.value}, {"time", e.time}, {"line", e.line}};
+}
+
+std::string line_of(const OrderedJson& json) {
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string CheckAnswer::name_of(std::size_t agent) const {
+  return asked_.file.agents[agent];
+}
+
+std::string CheckAnswer::obstacle_name(std::size_t obstacle) const {
+  const formation::SceneObstacle& o = asked_.obstacles[obstacle];
+  const bool is_number = o.id.find_first_not_of("0123456789-") == std::string::npos;
+  return is_number ? (geometry::has_interior(o.shape) ? "polygon " : "wall ") + o.id : o.id;
+}
+
+std::string CheckAnswer::other_of(bool with_obstacle, std::size_t other) const {
+  return with_obstacle ? obstacle_name(other) : name_of(other);
+}
+
+void CheckAnswer::begin() {
+  if (json_) return;
+  const datasets::TrajectorySurvey& s = asked_.survey;
+  std::string text =
+      fmt::format("{}: {}, {} of {}, from {} s to {} s\n", asked_.file.file, asked_.file.format,
+                  counted(s.rows(), "row"), counted(s.agents().size(), "agent"), seconds(s.first()), seconds(s.last()));
+  text += fmt::format("assumed: {}; {}{}\n", asked_.bodies,
+                      asked_.between == geometry::Between::hold ? "each agent rests at a row until its next row"
+                                                                : "straight and uniform from each row to the next",
+                      std::isfinite(asked_.longest_gap)
+                          ? fmt::format("; away where it has no row for more than {:.6g} s", asked_.longest_gap)
+                          : "");
+  if (!asked_.obstacles.empty())
+    text += fmt::format("map: {}, {}\n", asked_.map, counted(asked_.obstacles.size(), "obstacle"));
+  out_.add(shown_lines(text));
+}
+
+void CheckAnswer::add(const MotionEvent& e) {
+  if (json_) {
+    OrderedJson json{{"event", word_of(e.encounter)}, {"body", name_of(e.body)}};
+    json[e.with_obstacle ? "obstacle" : "other"] = e.with_obstacle ? asked_.obstacles[e.other].id : name_of(e.other);
+    json["first"] = bounds_json(e.first);
+    json["last"] = bounds_json(e.last);
+    json["clearance"] = bounds_json(e.clearance);
+    json["time"] = e.nearest_time;
+    json["place"] = json_point(e.place);
+    return out_.add(line_of(json));
+  }
+  const std::string first = seconds(e.first.low), last = seconds(e.last.high);
+  const std::string when =
+      first == last ? fmt::format("at {} s", first) : fmt::format("from {} s to {} s", first, last);
+  std::string text =
+      fmt::format("{}: {} and {}, {}", word_of(e.encounter), name_of(e.body), other_of(e.with_obstacle, e.other), when);
+  if (e.encounter == Encounter::overlap)
+    text +=
+        fmt::format(", {} deep at {} s", between_text(-e.clearance.high, -e.clearance.low), seconds(e.nearest_time));
+  out_.add(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
+}
+
+void CheckAnswer::look_at(const Move& move) {
+  const bool is_gap = move.interval() > asked_.survey.gap_of(move.agent);
+  const bool is_jump = move.speed() > asked_.jump_speed;
+  jumps_ += is_jump ? 1 : 0;
+  gaps_ += is_gap ? 1 : 0;
+  if (json_) {
+    const auto finding = [&](const char* what) {
+      return OrderedJson{{"finding", what},
+                         {"body", name_of(move.agent)},
+                         {asked_.file.row_word, move.to.line},
+                         {"from", move.from.time},
+                         {"to", move.to.time}};
+    };
+    if (is_jump) {
+      OrderedJson json = finding("jump");
+      json["length"] = norm(move.to.at - move.from.at);
+      json["speed"] = move.speed();
+      out_.add(line_of(json));
+    }
+    if (is_gap) out_.add(line_of(finding("gap")));
+    return;
+  }
+  const std::string where = fmt::format("{}, {} {}: ", name_of(move.agent), asked_.file.row_word, move.to.line);
+  if (is_jump && jumps_ <= kMostListed)
+    out_.add(shown(fmt::format("jump: {}{:.6g} m in {:.6g} s, {:.6g} m/s", where, norm(move.to.at - move.from.at),
+                               move.interval(), move.speed())) +
+             "\n");
+  if (is_gap && gaps_ <= kMostListed)
+    out_.add(
+        shown(fmt::format("gap: {}no row from {} s to {} s", where, seconds(move.from.time), seconds(move.to.time))) +
+        "\n");
+}
+
+void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
+  if (json_) {
+    for (const Approach& a : approaches) {
+      OrderedJson json{{"approach", bounds_json(a.clearance)}, {"body", name_of(a.body)}};
+      json[a.with_obstacle ? "obstacle" : "other"] = a.with_obstacle ? asked_.obstacles[a.other].id : name_of(a.other);
+      json["time"] = a.nearest_time;
+      json["place"] = json_point(a.place);
+      out_.add(line_of(json));
+    }
+    return;
+  }
+  std::vector<Approach> apart;
+  for (const Approach& a : approaches)
+    if (a.clearance.low > 0.0) apart.push_back(a);
+  std::sort(apart.begin(), apart.end(),
+            [](const Approach& a, const Approach& b) { return a.clearance.low < b.clearance.low; });
+  for (std::size_t k = 0; k < std::min(apart.size(), kMostListed); ++k) {
+    const Approach& a = apart[k];
+    out_.add(shown(fmt::format("near: {} and {}, {} apart at {} s, at {}", name_of(a.body),
+                               other_of(a.with_obstacle, a.other), between_text(a.clearance.low, a.clearance.high),
+                               seconds(a.nearest_time), place_text(a.place))) +
+             "\n");
+  }
+  if (apart.size() > kMostListed)
+    out_.add(fmt::format("... and {} more that come nearer than {:.6g} m\n", apart.size() - kMostListed, asked_.near));
+}
+
+void CheckAnswer::finish(const geometry::MotionCheck& check) {
+  list_approaches(check.approaches);
+  const datasets::TrajectorySurvey& s = asked_.survey;
+  std::size_t fastest = 0, hardest = 0;
+  for (std::size_t k = 0; k < s.agents().size(); ++k) {
+    if (s.agents()[k].speed.value > s.agents()[fastest].speed.value) fastest = k;
+    if (s.agents()[k].acceleration.value > s.agents()[hardest].acceleration.value) hardest = k;
+  }
+  if (json_) {
+    OrderedJson bodies = OrderedJson::array();
+    for (std::size_t k = 0; k < s.agents().size(); ++k) {
+      const AgentSurvey& a = s.agents()[k];
+      bodies.push_back({{"id", name_of(k)},
+                        {"rows", a.rows},
+                        {"from", a.first},
+                        {"to", a.last},
+                        {"speed", extreme_json(a.speed)},
+                        {"acceleration", extreme_json(a.acceleration)}});
+    }
+    OrderedJson notes = OrderedJson::array();
+    for (const std::string& note : asked_.file.notes) notes.push_back(note);
+    const OrderedJson whole{{"file", asked_.file.file},
+                            {"format", asked_.file.format},
+                            {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
+                            {"between", word_of(asked_.between)},
+                            {"footprint", asked_.bodies},
+                            {"rows", s.rows()},
+                            {"repeated_rows", asked_.file.repeated},
+                            {"overlaps", check.overlaps},
+                            {"contacts", check.contacts},
+                            {"jumps", jumps_},
+                            {"jump_speed", number_or_null(asked_.jump_speed)},
+                            {"gaps", gaps_},
+                            {"near", asked_.near},
+                            {"approaches", check.approaches.size()},
+                            {"pieces", check.pieces},
+                            {"pairs", check.pairs},
+                            {"edge_pairs", check.edge_pairs},
+                            {"examined", check.examined},
+                            {"most_held", check.most_held},
+                            {"bodies", bodies},
+                            {"notes", notes}};
+    out_.add(line_of({{"summary", whole}}));
+    return out_.flush();
+  }
+  if (jumps_ > kMostListed) out_.add(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));
+  if (gaps_ > kMostListed) out_.add(fmt::format("... and {} more gaps\n", gaps_ - kMostListed));
+  const auto extreme = [&](const char* what, const Extreme& e, const char* unit, std::size_t agent) {
+    if (e.line > 0)
+      out_.add(shown(fmt::format("{}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit, name_of(agent),
+                                 seconds(e.time), asked_.file.row_word, e.line)) +
+               "\n");
+  };
+  extreme("greatest speed", s.agents()[fastest].speed, "m/s", fastest);
+  extreme("greatest acceleration", s.agents()[hardest].acceleration, "m/s^2", hardest);
+  const std::string bound =
+      std::isfinite(asked_.jump_speed) ? fmt::format(" (faster than {:.6g} m/s)", asked_.jump_speed) : "";
+  out_.add(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),
+                       counted(jumps_, "jump"), bound, counted(gaps_, "gap")));
+  out_.flush();
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The answer of `exactvo check` in words and as JSON lines: events and findings as they come up, then the whole.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/trajectory_survey.h"
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/motion_check.h"
+#include "support/terminal.h"
+
+namespace exactvo::tools {
+
+/// What was asked, for the words of the answer.
+struct CheckedFile {
+  const datasets::TrajectoryFile& file;
+  const datasets::TrajectorySurvey& survey;
+  std::string map;                                         ///< its file; empty without one
+  const std::vector<formation::SceneObstacle>& obstacles;  ///< of the map
+  geometry::Between between = geometry::Between::straight;
+  std::string bodies;        ///< in words: "discs of radius 0.3 m"
+  double near = 0.0;         ///< m
+  double jump_speed = 0.0;   ///< m/s, may be infinite
+  double longest_gap = 0.0;  ///< s, may be infinite
+};
+
+class CheckAnswer {
+ public:
+  CheckAnswer(const CheckedFile& asked, bool json) : asked_(asked), json_(json) {}
+
+  /// Before the rest: what was read, and which motion between rows is assumed.
+  void begin();
+  void add(const geometry::MotionEvent& event);
+  /// A jump, a gap, or neither.
+  void look_at(const datasets::Move& move);
+  /// Approaches and the whole.
+  void finish(const geometry::MotionCheck& check);
+
+  std::uint64_t jumps() const { return jumps_; }
+  std::uint64_t gaps() const { return gaps_; }
+
+ private:
+  std::string name_of(std::size_t agent) const;
+  std::string obstacle_name(std::size_t obstacle) const;
+  std::string other_of(bool with_obstacle, std::size_t other) const;
+  void list_approaches(const std::vector<geometry::Approach>& approaches);
+
+  const CheckedFile& asked_;
+  bool json_;
+  ChunkedOutput out_;
+  std::uint64_t jumps_ = 0, gaps_ = 0;
+};
+
+}  // namespace exactvo::tools

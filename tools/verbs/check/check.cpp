@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo check: whether bodies on recorded or planned trajectories touch each other or a map, in continuous time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/moving_ai.h"
+#include "exactvo/datasets/trajectory_survey.h"
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/motion_certificate.h"
+#include "figures/figure.h"
+#include "support/motion_certificates.h"
+#include "support/stop.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/check/answer.h"
+#include "verbs/check/figure.h"
+#include "verbs/check/piece_feed.h"
+#include "verbs/obstacles/obstacle_files.h"
+
+namespace exactvo::tools {
+
+using datasets::DataCode;
+using datasets::TrajectoryFile;
+using datasets::TrajectoryReader;
+using datasets::TrajectoryRow;
+using datasets::TrajectorySurvey;
+using geometry::Between;
+using geometry::MetPair;
+using geometry::RigidBody;
+using geometry::Vec2;
+
+namespace {
+
+struct CheckFlags {
+  std::string file, format, map, footprint, certificates, figure;
+  std::string between = "straight";
+  ReadingFlags reading;  ///< of the map
+  std::optional<double> radius, near, max_speed, max_gap;
+  double scale = 1.0, frame_rate = 0.0;
+  bool json = false;
+};
+
+void require_positive(const std::string& option, double value, const std::string& what) {
+  require(value > 0.0 && std::isfinite(value), option, fmt::format("{}", value), what);
+}
+
+void check_flags(const CheckFlags& flags) {
+  check_format("--format", flags.format, datasets::trajectory_formats());
+  require_known("--between", flags.between, {"straight", "hold"});
+  require_positive("--scale", flags.scale, "metres of one unit of length, above 0");
+  require(flags.frame_rate >= 0.0 && std::isfinite(flags.frame_rate), "--frame-rate",
+          fmt::format("{}", flags.frame_rate), "frames a second, above 0");
+  if (flags.radius) require_length("--radius", *flags.radius);
+  if (flags.near) require_length("--near", *flags.near);
+  if (flags.max_speed) require_positive("--max-speed", *flags.max_speed, "a speed in m/s, above 0");
+  if (flags.max_gap) require_positive("--max-gap", *flags.max_gap, "a time in s, above 0");
+  std::vector<std::filesystem::path> others{flags.file};
+  if (!flags.map.empty()) others = all_read_with({flags.map}, flags.reading.format, flags.file);
+  for (const std::string& file : {flags.certificates, flags.footprint})
+    if (!file.empty()) others.emplace_back(file);
+  check_figure_name("--figure", flags.figure, others);
+  if (flags.certificates.empty()) return;
+  refuse_input_as_output(flags.file, "", "--certificates", flags.certificates);
+  if (!flags.map.empty()) refuse_input_as_output(flags.map, flags.reading.format, "--certificates", flags.certificates);
+}
+
+// --- What moves ---
+
+/// The one shape of WKT, or of an obstacle file.
+geometry::Obstacle footprint_of(const std::string& text) {
+  std::error_code error;
+  const bool is_file = std::filesystem::exists(text, error);
+  const datasets::ObstacleFile content =
+      is_file ? datasets::read_obstacles(text) : datasets::parse_wkt(text, "--footprint");
+  if (content.obstacles.size() != 1)
+    throw UsageError("--footprint", geometry::counted(content.obstacles.size(), "shape"),
+                     "one polygon without holes, or one line that --radius makes wide");
+  return content.obstacles.front().shape;
+}
+
+/// A polygon grown by the radius, or a line that is `2 radius` wide, in pieces that are convex.
+RigidBody grown_body(const geometry::Obstacle& shape, double radius) {
+  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) {
+    if (radius == 0.0) throw lacking("--footprint with a line", "--radius", "half its width");
+    RigidBody body;
+    for (std::size_t k = 1; k < line->points.size(); ++k)
+      body.push_back({{line->points[k - 1], line->points[k]}, radius});
+    return body;
+  }
+  const auto& polygon = std::get<geometry::Polygon>(shape);
+  if (!polygon.holes.empty())
+    throw UsageError("--footprint", geometry::counted(polygon.holes.size(), "hole"), "a polygon without holes");
+  RigidBody body = geometry::polygon_body(polygon);
+  for (geometry::RoundedPolygon& part : body) part.radius = radius;
+  return body;
+}
+
+RigidBody turned(RigidBody body, double heading) {
+  if (heading == 0.0) return body;
+  for (geometry::RoundedPolygon& part : body)
+    for (Vec2& corner : part.corners) corner = geometry::rotated(corner, heading);
+  return body;
+}
+
+struct Bodies {
+  std::vector<RigidBody> of_agent;
+  double reach = 0.0;  ///< m, of the largest
+  std::string words;
+};
+
+double reach_of(const RigidBody& body) {
+  double reach = 0.0;
+  for (const geometry::RoundedPolygon& part : body)
+    for (const Vec2 c : part.corners) reach = std::max(reach, norm(c) + part.radius);
+  return reach;
+}
+
+Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const TrajectorySurvey& survey) {
+  Bodies bodies;
+  if (!flags.radius && file.radii.empty())
+    throw missing_option("check", "option --radius or --footprint", "the size of the bodies, which the file lacks");
+  for (std::size_t k = 0; k < file.agents.size(); ++k) {
+    const double radius = flags.radius ? *flags.radius : file.radii[k];
+    bodies.of_agent.push_back(geometry::disc_body(radius));
+    bodies.reach = std::max(bodies.reach, radius);
+  }
+  bodies.words = flags.radius ? fmt::format("discs of radius {:.6g} m", *flags.radius) : "discs of the file's radii";
+  if (survey.has_headings()) bodies.words += ", which have no heading";
+  return bodies;
+}
+
+Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const TrajectorySurvey& survey) {
+  const RigidBody footprint = grown_body(footprint_of(flags.footprint), flags.radius.value_or(0.0));
+  Bodies bodies{{}, reach_of(footprint), "the footprint at its heading"};
+  for (std::size_t k = 0; k < survey.agents().size(); ++k) {
+    const datasets::AgentSurvey& agent = survey.agents()[k];
+    if (agent.turns_at > 0)
+      reader.refuse(DataCode::out_of_range, agent.turns_at,
+                    fmt::format("agent {} at another heading than before", reader.file().agents[k]),
+                    "one heading of an agent: a footprint that turns is not decided; --radius takes a disc round it");
+    bodies.of_agent.push_back(turned(footprint, std::isnan(agent.heading) ? 0.0 : agent.heading));
+  }
+  bodies.words += survey.has_headings() ? ", which no agent changes (corners rounded)"
+                                        : " as given, since the file has no headings";
+  if (flags.radius) bodies.words += fmt::format(", grown by {:.6g} m", *flags.radius);
+  return bodies;
+}
+
+// --- Where it moves ---
+
+struct CheckMap {
+  std::string name;
+  std::vector<formation::SceneObstacle> obstacles;
+  std::vector<geometry::Obstacle> shapes;
+  std::optional<datasets::MapSize> cells;  ///< of a Moving AI map
+  double cell_side = 1.0;                  ///< m
+};
+
+CheckMap map_of(const CheckFlags& flags, const TrajectoryFile& file) {
+  CheckMap map;
+  if (flags.map.empty()) {
+    map.name = file.obstacles.empty() ? "" : file.file;
+    map.obstacles = file.obstacles;
+  } else {
+    datasets::ReadOptions reading = reading_options(flags.reading, "--map-format");
+    reading.keep_going = false;
+    datasets::ObstacleFile content = datasets::read_obstacles(flags.map, reading);
+    say_notes(content);
+    map.name = flags.map;
+    map.obstacles = std::move(content.obstacles);
+    std::error_code error;
+    if (content.format == "movingai-map" && std::filesystem::is_regular_file(flags.map, error)) {
+      map.cells = datasets::read_map_size(flags.map);
+      if (reading.cell_size > 0.0) map.cell_side = reading.cell_size;
+    }
+  }
+  for (const formation::SceneObstacle& o : map.obstacles) map.shapes.push_back(o.shape);
+  return map;
+}
+
+/// Cells of a plan to the middle of the map's cells, whose rows count from the top.
+class Placing {
+ public:
+  Placing(const TrajectoryFile& file, const CheckMap& map, double scale) : scale_(scale) {
+    if (file.in_cells && map.cells) rows_ = static_cast<double>(map.cells->rows);
+    side_ = map.cell_side;
+  }
+  void place(TrajectoryRow& row) const {
+    if (!rows_) return;
+    const double column = row.at.x / scale_, from_top = row.at.y / scale_;
+    row.at = {side_ * (column + 0.5), side_ * (*rows_ - (from_top + 0.5))};
+  }
+
+ private:
+  double scale_, side_ = 1.0;
+  std::optional<double> rows_;
+};
+
+// --- Certificates ---
+
+class CertificateFile {
+ public:
+  CertificateFile(const std::string& path, const TrajectoryFile& file, const Bodies& bodies, const CheckMap& map)
+      : out_(path, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
+        file_(file),
+        bodies_(bodies),
+        map_(map) {}
+
+  void add(const MetPair& pair) {
+    const BodyInMotion a{pair.motion, &bodies_.of_agent[pair.body]};
+    const geometry::Motion motion = pair.motion, other = pair.other_motion;
+    if (pair.with_obstacle) {
+      const formation::SceneObstacle& obstacle = map_.obstacles[pair.other];
+      const auto proof = geometry::certify(motion, *a.body, obstacle.shape);
+      return proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
+    }
+    const BodyInMotion b{pair.other_motion, &bodies_.of_agent[pair.other]};
+    const auto proof = geometry::certify(motion, *a.body, other, *b.body);
+    proof ? write(certificate_json(*proof, a, b)) : write_none(pair);
+  }
+  void finish() {
+    put({{"summary", {{"certificates", count_}, {"without", without_}}}});
+    out_.commit();
+    message(fmt::format("{} for motions that come near and stay clear, none for {} that {}",
+                        geometry::counted(count_, "certificate"), without_, without_ == 1 ? "touches" : "touch"));
+  }
+
+ private:
+  void write(OrderedJson certificate) {
+    ++count_;
+    put({{"certificate", std::move(certificate)}});
+  }
+  void write_none(const MetPair& pair) {
+    ++without_;
+    put({{"certificate", nullptr},
+         {"from",
+          pair.with_obstacle ? pair.motion.from.time : std::max(pair.motion.from.time, pair.other_motion.from.time)},
+         {"body", file_.agents[pair.body]},
+         {pair.with_obstacle ? "obstacle" : "other",
+          pair.with_obstacle ? map_.obstacles[pair.other].id : file_.agents[pair.other]}});
+  }
+  void put(const OrderedJson& json) {
+    out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
+  }
+  datasets::AtomicFile out_;
+  const TrajectoryFile& file_;
+  const Bodies& bodies_;
+  const CheckMap& map_;
+  std::size_t count_ = 0, without_ = 0;
+};
+
+// --- The check ---
+
+TrajectorySurvey survey_of(TrajectoryReader& reader, ProgressLine& progress) {
+  TrajectorySurvey survey;
+  reader.read([&](const TrajectoryRow& row) {
+    survey.add(row);
+    if ((survey.rows() & 0xfff) == 0) {
+      if (interrupted()) throw Interrupted();
+      if (progress.is_due()) progress.say(fmt::format("reading, {} rows", survey.rows()));
+    }
+  });
+  return survey;
+}
+
+/// All rows by time: as they stand, or sorted in memory.
+void for_each_row(TrajectoryReader& reader, bool is_in_order, const Placing& placing,
+                  const std::function<void(const TrajectoryRow&)>& take) {
+  if (is_in_order) {
+    reader.read([&](TrajectoryRow row) {
+      placing.place(row);
+      take(row);
+    });
+    return;
+  }
+  std::vector<TrajectoryRow> rows;
+  reader.read([&](TrajectoryRow row) {
+    placing.place(row);
+    rows.push_back(row);
+  });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.time < b.time; });
+  for (const TrajectoryRow& row : rows) take(row);
+}
+
+ExitCode check(const CheckFlags& flags) {
+  check_flags(flags);
+  TrajectoryReader reader(flags.file, {flags.format, flags.frame_rate, flags.scale});
+  TrajectorySurvey survey;
+  {
+    ProgressLine progress(0.0, "rows");
+    survey = survey_of(reader, progress);
+  }
+  const TrajectoryFile file = reader.file();
+  for (const std::string& note : file.notes) message(file.file + ": " + note);
+  if (file.repeated > 0)
+    message(fmt::format("{}: {} that repeat the one before were left out", file.file,
+                        geometry::counted(file.repeated, "row")));
+  if (!survey.is_in_order())
+    message(file.file + ": rows are not in the order of time, so all of them are kept in memory");
+  const Bodies bodies = flags.footprint.empty() ? discs(flags, file, survey) : footprints(flags, reader, survey);
+  const CheckMap map = map_of(flags, file);
+  const Placing placing(file, map, flags.scale);
+  const Between between = flags.between == "hold" ? Between::hold : Between::straight;
+  const CheckedFile asked{file,
+                          survey,
+                          map.name,
+                          map.obstacles,
+                          between,
+                          bodies.words,
+                          flags.near.value_or(bodies.reach),
+                          flags.max_speed.value_or(survey.jump_speed()),
+                          flags.max_gap.value_or(std::numeric_limits<double>::infinity())};
+  CheckAnswer answer(asked, flags.json);
+  answer.begin();
+
+  std::optional<CertificateFile> certificates;
+  if (!flags.certificates.empty()) certificates.emplace(flags.certificates, file, bodies, map);
+  std::optional<CheckPicture> picture;
+  if (!flags.figure.empty()) picture.emplace(asked, map.shapes, bodies.of_agent);
+  geometry::MotionCheckOptions options{between, asked.near, {}};
+  if (certificates) options.met = [&](const MetPair& pair) { certificates->add(pair); };
+  geometry::MotionStream stream(map.shapes, options, [&](const geometry::MotionEvent& event) {
+    answer.add(event);
+    if (picture) picture->add(event);
+  });
+  for (const RigidBody& body : bodies.of_agent) stream.add_body(body);
+  PieceFeed feed(survey.agents(), {between, asked.longest_gap},
+                 [&](std::size_t agent, const geometry::StraightMotion& piece) { stream.add(agent, piece); });
+  datasets::Moves moves;
+  std::uint64_t done = 0;
+  {
+    ProgressLine progress(static_cast<double>(survey.rows()), "rows");
+    for_each_row(reader, survey.is_in_order(), placing, [&](const TrajectoryRow& row) {
+      datasets::Move move;
+      if (moves.next(row, move)) answer.look_at(move);
+      if (picture) picture->add(row);
+      feed.add(row);
+      if ((++done & 0xff) != 0) return;
+      if (interrupted()) throw Interrupted();
+      if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
+    });
+    feed.finish();
+  }
+  const geometry::MotionCheck result = stream.finish();
+  if (certificates) certificates->finish();
+  answer.finish(result);
+  if (picture) write_figure(picture->figure(result), flags.figure);
+  return result.overlaps > 0 ? ExitCode::negative : ExitCode::success;
+}
+
+void declare_check(CLI::App& app, CheckFlags& flags) {
+  app.add_option("trajectories", flags.file,
+                 "CSV with the columns t,id,x,y and theta, text of JuPedSim or PedPy, obsmat.txt, frame-id-x-y in four "
+                 "columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or paths of cells, a recording of "
+                 "this program; - for stdin")
+      ->required();
+  app.add_option("--format", flags.format,
+                 fmt::format("Format of the trajectories: {}; by default detected from content",
+                             fmt::join(datasets::trajectory_formats(), " ")));
+  app.add_option("--radius", flags.radius, "Radius of every body, m; by default that of a recording");
+  app.add_option(
+      "--footprint", flags.footprint,
+      "WKT or FILE: a polygon round the agent's place, or with --radius a line with that half width. --radius "
+      "grows a polygon. Each agent keeps one heading");
+  app.add_option("--map", flags.map, "Obstacle file of any readable format; by default the obstacles of a recording");
+  app.add_option(
+      "--map-format", flags.reading.format,
+      fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
+  app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
+  app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
+  app.add_option("--between", flags.between,
+                 "How bodies move between two rows: straight (and uniform), or hold (at rest until the next row)")
+      ->capture_default_str();
+  app.add_option("--scale", flags.scale, "Metres of one unit of length in the trajectories")->capture_default_str();
+  app.add_option("--frame-rate", flags.frame_rate,
+                 "Frames a second, for files that count frames; before what they say");
+  app.add_option(
+      "--near", flags.near,
+      "List pairs that come nearer than this, m, with the least clearance; 0: none. By default the radius, or "
+      "the reach of the footprint");
+  app.add_option("--max-speed", flags.max_speed,
+                 "A faster move is a jump, m/s; by default three times what 95 of 100 moves do not exceed");
+  app.add_option("--max-gap", flags.max_gap,
+                 "An agent without a row for longer is away, s; by default it goes on to its next row");
+  app.add_flag("--json", flags.json, "One line of JSON for each event, finding and approach, then a summary");
+  app.add_option("--certificates", flags.certificates,
+                 "FILE for a proof of each pair of motions that come near and stay clear, for audit --certificate");
+  app.add_option("--figure", flags.figure, kFigureFileHelp);
+}
+
+}  // namespace
+
+Verb check_verb() {
+  return {
+      "check", "Decide whether moving bodies touch each other or a map at any time, not only at samples",
+      "  exactvo check runs.csv --radius 0.3 --map office.geojson --figure out/check.svg\n"
+      "  exactvo check obsmat.txt --radius 0.2 --frame-rate 15 --json\n"
+      "  exactvo check plan.yaml --footprint 'POLYGON ((-0.4 -0.3, 0.4 -0.3, 0.4 0.3, -0.4 0.3))'\n"
+      "  exactvo check out/recording.jsonl --certificates proofs.jsonl && exactvo audit --certificate proofs.jsonl\n"
+      "    (status 0: no overlap, contact included; 1: an overlap; 2: a file or an option is wrong)\n",
+      with_flags(declare_check, check)};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/check/figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/pi.h"
+#include "figures/local_origin.h"
+
+namespace exactvo::tools {
+
+using geometry::MotionEvent;
+using geometry::RigidBody;
+
+namespace {
+
+constexpr const char* kWayColour = "#8fa3b8";
+constexpr const char* kFirstColour = "#0072B2";
+constexpr const char* kOtherColour = "#009E73";
+
+/// Of the diagonal of all ways: less than a pixel.
+constexpr double kFinest = 1.0 / 2000.0;
+/// Places of overlaps that are drawn.
+constexpr std::size_t kMostPlaces = 2000;
+
+/// The boundary of a convex part where the body stands.
+Points outline_of(const geometry::RoundedPolygon& part, Vec2 at) {
+  constexpr int kSteps = 72;
+  Points ring;
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec2 n = geometry::rotated({1.0, 0.0}, 2.0 * geometry::kPi * k / kSteps);
+    Vec2 corner = part.corners.front();
+    for (const Vec2 c : part.corners)
+      if (dot(n, c) > dot(n, corner)) corner = c;
+    ring.push_back(at + corner + part.radius * n);
+  }
+  return ring;
+}
+
+std::vector<Points> outlines_of(const RigidBody& body, Vec2 at) {
+  std::vector<Points> rings;
+  for (const geometry::RoundedPolygon& part : body) rings.push_back(outline_of(part, at));
+  return rings;
+}
+
+/// A square round the box, a little larger.
+Box square_round(const Box& box) {
+  const double half = 0.54 * std::max({box.width(), box.height(), 1e-6});
+  const Vec2 middle = 0.5 * (box.low + box.high);
+  return {middle - Vec2{half, half}, middle + Vec2{half, half}};
+}
+
+std::string line_style_of(double width, const char* colour) {
+  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
+}
+
+std::string body_style_of(const char* colour) {
+  return fmt::format("with filledcurves closed fs transparent solid 0.3 border lc rgb '{0}' fc rgb '{0}'", colour);
+}
+
+/// One panel: data sets and the command that draws them.
+class Panel {
+ public:
+  Panel(const Box& view, DataFile& data) : view_(view), origin_(view), data_(data) { origin_.prepare(data); }
+
+  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed) {
+    const int index = data_.begin(title, "x, y [m]");
+    for (const Points& curve : curves) closed ? data_.ring(curve) : data_.curve(curve);
+    plot_.data(index, origin_.using_columns() + " " + style);
+  }
+  void points(const std::string& title, const Points& points, const std::string& style) {
+    const int index = data_.begin(title, "x, y [m]");
+    data_.rows(points);
+    plot_.data(index, origin_.using_columns() + " " + style);
+  }
+  /// With its rows. gnuplot draws no line between two points that are out of view.
+  void way(const std::string& title, const Points& way, const char* colour) {
+    std::vector<Points> seen;
+    for (std::size_t k = 1; k < way.size(); ++k)
+      if (Points piece = segment_within(view_, way[k - 1], way[k]); !piece.empty()) seen.push_back(std::move(piece));
+    curves(title, seen, line_style_of(1.4, colour), false);
+    points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
+  }
+  void map(const std::vector<geometry::Obstacle>& obstacles) {
+    std::vector<Points> solids, walls;
+    for (const geometry::Obstacle& obstacle : obstacles) {
+      if (const auto* wall = std::get_if<geometry::Polyline>(&obstacle)) {
+        for (std::size_t k = 1; k < wall->points.size(); ++k)
+          if (Points piece = segment_within(view_, wall->points[k - 1], wall->points[k]); !piece.empty())
+            walls.push_back(std::move(piece));
+        continue;
+      }
+      Points ring = clipped_to(tied_together(std::get<geometry::Polygon>(obstacle)), view_);
+      if (ring.size() > 2) solids.push_back(std::move(ring));
+    }
+    curves("obstacles", solids, fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill),
+           true);
+    curves("walls", walls, fmt::format("with lines lw 2 lc rgb '{}'", kObstacleLine), false);
+  }
+  SheetPanel done(const std::string& title) const {
+    return {quoted(title + origin_.in_title()), origin_.ranges(view_), plot_.text()};
+  }
+
+ private:
+  Box view_;
+  LocalOrigin origin_;
+  DataFile& data_;
+  PlotCommand plot_;
+};
+
+constexpr const char* kPlaceStyle = "with points pt 6 ps 1.4 lw 2 lc rgb '#e00000'";
+
+}  // namespace
+
+CheckPicture::CheckPicture(const CheckedFile& asked, const std::vector<geometry::Obstacle>& map,
+                           const std::vector<RigidBody>& bodies)
+    : asked_(asked),
+      map_(map),
+      bodies_(bodies),
+      least_step_(kFinest * asked.survey.extent().diagonal()),
+      agents_(bodies.size()) {}
+
+void CheckPicture::add(const datasets::TrajectoryRow& row) {
+  Agent& agent = agents_[row.agent];
+  agent.recent[agent.rows++ % kRecent] = row.at;
+  if (agent.way.empty() || norm(row.at - agent.way.back()) >= least_step_) agent.way.push_back(row.at);
+}
+
+void CheckPicture::add(const MotionEvent& event) {
+  if (event.encounter != geometry::Encounter::overlap) return;
+  if (places_.size() < kMostPlaces) places_.push_back(event.place);
+  if (close_.size() == kMostNear) return;
+  close_.push_back({event, recent_of(event.body), event.with_obstacle ? Points{} : recent_of(event.other)});
+}
+
+Points CheckPicture::recent_of(std::size_t agent) const {
+  const Agent& a = agents_[agent];
+  Points points;
+  for (std::size_t k = a.rows < kRecent ? 0 : a.rows - kRecent; k < a.rows; ++k)
+    points.push_back(a.recent[k % kRecent]);
+  return points;
+}
+
+Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
+  DataFile data;
+  Sheet sheet;
+  Box all;
+  for (const Agent& agent : agents_)
+    for (const Vec2 p : agent.way) all.add(p);
+  for (const geometry::Obstacle& obstacle : map_)
+    for (const Vec2 p : geometry::vertices_of(obstacle)) all.add(p);
+  Panel whole(square_round(all), data);
+  whole.map(map_);
+  std::vector<Points> ways, alone;
+  for (const Agent& agent : agents_) (agent.way.size() > 1 ? ways : alone).push_back(agent.way);
+  whole.curves("ways", ways, line_style_of(0.8, kWayColour), false);
+  Points places;
+  for (const Points& way : alone)
+    if (!way.empty()) places.push_back(way.front());
+  whole.points("agents that do not move", places, fmt::format("with points pt 7 ps 0.3 lc rgb '{}'", kWayColour));
+  whole.points("overlaps", places_, kPlaceStyle);
+  sheet.panels.push_back(whole.done("(a) all ways"));
+  for (std::size_t k = 0; k < close_.size(); ++k) {
+    const Close& c = close_[k];
+    const std::vector<Points> body = outlines_of(bodies_[c.event.body], c.event.at);
+    const std::vector<Points> other =
+        c.event.with_obstacle ? std::vector<Points>{} : outlines_of(bodies_[c.event.other], c.event.other_at);
+    Box near;
+    for (const auto* rings : {&body, &other})
+      for (const Points& ring : *rings)
+        for (const Vec2 p : ring) near.add(p);
+    near = near.grown(0.6 * std::max(near.width(), near.height()));
+    Panel panel(square_round(near), data);
+    panel.map(map_);
+    panel.curves("first body", body, body_style_of(kFirstColour), true);
+    panel.curves("other body", other, body_style_of(kOtherColour), true);
+    panel.way("way of the first", c.way, kFirstColour);
+    panel.way("way of the other", c.other_way, kOtherColour);
+    panel.points("deepest", {c.event.place}, kPlaceStyle);
+    const std::string names = c.event.with_obstacle
+                                  ? asked_.file.agents[c.event.body] + " and an obstacle"
+                                  : asked_.file.agents[c.event.body] + " and " + asked_.file.agents[c.event.other];
+    sheet.panels.push_back(
+        panel.done(fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
+  }
+  const std::string file = std::filesystem::path(asked_.file.file).filename().string();
+  sheet.title = quoted(shortened(fmt::format("{}: {}", file, geometry::counted(check.overlaps, "overlap")), 70));
+  sheet.x_label = "'x [m]'";
+  sheet.y_label = "'y [m]'";
+  sheet.columns = close_.empty() ? 1 : close_.size() <= 1 ? 2 : 3;
+  sheet.panel_width = sheet.panel_height = close_.empty() ? 560.0 : 300.0;
+  sheet.gap = 60.0;
+  sheet.legend = {{"keyentry " + line_style_of(0.8, kWayColour), "way"},
+                  {std::string("keyentry ") + kPlaceStyle, "where an overlap is deepest"}};
+  if (!close_.empty()) {
+    sheet.legend.push_back(
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kFirstColour),
+         "first body; dots are its rows"});
+    sheet.legend.push_back(
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kOtherColour), "other body"});
+  }
+  return sheet_figure("check", data.text(), "Ways of agents, and where they overlap.", sheet);
+}
+
+}  // namespace exactvo::tools
