@@ -56,8 +56,6 @@ Definition slow (p : program) (v : vec) :=
   match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
   at_most (Rabs (fst v)) (box_x p) /\ at_most (Rabs (snd v)) (box_y p).
 Definition holds (give : R) (v : vec) (c : row) := Q2R (row_offset c) - give <= dot (real (row_normal c)) v.
-Definition hard_only (p : program) : program := {| disc := disc p; box_x := box_x p; box_y := box_y p; wish := wish p;
-  rows := map (fun c => {| row_normal := row_normal c; row_offset := row_offset c; soft := true |}) (filter (fun c => negb (soft c)) (rows p)) |}.
 (* Hard ones hold, soft ones are broken by at most `give`. *)
 Definition allowed (give : R) (p : program) (v : vec) :=
   slow p v /\ Forall (fun c => holds (if soft c then give else 0) v c) (rows p).
