@@ -79,11 +79,13 @@ let answer p a =
     @ List.filter_map (fun (n, s) -> if s = [] then None else Some (Json.Str n)) sides in
   let multipliers key =
     let ts = terms key in
-    if List.exists (fun (n, _) -> not (List.mem n known)) ts || List.length ts > 3 then raise Json.Bad;
+    let negative (_, ms) = Q.sign (List.fold_left (fun s m -> Q.add s (to_q (q m))) Q.zero ms) < 0 in
+    if List.exists (fun t -> not (List.mem (fst t) known) || negative t) ts || List.length ts > 3 then raise Json.Bad;
     (List.map (fun (i, _) -> sum (Json.Num (float_of_int i)) ts) kept
      @ List.concat_map (fun (n, s) -> if s = [] then [] else [sum (Json.Str n) ts]) sides, sum (Json.Str "disc") ts) in
   let pull, mu = multipliers "bound" in
   let against, _ = multipliers "contradiction" in
+  if Json.(num (get "violation" a)) < 0. then raise Json.Bad;
   let program = { rows = rows @ List.concat_map snd sides; disc = optional (Json.find "disc" bound);
     box_x = List.nth box 0; box_y = List.nth box 1; wish = at (Json.get "preferred" p) } in
   let choice = { velocity = at (Json.get "velocity" a); gap = q Json.(num (get "gap" certificate));
@@ -182,7 +184,7 @@ let crowd file s =
   let difference () =
     let rec go v shift = let b = u8 () in let v = v lor ((b land 0x7F) lsl shift) in if b >= 0x80 then go v (shift + 7) else v in
     let v = go 0 0 in (v lsr 1) lxor (- (v land 1)) in
-  let block f =
+  let block f = if !pos + 16 > String.length s then None else
     let size = Int64.to_int (u64 ()) in
     let stated = u64 () in
     let a = !pos in
