@@ -13,6 +13,10 @@ Module Checked <: Theorems.Verifier.
   Definition nearest_sound := Program.nearest_sound.
   Definition farthest_sound := Program.farthest_sound.
   Definition least_sound := Program.least_sound.
+  Definition pinned := Program.pinned.
+  Definition pinned_sound := Program.pinned_sound.
+  Definition contradicted := Program.contradicted.
+  Definition contradicted_sound := Program.contradicted_sound.
   Definition route := Route.route.
   Definition route_sound := Route.route_sound.
   Definition chain := Route.chain.

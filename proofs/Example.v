@@ -82,6 +82,19 @@ Example another_velocity_farthest : farthest program_farthest
      pull := [d 1 0]; mu := d 0 0; against := [d 0 0] |} = false.
 Proof. vm_compute. reflexivity. Qed.
 
+(* --- A region without interior: one velocity alone is left --- *)
+Definition needle : program := {| disc := Some (d 2 0); box_x := None; box_y := None; wish := (d 1 0, d 0 0);
+  rows := [{| row_normal := (d 1 0, d 0 0); row_offset := d 1 1; soft := false |};
+           {| row_normal := (d (-1) 0, d 0 0); row_offset := d (-1) 1; soft := true |}] |}.
+Definition one_is_left : allowed 0 needle (real (d 1 1, d 0 0)).
+Proof. apply pinned_sound. vm_compute. reflexivity. Qed.
+Example an_ulp_beside_it : pinned needle (d 4503599627370497 53, d 0 0) = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition none_is_allowed : forall w, ~ allowed 0 program_least w.
+Proof. apply (contradicted_sound _ choice_least). vm_compute. reflexivity. Qed.
+Example but_of_the_other_one : contradicted program_nearest choice_nearest = false.
+Proof. vm_compute. reflexivity. Qed.
+
 (* --- Routes and chains: a box with a door of 1.2 m --- *)
 Definition box : list obstacle := [Wall [(d 3152519739159347 51, d 4 0); (d 0 0, d 4 0); (d 0 0, d 0 0); (d 4 0, d 0 0); (d 4 0, d 4 0); (d 5854679515581645 51, d 4 0)]].
 Definition start : point := (2, 2).

@@ -122,11 +122,14 @@ Definition farthest (p : program) (c : choice) : bool :=
   && reaches_less p (qadd (fst w) (fst (sum_normal s)), qadd (snd w) (snd (sum_normal s)))
        (qadd (qadd (pdot w (velocity c)) (gap c)) (sum_offset s)) false.
 
+Definition pinned (p : program) (v : point) : bool := is_allowed 0 p v.
+Definition contradicted (p : program) (c : choice) : bool :=
+  let a := weigh (rows p) (against c) in multipliers_ok c && reaches_less p (sum_normal a) (sum_offset a) true.
+
 Definition least (p : program) (c : choice) : bool :=
-  let s := weigh (rows p) (pull c) in let a := weigh (rows p) (against c) in
+  let s := weigh (rows p) (pull c) in
   let level := qmul (qsub (violation c) (gap c)) (giving s) in
-  multipliers_ok c && qle 0 (gap c) && qle 0 (violation c) && is_allowed (violation c) p (velocity c)
-  && reaches_less p (sum_normal a) (sum_offset a) true
+  multipliers_ok c && qle 0 (gap c) && qle 0 (violation c) && is_allowed (violation c) p (velocity c) && contradicted p c
   && qlt 0 (giving s) && (qle level 0 || reaches_less p (sum_normal s) (qsub (sum_offset s) level) false).
 
 Theorem nearest_sound p c : nearest p c = true -> is_nearest p c.
@@ -167,15 +170,24 @@ Proof.
   unfold dot, real in *; simpl in *. reals. lra.
 Qed.
 
+Theorem pinned_sound p v : pinned p v = true -> allowed 0 p (real v).
+Proof. intro h. apply is_allowed_ok in h. now rewrite Q2R_0 in h. Qed.
+
+Theorem contradicted_sound p c : contradicted p c = true -> forall w, ~ allowed 0 p w.
+Proof.
+  unfold contradicted. set (a := weigh (rows p) (against c)). intros h w [hs hr].
+  apply andb_true_iff in h; destruct h as [h no]. apply andb_true_iff in h; destruct h as [_ ha].
+  pose proof (weigh_ok 0 w (rows p) hr (against c) ha) as k. fold a in k. simpl in k.
+  apply (reaches_less_ok _ _ _ _ w) in no; [|assumption]. simpl in no. lra.
+Qed.
+
 Theorem least_sound p c : least p c = true -> gives_least p c.
 Proof.
-  unfold least. set (s := weigh (rows p) (pull c)). set (a := weigh (rows p) (against c)). intro h.
+  unfold least. set (s := weigh (rows p) (pull c)). intro h.
   apply andb_true_iff in h; destruct h as [h level]. apply andb_true_iff in h; destruct h as [h g0]. apply andb_true_iff in h; destruct h as [h no].
   apply andb_true_iff in h; destruct h as [h ok]. apply andb_true_iff in h; destruct h as [h _]. apply andb_true_iff in h; destruct h as [h _].
-  unfold multipliers_ok in h. apply andb_true_iff in h; destruct h as [h ha]. apply andb_true_iff in h; destruct h as [hp _].
-  assert (none : forall w, ~ allowed 0 p w).
-  { intros w [hs hr]. pose proof (weigh_ok 0 w (rows p) hr (against c) ha) as k. fold a in k. simpl in k.
-    apply (reaches_less_ok _ _ _ _ w) in no; [|assumption]. simpl in no. lra. }
+  unfold multipliers_ok in h. apply andb_true_iff in h; destruct h as [h _]. apply andb_true_iff in h; destruct h as [hp _].
+  assert (none := contradicted_sound p c no).
   split; [now apply is_allowed_ok|]. split; [exact none|]. intros w give [hs hr].
   destruct (Rlt_or_le give 0) as [neg|pos].
   { exfalso. apply (none w). split; [assumption|]. apply Forall_impl with (2 := hr). intros r hr'. unfold holds in *. destruct (soft r); lra. }

@@ -124,6 +124,10 @@ Module Type Verifier.
   Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.
   Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
   Parameter least_sound : forall p c, least p c = true -> gives_least p c.
+  Parameter pinned : program -> point -> bool.
+  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
+  Parameter contradicted : program -> choice -> bool.
+  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
   Parameter route : list obstacle -> Q -> list point -> bool.
   Parameter route_sound : forall os r ps, route os r ps = true ->
     forall e x, In e (sides ps) -> on e x -> room os (Q2R r) x.

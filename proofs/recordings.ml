@@ -83,9 +83,9 @@ let answer p a =
     if List.exists (fun t -> not (List.mem (fst t) known) || negative t) ts || List.length ts > 3 then raise Json.Bad;
     (List.map (fun (i, _) -> sum (Json.Num (float_of_int i)) ts) kept
      @ List.concat_map (fun (n, s) -> if s = [] then [] else [sum (Json.Str n) ts]) sides, sum (Json.Str "disc") ts) in
-  let pull, mu = multipliers "bound" in
+  let pull, mu = if status = "no-interior" then ([], of_q Q.zero) else multipliers "bound" in
   let against, _ = multipliers "contradiction" in
-  if Json.(num (get "violation" a)) < 0. then raise Json.Bad;
+  if Json.(num (get "violation" a)) < 0. || Json.(num (get "gap" certificate)) < 0. then raise Json.Bad;
   let program = { rows = rows @ List.concat_map snd sides; disc = optional (Json.find "disc" bound);
     box_x = List.nth box 0; box_y = List.nth box 1; wish = at (Json.get "preferred" p) } in
   let choice = { velocity = at (Json.get "velocity" a); gap = q Json.(num (get "gap" certificate));
@@ -93,7 +93,25 @@ let answer p a =
   match status with
   | "optimal" -> if Json.find "objective" p = Some (Json.Str "farthest") then Checked.farthest program choice else Checked.nearest program choice
   | "relaxed" | "infeasible" -> Checked.least program choice
-  | _ -> raise Not_found
+  | "no-interior" ->
+    (* The point nearest 0 on the boundaries named: whatever point this is, the checker asks whether it satisfies all. *)
+    let contradicts = terms "contradiction" <> [] in
+    let boundary n = match n with
+      | Json.Num _ -> List.nth (List.filter_map (fun (i, c) -> if Json.Num (float_of_int i) = n then Some c else None) kept) 0
+        |> fun c -> let x, y = pair_of (Json.get "normal" c) in (Q.of_float x, Q.of_float y, Q.of_float Json.(num (get "offset" c)))
+      | n -> (match List.assoc_opt (Json.str n) sides with
+          | Some [r] -> (to_q (fst r.row_normal), to_q (snd r.row_normal), to_q r.row_offset) | _ -> raise Json.Bad) in
+    let x, y = match List.map boundary Json.(arr (get "vertex" certificate)) with
+      | [] -> (Q.zero, Q.zero)
+      | [(a, b, c)] -> let n = Q.add (Q.mul a a) (Q.mul b b) in (Q.div (Q.mul a c) n, Q.div (Q.mul b c) n)
+      | [(a, b, c); (d, e, f)] ->
+        let w = Q.sub (Q.mul a e) (Q.mul b d) in
+        if Q.sign w = 0 then raise Json.Bad;
+        (Q.div (Q.sub (Q.mul c e) (Q.mul b f)) w, Q.div (Q.sub (Q.mul a f) (Q.mul c d)) w)
+      | _ -> raise Json.Bad in
+    (not contradicts || Checked.contradicted program choice)
+    && Checked.pinned (if contradicts then { program with rows = List.filter (fun r -> not r.soft) program.rows } else program) (of_q x, of_q y)
+  | _ -> raise Json.Bad
 
 let answers file text problems =
   let parsed f t = try Json.parse t with Json.Bad -> refuse f "" "no JSON" "a JSON object a line" "E_FORMAT_SYNTAX" in
@@ -103,7 +121,7 @@ let answers file text problems =
       let i = Json.(count (get "index" a)) in
       if i >= Array.length problems then "of no problem" else if Json.get "certificate" a = Json.Null then "no certificate"
       else if answer problems.(i) a then "valid" else "not proven"
-    with Json.Bad | Malformed -> "malformed" | Not_found -> "not covered: a region without interior" in
+    with Json.Bad | Malformed | Failure _ -> "malformed" in
   let verdicts = List.map verdict all in
   List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) verdicts;
   let valid = List.length (List.filter (( = ) "valid") verdicts) in
@@ -123,17 +141,17 @@ let take tally place es ms =
   else if tally.first = None then
     tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an edge" else ": two robots are not proven apart")
 
-let report t what rows robots edges not_covered cut_off =
+let report t what rows robots edges not_covered incomplete =
   Printf.printf "%s of %s, %s: %d asked, in %d no two robots overlap, in %d also no robot overlaps one of %s\n"
     (counted rows "row") (counted robots "robot") what t.asked t.robots_apart t.edges_clear (counted edges "edge");
   Option.iter (fun f -> Printf.printf "  %s\n" f) t.first;
   print_string "not verified:\n  that the file says what happened; docs/guide/proofs.md has what else is trusted\n";
   List.iter (fun s -> Printf.printf "  %s\n" s) not_covered;
-  t.edges_clear = t.asked && not cut_off
+  t.edges_clear = t.asked && not incomplete
 
 let recording file text =
   let scenario = ref Json.Null and edges = ref [] and sizes = ref [] and bits = ref 0 in
-  let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] in
+  let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
   let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } in
   let prepare b =
     bits := b;
@@ -142,11 +160,11 @@ let recording file text =
     sizes := List.map (fun r -> q Json.(num (get "radius" r))) Json.(arr (get "robots" !scenario)) in
   let header h =
     if Json.find "kind" h <> Some (Json.Str "exactvo-recording") then raise Json.Bad;
-    if Json.find "motion" h <> Some (Json.Str "straight") then
-      refuse file "line 1" "motions that are not straight" "the recording of a run in which robots move straight from row to row" "E_UNSUPPORTED";
+    curved := Json.find "motion" h <> Some (Json.Str "straight");
+    if !curved then not_covered := ["the motions: robots do not move straight from row to row, and only the rows were looked at"];
     scenario := Json.get "scenario" h;
     robots := List.length Json.(arr (get "robots" !scenario));
-    if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := ["that robots are clear of moving obstacles"];
+    if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["half-planes, choices and plans, and that the scenario is the one that was meant"];
     prepare (Certificates.bits_needed !scenario) in
   let row r =
@@ -156,7 +174,7 @@ let recording file text =
     let here = let q = over !bits in List.map (fun (x, y) -> (q x, q y)) ps in
     if List.length ps <> !robots then raise Json.Bad;
     (* The row before may have been read with another denominator: the checkers take any. *)
-    take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (Option.value !last ~default:here) here);
+    take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (match !last with Some b when not !curved -> b | _ -> here) here);
     last := Some here; incr rows in
   List.iteri (fun i l ->
     let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in
@@ -166,7 +184,7 @@ let recording file text =
     | Json.Obj [("end", e)] -> ended := true; if Json.find "rows" e <> Some (Json.Num (float_of_int !rows)) then bad ()
     | Json.Obj [((("body" | "goal_bodies" | "plan"), _))] -> ()
     | _ | exception Json.Bad -> bad ()) (lines text);
-  let ok = report t "the first row and each motion to the next" !rows !robots (List.length !edges) !not_covered false in
+  let ok = report t "the first row and each motion to the next" !rows !robots (List.length !edges) !not_covered !curved in
   if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
   ok
 
@@ -237,23 +255,38 @@ let crowd file s =
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
     ok
 
-let usage = "Usage: exactvo-verify FILE            certificates as audit --certificate takes them, recording.jsonl, or a crowd's FILE.evr\n\
-       exactvo-verify FILE --problems PROBLEMS.jsonl    answers of exactvo lp --json\n\
-Verifies by checkers that are proven in Coq. Exit status 0: all is verified; 1: something is not; 2: the file or an option is wrong.\n"
+let usage = "Check certificates and recordings by checkers that are proven in Coq\n\
+Usage: exactvo-verify FILE [OPTIONS]\n\n\
+Positionals:\n\
+\032 FILE                Certificates, as audit --certificate takes them; a recording.jsonl; a crowd's FILE.evr; answers of lp --json with --problems; - for stdin\n\n\
+Options:\n\
+\032 -h,--help           Print this help message and exit\n\
+\032 --problems FILE     The problems, a line of JSON each, that FILE has the answers of\n\n\
+Examples:\n\
+\032 exactvo route office.geojson --from 2,3 --to 18,7 --radius 0.4 --json | exactvo-verify -\n\
+\032 exactvo lp problems.jsonl --json > answers.jsonl && exactvo-verify answers.jsonl --problems problems.jsonl\n\
+\032 exactvo-verify out/A2/recording.jsonl\n\
+\032   (what is proven, and what is trusted: docs/guide/proofs.md)\n\n\
+Exit status:\n\
+\032 0    all of it is verified\n\
+\032 1    some of it is not\n\
+\032 2    the file or an option is wrong\n"
 
 let main () =
   let outcome = match List.tl (Array.to_list Sys.argv) with
     | ["-h"] | ["--help"] -> print_string usage; Ok true
-    | [file] | [file; "--problems"; _] as args -> (try
+    | ([file] | [file; "--problems"; _]) as args when file = "-" || (file <> "" && file.[0] <> '-') -> (try
         let text = read file in
         Ok (match args with
           | [_; _; problems] -> answers file text problems
           | _ when String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && text.[7] >= '1' && text.[7] <= '3' -> crowd file text
           | _ when String.starts_with ~prefix:"{\"header\"" text -> recording file text
           | _ -> certificates file text)
-      with Refused (f, place, found, expected, code) ->
+      with
+      | Stack_overflow -> Error (file ^ ": found more robots or numbers than the stack holds, expected a larger one (ulimit -s unlimited)")
+      | Refused (f, place, found, expected, code) ->
         Error (Printf.sprintf "%s: %sfound %s, expected %s [%s]" f (if place = "" then "" else place ^ ": ") found expected code))
-    | _ -> Error ("found other arguments, expected one file\n" ^ usage) in
+    | args -> Error (Printf.sprintf "found '%s', expected a file and at most --problems FILE (--help)" (String.concat " " args)) in
   match outcome with
   | Ok true -> exit 0
   | Ok false -> exit 1

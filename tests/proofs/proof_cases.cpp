@@ -221,7 +221,9 @@ void forge(lp::Problem& problem, lp::Certificate& c, SeededRandom& random) {
       c.violation = slightly_off(c.violation, random);
       break;
     default:
-      if (!c.contradiction.empty())
+      if (!c.vertex.empty())
+        c.vertex.pop_back();
+      else if (!c.contradiction.empty())
         c.contradiction.pop_back();
       else if (!c.bound.empty())
         c.bound.pop_back();
@@ -236,19 +238,22 @@ void write_choices(std::size_t count, SeededRandom& random, const std::string& f
         kinds[static_cast<std::size_t>(random.integer(0, static_cast<int>(kinds.size()) - 1))];
     lp::Problem problem = random.integer(0, 3) ? random_problem(kind, random) : grid_problem(kind, random);
     const lp::Proven proven = lp::solve_certified(problem);
-    if (!proven.certificate || proven.solution.status == lp::Status::no_interior) continue;
+    if (!proven.certificate) continue;
     lp::Certificate c = *proven.certificate;
     if (k % 2) forge(problem, c, random);
     const bool valid = check(problem, c) == lp::CertificateError::none;
     problems.add(problem_json(problem).dump(), true);
-    answers.add(Json{{"index", k},
-                     {"status", name(c.status)},
-                     {"velocity", {c.velocity.x, c.velocity.y}},
-                     {"violation", c.violation},
-                     {"certificate",
-                      {{"bound", terms_json(c.bound)}, {"contradiction", terms_json(c.contradiction)}, {"gap", c.gap}}}}
-                    .dump(),
-                valid);
+    Json certificate{{"bound", terms_json(c.bound)}, {"contradiction", terms_json(c.contradiction)}, {"gap", c.gap}};
+    if (c.status == lp::Status::no_interior) {
+      certificate["vertex"] = Json::array();
+      for (const lp::Binding& b : c.vertex) certificate["vertex"].push_back(name_of(b));
+    }
+    const Json answer{{"index", k},
+                      {"status", name(c.status)},
+                      {"velocity", {c.velocity.x, c.velocity.y}},
+                      {"violation", c.violation},
+                      {"certificate", certificate}};
+    answers.add(answer.dump(), valid);
     ++k;
   }
 }
