@@ -152,7 +152,7 @@ let report t what rows robots edges not_covered incomplete =
 let recording file text =
   let scenario = ref Json.Null and edges = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
-  let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } in
+  let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
   let prepare b =
     bits := b;
     let q = over b in
@@ -165,7 +165,8 @@ let recording file text =
     scenario := Json.get "scenario" h;
     robots := List.length Json.(arr (get "robots" !scenario));
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
-    not_covered := !not_covered @ ["half-planes, choices and plans, and that the scenario is the one that was meant"];
+    not_covered := !not_covered @ ["plans, half-planes against what moves, and that none is missing";
+      "choices that are not optimal or have exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
     prepare (Certificates.bits_needed !scenario) in
   let row r =
     let ps = List.map (fun x -> pair_of (Json.get "position" x)) Json.(arr (get "robots" r)) in
@@ -175,6 +176,7 @@ let recording file text =
     if List.length ps <> !robots then raise Json.Bad;
     (* The row before may have been read with another denominator: the checkers take any. *)
     take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (match !last with Some b when not !curved -> b | _ -> here) here);
+    List.iter2 (Decisions.robot decisions !scenario) Json.(arr (get "robots" !scenario)) Json.(arr (get "robots" r));
     last := Some here; incr rows in
   List.iteri (fun i l ->
     let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in
@@ -182,11 +184,13 @@ let recording file text =
     | Json.Obj [("header", h)] -> (try header h with Json.Bad -> bad ())
     | Json.Obj [("row", r)] -> (try row r with Json.Bad | Malformed -> bad ())
     | Json.Obj [("end", e)] -> ended := true; if Json.find "rows" e <> Some (Json.Num (float_of_int !rows)) then bad ()
-    | Json.Obj [((("body" | "goal_bodies" | "plan"), _))] -> ()
+    | Json.Obj [("body", b)] -> (try Decisions.body decisions b with Json.Bad -> bad ())
+    | Json.Obj [((("goal_bodies" | "plan"), _))] -> ()
     | _ | exception Json.Bad -> bad ()) (lines text);
+  let decided = Decisions.report decisions in
   let ok = report t "the first row and each motion to the next" !rows !robots (List.length !edges) !not_covered !curved in
   if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
-  ok
+  ok && decided
 
 (* --- Recordings of crowds: docs/guide/crowd-recordings.md --- *)
 let crowd file s =

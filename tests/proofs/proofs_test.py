@@ -259,7 +259,9 @@ def recordings(tools):
     run(tools.program, "simulate", tools.source / "datasets/data/room/room.json", "--no-figures", "--out", out, check=True)
     text = (out / "recording.jsonl").read_text()
     status, _, words = tools.verified("recording.jsonl", text)
-    require(status == 0 and re.search(r"^(\d+) rows of 2 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also", words), words)
+    require(status == 0 and re.search(r"^(\d+) rows of 2 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also", words, re.M), words)
+    half_planes, choices = (int(re.search(f"{what}.*: (\\d+) asked, \\1 proven", words)[1]) for what in ("at rest", "choices with"))
+    require(half_planes > 100 and choices > 100, words)
     lines = text.splitlines(True)
     rows = [k for k, line in enumerate(lines) if line.startswith('{"row"')]
     require(len(rows) > 100, len(rows))
@@ -270,6 +272,16 @@ def recordings(tools):
         change()
         status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[50]] + [json.dumps(forged) + "\n"] + lines[rows[51]:]))
         require(status == 1 and expected in words, words)
+    for place, by, expected in ((("offset",), -0.5, "at rest: %d asked, %d proven" % (half_planes, half_planes - 1)),
+                                (("multiplier",), 1e-3, "multipliers: %d asked, %d proven" % (choices, choices - 1)),
+                                (("normal", 1), -0.5, "at rest: %d asked, %d proven" % (half_planes, half_planes - 1))):
+        forged = json.loads(lines[rows[20]])
+        constraint = next(c for c in forged["row"]["robots"][0]["constraints"] if c["active"])
+        for key in place[:-1]:
+            constraint = constraint[key]
+        constraint[place[-1]] += by
+        status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[20]] + [json.dumps(forged) + "\n"] + lines[rows[21]:]))
+        require(status == 1 and expected in words, place, words)
     status, _, words = tools.verified("cut.jsonl", "".join(lines[:rows[9]]))
     require(status == 2 and "E_CUT_OFF" in words, words)
     status, _, words = tools.verified("no.jsonl", "".join(lines[:rows[9]]) + "{\n")
@@ -282,7 +294,7 @@ def recordings(tools):
     run(tools.program, "simulate", tools.file("crossing.json", json.dumps(scene)), "--engine", "crowd", "--record", evr, check=True)
     data = evr.read_bytes()
     status, _, words = tools.verified("crowd.evr", data)
-    require(status == 0 and re.search(r"^(\d+) rows of 160 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also no robot overlaps one of 4 edges", words), words)
+    require(status == 0 and re.search(r"^(\d+) rows of 160 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also no robot overlaps one of 4 edges", words, re.M), words)
     status, _, words = tools.verified("cut.evr", data[:-30])
     require(status == 1 and "cut off" in words, words)
     for at in range(8, len(data), len(data) // 40):
