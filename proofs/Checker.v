@@ -5,6 +5,8 @@ From ExactVO Require Theorems HalfPlane Program Route Step.
 Module Checked <: Theorems.Verifier.
   Definition half_plane_holds := HalfPlane.half_plane_holds.
   Definition half_plane_sound := HalfPlane.half_plane_sound.
+  Definition pair_holds := HalfPlane.pair_holds.
+  Definition pair_sound := HalfPlane.pair_sound.
   Definition contains := HalfPlane.contains.
   Definition contains_sound := HalfPlane.contains_sound.
   Definition nearest := Program.nearest.

@@ -24,6 +24,16 @@ Example forged_half_plane : half_plane_holds
      offset := d (-1407374883553289) 50; margin := d 7 49 |} = false.
 Proof. vm_compute. reflexivity. Qed.
 
+(* --- Two robots of a run whose half-planes are opposite --- *)
+Definition against_the_other (its_offset : Q) : half_plane :=
+  {| body := Polygon []; body_velocity := (d 0 0, d 0 0); position := (d 24 0, d 14 0); radius := d 1 1; horizon := Some (d 2 0);
+     normal := (d 6156295726294935 54, d 8464906623655535 53); offset := its_offset; margin := 0 |}.
+Definition other_place : point := (d 20 0, d 3 0).
+Definition each_clear_of_the_other : keep_each_other_clear (against_the_other (d (-6003692317991841) 51)) other_place (d 1 1) (d (-6003692317991841) 51).
+Proof. apply pair_sound. vm_compute. reflexivity. Qed.
+Example one_gives_too_little : pair_holds (against_the_other (d (-6285167294702497) 51)) other_place (d 1 1) (d (-6003692317991841) 51) = false.
+Proof. vm_compute. reflexivity. Qed.
+
 (* --- A half-plane past the smallest ellipse round a box, and that it holds the box --- *)
 Definition past_an_ellipse : half_plane :=
   {| body := Ellipse (d 3 0, d 0 0) (d 3184525836262909 51) (d (-140737488355329) 99) (d 3184525836262909 51); body_velocity := (d 0 0, d 0 0);

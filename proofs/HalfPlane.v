@@ -97,6 +97,22 @@ Proof.
     rewrite dot_sub in k. unfold dot, sub in *; simpl in *; lra.
 Qed.
 
+(* --- Two robots whose half-planes are opposite: as one that sees the other from the relative velocity --- *)
+Definition pair_holds (c : half_plane) (p : point) (r other : Q) : bool :=
+  qle 0 r && qle 0 (radius c) && half_plane_holds {| body := Polygon [p]; body_velocity := (0, 0)%Q;
+    position := position c; radius := qadd (radius c) r; horizon := horizon c; normal := normal c;
+    offset := qadd (offset c) other; margin := 0%Q |}.
+
+Theorem pair_sound c p r other : pair_holds c p r other = true -> keep_each_other_clear c p r other.
+Proof.
+  unfold pair_holds. intros h v w t hv hw ht. apply andb_true_iff in h; destruct h as [_ h].
+  apply half_plane_sound in h. unfold keeps_clear in h; simpl in h.
+  destruct (h (sub v w) t (real p)) as [k _]; [|exact ht|apply corner; now left|].
+  - rewrite Q2R_add, dot_sub. replace (dot (scale (-1) (real (normal c))) w) with (- dot (real (normal c)) w) in hw by (unfold dot, scale; simpl; ring). lra.
+  - rewrite Q2R_add in k. unfold apart, dot, sub, add, scale, real in *; simpl in *. rewrite Q2R_0 in k.
+    apply Rle_trans with (1 := k). right. ring.
+Qed.
+
 (* --- Points in an ellipse: l11^2 l22^2 (1 - m - |L^-1 (x - c)|^2) >= 0, without a division --- *)
 Definition contains (s : shape) (ps : list point) (m : Q) : bool :=
   match s with

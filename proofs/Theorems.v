@@ -47,6 +47,10 @@ Definition keeps_clear (c : half_plane) := forall v t o,
   apart (Q2R (radius c)) here there /\                  (* and a line of that normal has a strip `margin` between them: *)
   forall y, dot (sub y here) (sub y here) <= Q2R (radius c) * Q2R (radius c) ->
     dot (real (normal c)) there + Q2R (margin c) <= dot (real (normal c)) y.
+(* Two robots: c is that of one, with the other as its body, a disc; `other` is the offset of the opposite half-plane. *)
+Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := forall v w t,
+  Q2R (offset c) <= dot (real (normal c)) v -> Q2R other <= dot (scale (-1) (real (normal c))) w -> moment (horizon c) t ->
+  apart (Q2R (radius c) + Q2R r) (add (real (position c)) (scale t v)) (add (real p) (scale t w)).
 
 (* --- Program: half-planes that must hold or may give, the disc and box of the speed, the velocity wished for --- *)
 Record row := { row_normal : point; row_offset : Q; soft : bool }.
@@ -117,6 +121,8 @@ Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list poi
 Module Type Verifier.
   Parameter half_plane_holds : half_plane -> bool.
   Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
+  Parameter pair_holds : half_plane -> point -> Q -> Q -> bool.
+  Parameter pair_sound : forall c p r other, pair_holds c p r other = true -> keep_each_other_clear c p r other.
   Parameter contains : shape -> list point -> Q -> bool.
   Parameter contains_sound : forall c l11 l21 l22 ps m, contains (Ellipse c l11 l21 l22) ps m = true ->
     forall x, hull ps x -> in_ellipse (1 - Q2R m) c l11 l21 l22 x.

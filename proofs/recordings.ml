@@ -165,7 +165,7 @@ let recording file text =
     scenario := Json.get "scenario" h;
     robots := List.length Json.(arr (get "robots" !scenario));
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
-    not_covered := !not_covered @ ["plans, half-planes against what moves, and that none is missing";
+    not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
       "choices that are not optimal or have exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
     prepare (Certificates.bits_needed !scenario) in
   let row r =
@@ -176,7 +176,7 @@ let recording file text =
     if List.length ps <> !robots then raise Json.Bad;
     (* The row before may have been read with another denominator: the checkers take any. *)
     take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (match !last with Some b when not !curved -> b | _ -> here) here);
-    List.iter2 (Decisions.robot decisions !scenario) Json.(arr (get "robots" !scenario)) Json.(arr (get "robots" r));
+    Decisions.row decisions !scenario Json.(arr (get "robots" r));
     last := Some here; incr rows in
   List.iteri (fun i l ->
     let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in

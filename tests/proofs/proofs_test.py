@@ -287,6 +287,27 @@ def recordings(tools):
     status, _, words = tools.verified("no.jsonl", "".join(lines[:rows[9]]) + "{\n")
     require(status == 2 and "E_FORMAT_SYNTAX" in words, words)
 
+    out = tools.folder / "A7"
+    run(tools.program, "simulate", tools.source / "datasets/data/paper/A7.json", "--no-figures", "--out", out, check=True)
+    lines = (out / "recording.jsonl").read_text().splitlines(True)
+    status, _, words = tools.verified("A7.jsonl", "".join(lines))
+    pairs = re.search(r"opposite half-planes: (\d+) asked, \1 proven", words)
+    require(status == 0 and pairs and int(pairs[1]) > 20, words)
+    robots = {b["number"] for b in (json.loads(line).get("body", {"kind": ""}) for line in lines) if b["kind"] == "robot"}
+    tampered = 0
+    for k, line in enumerate(lines):
+        if not line.startswith('{"row"'):
+            continue
+        forged = json.loads(line)
+        for robot in forged["row"]["robots"]:
+            for constraint in robot.get("constraints", []):
+                if constraint["body"] in robots:
+                    constraint["offset"] -= 4.0  # more than any velocity has
+                    tampered += 1
+        lines[k] = json.dumps(forged) + "\n"
+    status, _, words = tools.verified("A7_forged.jsonl", "".join(lines))
+    require(status == 1 and tampered > 40 and f"opposite half-planes: {pairs[1]} asked, 0 proven" in words, words)
+
     scene = {"name": "crossing", "time_step": 0.25, "time_limit": 20, "horizons": {"least": 0.5, "orca": 5},
              "obstacles": [{"id": "w", "polygon": [[20, -3], [24, -3], [24, 3], [20, 3]]}],
              "robots": [{"circle": {"count": 60}}, {"grid": {"columns": 10, "rows": 10, "spacing": 2, "corner": [60, -10], "goal": [-110, 0]}}]}
