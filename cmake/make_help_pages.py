@@ -4,6 +4,10 @@
     make_help_pages.py PROGRAM OUT
 
 writes OUT/man/exactvo.1, OUT/man/exactvo-VERB.1, OUT/completions/exactvo.bash and OUT/completions/_exactvo (zsh).
+
+    make_help_pages.py PROGRAM OUT VERSION
+
+writes OUT/man/NAME.1 of a program without verbs, such as exactvo-verify.
 """
 import re
 import subprocess
@@ -157,4 +161,13 @@ def main(program, out):
     (out / "completions/_exactvo").write_text(zsh_completion(verbs))
 
 
-main(sys.argv[1], Path(sys.argv[2]))
+def single_page(program, out, version):
+    (out / "man").mkdir(parents=True, exist_ok=True)
+    name = Path(program).name
+    (out / f"man/{name}.1").write_text(man_page(name, asked(program, "--help"), version, ["exactvo(1)", "exactvo-audit(1)"]))
+
+
+if len(sys.argv) == 4:
+    single_page(sys.argv[1], Path(sys.argv[2]), sys.argv[3])
+else:
+    main(sys.argv[1], Path(sys.argv[2]))

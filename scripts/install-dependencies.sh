@@ -27,6 +27,7 @@ for_tests=(
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
   python3-pytest mypy python3-pandas python3-shapely                # tests of the Python package
   doxygen pandoc                                                    # the site
+  coq ocaml ocaml-findlib libzarith-ocaml-dev                       # the proven checkers, exactvo-verify; without, all else is built
 )
 case "${1:-all}" in
   all) packages=("${for_program[@]}" "${for_python[@]}" "${for_tests[@]}") ;;

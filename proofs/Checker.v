@@ -1,0 +1,32 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* The checkers keep their promises: the kernel holds this module against Theorems.v. *)
+From ExactVO Require Theorems HalfPlane Program Route Step.
+
+Module Checked <: Theorems.Verifier.
+  Definition half_plane_holds := HalfPlane.half_plane_holds.
+  Definition half_plane_sound := HalfPlane.half_plane_sound.
+  Definition pair_holds := HalfPlane.pair_holds.
+  Definition pair_sound := HalfPlane.pair_sound.
+  Definition contains := HalfPlane.contains.
+  Definition contains_sound := HalfPlane.contains_sound.
+  Definition nearest := Program.nearest.
+  Definition farthest := Program.farthest.
+  Definition least := Program.least.
+  Definition nearest_sound := Program.nearest_sound.
+  Definition farthest_sound := Program.farthest_sound.
+  Definition least_sound := Program.least_sound.
+  Definition pinned := Program.pinned.
+  Definition pinned_sound := Program.pinned_sound.
+  Definition contradicted := Program.contradicted.
+  Definition contradicted_sound := Program.contradicted_sound.
+  Definition route := Route.route.
+  Definition route_sound := Route.route_sound.
+  Definition chain := Route.chain.
+  Definition chain_sound := Route.chain_sound.
+  Definition blocked := Route.blocked.
+  Definition blocked_sound := Route.blocked_sound.
+  Definition step := Step.step.
+  Definition step_sound := Step.step_sound.
+  Definition run := Step.run.
+  Definition run_sound := Step.run_sound.
+End Checked.

@@ -1,0 +1,145 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* The kernel itself checks one real certificate of each kind, as the program wrote it, and refutes a forged one: no
+   extraction, no OCaml, no reader. From each that holds follows what Theorems.v says of it. *)
+Require Import Reals QArith Qreals List.
+From ExactVO Require Import Theorems Checker.
+Import ListNotations Checked.
+Local Open Scope Q_scope.
+
+Definition d (m : Z) (k : N) : Q := m # match (2 ^ k)%N with Npos p => p | N0 => 1 end.   (* a double: m / 2^k *)
+
+(* --- A half-plane: a disc of radius 1 m at (4, 0), a robot of 0.5 m at (0, 0), 2 s --- *)
+Definition past_a_disc : half_plane :=
+  {| body := Disc (d 4 0, d 0 0) (d 1 0); body_velocity := (d 0 0, d 0 0);
+     position := (d 0 0, d 0 0); radius := d 1 1; horizon := Some (d 2 0);
+     normal := (d (-1) 0, d 0 0);
+     offset := d (-1407374883553273) 50; margin := d 7 49 |}.
+Definition past_a_disc_safely : keeps_clear past_a_disc.
+Proof. apply half_plane_sound. vm_compute. reflexivity. Qed.
+(* Its offset 64 ulps less: the margin that is stated is not there any more. *)
+Example forged_half_plane : half_plane_holds
+  {| body := Disc (d 4 0, d 0 0) (d 1 0); body_velocity := (d 0 0, d 0 0);
+     position := (d 0 0, d 0 0); radius := d 1 1; horizon := Some (d 2 0);
+     normal := (d (-1) 0, d 0 0);
+     offset := d (-1407374883553289) 50; margin := d 7 49 |} = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- Two robots of a run whose half-planes are opposite --- *)
+Definition against_the_other (its_offset : Q) : half_plane :=
+  {| body := Polygon []; body_velocity := (d 0 0, d 0 0); position := (d 24 0, d 14 0); radius := d 1 1; horizon := Some (d 2 0);
+     normal := (d 6156295726294935 54, d 8464906623655535 53); offset := its_offset; margin := 0 |}.
+Definition other_place : point := (d 20 0, d 3 0).
+Definition each_clear_of_the_other : keep_each_other_clear (against_the_other (d (-6003692317991841) 51)) other_place (d 1 1) (d (-6003692317991841) 51).
+Proof. apply pair_sound. vm_compute. reflexivity. Qed.
+Example one_gives_too_little : pair_holds (against_the_other (d (-6285167294702497) 51)) other_place (d 1 1) (d (-6003692317991841) 51) = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A half-plane past the smallest ellipse round a box, and that it holds the box --- *)
+Definition past_an_ellipse : half_plane :=
+  {| body := Ellipse (d 3 0, d 0 0) (d 3184525836262909 51) (d (-140737488355329) 99) (d 3184525836262909 51); body_velocity := (d 0 0, d 0 0);
+     position := (d 0 0, d 0 0); radius := d 1 1; horizon := Some (d 2 0);
+     normal := (d (-4181487279093045) 52, d 6690379646548869 54);
+     offset := d (-7847220702136055) 54; margin := d 5882841641760757 99 |}.
+Definition past_an_ellipse_safely : keeps_clear past_an_ellipse.
+Proof. apply half_plane_sound. vm_compute. reflexivity. Qed.
+Definition round_the_box : shape := Ellipse (d 3 0, d 0 0) (d 3184525836262909 51) (d (-140737488355329) 99)
+  (d 3184525836262909 51).
+Example the_ellipse_holds_the_box : contains round_the_box [(d 2 0, d (-1) 0); (d 4 0, d (-1) 0); (d 4 0, d 1 0); (d 2 0, d 1 0)] (d 8943616651585361 99) = true.
+Proof. vm_compute. reflexivity. Qed.
+Example a_corner_moved_outward : contains round_the_box [(d 8962163258467287 52, d (-1) 0); (d 4 0, d (-1) 0); (d 4 0, d 1 0); (d 2 0, d 1 0)] 0 = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A choice: the velocity nearest the preferred one --- *)
+Definition program_nearest : program :=
+  {| rows := [{| row_normal := (d (-1) 0, d 0 0); row_offset := d (-7) 2; soft := false |}];
+     disc := Some (d 3 0); box_x := None; box_y := None; wish := (d 3 0, d 0 0) |}.
+Definition choice_nearest : choice :=
+  {| velocity := (d 985162418487293 49, d 0 0); gap := d 263882790666255 94; violation := d 0 0;
+     pull := [d 703687441776643 49]; mu := d 0 0; against := [d 0 0] |}.
+Definition proven_nearest : is_nearest program_nearest choice_nearest.
+Proof. apply nearest_sound. vm_compute. reflexivity. Qed.
+Example another_velocity_nearest : nearest program_nearest
+  {| velocity := (d 914793674309629 49, d (-1) 2); gap := d 263882790666255 94; violation := d 0 0;
+     pull := [d 703687441776643 49]; mu := d 0 0; against := [d 0 0] |} = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A choice: two half-planes that contradict each other, broken least --- *)
+Definition program_least : program :=
+  {| rows := [{| row_normal := (d 1 0, d 0 0); row_offset := d 1 0; soft := true |};
+     {| row_normal := (d (-1) 0, d 0 0); row_offset := d 1 0; soft := true |}];
+     disc := Some (d 2 0); box_x := None; box_y := None; wish := (d 1 0, d 0 0) |}.
+Definition choice_least : choice :=
+  {| velocity := (d 1 49, d 0 0); gap := d 703687441776657 98; violation := d 562949953421313 49;
+     pull := [d 1 0; d 1 0]; mu := d 0 0; against := [d 1 0; d 1 0] |}.
+Definition proven_least : gives_least program_least choice_least.
+Proof. apply least_sound. vm_compute. reflexivity. Qed.
+Example another_velocity_least : least program_least
+  {| velocity := (d (-70368744177663) 49, d (-1) 2); gap := d 703687441776657 98; violation := d 562949953421313 49;
+     pull := [d 1 0; d 1 0]; mu := d 0 0; against := [d 1 0; d 1 0] |} = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A choice: the farthest along a direction --- *)
+Definition program_farthest : program :=
+  {| rows := [{| row_normal := (d 0 0, d (-1) 0); row_offset := d (-1) 1; soft := false |}];
+     disc := Some (d 2 0); box_x := None; box_y := None; wish := (d 0 0, d 1 0) |}.
+Definition choice_farthest : choice :=
+  {| velocity := (d 0 0, d 140737488355327 48); gap := d 2251799813685289 99; violation := d 0 0;
+     pull := [d 1 0]; mu := d 0 0; against := [d 0 0] |}.
+Definition proven_farthest : is_farthest program_farthest choice_farthest.
+Proof. apply farthest_sound. vm_compute. reflexivity. Qed.
+Example another_velocity_farthest : farthest program_farthest
+  {| velocity := (d (-1) 3, d 70368744177663 48); gap := d 2251799813685289 99; violation := d 0 0;
+     pull := [d 1 0]; mu := d 0 0; against := [d 0 0] |} = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A region without interior: one velocity alone is left --- *)
+Definition needle : program := {| disc := Some (d 2 0); box_x := None; box_y := None; wish := (d 1 0, d 0 0);
+  rows := [{| row_normal := (d 1 0, d 0 0); row_offset := d 1 1; soft := false |};
+           {| row_normal := (d (-1) 0, d 0 0); row_offset := d (-1) 1; soft := true |}] |}.
+Definition one_is_left : allowed 0 needle (real (d 1 1, d 0 0)).
+Proof. apply pinned_sound. vm_compute. reflexivity. Qed.
+Example an_ulp_beside_it : pinned needle (d 4503599627370497 53, d 0 0) = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition none_is_allowed : forall w, ~ allowed 0 program_least w.
+Proof. apply (contradicted_sound _ choice_least). vm_compute. reflexivity. Qed.
+Example but_of_the_other_one : contradicted program_nearest choice_nearest = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- Routes and chains: a box with a door of 1.2 m --- *)
+Definition box : list obstacle := [Wall [(d 3152519739159347 51, d 4 0); (d 0 0, d 4 0); (d 0 0, d 0 0); (d 4 0, d 0 0); (d 4 0, d 4 0); (d 5854679515581645 51, d 4 0)]].
+Definition start : point := (2, 2).
+Definition goal : point := (2, 9).
+Definition a_disc_of_half_a_metre_passes : forall e x, In e (sides [start; goal]) -> on e x -> room box (Q2R (1 # 2)) x.
+Proof. apply route_sound. vm_compute. reflexivity. Qed.
+Example a_wider_one_does_not : route box (13 # 20) [start; goal] = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition door : list joint :=
+  [{| spot := (d 3152519739159347 51, d 4 0); obstacle_no := 0; edge_no := 0; gap_follows := false |};
+   {| spot := (d 0 0, d 4 0); obstacle_no := 0; edge_no := 1; gap_follows := false |};
+   {| spot := (d 0 0, d 0 0); obstacle_no := 0; edge_no := 2; gap_follows := false |};
+   {| spot := (d 4 0, d 0 0); obstacle_no := 0; edge_no := 3; gap_follows := false |};
+   {| spot := (d 4 0, d 4 0); obstacle_no := 0; edge_no := 4; gap_follows := false |};
+   {| spot := (d 5854679515581645 51, d 4 0); obstacle_no := 0; edge_no := 4; gap_follows := true |}].
+Definition no_way : ~ way box (Q2R (13 # 20)) (real start) (real goal).
+Proof. apply (chain_sound _ _ _ _ door). vm_compute. reflexivity. Qed.
+Example a_narrower_one_is_not_held : chain box (3 # 5) start goal door = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition no_room : ~ room box (Q2R (13 # 20)) (real (7 # 2, 2)).
+Proof. apply (blocked_sound _ _ _ 0%nat (Some 3%nat)). vm_compute. reflexivity. Qed.
+Example half_a_metre_has_room : blocked box (1 # 2) (7 # 2, 2) 0%nat (Some 3%nat) = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- A run: the first rows of two robots in a room, past an edge of it --- *)
+Definition edge_of_the_room : list edge := [((d 4 0, d 1351079888211149 50), (d 5854679515581645 50, d 1351079888211149 50))].
+Definition sizes : list Q := [d 5404319552844595 55; d 5404319552844595 55].
+Definition first_rows : list (list point) :=
+  [[(d 3152519739159347 52, d 5854679515581645 52); (d 5967269506265907 50, d 2 0)];
+   [(d 3287401707159321 52, d 5795027405883229 52); (d 5934531597776325 50, d 8977300771548525 52)];
+   [(d 3427300325464883 52, d 714317889352501 49); (d 5898432158740415 50, d 4491062039922825 51)];
+   [(d 1789076048998239 51, d 5627875860636307 52); (d 183147997495149 45, d 4511925497897165 51)]].
+Definition they_keep_apart : all_steps (fun a b => keeps_apart edge_of_the_room (moves sizes a b)) first_rows.
+Proof. apply run_sound. vm_compute. reflexivity. Qed.
+Example they_cannot_change_places : run edge_of_the_room sizes
+  [[(d 3152519739159347 52, d 5854679515581645 52); (d 5967269506265907 50, d 2 0)];
+   [(d 5967269506265907 50, d 2 0); (d 3152519739159347 52, d 5854679515581645 52)]] = false.
+Proof. vm_compute. reflexivity. Qed.

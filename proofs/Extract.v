@@ -1,0 +1,21 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* The checkers as OCaml. Whole numbers become those of zarith (GMP); that their operations are right is trusted. *)
+From ExactVO Require Import Theorems Plane Checker.
+Require Import ZArith QArith.
+Require Extraction ExtrOcamlBasic ExtrOcamlNatInt.
+
+Extract Inductive positive => "Whole.t" ["(fun p -> Whole.succ (Whole.shift_left p 1))" "(fun p -> Whole.shift_left p 1)" "Whole.one"]
+  "(fun odd even one p -> if Whole.equal p Whole.one then one () else (if Whole.is_odd p then odd else even) (Whole.shift_right p 1))".
+Extract Inductive Z => "Whole.t" ["Whole.zero" "(fun p -> p)" "Whole.neg"]
+  "(fun zero pos neg z -> let s = Whole.sign z in if s = 0 then zero () else if s > 0 then pos z else neg (Whole.neg z))".
+Extract Constant Pos.mul => "Whole.mul".
+Extract Constant Pos.eqb => "Whole.equal".
+Extract Constant Z.add => "Whole.add".
+Extract Constant Z.mul => "Whole.mul".
+Extract Constant Z.opp => "Whole.neg".
+Extract Constant Z.leb => "Whole.leq".
+Extract Constant Z.div2 => "(fun z -> Whole.shift_right z 1)".
+Extraction Inline negb.
+
+Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
+  Checked.route Checked.chain Checked.blocked Checked.step Checked.run moves edges_of qlt.

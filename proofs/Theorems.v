@@ -1,0 +1,150 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* What exactvo-verify promises: definitions and statements, no proofs. Checker.v has a checker for each statement and
+   proves that it keeps the promise. A `point` is made of fractions, as files have them; a `vec` of real numbers. *)
+Require Import Reals QArith Qreals List Bool.
+Import ListNotations.
+Open Scope R_scope.
+
+(* --- Plane --- *)
+Definition vec := (R * R)%type.
+Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).
+Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
+Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
+Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
+Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
+Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
+
+Definition point := (Q * Q)%type.
+Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
+
+Inductive hull (ps : list point) : vec -> Prop :=       (* convex hull; of two points: the segment between them *)
+| corner p : In p ps -> hull ps (real p)
+| chord x y s : hull ps x -> hull ps y -> 0 <= s <= 1 -> hull ps (mix s x y).
+
+Inductive shape :=
+| Polygon (vertices : list point)                       (* their hull: segments are polygons of two vertices *)
+| Disc (centre : point) (radius : Q)
+| Ellipse (centre : point) (l11 l21 l22 : Q).           (* the unit disc under [l11 0; l21 l22], moved to the centre *)
+
+(* The image of the disc of radius sqrt(m) under [l11 0; l21 l22], moved to the centre. *)
+Definition in_ellipse (m : R) (c : point) (l11 l21 l22 : Q) (x : vec) := exists a b,
+  a * a + b * b <= m /\ x = add (real c) (Q2R l11 * a, Q2R l21 * a + Q2R l22 * b).
+Definition inside (b : shape) (x : vec) : Prop :=
+  match b with
+  | Polygon vs => hull vs x
+  | Disc c r => dot (sub x (real c)) (sub x (real c)) <= Q2R r * Q2R r
+  | Ellipse c l11 l21 l22 => in_ellipse 1 c l11 l21 l22 x
+  end.
+
+(* --- HalfPlane: velocities v with normal.v >= offset keep the robot clear of a moving body until the horizon --- *)
+Record half_plane := { body : shape; body_velocity : point; position : point; radius : Q;
+  horizon : option Q;                                   (* None: for ever *)
+  normal : point; offset : Q; margin : Q }.
+Definition moment (h : option Q) (t : R) := 0 <= t /\ match h with Some q => t <= Q2R q | None => True end.
+Definition keeps_clear (c : half_plane) := forall v t o,
+  Q2R (offset c) <= dot (real (normal c)) v -> moment (horizon c) t -> inside (body c) o ->
+  let there := add o (scale t (real (body_velocity c))) in let here := add (real (position c)) (scale t v) in
+  apart (Q2R (radius c)) here there /\                  (* and a line of that normal has a strip `margin` between them: *)
+  forall y, dot (sub y here) (sub y here) <= Q2R (radius c) * Q2R (radius c) ->
+    dot (real (normal c)) there + Q2R (margin c) <= dot (real (normal c)) y.
+(* Two robots: c is that of one, with the other as its body, a disc; `other` is the offset of the opposite half-plane. *)
+Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := forall v w t,
+  Q2R (offset c) <= dot (real (normal c)) v -> Q2R other <= dot (scale (-1) (real (normal c))) w -> moment (horizon c) t ->
+  apart (Q2R (radius c) + Q2R r) (add (real (position c)) (scale t v)) (add (real p) (scale t w)).
+
+(* --- Program: half-planes that must hold or may give, the disc and box of the speed, the velocity wished for --- *)
+Record row := { row_normal : point; row_offset : Q; soft : bool }.
+Record program := { rows : list row; disc : option Q; box_x : option Q; box_y : option Q; wish : point }.
+Definition at_most (x : R) (b : option Q) := match b with Some q => x <= Q2R q | None => True end.
+Definition slow (p : program) (v : vec) :=
+  match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
+  at_most (Rabs (fst v)) (box_x p) /\ at_most (Rabs (snd v)) (box_y p).
+Definition holds (give : R) (v : vec) (c : row) := Q2R (row_offset c) - give <= dot (real (row_normal c)) v.
+(* Hard ones hold, soft ones are broken by at most `give`. *)
+Definition allowed (give : R) (p : program) (v : vec) :=
+  slow p v /\ Forall (fun c => holds (if soft c then give else 0) v c) (rows p).
+(* `pull`, `against`: multipliers, one a row; `mu`: that of the disc. *)
+Record choice := { velocity : point; gap : Q; violation : Q; pull : list Q; mu : Q; against : list Q }.
+Definition off_wish (p : program) (v : vec) := dot (sub v (real (wish p))) (sub v (real (wish p))).
+Definition is_nearest (p : program) (c : choice) := allowed 0 p (real (velocity c)) /\
+  forall w, allowed 0 p w -> off_wish p (real (velocity c)) <= off_wish p w + Q2R (gap c).
+Definition is_farthest (p : program) (c : choice) := allowed 0 p (real (velocity c)) /\
+  forall w, allowed 0 p w -> dot (real (wish p)) w <= dot (real (wish p)) (real (velocity c)) + Q2R (gap c).
+Definition gives_least (p : program) (c : choice) := allowed (Q2R (violation c)) p (real (velocity c)) /\
+  (forall w, ~ allowed 0 p w) /\ forall w give, allowed give p w -> Q2R (violation c) - Q2R (gap c) <= give.
+
+(* --- Route and Chain: a disc among walls and polygons with holes --- *)
+Inductive obstacle := Wall (line : list point) | Solid (rings : list (list point)).
+Definition edge := (point * point)%type.
+Fixpoint sides_from (a : point) (ps : list point) : list edge :=
+  match ps with [] => [] | b :: r => (a, b) :: sides_from b r end.
+Definition sides (ps : list point) : list edge := match ps with [] => [] | a :: r => sides_from a r end.
+Definition ring_sides (ps : list point) : list edge := match ps with [] => [] | a :: r => sides_from a (r ++ [a]) end.
+Definition edges_of (o : obstacle) : list edge := match o with Wall l => sides l | Solid rs => flat_map ring_sides rs end.
+Definition on (e : edge) (x : vec) := hull [fst e; snd e] x.
+
+(* Does the ray from x upward cross the side ab? Of its ends the left one counts, the right one does not. *)
+Definition le (a b : R) : bool := if Rle_dec a b then true else false.
+Definition lt (a b : R) : bool := if Rlt_dec a b then true else false.
+Definition line (a b : vec) (t : R) : R := snd a + (snd b - snd a) / (fst b - fst a) * (t - fst a).
+Definition crosses (x a b : vec) : bool :=
+  xorb (le (fst a) (fst x)) (le (fst b) (fst x)) && lt (snd x) (line a b (fst x)).
+Definition odd (es : list edge) (x : vec) : bool :=     (* is the number of crossings odd? *)
+  fold_right (fun e sum => xorb (crosses x (real (fst e)) (real (snd e))) sum) false es.
+
+(* The disc has room at x: no edge is nearer than r, and x is in no polygon. *)
+Definition room (os : list obstacle) (r : R) (x : vec) := forall o, In o os ->
+  (forall e y, In e (edges_of o) -> on e y -> apart r x y) /\
+  match o with Wall _ => True | Solid _ => odd (edges_of o) x = false end.
+Definition near (d : R) (x y : vec) := Rabs (fst y - fst x) < d /\ Rabs (snd y - snd x) < d.
+Definition continuous (p : R -> vec) := forall t, 0 <= t <= 1 -> forall e, 0 < e ->
+  exists d, 0 < d /\ forall s, 0 <= s <= 1 -> Rabs (s - t) < d -> near e (p t) (p s).
+Definition way (os : list obstacle) (r : R) (s g : vec) := exists p,
+  continuous p /\ p 0 = s /\ p 1 = g /\ forall t, 0 <= t <= 1 -> room os r (p t).
+
+(* A corner of a closed chain, the obstacle and the edge of it that it lies on (numbered from 0), and whether a gap or
+   that edge leads to the next corner. *)
+Record joint := { spot : point; obstacle_no : nat; edge_no : nat; gap_follows : bool }.
+
+(* --- Step and Run: all robots move at once, straight and evenly --- *)
+Record motion := { from : point; to : point; size : Q }.
+Definition place (m : motion) (s : R) : vec := mix s (real (from m)) (real (to m)).
+Definition keeps_apart (es : list edge) (ms : list motion) := forall s, 0 <= s <= 1 ->
+  ForallOrdPairs (fun a b => apart (Q2R (size a) + Q2R (size b)) (place a s) (place b s)) ms /\
+  forall m e y, In m ms -> In e es -> on e y -> apart (Q2R (size m)) (place m s) y.
+Definition moves (sizes : list Q) (a b : list point) : list motion :=
+  map (fun x => {| size := fst x; from := fst (snd x); to := snd (snd x) |}) (combine sizes (combine a b)).
+Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list point)) : Prop :=
+  match rows with a :: ((b :: _) as r) => P a b /\ all_steps P r | _ => True end.
+
+(* --- The promises --- *)
+Module Type Verifier.
+  Parameter half_plane_holds : half_plane -> bool.
+  Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
+  Parameter pair_holds : half_plane -> point -> Q -> Q -> bool.
+  Parameter pair_sound : forall c p r other, pair_holds c p r other = true -> keep_each_other_clear c p r other.
+  Parameter contains : shape -> list point -> Q -> bool.
+  Parameter contains_sound : forall c l11 l21 l22 ps m, contains (Ellipse c l11 l21 l22) ps m = true ->
+    forall x, hull ps x -> in_ellipse (1 - Q2R m) c l11 l21 l22 x.
+  Parameter nearest farthest least : program -> choice -> bool.
+  Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.
+  Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
+  Parameter least_sound : forall p c, least p c = true -> gives_least p c.
+  Parameter pinned : program -> point -> bool.
+  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
+  Parameter contradicted : program -> choice -> bool.
+  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
+  Parameter route : list obstacle -> Q -> list point -> bool.
+  Parameter route_sound : forall os r ps, route os r ps = true ->
+    forall e x, In e (sides ps) -> on e x -> room os (Q2R r) x.
+  Parameter chain : list obstacle -> Q -> point -> point -> list joint -> bool.
+  Parameter chain_sound : forall os r s g js, chain os r s g js = true ->
+    room os (Q2R r) (real s) /\ room os (Q2R r) (real g) /\ ~ way os (Q2R r) (real s) (real g).
+  Parameter blocked : list obstacle -> Q -> point -> nat -> option nat -> bool.   (* by an edge, or inside a polygon *)
+  Parameter blocked_sound : forall os r x o e, blocked os r x o e = true -> ~ room os (Q2R r) (real x).
+  Parameter step : list edge -> list motion -> bool.
+  Parameter step_sound : forall es ms, step es ms = true -> keeps_apart es ms.
+  Parameter run : list edge -> list Q -> list (list point) -> bool.
+  Parameter run_sound : forall es sizes rows, run es sizes rows = true ->
+    Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart es (moves sizes a b)) rows.
+End Verifier.

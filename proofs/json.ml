@@ -1,0 +1,74 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* JSON as the project writes it. Numbers are doubles; a member twice, and whatever is no JSON, is refused. *)
+type t = Null | Bool of bool | Num of float | Str of string | Arr of t list | Obj of (string * t) list
+
+exception Bad
+
+let deepest = 100
+
+let parse s =
+  let n = String.length s and i = ref 0 in
+  let peek () = if !i < n then s.[!i] else raise Bad in
+  let rec blanks () = if !i < n && (match s.[!i] with ' ' | '\t' | '\r' | '\n' -> true | _ -> false) then (incr i; blanks ()) in
+  let expect c = if peek () = c then incr i else raise Bad in
+  let word w v = String.iter expect w; v in
+  let hex () = let v = int_of_string ("0x" ^ String.sub s !i 4) in i := !i + 4; v in
+  let text () =
+    expect '"';
+    let rec plain k = if k >= n || s.[k] < ' ' then raise Bad else if s.[k] = '"' || s.[k] = '\\' then k else plain (k + 1) in
+    let k = plain !i in
+    let b = Buffer.create 16 in
+    let rec go () =
+      let k = plain !i in
+      Buffer.add_substring b s !i (k - !i); i := k + 1;
+      if s.[k] = '\\' then begin
+        let c = peek () in incr i;
+        (match c with
+         | '"' | '\\' | '/' -> Buffer.add_char b c
+         | 'n' -> Buffer.add_char b '\n' | 't' -> Buffer.add_char b '\t' | 'r' -> Buffer.add_char b '\r'
+         | 'b' -> Buffer.add_char b '\b' | 'f' -> Buffer.add_char b '\012'
+         | 'u' -> let u = hex () in
+           let u = if u land 0xFC00 = 0xD800 then (expect '\\'; expect 'u'; 0x10000 + ((u land 0x3FF) lsl 10) + (hex () land 0x3FF)) else u in
+           Buffer.add_utf_8_uchar b (Uchar.of_int u)
+         | _ -> raise Bad);
+        go ()
+      end in
+    if s.[k] = '"' then (let t = String.sub s !i (k - !i) in i := k + 1; t) else (go (); Buffer.contents b) in
+  let number () =
+    let k = !i in
+    let digits () = let a = !i in while !i < n && s.[!i] >= '0' && s.[!i] <= '9' do incr i done; if !i = a then raise Bad in
+    if peek () = '-' then incr i;
+    if peek () = '0' then incr i else digits ();
+    if !i < n && s.[!i] = '.' then (incr i; digits ());
+    if !i < n && (s.[!i] = 'e' || s.[!i] = 'E') then (incr i; if peek () = '-' || peek () = '+' then incr i; digits ());
+    let x = float_of_string (String.sub s k (!i - k)) in
+    if Float.is_finite x then Num x else raise Bad in
+  let rec value depth =
+    if depth > deepest then raise Bad;
+    blanks ();
+    let v = match peek () with
+      | '{' -> incr i; Obj (list '}' (fun () -> blanks (); let k = text () in blanks (); expect ':'; (k, value (depth + 1))) |> once)
+      | '[' -> incr i; Arr (list ']' (fun () -> value (depth + 1)))
+      | '"' -> Str (text ()) | 't' -> word "true" (Bool true) | 'f' -> word "false" (Bool false) | 'n' -> word "null" Null
+      | _ -> number () in
+    blanks (); v
+  and list : 'a. char -> (unit -> 'a) -> 'a list = fun close item ->
+    blanks ();
+    if peek () = close then (incr i; []) else
+      let rec more acc = let acc = item () :: acc in blanks (); if peek () = ',' then (incr i; more acc) else (expect close; List.rev acc) in
+      more []
+  and once members =
+    let names = List.sort compare (List.map fst members) in
+    let rec twice = function a :: (b :: _ as t) -> a = b || twice t | _ -> false in
+    if twice names then raise Bad else members in
+  match value 0 with
+  | v -> if !i = n then v else raise Bad
+  | exception (Invalid_argument _ | Failure _) -> raise Bad
+
+let find k = function Obj m -> List.assoc_opt k m | _ -> None
+let get k v = match find k v with Some x -> x | None -> raise Bad
+let num = function Num x -> x | _ -> raise Bad
+let str = function Str x -> x | _ -> raise Bad
+let bool = function Bool x -> x | _ -> raise Bad
+let arr = function Arr x -> x | _ -> raise Bad
+let count v = let x = num v in if Float.is_integer x && x >= 0. && x < 1e9 then int_of_float x else raise Bad

@@ -1,0 +1,297 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* The reader, continued: answers of `exactvo lp`, recordings and recordings of crowds; and the command line. *)
+open Checker
+open Exact
+
+(* file, place, what was found, what was expected, code (docs/guide/codes.md) *)
+exception Refused of string * string * string * string * string
+let refuse file place found expected code = raise (Refused (file, place, found, expected, code))
+
+let read file =
+  let all channel =
+    let b = Buffer.create 65536 and part = Bytes.create 65536 in
+    let rec go () = let n = input channel part 0 65536 in if n > 0 then (Buffer.add_subbytes b part 0 n; go ()) in
+    go ();
+    Buffer.contents b in
+  match if file = "-" then all stdin else let c = open_in_bin file in Fun.protect ~finally:(fun () -> close_in c) (fun () -> all c) with
+  | text -> text
+  | exception Sys_error _ ->
+    if Sys.file_exists file then refuse file "" "a file that cannot be read" "a certificate or a recording" "E_FILE_UNREADABLE"
+    else refuse file "" "no such file" "a file that can be read" "E_FILE_MISSING"
+
+let lines text = List.filter (fun l -> String.trim l <> "") (String.split_on_char '\n' text)
+let counted n one = Printf.sprintf "%d %s%s" n one (if n = 1 then "" else "s")
+
+(* --- Certificates: every `certificate` of JSON, or one a line --- *)
+let rec in_json found none v =
+  match v with
+  | Json.Str s -> if Certificates.begins s then found (Certificates.line s)
+  | Json.Arr l -> List.iter (in_json found none) l
+  | Json.Obj _ when Certificates.is_route v -> found (Certificates.route v)
+  | Json.Obj m -> List.iter (fun (k, c) ->
+      if k <> "certificate" then in_json found none c else match c with
+        | Json.Null -> none ()
+        | c when Certificates.is_route c -> found (Certificates.route c)
+        | Json.Str s -> found (Certificates.line s)
+        | c -> found (match Json.find "text" c with Some (Json.Str s) -> Certificates.line s | _ -> "not a certificate")) m
+  | _ -> ()
+
+let certificates file text =
+  let verdicts = ref [] and none = ref 0 in
+  let found v = verdicts := v :: !verdicts in
+  let json t = match Json.parse t with v -> in_json found (fun () -> incr none) v | exception Json.Bad -> found "unreadable JSON" in
+  let is_json = match String.trim text with "" -> false | t -> t.[0] = '{' || t.[0] = '[' in
+  let ls = lines text in
+  if is_json then (match Json.parse text with
+    | v -> in_json found (fun () -> incr none) v
+    | exception Json.Bad -> if List.length ls > 1 then List.iter json ls else found "unreadable JSON")
+  else if List.exists Certificates.begins ls then List.iter (fun l -> found (Certificates.line l)) ls;
+  if !verdicts = [] && !none = 0 then refuse file "" "no certificate" "a certificate a line" "E_FORMAT_UNKNOWN";
+  let all = List.rev !verdicts in
+  List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) all;
+  let valid = List.length (List.filter (( = ) "valid") all) in
+  Printf.printf "%s, %d valid%s\n" (counted (List.length all) "certificate") valid (if !none > 0 then Printf.sprintf ", %d none" !none else "");
+  valid = List.length all
+
+(* --- Answers of `exactvo lp`, beside the problems that they answer --- *)
+let pair_of v = match Json.arr v with [x; y] -> (Json.num x, Json.num y) | _ -> raise Json.Bad
+let answer p a =
+  let q = over (max (Certificates.bits_needed p) (Certificates.bits_needed a)) in
+  let at v = let x, y = pair_of v in (q x, q y) in
+  let optional = function Some (Json.Num x) -> Some (q x) | _ -> None in
+  let bound = Option.value (Json.find "bound" p) ~default:(Json.Obj []) in
+  let box = match Json.find "box" bound with Some (Json.Arr [x; y]) -> [optional (Some x); optional (Some y)] | _ -> [None; None] in
+  let soft c = Json.find "priority" c = Some (Json.Str "soft") in
+  let status = Json.(str (get "status" a)) in
+  let infeasible = status = "infeasible" in
+  (* Where even the hard ones contradict each other, they give, and the soft ones do not count. *)
+  let constraints = Json.(arr (get "constraints" p)) in
+  let kept = List.mapi (fun i c -> (i, c)) constraints |> List.filter (fun (_, c) -> not (infeasible && soft c)) in
+  let side x y b = match b with None -> [] | Some b -> [{ row_normal = (q x, q y); row_offset = { b with qnum = Whole.neg b.qnum }; soft = false }] in
+  let sides = List.map2 (fun name s -> (name, s)) ["box-right"; "box-left"; "box-top"; "box-bottom"]
+      [side (-1.) 0. (List.nth box 0); side 1. 0. (List.nth box 0); side 0. (-1.) (List.nth box 1); side 0. 1. (List.nth box 1)] in
+  let rows = List.map (fun (_, c) -> { row_normal = at (Json.get "normal" c); row_offset = q Json.(num (get "offset" c)); soft = infeasible || soft c }) kept in
+  let certificate = Json.get "certificate" a in
+  let terms key = List.map (fun t -> (Json.get "constraint" t, List.map Json.num Json.(arr (get "multiplier" t)))) Json.(arr (get key certificate)) in
+  let sum name ts = of_q (List.fold_left (fun s (n, ms) ->
+      if n = name then Q.add s (List.fold_left Q.add Q.zero (List.map (fun m -> to_q (q m)) ms)) else s) Q.zero ts) in
+  let known = Json.Str "disc" :: List.map (fun (i, _) -> Json.Num (float_of_int i)) kept
+    @ List.filter_map (fun (n, s) -> if s = [] then None else Some (Json.Str n)) sides in
+  let multipliers key =
+    let ts = terms key in
+    let negative (_, ms) = Q.sign (List.fold_left (fun s m -> Q.add s (to_q (q m))) Q.zero ms) < 0 in
+    if List.exists (fun t -> not (List.mem (fst t) known) || negative t) ts || List.length ts > 3 then raise Json.Bad;
+    (List.map (fun (i, _) -> sum (Json.Num (float_of_int i)) ts) kept
+     @ List.concat_map (fun (n, s) -> if s = [] then [] else [sum (Json.Str n) ts]) sides, sum (Json.Str "disc") ts) in
+  let pull, mu = if status = "no-interior" then ([], of_q Q.zero) else multipliers "bound" in
+  let against, _ = multipliers "contradiction" in
+  if Json.(num (get "violation" a)) < 0. || Json.(num (get "gap" certificate)) < 0. then raise Json.Bad;
+  let program = { rows = rows @ List.concat_map snd sides; disc = optional (Json.find "disc" bound);
+    box_x = List.nth box 0; box_y = List.nth box 1; wish = at (Json.get "preferred" p) } in
+  let choice = { velocity = at (Json.get "velocity" a); gap = q Json.(num (get "gap" certificate));
+    violation = q Json.(num (get "violation" a)); pull; mu; against } in
+  match status with
+  | "optimal" -> if Json.find "objective" p = Some (Json.Str "farthest") then Checked.farthest program choice else Checked.nearest program choice
+  | "relaxed" | "infeasible" -> Checked.least program choice
+  | "no-interior" ->
+    (* The point nearest 0 on the boundaries named: whatever point this is, the checker asks whether it satisfies all. *)
+    let contradicts = terms "contradiction" <> [] in
+    let boundary n = match n with
+      | Json.Num _ -> List.nth (List.filter_map (fun (i, c) -> if Json.Num (float_of_int i) = n then Some c else None) kept) 0
+        |> fun c -> let x, y = pair_of (Json.get "normal" c) in (Q.of_float x, Q.of_float y, Q.of_float Json.(num (get "offset" c)))
+      | n -> (match List.assoc_opt (Json.str n) sides with
+          | Some [r] -> (to_q (fst r.row_normal), to_q (snd r.row_normal), to_q r.row_offset) | _ -> raise Json.Bad) in
+    let x, y = match List.map boundary Json.(arr (get "vertex" certificate)) with
+      | [] -> (Q.zero, Q.zero)
+      | [(a, b, c)] -> let n = Q.add (Q.mul a a) (Q.mul b b) in (Q.div (Q.mul a c) n, Q.div (Q.mul b c) n)
+      | [(a, b, c); (d, e, f)] ->
+        let w = Q.sub (Q.mul a e) (Q.mul b d) in
+        if Q.sign w = 0 then raise Json.Bad;
+        (Q.div (Q.sub (Q.mul c e) (Q.mul b f)) w, Q.div (Q.sub (Q.mul a f) (Q.mul c d)) w)
+      | _ -> raise Json.Bad in
+    (not contradicts || Checked.contradicted program choice)
+    && Checked.pinned (if contradicts then { program with rows = List.filter (fun r -> not r.soft) program.rows } else program) (of_q x, of_q y)
+  | _ -> raise Json.Bad
+
+let answers file text problems =
+  let parsed f t = try Json.parse t with Json.Bad -> refuse f "" "no JSON" "a JSON object a line" "E_FORMAT_SYNTAX" in
+  let problems = Array.of_list (List.map (parsed problems) (lines (read problems))) in
+  let all = List.filter (fun a -> Json.find "status" a <> None) (List.map (parsed file) (lines text)) in
+  let verdict a = try
+      let i = Json.(count (get "index" a)) in
+      if i >= Array.length problems then "of no problem" else if Json.get "certificate" a = Json.Null then "no certificate"
+      else if answer problems.(i) a then "valid" else "not proven"
+    with Json.Bad | Malformed | Failure _ -> "malformed" in
+  let verdicts = List.map verdict all in
+  List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) verdicts;
+  let valid = List.length (List.filter (( = ) "valid") verdicts) in
+  Printf.printf "%s, %d valid\n" (counted (List.length all) "certificate") valid;
+  if all = [] then refuse file "" "no answer" "what exactvo lp --json prints" "E_FORMAT_UNKNOWN";
+  valid = List.length all
+
+(* --- Recordings --- *)
+type tally = { mutable asked : int; mutable robots_apart : int; mutable edges_clear : int; mutable first : string option }
+
+let take tally place es ms =
+  tally.asked <- tally.asked + 1;
+  let all = Checked.step es ms in
+  let robots = all || Checked.step [] ms in
+  if robots then tally.robots_apart <- tally.robots_apart + 1;
+  if all then tally.edges_clear <- tally.edges_clear + 1
+  else if tally.first = None then
+    tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an edge" else ": two robots are not proven apart")
+
+let report t what rows robots edges not_covered incomplete =
+  Printf.printf "%s of %s, %s: %d asked, in %d no two robots overlap, in %d also no robot overlaps one of %s\n"
+    (counted rows "row") (counted robots "robot") what t.asked t.robots_apart t.edges_clear (counted edges "edge");
+  Option.iter (fun f -> Printf.printf "  %s\n" f) t.first;
+  print_string "not verified:\n  that the file says what happened; docs/guide/proofs.md has what else is trusted\n";
+  List.iter (fun s -> Printf.printf "  %s\n" s) not_covered;
+  t.edges_clear = t.asked && not incomplete
+
+let recording file text =
+  let scenario = ref Json.Null and edges = ref [] and sizes = ref [] and bits = ref 0 in
+  let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
+  let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
+  let prepare b =
+    bits := b;
+    let q = over b in
+    edges := List.concat_map edges_of (List.map (Certificates.obstacle q) Json.(arr (get "obstacles" !scenario)));
+    sizes := List.map (fun r -> q Json.(num (get "radius" r))) Json.(arr (get "robots" !scenario)) in
+  let header h =
+    if Json.find "kind" h <> Some (Json.Str "exactvo-recording") then raise Json.Bad;
+    curved := Json.find "motion" h <> Some (Json.Str "straight");
+    if !curved then not_covered := ["the motions: robots do not move straight from row to row, and only the rows were looked at"];
+    scenario := Json.get "scenario" h;
+    robots := List.length Json.(arr (get "robots" !scenario));
+    if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
+    not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
+      "choices that are not optimal or have exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
+    prepare (Certificates.bits_needed !scenario) in
+  let row r =
+    let ps = List.map (fun x -> pair_of (Json.get "position" x)) Json.(arr (get "robots" r)) in
+    let need = List.fold_left (fun m (x, y) -> max m (max (bits_of x) (bits_of y))) !bits ps in
+    if need > !bits then prepare need;
+    let here = let q = over !bits in List.map (fun (x, y) -> (q x, q y)) ps in
+    if List.length ps <> !robots then raise Json.Bad;
+    (* The row before may have been read with another denominator: the checkers take any. *)
+    take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (match !last with Some b when not !curved -> b | _ -> here) here);
+    Decisions.row decisions !scenario Json.(arr (get "robots" r));
+    last := Some here; incr rows in
+  List.iteri (fun i l ->
+    let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in
+    match Json.parse l with
+    | Json.Obj [("header", h)] -> (try header h with Json.Bad -> bad ())
+    | Json.Obj [("row", r)] -> (try row r with Json.Bad | Malformed -> bad ())
+    | Json.Obj [("end", e)] -> ended := true; if Json.find "rows" e <> Some (Json.Num (float_of_int !rows)) then bad ()
+    | Json.Obj [("body", b)] -> (try Decisions.body decisions b with Json.Bad -> bad ())
+    | Json.Obj [((("goal_bodies" | "plan"), _))] -> ()
+    | _ | exception Json.Bad -> bad ()) (lines text);
+  let decided = Decisions.report decisions in
+  let ok = report t "the first row and each motion to the next" !rows !robots (List.length !edges) !not_covered !curved in
+  if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
+  ok && decided
+
+(* --- Recordings of crowds: docs/guide/crowd-recordings.md --- *)
+let crowd file s =
+  let bad at found = refuse file (Printf.sprintf "byte %d" at) found "what simulate --record has written" "E_FORMAT_SYNTAX" in
+  let version = Char.code s.[7] - Char.code '0' in
+  let pos = ref 8 and stop = ref (String.length s) in
+  let need n = if !pos + n > !stop then bad !pos "its end too early"; pos := !pos + n; !pos - n in
+  let u8 () = Char.code s.[need 1] in
+  let u16 () = String.get_uint16_le s (need 2) in
+  let u32 () = Int32.to_int (String.get_int32_le s (need 4)) land 0xFFFFFFFF in
+  let u64 () = String.get_int64_le s (need 8) in
+  let f64 () = let x = Int64.float_of_bits (u64 ()) in if Float.is_finite x then x else bad !pos "a number that is not finite" in
+  let difference () =
+    let rec go v shift = let b = u8 () in let v = v lor ((b land 0x7F) lsl shift) in if b >= 0x80 then go v (shift + 7) else v in
+    let v = go 0 0 in (v lsr 1) lxor (- (v land 1)) in
+  let block f = if !pos + 16 > String.length s then None else
+    let size = Int64.to_int (u64 ()) in
+    let stated = u64 () in
+    let a = !pos in
+    if size < 0 || a + size > String.length s then None else begin
+      let h = ref 0xCBF29CE484222325L in
+      for i = a to a + size - 1 do h := Int64.mul (Int64.logxor !h (Int64.of_int (Char.code (String.unsafe_get s i)))) 0x100000001B3L done;
+      if !h <> stated then bad a "another checksum than its content has";
+      stop := a + size;
+      let v = f () in
+      pos := a + size; stop := String.length s; Some v
+    end in
+  let list n f = List.init n (fun _ -> f ()) in
+  let head () =
+    ignore (need (u32 ())); ignore (f64 ());
+    let q = f64 () in let every = u32 () in
+    let kinds = Array.of_list (list (u32 ()) (fun () -> let r = f64 () in ignore (f64 ()); r)) in
+    let kind_of = list (u32 ()) (fun () -> let k = u16 () in if k >= Array.length kinds then bad !pos "a robot of an unknown kind" else kinds.(k)) in
+    let edges = list (u32 ()) (fun () -> let x = f64 () in let y = f64 () in let u = f64 () in (x, y, u, f64 ())) in
+    (q, every, kind_of, edges, if version >= 2 then u32 () else 0) in
+  match block head with
+  | None -> bad 8 "its end within the head"
+  | Some (step, _, radii, edges, bodies) ->
+    let n = List.length radii in
+    let numbers = step :: radii @ List.concat_map (fun (a, b, c, d) -> [a; b; c; d]) edges in
+    let q = fractions numbers in
+    let unit = q step in
+    let es = List.map (fun (a, b, c, d) -> ((q a, q b), (q c, q d))) edges and sizes = List.map q radii in
+    let x = Array.make n 0 and y = Array.make n 0 in
+    let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } in
+    let column a = for i = 0 to n - 1 do a.(i) <- a.(i) + difference () done in
+    let rec rows count last =
+      let cut () = (count, true) in
+      if !pos >= String.length s then cut () else match s.[need 1] with
+        | 'R' -> (match block (fun () -> let k = u32 () in column x; column y; k) with
+            | None -> cut ()
+            | Some k ->
+              let at v = { unit with qnum = Whole.mul (Whole.of_int v) unit.qnum } in
+              let here = List.init n (fun i -> (at x.(i), at y.(i))) in
+              (* Of rows of consecutive steps the motion, of others its end. *)
+              let before = match last with Some (j, ps) when k = j + 1 -> ps | _ -> here in
+              take t (Printf.sprintf "step %d" k) es (moves sizes before here);
+              rows (count + 1) (Some (k, here)))
+        | 'E' -> (match block (fun () -> u64 ()) with
+            | None -> cut ()
+            | Some c -> if Int64.to_int c <> count || !pos <> String.length s then bad !pos "an end of other rows than these"; (count, false))
+        | _ -> bad !pos "what begins neither a row nor the end" in
+    let count, cut_off = rows 0 None in
+    let ok = report t "the first row and each step or row after it" count n (List.length es)
+      ((if bodies > 0 then [Printf.sprintf "that robots are clear of %s" (counted bodies "body, moving or at rest,")] else []) @ ["speeds"]) cut_off in
+    if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
+    ok
+
+let usage = "Check certificates and recordings by checkers that are proven in Coq\n\
+Usage: exactvo-verify FILE [OPTIONS]\n\n\
+Positionals:\n\
+\032 FILE                Certificates, as audit --certificate takes them; a recording.jsonl; a crowd's FILE.evr; answers of lp --json with --problems; - for stdin\n\n\
+Options:\n\
+\032 -h,--help           Print this help message and exit\n\
+\032 --problems FILE     The problems, a line of JSON each, that FILE has the answers of\n\n\
+Examples:\n\
+\032 exactvo route office.geojson --from 2,3 --to 18,7 --radius 0.4 --json | exactvo-verify -\n\
+\032 exactvo lp problems.jsonl --json > answers.jsonl && exactvo-verify answers.jsonl --problems problems.jsonl\n\
+\032 exactvo-verify out/A2/recording.jsonl\n\
+\032   (what is proven, and what is trusted: docs/guide/proofs.md)\n\n\
+Exit status:\n\
+\032 0    all of it is verified\n\
+\032 1    some of it is not\n\
+\032 2    the file or an option is wrong\n"
+
+let main () =
+  let outcome = match List.tl (Array.to_list Sys.argv) with
+    | ["-h"] | ["--help"] -> print_string usage; Ok true
+    | ([file] | [file; "--problems"; _]) as args when file = "-" || (file <> "" && file.[0] <> '-') -> (try
+        let text = read file in
+        Ok (match args with
+          | [_; _; problems] -> answers file text problems
+          | _ when String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && text.[7] >= '1' && text.[7] <= '3' -> crowd file text
+          | _ when String.starts_with ~prefix:"{\"header\"" text -> recording file text
+          | _ -> certificates file text)
+      with
+      | Stack_overflow -> Error (file ^ ": found more robots or numbers than the stack holds, expected a larger one (ulimit -s unlimited)")
+      | Refused (f, place, found, expected, code) ->
+        Error (Printf.sprintf "%s: %sfound %s, expected %s [%s]" f (if place = "" then "" else place ^ ": ") found expected code))
+    | args -> Error (Printf.sprintf "found '%s', expected a file and at most --problems FILE (--help)" (String.concat " " args)) in
+  match outcome with
+  | Ok true -> exit 0
+  | Ok false -> exit 1
+  | Error words -> flush stdout; prerr_endline ("exactvo-verify: error: " ^ String.trim words); exit 2

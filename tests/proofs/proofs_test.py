@@ -1,0 +1,376 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The proven checkers (docs/guide/proofs.md). As ctest runs it:
+
+    proofs_test.py PART --program exactvo --cases proof_cases --build BUILD --source SOURCE [--count 10000] [--seed 1]
+
+axioms        the theorems of Theorems.v rest on the axioms that the guide lists, and on no others
+coqchk        Coq's own checker accepts every compiled theory
+certificates  what the program writes is verified; each number of it changed is refused
+recordings    of runs and crowds likewise; of random crowds the verdict on pairs of robots is that of `audit`
+differential  COUNT certificates, half of them forged: one verdict from the checkers in C++ and the proven one. A campaign of
+              10^5 is `--count 100000 --seed S`
+"""
+import argparse
+import json
+import math
+import random
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SKIPPED = 77
+
+
+def run(*command, **options):
+    return subprocess.run([str(c) for c in command], capture_output=True, text=True, **options)
+
+
+def require(holds, *what):
+    if not holds:
+        sys.exit("failed: " + " ".join(str(w) for w in what))
+
+
+class Tools:
+    def __init__(self, flags):
+        self.program, self.cases, self.flags = flags.program, flags.cases, flags
+        build, self.source = Path(flags.build).resolve(), Path(flags.source)
+        self.theories, self.verify = build / "proofs", build / "bin" / "exactvo-verify"
+        self.folder = Path(tempfile.mkdtemp(prefix="exactvo-proofs-"))
+        if not self.verify.exists():
+            print("skipped: no exactvo-verify; Coq, OCaml or zarith is missing, or the target exactvo_verify is not built")
+            sys.exit(SKIPPED)
+
+    def file(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content) if isinstance(content, bytes) else path.write_text(content)
+        return path
+
+    def make(self, *arguments):
+        made = run(self.program, *arguments)
+        require(made.returncode in (0, 1), arguments, made.stderr)
+        return made.stdout
+
+    def verified(self, name, content, *options):
+        """(exit status, verdicts, output) of exactvo-verify."""
+        done = run(self.verify, self.file(name, content), *options)
+        return done.returncode, re.findall(r"^\d+: (.*)$", done.stdout, re.M), done.stdout + done.stderr
+
+
+# --- Theorems ---
+
+
+def axioms(tools):
+    theorems = re.findall(r"Parameter (\w+_sound)", (tools.source / "proofs/Theorems.v").read_text())
+    require(len(theorems) >= 9, "theorems found:", theorems)
+    guide = (tools.source / "docs/guide/proofs.md").read_text()
+    listed = set(re.findall(r"^\| `([\w.]+)` \|", guide[guide.index("## Axioms"):], re.M))
+    require(listed, "the guide lists no axioms")
+    asked = tools.file("Asked.v", "From ExactVO Require Import Checker.\n" + "".join(f"Print Assumptions Checked.{t}.\n" for t in theorems))
+    done = run("coqc", "-q", "-Q", tools.theories, "ExactVO", asked)
+    printed = done.stdout.split("Axioms:\n")[1:]  # real numbers rest on some, so that every theorem prints this
+    require(done.returncode == 0 and len(printed) == len(theorems), done.stdout, done.stderr)
+    used = set()
+    for theorem, words in zip(theorems, printed):
+        require(f"`{theorem}`" in guide, "the guide does not explain", theorem)
+        found = set(re.findall(r"^([\w.]+)\s*:(?!=)", words, re.M))
+        require(found and found <= listed, theorem, "rests on", found - listed, words)
+        used |= found
+    require(used == listed, "listed and not used:", listed - used)
+    for source in sorted((tools.source / "proofs").glob("*.v")):
+        require(not re.search(r"\b(Admitted|admit|Axiom|Conjecture|Hypothesis)\b", source.read_text()), source, "assumes something")
+    require(len((tools.source / "proofs/Theorems.v").read_text().splitlines()) <= 150, "Theorems.v is longer than 150 lines")
+    print(len(theorems), "theorems,", len(used), "axioms")
+
+
+def coqchk(tools):
+    # Our theories alone: the guide has the command that checks the standard library too.
+    ours = [f"ExactVO.{path.stem}" for path in sorted(tools.theories.glob("*.vo"))]
+    require(len(ours) == 9, ours)
+    checked = run("coqchk", "-silent", "-o", "-Q", tools.theories, "ExactVO", *[word for name in ours for word in ("-norec", name)])
+    words = checked.stdout + checked.stderr
+    require(checked.returncode == 0 and "CONTEXT SUMMARY" in words, words)
+    require("ExactVO" not in words[words.index("CONTEXT SUMMARY"):], "an assumption of our own:", words)
+    for kind in ("type-in-type", "unsafe (co)fixpoints", "positivity is assumed"):
+        require(re.search(re.escape(kind) + ": <none>", words), kind, words)
+    print("coqchk accepts", len(ours), "theories")
+
+
+# --- Certificates ---
+
+
+def canonical(x):
+    """As the program writes doubles: no zeros at the end of the mantissa."""
+    sign, rest = ("-", x.hex()[1:]) if x.hex()[0] == "-" else ("", x.hex())
+    mantissa, exponent = rest.split("p")
+    whole, _, digits = mantissa.partition(".")
+    digits = digits.rstrip("0")
+    return sign + whole + ("." + digits if digits else "") + "p" + exponent
+
+
+def every_number_changed(line):
+    words = line.split(" ")
+    for at, word in enumerate(words):
+        if re.match(r"-?0x", word):
+            for to in (-math.inf, math.inf):
+                changed = canonical(math.nextafter(float.fromhex(word), to))
+                yield " ".join(words[:at] + [changed] + words[at + 1:])
+
+
+def numbers_in(tree, path=()):
+    if isinstance(tree, dict):
+        for key, value in tree.items():
+            yield from numbers_in(value, path + (key,))
+    elif isinstance(tree, list):
+        for at, value in enumerate(tree):
+            yield from numbers_in(value, path + (at,))
+    elif type(tree) in (int, float):
+        yield path
+
+
+def with_number(tree, path, change):
+    copy = json.loads(json.dumps(tree))
+    place = copy
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = change(place[path[-1]])
+    return copy
+
+
+def certificates(tools):
+    square = "POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))"
+    lines = []
+    for obstacle, more in (("DISC(4 0, 1)", ()), ("LINESTRING(3 -1, 3 2)", ()), (square, ()), (square, ("--enclose", "ellipse")),
+                           ("ELLIPSE(4 1, 1 0.25 0.5)", ()), ("DISC(4 0, 1)", ("--obstacle-velocity=-0.5,0.1",))):
+        out = tools.make("vo", "--obstacle", obstacle, "--position", "0,0", "--velocity", "1,0.2", "--radius", "0.5", "--time-horizon", "2", "--json", *more)
+        status, verdicts, words = tools.verified("vo.json", out)
+        require(status == 0 and verdicts and set(verdicts) == {"valid"}, obstacle, words)
+        lines += re.findall(r'"((?:half-plane|containment)-certificate [^"]*)"', out)
+    require(len(lines) == 7, "lines:", lines)
+    status, verdicts, words = tools.verified("lines.txt", "\n".join(lines) + "\n")
+    require(status == 0 and verdicts == ["valid"] * 7, words)
+    forged = [f for line in lines for f in every_number_changed(line)]
+    status, verdicts, words = tools.verified("forged.txt", "\n".join(forged) + "\n")
+    require(status == 1 and len(verdicts) == len(forged) and "valid" not in verdicts, "a changed number was overlooked:", words)
+    count = len(forged)
+
+    floor = tools.source / "datasets/data/office/floor.geojson"
+    for goal, radius, kind in (("18,7", "0.4", "route"), ("18,7", "0.65", "separated"), ("7.15,3", "0.4", "blocked")):
+        answer = json.loads(tools.make("route", floor, "--from", "2,3", "--to", goal, "--radius", radius, "--json"))
+        certificate = answer["certificate"]
+        require(certificate["kind"] == kind, kind, certificate["kind"])
+        status, verdicts, words = tools.verified("route.jsonl", json.dumps(answer))
+        require(status == 0 and verdicts == ["valid"], kind, words)
+        # Some of these are true all the same, such as a corner moved away from walls: the audit says which.
+        changed = [json.dumps(with_number(certificate, path, change)) for path in numbers_in(certificate)
+                   for change in (lambda x: x + 1 if isinstance(x, int) else x + 0.35, lambda x: x - 1 if isinstance(x, int) else 0.5 * x)]
+        path = tools.file("changed.jsonl", "\n".join(changed) + "\n")
+        audited = json.loads(run(tools.program, "audit", "--certificate", path, "--json").stdout)["verdicts"]
+        status, verdicts, words = tools.verified("changed.jsonl", "\n".join(changed) + "\n")
+        require(len(verdicts) == len(audited) == len(changed) > 100, len(verdicts), len(audited), len(changed))
+        require("valid" in audited and any(v != "valid" for v in audited), kind, "forgeries of one verdict only")
+        for line, ours, theirs in zip(changed, verdicts, audited):
+            require((ours == "valid") == (theirs == "valid"), kind, ours, theirs, line)
+        count += len(changed)
+
+    problems = ('{"bound":{"disc":3},"preferred":[3,0],"constraints":[{"normal":[-1,0],"offset":-1.75}]}\n'
+                '{"bound":{"disc":2},"preferred":[1,0],"constraints":[{"normal":[1,0],"offset":1,"priority":"soft"},{"normal":[-1,0],"offset":1,"priority":"soft"}]}\n'
+                '{"bound":{"disc":2},"preferred":[1,0],"constraints":[{"normal":[1,0],"offset":1},{"normal":[-1,0],"offset":1}]}\n'
+                '{"bound":{"box":[1,1]},"preferred":[3,2],"constraints":[]}\n'
+                '{"bound":{"disc":2},"preferred":[1,0],"constraints":[{"normal":[3,0],"offset":1},{"normal":[-3,0],"offset":-1}]}\n'
+                '{"bound":{"disc":2},"preferred":[0,1],"objective":"farthest","constraints":[{"normal":[0,-1],"offset":-0.5}]}\n')
+    path = tools.file("problems.jsonl", problems)
+    answers = tools.make("lp", path, "--json").splitlines()[:-1]
+    require([json.loads(a)["status"] for a in answers] == ["optimal", "relaxed", "infeasible", "optimal", "no-interior", "optimal"], answers)
+    status, verdicts, words = tools.verified("answers.jsonl", "\n".join(answers), "--problems", path)
+    require(status == 0 and verdicts == ["valid"] * 6, words)
+    slower = lambda x: x - 0.25
+    worse = [json.dumps(with_number(with_number(json.loads(a), ("velocity", 0), slower), ("velocity", 1), slower)) for a in answers]
+    worse[4] = json.dumps(with_number(json.loads(answers[4]), ("index",), lambda x: 1))  # claims nothing of its velocity
+    status, verdicts, words = tools.verified("worse.jsonl", "\n".join(worse), "--problems", path)
+    require(status == 1 and len(verdicts) == 6 and "valid" not in verdicts, words)
+    count += 6
+
+    for name, content, code in (("none.txt", "nothing\n", "E_FORMAT_UNKNOWN"), ("empty.txt", "", "E_FORMAT_UNKNOWN")):
+        status, verdicts, words = tools.verified(name, content)
+        require(status == 2 and code in words, words)
+    missing = run(tools.verify, tools.folder / "missing")
+    require(missing.returncode == 2 and "E_FILE_MISSING" in missing.stderr, missing.stderr)
+    print(count, "forgeries judged")
+
+
+# --- Recordings ---
+
+
+def fnv(data):
+    h = 14695981039346656037
+    for byte in data:
+        h = (h ^ byte) * 1099511628211 % 2**64
+    return h
+
+
+def difference(x):
+    left, out = (x << 1) ^ (x >> 63), b""
+    while left >= 0x80:
+        out, left = out + bytes([left & 0x7F | 0x80]), left >> 7
+    return out + bytes([left])
+
+
+def block(data):
+    return struct.pack("<QQ", len(data), fnv(data)) + data
+
+
+def crowd(rows, radii, edges=(), step=2.0**-10, speed=1000.0):
+    """A recording of robots at lattice places, a row a step: rows[k] = [(x, y), ...]."""
+    head = struct.pack("<I", 0) + struct.pack("<ddII", 1.0, step, 1, len(radii))
+    head += b"".join(struct.pack("<dd", r, speed) for r in radii)
+    head += struct.pack("<I", len(radii)) + b"".join(struct.pack("<H", i) for i in range(len(radii)))
+    head += struct.pack("<I", len(edges)) + b"".join(struct.pack("<4d", *e) for e in edges)
+    out, total = b"EXACTVR1" + block(head), fnv(head)
+    before = [(0, 0)] * len(radii)
+    for k, row in enumerate(rows):
+        data = struct.pack("<I", k)
+        for axis in (0, 1):
+            data += b"".join(difference(p[axis] - b[axis]) for p, b in zip(row, before))
+        data += b"\0" * ((len(radii) + 7) // 8)
+        out, total, before = out + b"R" + block(data), fnv(struct.pack("<QQ", total, fnv(data))), row
+    return out + b"E" + block(struct.pack("<QQ", len(rows), total))
+
+
+def random_crowd(rng):
+    """Few robots in little room, on a coarse lattice, so that contact and near misses are common."""
+    count, grain, room = rng.randint(2, 14), 2 ** rng.randint(5, 10), rng.randint(3, 8)
+    place = lambda: (rng.randint(-room * 1024 // grain, room * 1024 // grain) * grain, rng.randint(-room * 1024 // grain, room * 1024 // grain) * grain)
+    rows = [[place() for _ in range(count)]]
+    rows.append([place() if rng.random() < 0.3 else (x + rng.randint(-2, 2) * grain, y + rng.randint(-2, 2) * grain) for x, y in rows[0]])
+    return crowd(rows, [rng.choice((0.25, 0.5, 0.3, 0.125)) for _ in range(count)])
+
+
+def pairs_proven(words):
+    asked, apart = re.search(r"(\d+) asked, in (\d+) no two", words).groups()
+    return asked == apart
+
+
+def recordings(tools):
+    out = tools.folder / "room"
+    run(tools.program, "simulate", tools.source / "datasets/data/room/room.json", "--no-figures", "--out", out, check=True)
+    text = (out / "recording.jsonl").read_text()
+    status, _, words = tools.verified("recording.jsonl", text)
+    require(status == 0 and re.search(r"^(\d+) rows of 2 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also", words, re.M), words)
+    half_planes, choices = (int(re.search(f"{what}.*: (\\d+) asked, \\1 proven", words)[1]) for what in ("at rest", "choices with"))
+    require(half_planes > 100 and choices > 100, words)
+    lines = text.splitlines(True)
+    rows = [k for k, line in enumerate(lines) if line.startswith('{"row"')]
+    require(len(rows) > 100, len(rows))
+    forged = json.loads(lines[rows[50]])
+    robots = forged["row"]["robots"]
+    for change, expected in ((lambda: robots.__setitem__(0, dict(robots[0], position=robots[1]["position"])), "two robots are not proven apart"),
+                             (lambda: robots.__setitem__(0, dict(robots[0], position=[0.2, 1.0])), "a robot is not proven clear of an edge")):
+        change()
+        status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[50]] + [json.dumps(forged) + "\n"] + lines[rows[51]:]))
+        require(status == 1 and expected in words, words)
+    for place, by, expected in ((("offset",), -0.5, "at rest: %d asked, %d proven" % (half_planes, half_planes - 1)),
+                                (("multiplier",), 1e-3, "multipliers: %d asked, %d proven" % (choices, choices - 1)),
+                                (("normal", 1), -0.5, "at rest: %d asked, %d proven" % (half_planes, half_planes - 1))):
+        forged = json.loads(lines[rows[20]])
+        constraint = next(c for c in forged["row"]["robots"][0]["constraints"] if c["active"])
+        for key in place[:-1]:
+            constraint = constraint[key]
+        constraint[place[-1]] += by
+        status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[20]] + [json.dumps(forged) + "\n"] + lines[rows[21]:]))
+        require(status == 1 and expected in words, place, words)
+    status, _, words = tools.verified("cut.jsonl", "".join(lines[:rows[9]]))
+    require(status == 2 and "E_CUT_OFF" in words, words)
+    status, _, words = tools.verified("no.jsonl", "".join(lines[:rows[9]]) + "{\n")
+    require(status == 2 and "E_FORMAT_SYNTAX" in words, words)
+
+    out = tools.folder / "A7"
+    run(tools.program, "simulate", tools.source / "datasets/data/paper/A7.json", "--no-figures", "--out", out, check=True)
+    lines = (out / "recording.jsonl").read_text().splitlines(True)
+    status, _, words = tools.verified("A7.jsonl", "".join(lines))
+    pairs = re.search(r"opposite half-planes: (\d+) asked, \1 proven", words)
+    require(status == 0 and pairs and int(pairs[1]) > 20, words)
+    robots = {b["number"] for b in (json.loads(line).get("body", {"kind": ""}) for line in lines) if b["kind"] == "robot"}
+    tampered = 0
+    for k, line in enumerate(lines):
+        if not line.startswith('{"row"'):
+            continue
+        forged = json.loads(line)
+        for robot in forged["row"]["robots"]:
+            for constraint in robot.get("constraints", []):
+                if constraint["body"] in robots:
+                    constraint["offset"] -= 4.0  # more than any velocity has
+                    tampered += 1
+        lines[k] = json.dumps(forged) + "\n"
+    status, _, words = tools.verified("A7_forged.jsonl", "".join(lines))
+    require(status == 1 and tampered > 40 and f"opposite half-planes: {pairs[1]} asked, 0 proven" in words, words)
+
+    scene = {"name": "crossing", "time_step": 0.25, "time_limit": 20, "horizons": {"least": 0.5, "orca": 5},
+             "obstacles": [{"id": "w", "polygon": [[20, -3], [24, -3], [24, 3], [20, 3]]}],
+             "robots": [{"circle": {"count": 60}}, {"grid": {"columns": 10, "rows": 10, "spacing": 2, "corner": [60, -10], "goal": [-110, 0]}}]}
+    evr = tools.folder / "crossing.evr"
+    run(tools.program, "simulate", tools.file("crossing.json", json.dumps(scene)), "--engine", "crowd", "--record", evr, check=True)
+    data = evr.read_bytes()
+    status, _, words = tools.verified("crowd.evr", data)
+    require(status == 0 and re.search(r"^(\d+) rows of 160 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also no robot overlaps one of 4 edges", words, re.M), words)
+    status, _, words = tools.verified("cut.evr", data[:-30])
+    require(status == 1 and "cut off" in words, words)
+    for at in range(8, len(data), len(data) // 40):
+        status, _, words = tools.verified("changed.evr", data[:at] + bytes([data[at] ^ 4]) + data[at + 1:])
+        require(status in (1, 2), "a changed byte was overlooked:", at, words)
+
+    # Robots that just touch, and that come nearer than that by one lattice step, at an end or on the way.
+    half = [0.5, 0.5]
+    for rows, holds in (([[(0, 0), (1024, 0)]] * 2, True), ([[(0, 0), (1023, 0)]] * 2, False),
+                        ([[(0, 0), (-2000, 1024)], [(0, 0), (2000, 1024)]], True), ([[(0, 0), (-2000, 1023)], [(0, 0), (2000, 1023)]], False),
+                        ([[(0, 0), (2000, 0)], [(2000, 0), (0, 0)]], False)):
+        status, _, words = tools.verified("two.evr", crowd(rows, half))
+        require((status == 0) == holds, rows, words)
+    for y, holds in ((512, True), (511, False)):
+        status, _, words = tools.verified("edge.evr", crowd([[(-3000, y)], [(3000, y)]], [0.5], [(0.0, 0.0, 1.0, 0.0)]))
+        require((status == 0) == holds, y, words)
+
+    rng, verdicts = random.Random(tools.flags.seed), {True: 0, False: 0}
+    for k in range(max(100, tools.flags.count // 50)):
+        data = random_crowd(rng)
+        status, _, words = tools.verified("random.evr", data)
+        audited = json.loads(run(tools.program, "audit", tools.folder / "random.evr", "--json").stdout)
+        clear = audited["pairs_met"] + audited["pairs_overlapping"] == 0
+        require(pairs_proven(words) == clear, "seed", tools.flags.seed, "crowd", k, words, audited, data.hex())
+        verdicts[clear] += 1
+    require(min(verdicts.values()) > 10, "one verdict only:", verdicts)
+    print("random crowds:", verdicts[True], "clear,", verdicts[False], "not; seed", tools.flags.seed)
+
+
+# --- One verdict ---
+
+
+def differential(tools):
+    made = run(tools.cases, tools.flags.count, tools.flags.seed, tools.folder)
+    require(made.returncode == 0, made.stderr)
+    for name, file, options in (("lines", "lines.txt", ()), ("routes", "routes.jsonl", ()), ("answers", "answers.jsonl", ("--problems", tools.folder / "problems.jsonl"))):
+        expected = [line == "1" for line in (tools.folder / f"{name}.valid").read_text().split()]
+        done = run(tools.verify, tools.folder / file, *options)
+        verdicts = re.findall(r"^\d+: (.*)$", done.stdout, re.M)
+        require(len(verdicts) == len(expected) >= tools.flags.count // 3, name, len(verdicts), len(expected), done.stderr)
+        for line, ours, theirs in zip((tools.folder / file).read_text().splitlines(), verdicts, expected):
+            require((ours == "valid") == theirs, name, "seed", tools.flags.seed, "proven:", ours, "C++:", theirs, line)
+        require(0.2 < sum(expected) / len(expected) < 0.9, name, "hardly anything is forged, or real:", sum(expected), len(expected))
+        print(f"{name}: {len(expected)} certificates, {sum(expected)} valid, one verdict; seed {tools.flags.seed}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "recordings", "differential"])
+    for name in ("program", "cases", "build", "source"):
+        parser.add_argument("--" + name, required=True)
+    parser.add_argument("--count", type=int, default=10000)
+    parser.add_argument("--seed", type=int, default=1)
+    flags = parser.parse_args()
+    globals()[flags.part](Tools(flags))
+
+
+main()
