@@ -56,25 +56,37 @@ std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes,
   return found;
 }
 
+bool lies_inside(const SceneObstacle& o, const Target& t) {
+  return geometry::signed_distance(o.shape, t.place) < 0.0;
+}
+
 void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
                        std::vector<std::string>& out) {
   for (const std::size_t k : which) {
     const SceneObstacle& o = s.obstacles[k];
-    const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
-    const std::string where = inside ? ", lies inside obstacle '" + o.id + "'"
-                                     : ", is too near to obstacle '" + o.id + "' for the robot's radius";
+    const std::string where = lies_inside(o, t) ? ", lies inside obstacle '" + o.id + "'"
+                                                : ", is too near to obstacle '" + o.id + "' for the robot's radius";
     out.push_back(t.name + where + ": it cannot be reached");
   }
 }
 
-/// Returns where the robot gets to. Where the map is there already, asking it is cheaper than looking for an open way.
-std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, const OpenWay& open,
-                                 Reachability& reach, std::vector<std::string>& out) {
-  if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
+/// Returns where the robot gets to; nothing where that is not known. Where the map is there already, asking it is
+/// cheaper than looking for an open way. A goal that leaves the robot no room may be shut off as well: a smaller robot
+/// would not get there either, so the radius is not named.
+std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes, const OpenWay& open,
+                                   const Robot& robot, Vec2 from, const Target& t, Reachability& reach,
+                                   std::vector<std::string>& out) {
   const Destination to{t.place, t.reach};
-  if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
-  if (reach.is_proven_out_of_reach(robot.radius, from, to))
-    out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
+  const std::vector<std::size_t> in_the_way = blocking(s, boxes, robot, t);
+  if (in_the_way.empty()) {
+    if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
+    if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
+    if (!reach.is_proven_out_of_reach(robot.radius, from, to)) return std::nullopt;
+  } else if (!reach.is_shut_off(robot.radius, from, t.place)) {
+    warn_of_obstacles(s, in_the_way, t, out);
+    return std::nullopt;
+  }
+  out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
   return std::nullopt;
 }
 
@@ -329,12 +341,11 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   const OpenWay open(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
-    std::optional<Vec2> from = scenario.robots[i].position;
-    for (const Target& t : targets) {
-      const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
-      warn_of_obstacles(scenario, in_the_way, t, out);
-      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, open, reach, out) : std::nullopt;
-    }
+    Vec2 from = scenario.robots[i].position;  // and the last goal that it gets to
+    for (const Target& t : targets)
+      if (const std::optional<Vec2> end =
+              warn_of_target(scenario, boxes, open, scenario.robots[i], from, t, reach, out))
+        from = *end;
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_goals_on_the_way(scenario, i, targets, out);
     warn_of_fast_start(scenario, scenario.robots[i], out);
