@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/scenario_file.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "refusal.h"
 #include "same_scenario.h"
 #include "support/seeded_random.h"
 #include "temporary_folder.h"
@@ -189,6 +191,27 @@ TEST_F(FilesOfARun, IncludeWhatIsReadWithObstacleFiles) {
   std::vector<std::string> names;
   for (const auto& file : load_scenario_with_notes(folder_ / "s.json").files) names.push_back(file.filename().string());
   EXPECT_EQ(names, (std::vector<std::string>{"s.json", "inner.json", "room.yaml", "room.pgm"}));
+}
+
+TEST_F(FilesOfARun, AScenarioSaysWhatUnknownCellsOfAMapAre) {
+  put("room.pgm", "P2\n3 3\n255\n205 255 255\n255 0 255\n255 255 205\n");
+  put("room.yaml", "image: room.pgm\nresolution: 1\norigin: [5, 5, 0]\n");
+  const auto load = [&](const std::string& option) {
+    return load_scenario_with_notes(put("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0],
+             "goal": [1, 0]}], "obstacles": [{"file": "room.yaml")" +
+                                                      option + "}]}"));
+  };
+  const auto has_note = [](const LoadedScenario& s, const std::string& words) {
+    return std::any_of(s.notes.begin(), s.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  };
+  EXPECT_EQ(load("").scenario.obstacles.size(), 1u);
+  EXPECT_TRUE(has_note(load(R"(, "unknown": "free")"), "2 unknown cells taken as free"));
+  const LoadedScenario blocked = load(R"(, "unknown": "blocked")");
+  EXPECT_EQ(blocked.scenario.obstacles.size(), 3u);
+  EXPECT_TRUE(has_note(blocked, "2 unknown cells taken as blocked"));
+  const DataError refused = refusal_of([&] { load(R"(, "unknown": "wall")"); });
+  EXPECT_EQ(refused.place(), "/obstacles/0/unknown");
 }
 
 }  // namespace

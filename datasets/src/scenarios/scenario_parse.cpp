@@ -195,6 +195,7 @@ class ScenarioReader {
     ReadOptions options;
     options.format = object.value("format", std::string());
     options.units = to_units(object.value("units", std::string("automatic")));
+    if (object.contains("unknown")) parse(object.at("unknown").get<std::string>(), options.unknown);
     const std::string prefix = object.value("id", named.stem().string());
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);
