@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/passing.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
@@ -45,7 +46,7 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
 }
 
 bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
-  return geometry::signed_distance(o.shape, t.place) + t.reach < robot.radius;
+  return signed_distance(o, t.place) + t.reach < robot.radius;
 }
 
 /// Those that block a target, ascending.
@@ -57,7 +58,7 @@ std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes,
 }
 
 bool lies_inside(const SceneObstacle& o, const Target& t) {
-  return geometry::signed_distance(o.shape, t.place) < 0.0;
+  return signed_distance(o, t.place) < 0.0;
 }
 
 void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
@@ -240,10 +241,10 @@ void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::
 
 /// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
 void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std::string>& out) {
-  const geometry::Obstacle hull = geometry::Polygon{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
-  const bool has_inside = std::get<geometry::Polygon>(hull).outer.size() > 2;
+  const geometry::Polygon hull{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
+  const bool is_larger = !o.disc && hull.outer.size() > 2;  // than the obstacle
   for (const Robot& robot : s.robots) {
-    if (has_inside && geometry::signed_distance(hull, robot.position) < robot.radius)
+    if (is_larger && geometry::signed_distance(hull, robot.position) < robot.radius)
       out.push_back(robot.id + " starts inside the convex hull of moving obstacle '" + o.id +
                     "', as which it is avoided: the run begins in contact");
   }
@@ -281,7 +282,7 @@ std::optional<Rest> rest_of(const Scenario& s, const MovingObstacle& o) {
 void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, std::vector<std::string>& out) {
   for (const MovingObstacle& o : s.moving_obstacles) {
     const std::optional<Rest> rest = rest_of(s, o);
-    if (!rest || geometry::signed_distance(o.shape, last.place - rest->moved) + last.reach >= robot.radius) continue;
+    if (!rest || signed_distance(o, last.place - rest->moved) + last.reach >= robot.radius) continue;
     out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
                   (rest->since > 0.0 ? " after " + number_text(rest->since, 6) + " s" : "") +
                   ": from then on it cannot be reached");

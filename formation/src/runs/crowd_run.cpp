@@ -106,7 +106,7 @@ class CrowdRun {
         crowd_(options_of(scenario, options)),
         ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
     add_robots();
-    for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
+    for (const SceneObstacle& o : scenario.obstacles) o.disc ? crowd_.add_body(*o.disc) : crowd_.add_obstacle(o.shape);
     for (const MovingObstacle& o : scenario.moving_obstacles) {
       moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
       moving_until_ = std::max(moving_until_, rests_from(o.motion));
