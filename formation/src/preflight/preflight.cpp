@@ -7,6 +7,7 @@
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/disc_obstacle.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/passing.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
@@ -144,24 +145,6 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
     if (other != s.robots.end())
       out.push_back(targets[g].name + ", cannot be reached while " + other->id + " is at its last goal");
   }
-}
-
-/// Robots that have arrived before they move, all in one sentence: as a rule the scene is in another unit of length.
-/// Who starts in its very goal is to stay there.
-void warn_of_goals_at_start(const Scenario& s, std::vector<std::string>& out) {
-  constexpr std::size_t kNamed = 10;
-  std::vector<std::string> ids;
-  for (const Robot& robot : s.robots) {
-    const auto is_there = [&](Vec2 goal) { return norm(goal - robot.position) <= s.arrival_tolerance; };
-    const bool stays = robot.goals.size() == 1 && robot.goals[0] == robot.position;
-    if (!stays && std::all_of(robot.goals.begin(), robot.goals.end(), is_there)) ids.push_back(robot.id);
-  }
-  if (ids.empty()) return;
-  std::string text = ids[0];
-  for (std::size_t k = 1; k < std::min(ids.size(), kNamed); ++k) text += ", " + ids[k];
-  if (ids.size() > kNamed) text += " and " + std::to_string(ids.size() - kNamed) + " more";
-  out.push_back(geometry::counted(ids.size(), "robot") + " within arrival_tolerance, " + metres(s.arrival_tolerance) +
-                ", of the goal at the start, arrived before any move (lengths are in metres): " + text);
 }
 
 /// Robots that have to pass each other and cannot; the first ones.
@@ -354,7 +337,7 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   }
   warn_of_pairs(scenario, last, out);
   if (!scenario.formation) warn_of_near_pairs(scenario, last, out);
-  if (!scenario.formation) warn_of_goals_at_start(scenario, out);
+  if (std::string arrived = arrived_at_start(scenario); !arrived.empty()) out.push_back(std::move(arrived));
   warn_of_passing(scenario, out);
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;
@@ -364,3 +347,26 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
 }
 
 }  // namespace exactvo::formation::detail
+
+namespace exactvo::formation {
+
+std::string arrived_at_start(const Scenario& s) {
+  constexpr std::size_t kNamed = 10;
+  std::vector<std::string> ids;
+  std::size_t count = 0;
+  if (s.formation) return "";
+  for (const Robot& robot : s.robots) {
+    const auto is_there = [&](Vec2 goal) { return norm(goal - robot.position) <= s.arrival_tolerance; };
+    const bool stays = robot.goals.size() == 1 && robot.goals[0] == robot.position;
+    if (stays || !std::all_of(robot.goals.begin(), robot.goals.end(), is_there)) continue;
+    if (++count <= kNamed) ids.push_back(robot.id);
+  }
+  if (count == 0) return "";
+  std::string text = ids[0];
+  for (std::size_t k = 1; k < ids.size(); ++k) text += ", " + ids[k];
+  if (count > kNamed) text += " and " + std::to_string(count - kNamed) + " more";
+  return geometry::counted(count, "robot") + " within arrival_tolerance, " + detail::metres(s.arrival_tolerance) +
+         ", of the goal at the start, arrived before any move (lengths are in metres): " + text;
+}
+
+}  // namespace exactvo::formation

@@ -247,7 +247,8 @@ class Run:
 
 def simulate(
     scenario: Scenario, method: str, guidance: str | None, liveness: str | None, controller: str, integrator: str,
-    record_all: bool, threads: int, progress: Callable[[float], bool | None] | None, /,
+    record_all: bool, threads: int, progress: Callable[[float], bool | None] | None,
+    warn: Callable[[str], None], /,
 ) -> Run: ...
 def explorer_page(runs: list[Run], /) -> str: ...
 def write_text(path: str, text: str, /) -> None: ...

@@ -19,6 +19,7 @@
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/rank_watch.h"
@@ -273,6 +274,8 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
   const formation::Scenario& scenario = read.scenario;
   for (const formation::ScenarioProblem& p : crowd_problems(scenario))
     throw datasets::DataError(datasets::DataCode::scenario, file, p.pointer, p.found, p.expected);
+  if (const std::string arrived = formation::arrived_at_start(scenario); is_first && !arrived.empty())
+    message("warning: " + arrived);
   formation::CrowdRunOptions options;
   if (!simulation.guidance.empty())
     options.guidance =
