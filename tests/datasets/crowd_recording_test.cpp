@@ -133,6 +133,25 @@ TEST_F(CrowdRecordings, MovingObstaclesGoAlongTheirPathsAndAnAuditJudgesThem) {
   EXPECT_EQ(one.digest, two.digest);
 }
 
+TEST_F(CrowdRecordings, DiscsAreBodiesAndAnAuditJudgesThem) {
+  const Scenario scenario = parse_scenario(R"({"name": "discs", "guidance": "none", "time_step": 0.1, "time_limit": 15,
+      "horizons": {"least": 0.3},
+      "robots": [{"grid": {"columns": 5, "rows": 6, "spacing": 1.6, "corner": [-14, -4], "goal": [24, 0]}, "max_speed": 1.5}],
+      "obstacles": [{"disc": {"centre": [0, 0], "radius": 1.5}}, {"polyline": [[0, 7], [0, 5]]}],
+      "moving_obstacles": [{"disc": {"centre": [3, 9], "radius": 0.75}, "velocity": [0, -1.1]}]})",
+                                           "discs.json", {});
+  record(scenario, 1);
+  CrowdRecordingReader reader(folder_ / "c.evr");
+  ASSERT_EQ(reader.head().bodies.size(), 2U);
+  EXPECT_FALSE(reader.head().bodies[0].moves);
+  EXPECT_EQ(std::get<geometry::Disc>(reader.head().bodies[0].shape).radius, 1.5);
+  EXPECT_EQ(std::get<geometry::Disc>(reader.head().bodies[1].shape).radius, 0.75);
+  EXPECT_EQ(reader.head().edges.size(), 1U) << "those of the wall";
+  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+  EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
+  EXPECT_GT(audit.near_bodies, 20U);
+}
+
 TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
   const CrowdRunReport run = record(crossing(), 1);
   EXPECT_GT(run.relaxed, 0U);

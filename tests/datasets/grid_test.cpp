@@ -180,8 +180,9 @@ std::string pgm(const std::string& pixels) {
 
 class RosMapTest : public GridTest {
  protected:
-  ObstacleFile read_map(const std::string& extra, const std::string& image = "m.pgm") const {
-    return read_obstacles(put("m.yaml", "image: " + image + "\nresolution: 0.5\norigin: [1, 2, 0]\n" + extra));
+  ObstacleFile read_map(const std::string& extra, const std::string& image = "m.pgm",
+                        const ReadOptions& options = {}) const {
+    return read_obstacles(put("m.yaml", "image: " + image + "\nresolution: 0.5\norigin: [1, 2, 0]\n" + extra), options);
   }
 };
 
@@ -193,7 +194,7 @@ TEST_F(RosMapTest, TheLowerLeftPixelLiesAtTheOrigin) {
   const ObstacleFile file = read_map("negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
   ASSERT_EQ(file.obstacles.size(), 1u);
   EXPECT_EQ(std::get<Polygon>(file.obstacles[0].shape).outer.front(), (Vec2{1.0, 2.5}));
-  EXPECT_EQ(file.notes.front().text, "2 unknown cells taken as free");
+  EXPECT_EQ(file.notes.front().text, "2 unknown cells taken as free (option unknown: free or blocked)");
 }
 
 TEST_F(RosMapTest, AnOriginThatIsNoListOfNumbersIsNamed) {
@@ -211,7 +212,28 @@ TEST_F(RosMapTest, AnOriginThatIsNoListOfNumbersIsNamed) {
 
 TEST_F(RosMapTest, GreyTwoHundredAndFiveIsFreeAtAQuarter) {
   put("m.pgm", pgm(kPixels));
-  EXPECT_EQ(read_map("free_thresh: 0.25\n").notes.front().text, "1 unknown cell taken as free");
+  EXPECT_EQ(read_map("free_thresh: 0.25\n").notes.front().text,
+            "1 unknown cell taken as free (option unknown: free or blocked)");
+}
+
+TEST_F(RosMapTest, UnknownCellsAreFreeOrBlockedAsAsked) {
+  put("m.pgm", pgm(kPixels));
+  ReadOptions options;
+  options.unknown = UnknownCells::blocked;
+  const double cell = 0.5 * 0.5;
+  for (const char* negated : {"", "negate: 0\n"}) {
+    const ObstacleFile free = read_map(negated), blocked = read_map(negated, "m.pgm", options);
+    EXPECT_EQ(free.coverage->occupied, 1u);
+    EXPECT_EQ(blocked.coverage->occupied, 3u) << "0, 205 and 128";
+    EXPECT_DOUBLE_EQ(area_of(blocked), 3 * cell);
+    EXPECT_EQ(blocked.notes.front().text, "2 unknown cells taken as blocked (option unknown: free or blocked)");
+  }
+  // In mode raw what is above 100 is unknown.
+  put("r.pgm", "P2 3 2 255 0 100 101 60 65 66");
+  EXPECT_EQ(read_map("mode: raw\noccupied_thresh: 0.65\n", "r.pgm", options).coverage->occupied, 3u);
+  // Nothing is unknown: nothing changes.
+  put("k.pgm", pgm(std::string(6, '\xff')));
+  EXPECT_TRUE(read_map("", "k.pgm", options).obstacles.empty());
 }
 
 TEST_F(RosMapTest, NegatedTwinsAgree) {

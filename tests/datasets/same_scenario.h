@@ -63,6 +63,19 @@ inline void expect_same(const formation::Robot& a, const formation::Robot& b) {
   EXPECT_TRUE(same_bits(a.goals, b.goals)) << a.id;
 }
 
+inline bool same_bits(const std::optional<geometry::Disc>& a, const std::optional<geometry::Disc>& b) {
+  return a.has_value() == b.has_value() && (!a || same_bits(*a, *b));
+}
+
+inline void expect_same(const formation::MovingObstacle& a, const formation::MovingObstacle& b) {
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_TRUE(same_bits(a.shape, b.shape)) << a.id;
+  EXPECT_TRUE(same_bits(a.disc, b.disc)) << a.id;
+  EXPECT_TRUE(same_bits(a.motion.path, b.motion.path)) << a.id;
+  EXPECT_TRUE(a.motion.profile.size() == b.motion.profile.size()) << a.id;
+  EXPECT_TRUE(!a.motion.profile.empty() || same_bits(a.motion.speed, b.motion.speed)) << a.id;
+}
+
 inline void expect_same(const formation::FormationSpec& a, const formation::FormationSpec& b) {
   EXPECT_TRUE(same_bits(a.topology.adjacency, b.topology.adjacency));
   EXPECT_TRUE(same_bits(a.topology.pinning, b.topology.pinning));
@@ -98,7 +111,10 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   for (std::size_t k = 0; k < a.obstacles.size(); ++k) {
     EXPECT_EQ(a.obstacles[k].id, b.obstacles[k].id);
     EXPECT_TRUE(same_bits(a.obstacles[k].shape, b.obstacles[k].shape)) << a.obstacles[k].id;
+    EXPECT_TRUE(same_bits(a.obstacles[k].disc, b.obstacles[k].disc)) << a.obstacles[k].id;
   }
+  ASSERT_EQ(a.moving_obstacles.size(), b.moving_obstacles.size());
+  for (std::size_t k = 0; k < a.moving_obstacles.size(); ++k) expect_same(a.moving_obstacles[k], b.moving_obstacles[k]);
   ASSERT_EQ(a.formation.has_value(), b.formation.has_value());
   if (a.formation) expect_same(*a.formation, *b.formation);
   EXPECT_TRUE(a.formation || a.guidance == b.guidance);

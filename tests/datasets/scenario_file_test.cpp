@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/scenario_file.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "exactvo/formation/disc_obstacle.h"
+#include "exactvo/formation/simulation.h"
+#include "exactvo/formation/speed_profile.h"
+#include "refusal.h"
 #include "same_scenario.h"
 #include "support/seeded_random.h"
 #include "temporary_folder.h"
@@ -56,6 +61,10 @@ Scenario random_scenario(SeededRandom& random) {
   solid.outer = {near({10, 0}, random), near({20, 0}, random), near({20, 10}, random), near({10, 10}, random)};
   solid.holes = {{near({12, 2}, random), near({12, 4}, random), near({14, 4}, random), near({14, 2}, random)}};
   s.obstacles.push_back({"solid", solid});
+  s.obstacles.push_back(formation::disc_obstacle("post", {near({40, 40}, random), random.uniform(0.01, 2)}));
+  s.moving_obstacles.push_back(
+      formation::moving_disc("ball", {near({-40, 40}, random), random.uniform(0.01, 2)},
+                             formation::path_of({}, {{0.0, random.in_box(1)}, {1.5, random.in_box(1)}}, 20.0)));
   s.horizons = {random.uniform(0.2, 0.4), random.uniform(2, 4), random.uniform(0.2, 0.8), 2.0, random.uniform(1, 3)};
   s.margins = {random.uniform(0, 0.1), random.uniform(0, 0.1)};
   s.time_step = random.uniform(0.01, 0.05);
@@ -92,6 +101,60 @@ TEST(ScenarioFile, Property1_RoundTripKeepsEveryBit) {
     expect_same(scenario, again);
     EXPECT_EQ(write_scenario(again), text);
     if (HasFailure()) FAIL() << text;
+  }
+}
+
+Scenario with_obstacles(const std::string& standing, const std::string& moving) {
+  return parse_scenario(R"({"name": "n", "time_limit": 10, "robots": [{"id": "R", "position": [9, 9], "goal": [8, 8]}],
+    "obstacles": [)" + standing +
+                            R"(], "moving_obstacles": [)" + moving + "]}",
+                        "t", {});
+}
+
+TEST(ScenarioFile, DiscsAreReadAsDiscs) {
+  const Scenario s = with_obstacles(
+      R"({"id": "post", "disc": {"centre": [1, 2], "radius": 0.25}}, {"disc": {"centre": [4, 4],
+    "radius": 1}})",
+      R"({"id": "ball", "disc": {"centre": [-3, 0], "radius": 0.5}, "path": [[0, 0], [1, 0]], "speed": 2})");
+  ASSERT_TRUE(s.obstacles.at(0).disc);
+  EXPECT_EQ(s.obstacles[0].disc->center, (Vec2{1, 2}));
+  EXPECT_EQ(s.obstacles[0].disc->radius, 0.25);
+  EXPECT_EQ(s.obstacles[1].id, "O2");
+  ASSERT_TRUE(s.moving_obstacles.at(0).disc);
+  EXPECT_EQ(s.moving_obstacles[0].disc->radius, 0.5);
+  EXPECT_EQ(s.moving_obstacles[0].motion.speed, 2.0);
+  EXPECT_TRUE(formation::validate(s).empty());
+}
+
+TEST(ScenarioFile, MovingObstaclesMaySayTheirVelocity) {
+  const std::string square = R"("polygon": [[0, 0], [1, 0], [1, 1], [0, 1]], )";
+  const Scenario one = with_obstacles("", "{" + square + R"("velocity": [0.5, -1]})");
+  for (const double t : {0.0, 5.0, 10.0})
+    EXPECT_LT(norm(formation::displacement_at(one.moving_obstacles.at(0), t) - t * Vec2{0.5, -1}), 1e-12);
+  const Scenario many = with_obstacles("", "{" + square + R"("velocities": [[1, 1, 0], [3, 0, -2]]})");
+  EXPECT_EQ(formation::displacement_at(many.moving_obstacles.at(0), 1.0), Vec2{});
+  EXPECT_LT(norm(formation::displacement_at(many.moving_obstacles[0], 3.0) - Vec2{2, 0}), 1e-12);
+  EXPECT_LT(norm(formation::displacement_at(many.moving_obstacles[0], 10.0) - Vec2{2, -14}), 1e-12);
+  expect_same(many, parse_scenario(write_scenario(many), "t", {}));
+}
+
+TEST(ScenarioFile, WrongDiscsAndVelocitiesAreNamed) {
+  struct Wrong {
+    std::string standing, moving, place;
+  };
+  const std::string ball = R"({"disc": {"centre": [0, 0], "radius": 1}, )";
+  for (const Wrong& w :
+       {Wrong{R"({"disc": {"centre": [0, 0]}})", "", "/obstacles/0/disc"},
+        Wrong{R"({"disc": {"centre": [0, 0], "radius": 0}})", "", "/obstacles/0/disc/radius"},
+        Wrong{R"({"disc": {"centre": [1e9, 0], "radius": 1e-6}})", "", "/obstacles/0/disc/radius"},
+        Wrong{"", ball + R"("velocity": [1, 2, 3]})", "/moving_obstacles/0/velocity"},
+        Wrong{"", ball + R"("velocity": [1, 2], "path": [[0, 0]]})", "/moving_obstacles/0"},
+        Wrong{"", ball + R"("velocity": [1, 2], "velocities": [[0, 1, 2]]})", "/moving_obstacles/0"},
+        Wrong{"", ball + R"("velocities": [[1, 1, 2], [0, 1, 2]]})", "/moving_obstacles/0/velocities/1/0"},
+        Wrong{"", ball + R"("velocities": [[-1, 1, 2]]})", "/moving_obstacles/0/velocities/0/0"},
+        Wrong{"", ball + R"("path": [[0, 0]]})", "/moving_obstacles/0"}}) {
+    const DataError refused = refusal_of([&] { with_obstacles(w.standing, w.moving); });
+    EXPECT_EQ(refused.place(), w.place) << refused.what();
   }
 }
 
@@ -189,6 +252,27 @@ TEST_F(FilesOfARun, IncludeWhatIsReadWithObstacleFiles) {
   std::vector<std::string> names;
   for (const auto& file : load_scenario_with_notes(folder_ / "s.json").files) names.push_back(file.filename().string());
   EXPECT_EQ(names, (std::vector<std::string>{"s.json", "inner.json", "room.yaml", "room.pgm"}));
+}
+
+TEST_F(FilesOfARun, AScenarioSaysWhatUnknownCellsOfAMapAre) {
+  put("room.pgm", "P2\n3 3\n255\n205 255 255\n255 0 255\n255 255 205\n");
+  put("room.yaml", "image: room.pgm\nresolution: 1\norigin: [5, 5, 0]\n");
+  const auto load = [&](const std::string& option) {
+    return load_scenario_with_notes(put("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0],
+             "goal": [1, 0]}], "obstacles": [{"file": "room.yaml")" +
+                                                      option + "}]}"));
+  };
+  const auto has_note = [](const LoadedScenario& s, const std::string& words) {
+    return std::any_of(s.notes.begin(), s.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  };
+  EXPECT_EQ(load("").scenario.obstacles.size(), 1u);
+  EXPECT_TRUE(has_note(load(R"(, "unknown": "free")"), "2 unknown cells taken as free"));
+  const LoadedScenario blocked = load(R"(, "unknown": "blocked")");
+  EXPECT_EQ(blocked.scenario.obstacles.size(), 3u);
+  EXPECT_TRUE(has_note(blocked, "2 unknown cells taken as blocked"));
+  const DataError refused = refusal_of([&] { load(R"(, "unknown": "wall")"); });
+  EXPECT_EQ(refused.place(), "/obstacles/0/unknown");
 }
 
 }  // namespace

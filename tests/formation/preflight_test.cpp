@@ -77,6 +77,83 @@ TEST(Preflight, EveryWaypointIsJudged) {
   EXPECT_THAT(warnings[0], HasSubstr("goal 1 of R1"));
 }
 
+/// The scene moved, mirrored (scale < 0 turns it by half a turn) and scaled.
+Scenario mapped(Scenario s, double scale, Vec2 shift, bool mirrored) {
+  const auto to = [&](Vec2& p) { p = scale * (mirrored ? Vec2{-p.x, p.y} : p) + shift; };
+  for (Robot& r : s.robots) {
+    to(r.position);
+    for (Vec2& goal : r.goals) to(goal);
+    r.radius *= std::fabs(scale);
+    r.max_speed *= std::fabs(scale);
+  }
+  for (SceneObstacle& o : s.obstacles)
+    for (Vec2& p : std::get<geometry::Polyline>(o.shape).points) to(p);
+  s.arrival_tolerance *= std::fabs(scale);
+  s.margins.obstacle *= std::fabs(scale);
+  s.margins.robot *= std::fabs(scale);
+  s.neighbour_distance *= std::fabs(scale);
+  return s;
+}
+
+/// A closed room from (0, 0) to (10, 10), and the robot to its left.
+Scenario sealed_room(std::vector<Vec2> goals) {
+  return scene({-3, 5}, std::move(goals), {{"room", geometry::Polyline{{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}}});
+}
+
+TEST(Preflight, AWaypointInASealedRoomIsEnclosedAndSoIsTheGoalAfterIt) {
+  struct Placement {
+    double scale;
+    Vec2 shift;
+    bool mirrored;
+  };
+  int judged = 0;
+  for (const Placement& at :
+       {Placement{1, {}, false}, Placement{1, {}, true}, Placement{-1, {}, false}, Placement{1e3, {}, false},
+        Placement{1e-3, {}, true}, Placement{1, {1e6, -1e6}, false}, Placement{1e-3, {1e6, 1e6}, false}}) {
+    for (const bool is_reversed : {false, true}) {
+      Scenario s = sealed_room({{5, 9.75}, {9, 1}});
+      if (is_reversed) std::reverse(s.robots[0].goals.begin(), s.robots[0].goals.end());
+      const auto warnings = warnings_before(mapped(s, at.scale, at.shift, at.mirrored));
+      ASSERT_EQ(warnings.size(), 2u) << at.scale << " " << is_reversed;
+      for (int k = 0; k < 2; ++k, ++judged) {
+        EXPECT_THAT(warnings[k], HasSubstr("goal " + std::to_string(k + 1) + " of R1"));
+        EXPECT_THAT(warnings[k], HasSubstr("cannot be reached: obstacle 'room' encloses it"));
+        EXPECT_THAT(warnings[k], testing::Not(HasSubstr("radius")));
+      }
+    }
+  }
+  EXPECT_EQ(judged, 28);
+}
+
+TEST(Preflight, AGoalAtTheWallOfASealedRoomIsEnclosed) {
+  // Less room than the robot's radius and the tolerance leave: a smaller robot would be shut out as well.
+  const auto warnings = warnings_before(sealed_room({{5, 9.75}}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("cannot be reached: obstacle 'room' encloses it"));
+  // On the outside the radius is to blame.
+  const auto outside = warnings_before(sealed_room({{5, 10.25}}));
+  ASSERT_EQ(outside.size(), 1u);
+  EXPECT_THAT(outside[0], HasSubstr("too near to obstacle 'room' for the robot's radius"));
+}
+
+TEST(Preflight, GoalsAfterOneThatIsOutOfReachAreJudgedFromTheLastThatIsNot) {
+  EXPECT_EQ(warnings_before(sealed_room({{-3, 9}, {5, 5}, {5, 12}})).size(), 1u);
+  EXPECT_EQ(warnings_before(sealed_room({{5, 5}, {5, 12}, {9, 1}, {1, 1}})).size(), 3u);
+  Scenario inside = sealed_room({{-3, 9}, {5, 9.75}, {9, 1}});
+  inside.robots[0].position = {5, 5};
+  const auto warnings = warnings_before(inside);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("obstacle 'room' encloses the start"));
+}
+
+TEST(Preflight, TheReasonInARunIsTheRoomToo) {
+  Scenario s = sealed_room({{5, 9.75}, {9, 1}});
+  s.time_limit = 5.0;
+  const std::string outcome = simulate(s).outcome;
+  EXPECT_THAT(outcome, HasSubstr("R1 cannot reach its goal 1: obstacle 'room' encloses the goal"));
+  EXPECT_THAT(outcome, testing::Not(HasSubstr("no proof")));
+}
+
 TEST(Preflight, AChainOfSeveralObstaclesIsNamed) {
   // Two halves of a ring that come within 0.6 m of each other, and something that does not matter.
   const std::vector<SceneObstacle> halves{{"north", geometry::Polyline{{{-3, 0.3}, {-3, 3}, {3, 3}, {3, 0.3}}}},

@@ -73,7 +73,7 @@ TEST(ScenarioKeys, AMovingObstacleHasASpeedOrAProfile) {
   EXPECT_THAT(both, HasSubstr("/moving_obstacles/0")) << both;
   EXPECT_THAT(both, HasSubstr("both \"speed\" and \"profile\"")) << both;
   const std::string neither = refusal_of_moving(path);
-  EXPECT_THAT(neither, HasSubstr("\"speed\", or \"profile\"")) << neither;
+  EXPECT_THAT(neither, HasSubstr("\"path\" with \"speed\", or \"path\" with \"profile\", or \"velocity\"")) << neither;
   EXPECT_THAT(refusal_of_moving(speed), HasSubstr("\"path\""));
 }
 

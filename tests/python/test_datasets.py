@@ -110,6 +110,7 @@ def test_wkt_text_is_parsed():
     [
         (lambda path: datasets.read(path, format="geojsn"), "format"),
         (lambda path: datasets.read(path, units="feet"), "units"),
+        (lambda path: datasets.read(path, unknown="wall"), "unknown"),
         (lambda path: datasets.read(path, cell_size=-1), "cell_size"),
         (lambda path: datasets.generate("stars"), "kind"),
         (lambda path: datasets.batch(path, path.parent / "out", write=["geojsn"]), "write"),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -39,6 +40,42 @@ def test_the_program_records_the_same_rows(program, source, tmp_path):
     for name in ("time", "position", "velocity", "preferred", "chosen", "status"):
         assert getattr(ours, name).tobytes() == getattr(theirs, name).tobytes(), name
     assert ours.metrics["formation_position_error"] == theirs.metrics["formation_position_error"]
+
+
+def said(call):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    assert all(w.category is exactvo.ScenarioWarning and w.filename == __file__ for w in caught), [str(w.filename) for w in caught]
+    return [str(w.message) for w in caught]
+
+
+def test_a_scene_in_another_unit_is_warned_of():
+    small = {**TWO, "robots": [{**r, "radius": 0.001} for r in TWO["robots"]], "obstacles": []}
+    for k, robot in enumerate(small["robots"]):
+        robot["position"], robot["goal"] = [0.05 * k, 0.0], [0.05 - 0.05 * k, 0.01]
+    texts = said(lambda: exactvo.simulate(small))
+    assert texts == exactvo.Scenario(small).warnings and "2 robots within arrival_tolerance" in texts[0]
+    assert said(lambda: exactvo.simulate(TWO)) == []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", exactvo.ScenarioWarning)
+        with pytest.raises(exactvo.ScenarioWarning):
+            exactvo.simulate(small)
+
+
+def test_slots_that_are_moved_are_said(source):
+    scene = json.loads((source / "datasets/data/paper/B1.json").read_text())
+    scene["time_limit"] = 1
+    moved = "formation: recentre moves every slot by (-0.3333, -0.3333)"
+    assert any(text.startswith(moved) for text in said(lambda: exactvo.simulate(scene)))
+    scene["formation"]["recentre"] = False
+    assert not any(text.startswith("formation: recentre") for text in said(lambda: exactvo.simulate(scene)))
+
+
+def test_a_sweep_says_each_warning_once():
+    sealed = {**TWO, "time_limit": 1, "obstacles": [{"polyline": [[4, -2], [8, -2], [8, 2], [4, 2], [4, -2]]}]}
+    texts = said(lambda: exactvo.sweep(sealed, {"method": ["ivo", "orca"], "/time_step": [0.05, 0.1]}, jobs=2))
+    assert len(texts) == len(set(texts)) and any("goal of R1" in text for text in texts)
 
 
 def test_arrays_are_views_a_row_a_step():

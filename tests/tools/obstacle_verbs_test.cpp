@@ -214,6 +214,22 @@ TEST(ObstacleVerbs, NotesOnWholeFilesAreSaid) {
   EXPECT_THAT(here.run("validate m.yaml").err, HasSubstr("m.yaml: 1 unknown cell taken as free"));
 }
 
+TEST(ObstacleVerbs, UnknownCellsAreBlockedWhereAsked) {
+  const Workplace here;
+  here.write("m.pgm", "P2 3 1 255\n255 205 255\n");  // free, unknown, free
+  here.write("m.yaml", "image: m.pgm\nresolution: 1\norigin: [0, 0, 0]\n");
+  EXPECT_THAT(here.run("validate m.yaml --unknown blocked").err, HasSubstr("m.yaml: 1 unknown cell taken as blocked"));
+  const std::string route = "route m.yaml --from 0.5,0.5 --to 1.5,0.5 --radius 0.1";
+  EXPECT_EQ(here.run(route).status, 0);
+  const Outcome blocked = here.run(route + " --unknown blocked");
+  EXPECT_EQ(blocked.status, 1);
+  EXPECT_THAT(blocked.out, HasSubstr("inside"));
+  EXPECT_THAT(here.run("convert m.yaml - --unknown blocked").out, HasSubstr("POLYGON"));
+  EXPECT_THAT(here.run("batch m.yaml --out out --write measurements --unknown blocked").err,
+              HasSubstr("taken as blocked"));
+  EXPECT_THAT(here.run(route + " --unknown blokced").err, HasSubstr("did you mean 'blocked'?"));
+}
+
 TEST(ObstacleVerbs, DistortionIsInJson) {
   const Workplace here;
   here.write("unit.geojson", kFourByThree);

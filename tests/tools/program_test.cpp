@@ -383,6 +383,16 @@ TEST(Simulate, MarginsThatAreNotKeptAndSlotsThatMoveAreSaid) {
               HasSubstr("formation: recentre moves every slot by (-0.3333, -0.3333)"));
 }
 
+TEST(Simulate, RobotsThatHaveArrivedBeforeTheyMoveAreNamedByBothEngines) {
+  const Workplace here;
+  here.write("small.json", R"({ "name": "small", "time_limit": 5,
+    "robots": [ { "id": "a", "position": [0, 0], "goal": [0.05, 0], "radius": 0.01 } ] })");
+  for (const std::string engine : {"", " --engine crowd"})
+    EXPECT_THAT(here.run("simulate small.json" + engine).err,
+                HasSubstr("warning: 1 robot within arrival_tolerance, 0.1 m, of the goal at the start"))
+        << engine;
+}
+
 /// MB that the program takes at most.
 double peak_memory(const Workplace& here, const std::vector<std::string>& arguments) {
   const pid_t child = ::fork();

@@ -13,6 +13,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_at.h"
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/vo/free_velocities.h"
 #include "exactvo/vo/lp/certificate.h"
@@ -65,7 +66,12 @@ void advance(formation::Scenario& scenario, double time) {
   for (formation::MovingObstacle& obstacle : scenario.moving_obstacles) {
     const Vec2 before = obstacle.motion.path.front();
     obstacle.motion = advanced(obstacle.motion, time);
-    geometry::shift(obstacle.shape, obstacle.motion.path.front() - before);
+    const Vec2 by = obstacle.motion.path.front() - before;
+    if (obstacle.disc)
+      obstacle = formation::moving_disc(obstacle.id, {obstacle.disc->center + by, obstacle.disc->radius},
+                                        std::move(obstacle.motion));
+    else
+      geometry::shift(obstacle.shape, by);
   }
   if (scenario.formation) scenario.formation->leader = {advanced(scenario.formation->leader, time)};
 }

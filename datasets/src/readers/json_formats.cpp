@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cctype>
 
 #include "exactvo/datasets/scenario_file.h"
@@ -82,6 +83,11 @@ void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) 
   const LoadedScenario loaded = load_scenario_with_notes(path);
   for (const formation::SceneObstacle& obstacle : loaded.scenario.obstacles) out.add(to_raw(obstacle));
   for (const std::string& note : loaded.notes) out.note("", note);
+  const auto discs = std::count_if(loaded.scenario.obstacles.begin(), loaded.scenario.obstacles.end(),
+                                   [](const formation::SceneObstacle& o) { return o.disc.has_value(); });
+  if (discs > 0)
+    out.note(
+        "", geometry::counted(static_cast<std::size_t>(discs), "disc") + " taken as polygons of 32 corners round them");
   const std::size_t moving = loaded.scenario.moving_obstacles.size();
   if (moving > 0) out.note("", geometry::counted(moving, "moving obstacle") + " left out, for lack of a fixed place");
 }

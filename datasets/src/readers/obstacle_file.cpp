@@ -27,6 +27,9 @@ constexpr std::array<const char*, 19> kVectorExtensions{
 constexpr geometry::Names<Units, 3> kUnits{
     {{Units::automatic, "automatic"}, {Units::metres, "metres"}, {Units::degrees, "degrees"}}};
 
+constexpr geometry::Names<UnknownCells, 2> kUnknownCells{
+    {{UnknownCells::free, "free"}, {UnknownCells::blocked, "blocked"}}};
+
 void read_with_gdal(const std::filesystem::path& path, Collector& out) {
   vector_library().read_vector_file(path, out);
 }
@@ -130,6 +133,18 @@ bool parse(const std::string& text, Units& out) {
 
 std::vector<std::string> unit_names() {
   return geometry::words_in(kUnits);
+}
+
+const char* name(UnknownCells unknown) {
+  return geometry::name_in(kUnknownCells, unknown);
+}
+
+bool parse(const std::string& text, UnknownCells& out) {
+  return geometry::parse_in(kUnknownCells, text, out);
+}
+
+std::vector<std::string> unknown_cells_names() {
+  return geometry::words_in(kUnknownCells);
 }
 
 ObstacleFile read_in_its_system(const std::string& name, const std::string& format, const ReadOptions& options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // ROS maps: a yaml that names a picture, its scale and thresholds (map_server). Occupied cells are obstacles; unknown
-// ones are counted and left free. And the pictures: PGM here, others by GDAL.
+// ones are counted, and are free or obstacles as the reader's options say. And the pictures: PGM here, others by GDAL.
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -307,17 +307,21 @@ Occupancy occupancy_of(double brightness, const MapFacts& map) {
 
 Grid to_grid(const GreyImage& image, const MapFacts& map, Collector& out) {
   Grid grid{image.width, image.height, std::vector<std::uint8_t>(image.width * image.height, 0)};
+  const bool blocks_unknown = out.options().unknown == UnknownCells::blocked;
   std::size_t unknown = 0;
   for (std::size_t row = 0; row < image.height; ++row) {
     for (std::size_t x = 0; x < image.width; ++x) {
       const std::size_t pixel = row * image.width + x;
       const bool clear = !image.is_transparent.empty() && image.is_transparent[pixel];
       const Occupancy is = clear ? Occupancy::unknown : occupancy_of(static_cast<double>(image.brightness[pixel]), map);
-      if (is == Occupancy::occupied) grid.occupied[(image.height - 1 - row) * image.width + x] = 1;
+      const bool is_blocked = is == Occupancy::occupied || (is == Occupancy::unknown && blocks_unknown);
+      if (is_blocked) grid.occupied[(image.height - 1 - row) * image.width + x] = 1;
       unknown += is == Occupancy::unknown ? 1 : 0;
     }
   }
-  if (unknown > 0) out.note("", geometry::counted(unknown, "unknown cell") + " taken as free");
+  if (unknown > 0)
+    out.note("", geometry::counted(unknown, "unknown cell") + " taken as " + name(out.options().unknown) +
+                     " (option unknown: free or blocked)");
   return grid;
 }
 

@@ -286,7 +286,7 @@ AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError&
 
 AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
     : file(recorded), scenario(file.scenario), duration(file.recording.time_step), places(file), tally(counts) {
-  for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.emplace_back(o.shape);
+  for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.emplace_back(o);
   for (const formation::MovingObstacle& o : scenario.moving_obstacles) ways.emplace_back(o.motion);
   if (file.recording.motion == MotionLaw::exponential) law.emplace(Rational(file.recording.tracking_gain), duration);
 }

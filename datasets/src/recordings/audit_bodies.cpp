@@ -22,11 +22,34 @@ bool is_edge_of(const geometry::ConvexShape& shape, const RationalObstacle& obst
          });
 }
 
+/// Whether the body is a disc that holds the obstacle's: then it stands for all of it.
+bool holds_disc_of(const geometry::ConvexShape& shape, const RationalObstacle& obstacle) {
+  const auto* disc = std::get_if<geometry::Disc>(&shape);
+  if (!disc || !obstacle.disc) return false;
+  const exact::Point apart = exact::exactly(disc->center) - obstacle.disc->center;
+  const exact::Rational room = exact::Rational(disc->radius) - obstacle.disc->radius;
+  return sgn(room) >= 0 && exact::dot(apart, apart) <= room * room;
+}
+
+/// Whether the polygon holds the obstacle's disc: its centre is left of every edge, and no edge is nearer than its
+/// radius.
+bool holds_its_disc(const RationalObstacle& obstacle) {
+  const RationalDisc& disc = *obstacle.disc;
+  return std::all_of(obstacle.edges.begin(), obstacle.edges.end(), [&](const exact::Straight& edge) {
+    return sgn(exact::cross(edge.to - edge.from, disc.center - edge.from)) > 0 &&
+           exact::squared_distance(disc.center, edge) >= disc.radius * disc.radius;
+  });
+}
+
 class BodyAudit {
  public:
   explicit BodyAudit(const AuditedRun& run) : run_(run), covered_(run.file.recording.bodies.size()) {}
 
   void check() {
+    for (std::size_t k = 0; k < run_.obstacles.size(); ++k)
+      if (run_.obstacles[k].disc)
+        run_.tally.ask(AuditPoint::bodies, holds_its_disc(run_.obstacles[k]),
+                       "the polygon of obstacle '" + run_.scenario.obstacles[k].id + "' does not hold its disc");
     for (std::size_t number = 0; number < run_.file.recording.bodies.size(); ++number) check_body(number);
     check_goal_bodies();
   }
@@ -48,8 +71,10 @@ class BodyAudit {
     bool stands_for_all = true;
     for (const std::size_t owner : body.owners) {
       Covered& covered = covered_[number].emplace_back(Covered{owner, {}});
+      const bool has_disc = holds_disc_of(body.shape, run_.obstacles[owner]);
       for (const exact::Straight& edge : run_.obstacles[owner].edges) {
-        covered.edges.push_back(exact::contains(body.shape, edge.from) && exact::contains(body.shape, edge.to));
+        covered.edges.push_back(has_disc ||
+                                (exact::contains(body.shape, edge.from) && exact::contains(body.shape, edge.to)));
         covered.any = covered.any || covered.edges.back();
       }
       stands_for_all = stands_for_all && covered.any;

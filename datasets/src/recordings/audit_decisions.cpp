@@ -167,7 +167,9 @@ class DecisionAudit : public RowAudit {
     for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
       if (are_apart(here, run_.obstacles[k].box, s.near)) continue;
       bool in_reach = false;
-      const Verdict verdict = against_edges(s, run_.obstacles[k], in_reach);
+      const RationalObstacle& obstacle = run_.obstacles[k];
+      const Verdict verdict =
+          obstacle.disc ? against_disc(s, obstacle, in_reach) : against_edges(s, obstacle, in_reach);
       if (in_reach) answer(verdict, s, "obstacle '" + run_.scenario.obstacles[k].id + "'");
     }
     for (std::size_t k = 0; k < moved_.size(); ++k) {
@@ -198,7 +200,18 @@ class DecisionAudit : public RowAudit {
     return missing ? Verdict::meets : Verdict::clear;
   }
 
-  bool is_excluded(const Seen& s, const geometry::Segment& edge) const {
+  /// One half-plane against the disc, or those against the edges of the polygon round it, which holds it.
+  Verdict against_disc(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
+    const Point apart = s.at - obstacle.disc->center;
+    const Rational away = exact::dot(apart, apart), radii = s.radius + obstacle.disc->radius;
+    in_reach = away <= (radii + s.reach) * (radii + s.reach);
+    if (!in_reach) return Verdict::clear;
+    if (away < radii * radii) return Verdict::unknown;
+    if (is_excluded(s, obstacle.disc->disc)) return Verdict::clear;
+    return against_edges(s, obstacle, in_reach);
+  }
+
+  bool is_excluded(const Seen& s, const geometry::ConvexShape& edge) const {
     const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
     return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const DecisionConstraint& c) {
       return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});

@@ -11,9 +11,21 @@ using exact::StepMotion;
 using exact::Verdict;
 using formation::MotionLaw;
 
-/// Whether what follows the chord comes nearer than r to an edge or is inside.
+/// Whether what follows the chord comes nearer than `reach` to the point.
+Verdict against_point(const Chord& chord, const exact::Point& point, const Rational& reach) {
+  const Rational squared = exact::squared_distance(point, chord.way);
+  if (chord.stray < reach) {
+    const Rational surely = reach - chord.stray;
+    if (squared < surely * surely) return Verdict::meets;
+  }
+  const Rational possibly = reach + chord.stray;
+  return squared >= possibly * possibly ? Verdict::clear : Verdict::unknown;
+}
+
+/// Whether what follows the chord comes nearer than r to an edge or is inside, or comes nearer than r to the disc.
 Verdict against(const Chord& chord, const RationalObstacle& obstacle, const std::vector<std::size_t>& edges,
                 const Rational& r) {
+  if (obstacle.disc) return against_point(chord, obstacle.disc->center, r + obstacle.disc->radius);
   const auto some_nearer_than = [&](const Rational& reach) {
     return std::any_of(edges.begin(), edges.end(), [&](std::size_t edge) {
       return exact::come_nearer_than(chord.way, obstacle.edges[edge], reach);
@@ -24,21 +36,10 @@ Verdict against(const Chord& chord, const RationalObstacle& obstacle, const std:
   return exact::is_inside(chord.way.from, *obstacle.obstacle) ? Verdict::meets : Verdict::clear;
 }
 
-/// Whether what follows the chord comes nearer than `reach` to the origin.
-Verdict against_origin(const Chord& chord, const Rational& reach) {
-  const Rational squared = exact::squared_distance({Rational(0), Rational(0)}, chord.way);
-  if (chord.stray < reach) {
-    const Rational surely = reach - chord.stray;
-    if (squared < surely * surely) return Verdict::meets;
-  }
-  const Rational possibly = reach + chord.stray;
-  return squared >= possibly * possibly ? Verdict::clear : Verdict::unknown;
-}
-
 class MotionAudit : public RowAudit {
  public:
   explicit MotionAudit(const AuditedRun& run) : run_(run) {
-    for (const formation::MovingObstacle& o : run.scenario.moving_obstacles) moving_.emplace_back(o.shape);
+    for (const formation::MovingObstacle& o : run.scenario.moving_obstacles) moving_.emplace_back(o);
   }
 
   void check_step(const RowInRun& at) override {
@@ -143,7 +144,7 @@ class MotionAudit : public RowAudit {
       const Rational reach = Rational(radius) + Rational(other);
       const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
       const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
-      const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };
+      const auto test = [&](const Chord& chord) { return against_point(chord, {Rational(0), Rational(0)}, reach); };
       answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot", run_.scenario.robots[j].id);
     }
   }

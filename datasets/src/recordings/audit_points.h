@@ -74,9 +74,19 @@ inline bool are_apart(const geometry::Box& a, const geometry::Box& b, double r) 
   return a.low.x - b.high.x > r || b.low.x - a.high.x > r || a.low.y - b.high.y > r || b.low.y - a.high.y > r;
 }
 
-/// An obstacle's edges as rationals, once for all steps.
+/// A disc as rationals.
+struct RationalDisc {
+  explicit RationalDisc(const geometry::Disc& d) : disc(d), center(exact::exactly(d.center)), radius(d.radius) {}
+  geometry::Disc disc;
+  exact::Point center;
+  exact::Rational radius;
+};
+
+/// An obstacle's edges as rationals, once for all steps. Of a disc they are those of the polygon round it.
 struct RationalObstacle {
-  explicit RationalObstacle(const geometry::Obstacle& shape) : obstacle(&shape), segments(edges_of(shape)) {
+  template <class Obstacle>
+  explicit RationalObstacle(const Obstacle& o) : obstacle(&o.shape), segments(edges_of(o.shape)) {
+    if (o.disc) disc.emplace(*o.disc);
     for (const geometry::Segment& edge : segments) {
       edges.push_back({exact::exactly(edge.a), exact::exactly(edge.b)});
       boxes.push_back(box_of(edge));
@@ -93,6 +103,7 @@ struct RationalObstacle {
   }
 
   const geometry::Obstacle* obstacle;
+  std::optional<RationalDisc> disc;  ///< what robots must keep clear of, where set
   std::vector<geometry::Segment> segments;
   std::vector<exact::Straight> edges;
   std::vector<geometry::Box> boxes;

@@ -18,6 +18,7 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
   head_.scenario = scenario.name;
   head_.every = every;
   for (const formation::SceneObstacle& o : scenario.obstacles) {
+    if (o.disc) continue;  // a body
     const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
   }

@@ -11,6 +11,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_at.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/simulation.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
@@ -93,6 +94,9 @@ void refuse_other_formats(const std::filesystem::path& path, const std::string& 
   throw no_scenario(path.string(), format == "gdal" ? "a vector file" : "format " + format);
 }
 
+/// Share of the coordinates, above what `polygon_round` takes.
+constexpr double kLeastDisc = 1e-12;
+
 /// Reads one scenario; a class only so that the file's name and folder need not be handed round.
 class ScenarioReader {
  public:
@@ -113,7 +117,6 @@ class ScenarioReader {
     scenario.name = tree.at("name").get<std::string>();
     scenario.description = tree.value("description", std::string());
     read_obstacle_list(list_in(tree, "obstacles"), scenario);
-    read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);
     read_robot_list(tree.at("robots"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
@@ -121,6 +124,7 @@ class ScenarioReader {
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_value(JsonCursor(tree, file_, ""), scenario);
+    read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
     refuse_repeated_ids(scenario);
     if (scenario.formation && tree.at("formation").at("leader").contains("to"))
       plan_leader_of(tree.at("formation").at("leader"), scenario, file_);
@@ -150,7 +154,7 @@ class ScenarioReader {
           throw DataError(DataCode::key_unknown, file_, "/obstacles/" + std::to_string(k) + "/" + key,
                           "an unknown key \"" + std::string(key) + "\"",
                           "an obstacle that stands; one that moves goes into the list \"moving_obstacles\", with a "
-                          "\"path\" and a \"speed\"");
+                          "\"path\" and a \"speed\", or a \"velocity\"");
   }
 
   void read_robot_list(const Json& list, Scenario& scenario) {
@@ -168,6 +172,11 @@ class ScenarioReader {
         read_obstacle_file(list[k], pointer, scenario);
       } else {
         const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
+        if (list[k].contains("disc")) {
+          scenario.obstacles.push_back(formation::disc_obstacle(id, to_disc(list[k].at("disc"), pointer)));
+          origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
+          continue;
+        }
         ValidationResult checked = validate(to_raw(list[k], id, pointer));
         refuse_unrepaired(checked, file_);
         scenario.obstacles.push_back({id, std::move(checked.shape)});
@@ -180,14 +189,55 @@ class ScenarioReader {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const std::string pointer = "/moving_obstacles/" + std::to_string(k);
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
+      formation::TimedPath motion = to_motion(list[k], pointer, scenario);
+      if (list[k].contains("disc")) {
+        scenario.moving_obstacles.push_back(
+            formation::moving_disc(id, to_disc(list[k].at("disc"), pointer), std::move(motion)));
+        continue;
+      }
       ValidationResult checked = validate(to_raw(list[k], id, pointer));
       refuse_unrepaired(checked, file_);
-      formation::TimedPath motion{list[k].at("path").get<std::vector<Vec2>>()};
-      motion.speed = list[k].value("speed", 0.0);
-      if (list[k].contains("profile"))
-        motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");
       scenario.moving_obstacles.push_back({id, std::move(checked.shape), std::move(motion)});
     }
+  }
+
+  geometry::Disc to_disc(const Json& object, const std::string& pointer) const {
+    const geometry::Disc disc{object.at("centre").get<Vec2>(), object.at("radius").get<double>()};
+    const double size = std::max(std::fabs(disc.center.x), std::fabs(disc.center.y)) + disc.radius;
+    if (!(disc.radius >= kLeastDisc * size))
+      throw DataError(DataCode::scenario, file_, pointer + "/disc/radius", number_text(disc.radius),
+                      "at least a 10^12-th of the coordinates (m): less is lost in their rounding");
+    return disc;
+  }
+
+  /// Along a path, or with velocities: those become the path of a run's whole time.
+  formation::TimedPath to_motion(const Json& object, const std::string& pointer, const Scenario& scenario) const {
+    if (!object.contains("velocity") && !object.contains("velocities")) {
+      formation::TimedPath motion{object.at("path").get<std::vector<Vec2>>()};
+      motion.speed = object.value("speed", 0.0);
+      if (object.contains("profile"))
+        motion.profile = to_profile(object.at("profile"), motion.path, file_, pointer + "/profile");
+      return motion;
+    }
+    for (const char* key : {"path", "speed", "profile"})
+      if (object.contains(key))
+        throw DataError(DataCode::no_alternative, file_, pointer, "a velocity and \"" + std::string(key) + "\"",
+                        "\"path\" with \"speed\" or \"profile\", or \"velocity\", or \"velocities\"");
+    std::vector<formation::TimedVelocity> velocities;
+    if (object.contains("velocity")) velocities.push_back({0.0, object.at("velocity").get<Vec2>()});
+    for (const Json& entry : list_in(object, "velocities")) {
+      const formation::TimedVelocity next{entry[0].get<double>(), {entry[1].get<double>(), entry[2].get<double>()}};
+      if (next.time < 0.0 || (!velocities.empty() && next.time < velocities.back().time))
+        throw DataError(DataCode::scenario, file_, pointer + "/velocities/" + std::to_string(velocities.size()) + "/0",
+                        number_text(next.time) + " s", "times that begin at 0 or later and do not fall");
+      velocities.push_back(next);
+    }
+    formation::TimedPath motion = formation::path_of({}, velocities, scenario.time_limit + scenario.time_step);
+    for (const Vec2 p : motion.path)
+      if (std::max(std::fabs(p.x), std::fabs(p.y)) > kFarthest)
+        throw DataError(DataCode::scenario, file_, pointer, "a velocity that leads " + number_text(norm(p)) + " m away",
+                        "at most 1e9 m within time_limit");
+    return motion;
   }
 
   void read_obstacle_file(const Json& object, const std::string& pointer, Scenario& scenario) {
@@ -195,6 +245,7 @@ class ScenarioReader {
     ReadOptions options;
     options.format = object.value("format", std::string());
     options.units = to_units(object.value("units", std::string("automatic")));
+    if (object.contains("unknown")) parse(object.at("unknown").get<std::string>(), options.unknown);
     const std::string prefix = object.value("id", named.stem().string());
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);

@@ -20,7 +20,12 @@ void append_shape(JsonWriter& json, const geometry::Polygon& polygon) {
 template <class Obstacle>
 void begin_obstacle(JsonWriter& json, const Obstacle& obstacle) {
   json.begin_object().member("id", obstacle.id);
-  std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
+  if (obstacle.disc)
+    json.object("disc", [&](JsonWriter& disc) {
+      disc.member("centre", obstacle.disc->center).member("radius", obstacle.disc->radius);
+    });
+  else
+    std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
 }
 
 void append_profile(JsonWriter& json, const std::vector<formation::SpeedKnot>& profile) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/obstacle_index.h"
@@ -78,6 +79,7 @@ class ClearanceSweep::Sweep {
     std::vector<geometry::Box> boxes;
     for (const SceneObstacle& o : scenario.obstacles) {
       largest_.push_back(largest(o.shape));
+      cores_.push_back(core_of(o));
       geometry::Box& box = boxes.emplace_back();
       for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
     }
@@ -89,6 +91,7 @@ class ClearanceSweep::Sweep {
     for (const MovingObstacle& o : scenario.moving_obstacles) {
       ways_.push_back(way_of(o.motion, kToTheEnd));
       moving_largest_.push_back(largest(o.shape));
+      moving_cores_.push_back(core_of(o));
     }
   }
 
@@ -238,7 +241,8 @@ class ClearanceSweep::Sweep {
     double room = most;
     for (const std::size_t o : near_obstacles(robot, most)) {
       const double rounding = 2.0 * geometry::rounding_of_distance(std::max(largest_[o], largest(quiet.place)));
-      room = std::min(room, index_of(o).swept_distance({quiet.place, quiet.place}, most + rounding) - rounding);
+      const double off = rounding + cores_[o].grown;
+      room = std::min(room, index_of(o).swept_distance({quiet.place, quiet.place}, most + off) - off);
       if (room < worth) break;
     }
     if (room >= worth) {
@@ -252,7 +256,7 @@ class ClearanceSweep::Sweep {
 
   const geometry::ObstacleIndex& index_of(std::size_t obstacle) const {
     std::optional<geometry::ObstacleIndex>& index = obstacles_[obstacle];
-    if (!index) index.emplace(scenario_.obstacles[obstacle].shape);
+    if (!index) index.emplace(cores_[obstacle].shape);
     return *index;
   }
 
@@ -268,9 +272,8 @@ class ClearanceSweep::Sweep {
     const double radius = scenario_.robots[robot].radius;
     const auto [kind, index] = other;
     if (kind == CollisionKind::robot) return -(radius + scenario_.robots[index].radius);
-    const geometry::Obstacle& shape =
-        kind == CollisionKind::obstacle ? scenario_.obstacles[index].shape : scenario_.moving_obstacles[index].shape;
-    return std::holds_alternative<geometry::Polyline>(shape) ? -radius : -kInfinity;
+    const Core& core = kind == CollisionKind::obstacle ? cores_[index] : moving_cores_[index];
+    return std::holds_alternative<geometry::Polyline>(core.shape) ? -(radius + core.grown) : -kInfinity;
   }
 
   void note(std::size_t robot, Other other, std::size_t step, double end, double bound, double& least) {
@@ -305,7 +308,7 @@ class ClearanceSweep::Sweep {
   /// Beyond `enough` any number that is not less.
   double obstacle_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
     constexpr double kRounding = 1e-12;
-    const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
+    const double radius = scenario_.robots[robot].radius + cores_[obstacle].grown, reach = radius + motion.reach();
     return least_clearance(
         [&](double start, double end) {
           const Segment chord = motion.chord(start, end);
@@ -337,8 +340,8 @@ class ClearanceSweep::Sweep {
     const double end = time + motion.decay.duration;
     const double late =
         kRoundingOfTime * end * (motion.speed_bound() + 2.0 * piece.speed_bound(std::min(end, piece.to)));
-    const double radius = scenario_.robots[robot].radius, off = radius + late + piece.error;
-    const geometry::Obstacle& shape = scenario_.moving_obstacles[obstacle].shape;
+    const Core& core = moving_cores_[obstacle];
+    const double radius = scenario_.robots[robot].radius + core.grown, off = radius + late + piece.error;
     return least_clearance(
         [&](double start, double stop) {
           const double t0 = time + start * motion.decay.duration, t1 = time + stop * motion.decay.duration;
@@ -347,7 +350,7 @@ class ClearanceSweep::Sweep {
           const double others = radius + motion.reach() + largest(chord);
           const double bend = std::fabs(piece.rate) * (t1 - t0) * (t1 - t0) / 8.0;
           return ChordClearance{
-              geometry::swept_distance(shape, seen) - off - rounding(moving_largest_[obstacle], seen, others),
+              geometry::swept_distance(core.shape, seen) - off - rounding(moving_largest_[obstacle], seen, others),
               motion.stray(stop - start) + bend};
         },
         from, to, enough);
@@ -401,11 +404,10 @@ class ClearanceSweep::Sweep {
     const auto [kind, index] = other;
     if (kind == CollisionKind::robot)
       return norm(place - moment.other.at(share)) - radius - scenario_.robots[index].radius;
-    if (kind == CollisionKind::obstacle)
-      return geometry::signed_distance(scenario_.obstacles[index].shape, place) - radius;
+    if (kind == CollisionKind::obstacle) return signed_distance(scenario_.obstacles[index], place) - radius;
     const std::vector<WayPiece>& way = ways_[index];
     const Vec2 moved = way[std::min(piece_at(way, time), way.size() - 1)].at(time);
-    return geometry::signed_distance(scenario_.moving_obstacles[index].shape, place - moved) - radius;
+    return signed_distance(scenario_.moving_obstacles[index], place - moved) - radius;
   }
 
   std::string name_of(Other other) const {
@@ -457,6 +459,7 @@ class ClearanceSweep::Sweep {
   const Recording& run_;
   Decay decay_{run_.tracking_gain, run_.time_step};
   std::vector<double> largest_, moving_largest_;
+  std::vector<Core> cores_, moving_cores_;
   double largest_of_all_ = 0.0;
   mutable std::vector<std::optional<geometry::ObstacleIndex>> obstacles_;  ///< of those that were near
   geometry::BoxGrid by_place_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/metrics.h"
+#include "exactvo/formation/disc_obstacle.h"
 
 #include <algorithm>
 #include <utility>
@@ -163,10 +164,9 @@ std::vector<double> obstacle_distance_series(const Scenario& scenario, const Rec
   for (const Step& row : recording.steps) {
     double least = geometry::kInfinity;
     const Vec2 place = row.robots[robot].position;
-    for (const SceneObstacle& o : scenario.obstacles)
-      least = std::min(least, geometry::signed_distance(o.shape, place));
+    for (const SceneObstacle& o : scenario.obstacles) least = std::min(least, signed_distance(o, place));
     for (const MovingObstacle& o : scenario.moving_obstacles)
-      least = std::min(least, geometry::signed_distance(o.shape, place - displacement_at(o, row.time)));
+      least = std::min(least, signed_distance(o, place - displacement_at(o, row.time)));
     series.push_back(least - scenario.robots[robot].radius);
   }
   return series;

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/disc_obstacle.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/passing.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
@@ -45,7 +47,7 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
 }
 
 bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
-  return geometry::signed_distance(o.shape, t.place) + t.reach < robot.radius;
+  return signed_distance(o, t.place) + t.reach < robot.radius;
 }
 
 /// Those that block a target, ascending.
@@ -56,25 +58,37 @@ std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes,
   return found;
 }
 
+bool lies_inside(const SceneObstacle& o, const Target& t) {
+  return signed_distance(o, t.place) < 0.0;
+}
+
 void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
                        std::vector<std::string>& out) {
   for (const std::size_t k : which) {
     const SceneObstacle& o = s.obstacles[k];
-    const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
-    const std::string where = inside ? ", lies inside obstacle '" + o.id + "'"
-                                     : ", is too near to obstacle '" + o.id + "' for the robot's radius";
+    const std::string where = lies_inside(o, t) ? ", lies inside obstacle '" + o.id + "'"
+                                                : ", is too near to obstacle '" + o.id + "' for the robot's radius";
     out.push_back(t.name + where + ": it cannot be reached");
   }
 }
 
-/// Returns where the robot gets to. Where the map is there already, asking it is cheaper than looking for an open way.
-std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, const OpenWay& open,
-                                 Reachability& reach, std::vector<std::string>& out) {
-  if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
+/// Returns where the robot gets to; nothing where that is not known. Where the map is there already, asking it is
+/// cheaper than looking for an open way. A goal that leaves the robot no room may be shut off as well: a smaller robot
+/// would not get there either, so the radius is not named.
+std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes, const OpenWay& open,
+                                   const Robot& robot, Vec2 from, const Target& t, Reachability& reach,
+                                   std::vector<std::string>& out) {
   const Destination to{t.place, t.reach};
-  if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
-  if (reach.is_proven_out_of_reach(robot.radius, from, to))
-    out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
+  const std::vector<std::size_t> in_the_way = blocking(s, boxes, robot, t);
+  if (in_the_way.empty()) {
+    if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
+    if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
+    if (!reach.is_proven_out_of_reach(robot.radius, from, to)) return std::nullopt;
+  } else if (!reach.is_shut_off(robot.radius, from, t.place)) {
+    warn_of_obstacles(s, in_the_way, t, out);
+    return std::nullopt;
+  }
+  out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
   return std::nullopt;
 }
 
@@ -131,24 +145,6 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
     if (other != s.robots.end())
       out.push_back(targets[g].name + ", cannot be reached while " + other->id + " is at its last goal");
   }
-}
-
-/// Robots that have arrived before they move, all in one sentence: as a rule the scene is in another unit of length.
-/// Who starts in its very goal is to stay there.
-void warn_of_goals_at_start(const Scenario& s, std::vector<std::string>& out) {
-  constexpr std::size_t kNamed = 10;
-  std::vector<std::string> ids;
-  for (const Robot& robot : s.robots) {
-    const auto is_there = [&](Vec2 goal) { return norm(goal - robot.position) <= s.arrival_tolerance; };
-    const bool stays = robot.goals.size() == 1 && robot.goals[0] == robot.position;
-    if (!stays && std::all_of(robot.goals.begin(), robot.goals.end(), is_there)) ids.push_back(robot.id);
-  }
-  if (ids.empty()) return;
-  std::string text = ids[0];
-  for (std::size_t k = 1; k < std::min(ids.size(), kNamed); ++k) text += ", " + ids[k];
-  if (ids.size() > kNamed) text += " and " + std::to_string(ids.size() - kNamed) + " more";
-  out.push_back(geometry::counted(ids.size(), "robot") + " within arrival_tolerance, " + metres(s.arrival_tolerance) +
-                ", of the goal at the start, arrived before any move (lengths are in metres): " + text);
 }
 
 /// Robots that have to pass each other and cannot; the first ones.
@@ -228,10 +224,10 @@ void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::
 
 /// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
 void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std::string>& out) {
-  const geometry::Obstacle hull = geometry::Polygon{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
-  const bool has_inside = std::get<geometry::Polygon>(hull).outer.size() > 2;
+  const geometry::Polygon hull{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
+  const bool is_larger = !o.disc && hull.outer.size() > 2;  // than the obstacle
   for (const Robot& robot : s.robots) {
-    if (has_inside && geometry::signed_distance(hull, robot.position) < robot.radius)
+    if (is_larger && geometry::signed_distance(hull, robot.position) < robot.radius)
       out.push_back(robot.id + " starts inside the convex hull of moving obstacle '" + o.id +
                     "', as which it is avoided: the run begins in contact");
   }
@@ -269,7 +265,7 @@ std::optional<Rest> rest_of(const Scenario& s, const MovingObstacle& o) {
 void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, std::vector<std::string>& out) {
   for (const MovingObstacle& o : s.moving_obstacles) {
     const std::optional<Rest> rest = rest_of(s, o);
-    if (!rest || geometry::signed_distance(o.shape, last.place - rest->moved) + last.reach >= robot.radius) continue;
+    if (!rest || signed_distance(o, last.place - rest->moved) + last.reach >= robot.radius) continue;
     out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
                   (rest->since > 0.0 ? " after " + number_text(rest->since, 6) + " s" : "") +
                   ": from then on it cannot be reached");
@@ -329,12 +325,11 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   const OpenWay open(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
-    std::optional<Vec2> from = scenario.robots[i].position;
-    for (const Target& t : targets) {
-      const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
-      warn_of_obstacles(scenario, in_the_way, t, out);
-      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, open, reach, out) : std::nullopt;
-    }
+    Vec2 from = scenario.robots[i].position;  // and the last goal that it gets to
+    for (const Target& t : targets)
+      if (const std::optional<Vec2> end =
+              warn_of_target(scenario, boxes, open, scenario.robots[i], from, t, reach, out))
+        from = *end;
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_goals_on_the_way(scenario, i, targets, out);
     warn_of_fast_start(scenario, scenario.robots[i], out);
@@ -342,7 +337,7 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   }
   warn_of_pairs(scenario, last, out);
   if (!scenario.formation) warn_of_near_pairs(scenario, last, out);
-  if (!scenario.formation) warn_of_goals_at_start(scenario, out);
+  if (std::string arrived = arrived_at_start(scenario); !arrived.empty()) out.push_back(std::move(arrived));
   warn_of_passing(scenario, out);
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;
@@ -352,3 +347,26 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
 }
 
 }  // namespace exactvo::formation::detail
+
+namespace exactvo::formation {
+
+std::string arrived_at_start(const Scenario& s) {
+  constexpr std::size_t kNamed = 10;
+  std::vector<std::string> ids;
+  std::size_t count = 0;
+  if (s.formation) return "";
+  for (const Robot& robot : s.robots) {
+    const auto is_there = [&](Vec2 goal) { return norm(goal - robot.position) <= s.arrival_tolerance; };
+    const bool stays = robot.goals.size() == 1 && robot.goals[0] == robot.position;
+    if (stays || !std::all_of(robot.goals.begin(), robot.goals.end(), is_there)) continue;
+    if (++count <= kNamed) ids.push_back(robot.id);
+  }
+  if (count == 0) return "";
+  std::string text = ids[0];
+  for (std::size_t k = 1; k < ids.size(); ++k) text += ", " + ids[k];
+  if (count > kNamed) text += " and " + std::to_string(count - kNamed) + " more";
+  return geometry::counted(count, "robot") + " within arrival_tolerance, " + detail::metres(s.arrival_tolerance) +
+         ", of the goal at the start, arrived before any move (lengths are in metres): " + text;
+}
+
+}  // namespace exactvo::formation

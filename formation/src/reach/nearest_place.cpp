@@ -100,9 +100,10 @@ std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 go
     }
   };
   if (std::isinf(nearer_than))
-    for (const Segment& edge : edges_->all()) add_feet_of(edge);
+    for (const Segment& edge : reach_.edges().all()) add_feet_of(edge);
   else
-    edges_->grid().for_each_within(goal, nearer_than + offset, [&](std::size_t k) { add_feet_of((*edges_)[k]); });
+    reach_.edges().grid().for_each_within(goal, nearer_than + offset,
+                                          [&](std::size_t k) { add_feet_of(reach_.edges()[k]); });
   return all;
 }
 
@@ -110,11 +111,11 @@ std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 go
 std::vector<NearestPlaces::Candidate> NearestPlaces::crossings(double offset, Vec2 goal, double nearer_than) const {
   std::vector<Candidate> all;
   std::vector<Vec2> points;
-  edges_->grid().for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
-    const Outline outline = outline_of((*edges_)[i], offset);
+  reach_.edges().grid().for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
+    const Outline outline = outline_of(reach_.edges()[i], offset);
     points.clear();
-    edges_->grid().for_each_meeting(edges_->grid().box(i).grown(2.0 * offset), [&](std::size_t k) {
-      if (k < i) cross_outlines(outline, outline_of((*edges_)[k], offset), offset, points);
+    reach_.edges().grid().for_each_meeting(reach_.edges().grid().box(i).grown(2.0 * offset), [&](std::size_t k) {
+      if (k < i) cross_outlines(outline, outline_of(reach_.edges()[k], offset), offset, points);
     });
     for (const Vec2 p : points)
       if (norm(p - goal) < nearer_than) all.push_back({norm(p - goal), p});
@@ -131,8 +132,8 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
   const geometry::RoutePlan& plan = reach_.plan(radius);
   const auto has_room = [&](Vec2 place) {
     bool clear = true;
-    edges_->grid().for_each_within(
-        place, radius, [&](std::size_t k) { clear = clear && geometry::distance((*edges_)[k], place) >= radius; });
+    reach_.edges().grid().for_each_within(
+        place, radius, [&](std::size_t k) { clear = clear && geometry::distance(reach_.edges()[k], place) >= radius; });
     return clear;
   };
   for (const Candidate& c : all)
@@ -143,9 +144,7 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
 /// Whether it has these places, and the disc is free at the first. REQUIRES of all that follows: it is.
 bool NearestPlaces::is_map_for(double radius, Vec2 from, Vec2 goal) {
   if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return false;
-  if (!reach_.plan(radius).is_reachable(from, from)) return false;
-  if (!edges_) edges_.emplace(obstacles_);
-  return true;
+  return reach_.plan(radius).is_reachable(from, from);
 }
 
 /// From edges: half of the room is left for rounding.
@@ -163,7 +162,7 @@ std::optional<NearestPlace> NearestPlaces::nearest(double radius, double room, V
   all = crossings(offset, goal, best->distance);
   all.push_back(*best);
   best = first_reachable(std::move(all), radius + room, from);
-  return NearestPlace{best->place, best->distance, std::min(best->distance, at_least(radius, from, goal))};
+  return NearestPlace{best->place, best->distance, std::min(best->distance, reach_.at_least(radius, from, goal))};
 }
 
 std::optional<Vec2> NearestPlaces::within_reach(double radius, double room, Vec2 from, const Destination& to) {
@@ -174,45 +173,6 @@ std::optional<Vec2> NearestPlaces::within_reach(double radius, double room, Vec2
   for (const Candidate& c : crossings(offset, to.place, kWithin * to.reach)) all.push_back(c);
   const std::optional<Candidate> best = first_reachable(std::move(all), radius + room, from);
   return best ? std::optional(best->place) : std::nullopt;
-}
-
-/// The straight way from the goal to a free place x beyond the chain crosses the chain in some point z. That is at
-/// least the radius from x where it lies on an edge. In a gap of width w, z is no farther than w / 2 from an end, and
-/// at least the radius less that from x.
-double NearestPlaces::distance_beyond(const geometry::Separated& answer, double radius, Vec2 goal) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < answer.chain.size(); ++k) {
-    const Segment piece{answer.chain[k].point.rounded, answer.chain[(k + 1) % answer.chain.size()].point.rounded};
-    const double gap = answer.chain[k].gap_follows ? norm(piece.b - piece.a) : 0.0;
-    least = std::min(least, geometry::distance(piece, goal) + radius - 0.5 * gap);
-  }
-  return least;
-}
-
-double NearestPlaces::at_least(double radius, Vec2 from, Vec2 goal) {
-  if (!is_map_for(radius, from, goal)) return 0.0;
-  const geometry::RouteAnswer answer = reach_.plan(radius).query(from, goal);
-  if (const auto* separated = std::get_if<geometry::Separated>(&answer))
-    return distance_beyond(*separated, radius, goal);
-  const auto* blocked = std::get_if<geometry::Blocked>(&answer);
-  if (!blocked || blocked->end == geometry::Blocked::End::start) return 0.0;
-  double nearest_edge = std::numeric_limits<double>::infinity();
-  edges_->grid().for_each_within(goal, radius, [&](std::size_t k) {
-    nearest_edge = std::min(nearest_edge, geometry::distance((*edges_)[k], goal));
-  });
-  // A polygon's boundary lies between what is inside of it and every free place.
-  double bound = std::max(0.0, radius - nearest_edge);
-  for (const SceneObstacle& o : obstacles_) {
-    const auto* polygon = std::get_if<geometry::Polygon>(&o.shape);
-    if (polygon && geometry::contains(*polygon, goal))
-      bound = std::max(bound, radius - geometry::signed_distance(o.shape, goal));
-  }
-  // Nor can a smaller disc come there that the goal itself would leave room for.
-  const double smaller = 0.999 * std::min(radius, nearest_edge);
-  if (!(smaller >= kLeastPlanned)) return bound;
-  const geometry::RouteAnswer of_smaller = geometry::RoutePlan(reach_.map(), smaller).query(from, goal);
-  const auto* separated = std::get_if<geometry::Separated>(&of_smaller);
-  return separated ? std::max(bound, distance_beyond(*separated, radius, goal)) : bound;
 }
 
 }  // namespace exactvo::formation::detail

@@ -13,7 +13,6 @@
 
 #include "exactvo/geometry/routes.h"
 #include "reach/reachability.h"
-#include "scene/edges_by_place.h"
 
 namespace exactvo::formation::detail {
 
@@ -28,9 +27,8 @@ std::string words_of(const NearestPlace& nearest);
 
 class NearestPlaces {
  public:
-  /// Both must outlive this.
-  NearestPlaces(const std::vector<SceneObstacle>& obstacles, Reachability& reach)
-      : obstacles_(obstacles), reach_(reach) {}
+  /// It must outlive this.
+  explicit NearestPlaces(Reachability& reach) : reach_(reach) {}
 
   /// The nearest place that leaves a disc of `radius` room to stand in besides `room`. Nothing where it can reach
   /// none. REQUIRES: the goal cannot be reached; radius and room no more than `reach` has its map for.
@@ -39,9 +37,6 @@ class NearestPlaces {
   /// A place within reach of the destination that can be reached, with room as above; the nearest of those tried.
   /// REQUIRES: as above.
   std::optional<Vec2> within_reach(double radius, double room, Vec2 from, const Destination& to);
-
-  /// m: no place that a disc can reach is nearer to the goal; proven up to rounding. REQUIRES: as above.
-  double at_least(double radius, Vec2 from, Vec2 goal);
 
  private:
   struct Candidate {
@@ -52,11 +47,8 @@ class NearestPlaces {
   bool is_map_for(double radius, Vec2 from, Vec2 goal);
   std::vector<Candidate> feet(double offset, Vec2 goal, double nearer_than) const;
   std::vector<Candidate> crossings(double offset, Vec2 goal, double nearer_than) const;
-  double distance_beyond(const geometry::Separated& answer, double radius, Vec2 goal) const;
 
-  const std::vector<SceneObstacle>& obstacles_;
   Reachability& reach_;
-  std::optional<EdgesByPlace> edges_;  ///< from the first question on
 };
 
 }  // namespace exactvo::formation::detail

@@ -60,11 +60,17 @@ std::vector<Vec2> corners_of(const Separated& answer) {
   return corners;
 }
 
-/// m, from the closed chain.
-double distance_to(const std::vector<Vec2>& chain, Vec2 place) {
+/// The straight way from the goal to a free place x beyond the chain crosses the chain in some point z. That is at
+/// least the radius from x where it lies on an edge. In a gap of width w, z is no farther than w / 2 from an end, and
+/// at least the radius less that from x.
+double distance_beyond(const Separated& answer, double radius, Vec2 goal) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < chain.size(); ++k)
-    least = std::min(least, geometry::distance({chain[k], chain[(k + 1) % chain.size()]}, place));
+  for (std::size_t k = 0; k < answer.chain.size(); ++k) {
+    const geometry::Segment piece{answer.chain[k].point.rounded,
+                                  answer.chain[(k + 1) % answer.chain.size()].point.rounded};
+    const double gap = answer.chain[k].gap_follows ? norm(piece.b - piece.a) : 0.0;
+    least = std::min(least, geometry::distance(piece, goal) + radius - 0.5 * gap);
+  }
   return least;
 }
 
@@ -113,31 +119,73 @@ std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, cons
 }
 
 bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destination& to) {
+  constexpr double kRounding = 1.0001;  // of the reach
   if (terrain_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
-  const RouteAnswer answer = plan(radius).query(from, to.place);
-  if (const auto* separated = std::get_if<Separated>(&answer)) {
-    // The disc lies on the same side of the chain as its centre.
-    if (to.reach == 0.0 || distance_to(corners_of(*separated), to.place) > 1.0001 * to.reach) return true;
-  } else if (!std::holds_alternative<Blocked>(answer) || std::get<Blocked>(answer).end == Blocked::End::start) {
-    return false;
-  }
+  const geometry::RoutePlan& of_robot = plan(radius);
+  if (!of_robot.is_reachable(from, from) || of_robot.is_reachable(from, to.place)) return false;
+  if (to.reach == 0.0 || at_least(radius, from, to.place) > kRounding * to.reach) return true;
   // A robot that is free at a place p within reach: from p to the destination nothing comes nearer than its radius
   // less the reach. A robot so much smaller would have a route.
   const double less = std::nextafter(radius - to.reach, 0.0);
   return less > kLeastPlanned && !plan(less).is_reachable(from, to.place);
 }
 
+double Reachability::at_least(double radius, Vec2 from, Vec2 goal) {
+  if (!map().covers(from) || !map().covers(goal) || !plan(radius).is_reachable(from, from)) return 0.0;
+  const double nearest_edge = distance_to_edges(goal, radius);
+  // A polygon's boundary lies between what is inside of it and every free place.
+  double bound = std::max(0.0, radius - nearest_edge);
+  for (const SceneObstacle& o : terrain_.obstacles) {
+    const auto* polygon = std::get_if<geometry::Polygon>(&o.shape);
+    if (polygon && geometry::contains(*polygon, goal))
+      bound = std::max(bound, radius - geometry::signed_distance(o.shape, goal));
+  }
+  const std::optional<Separated> separated = shut_off(radius, from, goal);
+  return separated ? std::max(bound, distance_beyond(*separated, radius, goal)) : bound;
+}
+
+bool Reachability::is_shut_off(double radius, Vec2 from, Vec2 goal) {
+  return map().covers(from) && map().covers(goal) && shut_off(radius, from, goal).has_value();
+}
+
+/// What a smaller disc cannot pass, the disc cannot pass either.
+std::optional<Separated> Reachability::shut_off(double radius, Vec2 from, Vec2 goal) {
+  constexpr double kFits = 0.999;  // of the room at the goal, for rounding
+  const auto separated_for = [&](const geometry::RoutePlan& disc) -> std::optional<Separated> {
+    if (disc.is_reachable(from, goal)) return std::nullopt;
+    RouteAnswer answer = disc.query(from, goal);
+    auto* separated = std::get_if<Separated>(&answer);
+    return separated ? std::optional(std::move(*separated)) : std::nullopt;
+  };
+  std::optional<Separated> found = separated_for(plan(radius));
+  const double smaller = kFits * distance_to_edges(goal, radius);
+  if (found || !(smaller >= kLeastPlanned) || !plan(radius).is_reachable(from, from)) return found;
+  return separated_for(geometry::RoutePlan(map(), std::min(smaller, radius)));
+}
+
+/// m, no farther than `most`; `most` where there is none.
+double Reachability::distance_to_edges(Vec2 place, double most) {
+  double least = most;
+  edges().grid().for_each_within(
+      place, most, [&](std::size_t k) { least = std::min(least, geometry::distance(edges()[k], place)); });
+  return least;
+}
+
+const EdgesByPlace& Reachability::edges() {
+  if (!edges_) edges_.emplace(terrain_.obstacles);
+  return *edges_;
+}
+
 std::string Reachability::why_not(double radius, Vec2 from, const Destination& to, const std::string& goal) {
   if (!map().covers(from) || !map().covers(to.place)) return goal + " is too far from all obstacles";
-  const RouteAnswer answer = plan(radius).query(from, to.place);
-  if (const auto* blocked = std::get_if<Blocked>(&answer)) {
-    const bool of_start = blocked->end == Blocked::End::start;
-    const SceneObstacle& by = terrain_.obstacles[blocked->by.obstacle];
-    const std::string what = of_start ? "the robot" : goal;
-    const bool is_inside = blocked->inside || geometry::signed_distance(by.shape, of_start ? from : to.place) < 0.0;
-    return what + (is_inside ? " lies inside" : " is nearer than the robot's radius to") + " obstacle '" + by.id + "'";
-  }
-  return words_of(std::get<Separated>(answer), radius, goal, to.place);
+  if (const std::optional<Separated> separated = shut_off(radius, from, to.place))
+    return words_of(*separated, radius, goal, to.place);
+  const auto blocked = std::get<Blocked>(plan(radius).query(from, to.place));
+  const bool of_start = blocked.end == Blocked::End::start;
+  const SceneObstacle& by = terrain_.obstacles[blocked.by.obstacle];
+  const std::string what = of_start ? "the robot" : goal;
+  const bool is_inside = blocked.inside || geometry::signed_distance(by.shape, of_start ? from : to.place) < 0.0;
+  return what + (is_inside ? " lies inside" : " is nearer than the robot's radius to") + " obstacle '" + by.id + "'";
 }
 
 std::vector<geometry::ChainPoint> Reachability::chain(double radius, Vec2 from, Vec2 goal) {

@@ -15,6 +15,7 @@
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
+#include "scene/edges_by_place.h"
 #include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
@@ -62,14 +63,28 @@ class Reachability {
   /// Whether no place within reach of the destination can be reached: proven, up to a rounding that leaves it open.
   bool is_proven_out_of_reach(double radius, Vec2 from, const Destination& to);
 
+  /// m, >= 0: no place that a disc can reach is nearer to the goal; proven up to rounding. 0 where the disc is not free
+  /// at `from`. REQUIRES: the goal cannot be reached; radius no more than the largest of the robots and `most_extra`.
+  double at_least(double radius, Vec2 from, Vec2 goal);
+
+  /// Whether a closed chain separates the two for a disc of `radius`, or for one as large as the goal leaves room for.
+  bool is_shut_off(double radius, Vec2 from, Vec2 goal);
+
   /// "obstacles 'a' and 'b' enclose the start, with gaps of at most 0.9 m for a robot 1 m wide"; the goal is called
-  /// `goal`. REQUIRES: the destination's place itself cannot be reached.
+  /// `goal`. A goal that leaves the robot no room and is shut off for a smaller one as well is said to be enclosed.
+  /// REQUIRES: the destination's place itself cannot be reached.
   std::string why_not(double radius, Vec2 from, const Destination& to, const std::string& goal);
 
   /// The closed chain that separates the two for a disc of `radius`; empty where none does.
   std::vector<geometry::ChainPoint> chain(double radius, Vec2 from, Vec2 goal);
 
+  /// Of all obstacles; made at the first question and kept.
+  const EdgesByPlace& edges();
+  const std::vector<SceneObstacle>& obstacles() const { return terrain_.obstacles; }
+
  private:
+  std::optional<geometry::Separated> shut_off(double radius, Vec2 from, Vec2 goal);
+  double distance_to_edges(Vec2 place, double most);
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;
 
   Terrain terrain_;
@@ -77,6 +92,7 @@ class Reachability {
   bool routes_;
   std::optional<geometry::RouteMap> map_;
   std::map<double, geometry::RoutePlan> plans_;  ///< by radius
+  std::optional<EdgesByPlace> edges_;
 };
 
 }  // namespace exactvo::formation::detail

@@ -101,7 +101,7 @@ class CrowdRun {
         crowd_(options_of(scenario, options)),
         ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
     add_robots();
-    for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
+    for (const SceneObstacle& o : scenario.obstacles) o.disc ? crowd_.add_body(*o.disc) : crowd_.add_obstacle(o.shape);
     for (const MovingObstacle& o : scenario.moving_obstacles)
       moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
     if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/navigator.h"
+#include "exactvo/formation/disc_obstacle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -242,7 +243,7 @@ class Navigator::Core {
     const double clear = solids_.clearance(x, kLooksRound);
     if (clear < 0.0)
       for (const SceneObstacle& o : obstacles_)
-        if (geometry::signed_distance(o.shape, x) < 0.0) return &o;
+        if (signed_distance(o, x) < 0.0) return &o;
     clear_place_ = x;
     clear_ = clear - kRounding;
     return nullptr;

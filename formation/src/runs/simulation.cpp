@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "control/consensus.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/require.h"
 
 #include "preflight/preflight.h"
 #include "reach/reachability.h"
 #include "runs/runs.h"
+#include "scene/number_text.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -63,6 +65,14 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
   return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
+}
+
+std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {
+  if (!scenario.formation || scenario.formation->offsets.empty()) return "";
+  const Vec2 moved = offsets_in_use(scenario, options).front() - scenario.formation->offsets.front();
+  if (!(norm(moved) > scenario.arrival_tolerance)) return "";
+  return "formation: recentre moves every slot by (" + number_text(moved.x, 4) + ", " + number_text(moved.y, 4) +
+         "), so that the offsets have no mean; \"recentre\": false keeps them as they are";
 }
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {

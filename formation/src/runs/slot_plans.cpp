@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
@@ -73,7 +74,7 @@ std::string SlotPlans::why_no_place(std::size_t robot, Vec2 from, Vec2 slot, Rea
     double nearest = geometry::kInfinity;
     std::string id;
     for (const SceneObstacle& o : scenario_.obstacles) {
-      const double distance = geometry::signed_distance(o.shape, slot);
+      const double distance = signed_distance(o, slot);
       if (distance < nearest) id = o.id, nearest = distance;
     }
     return "obstacle '" + id + "' " + (nearest > 0.0 ? "is only " + metres(nearest) + " from it" : "stands in it");

@@ -56,6 +56,7 @@ void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, S
 namespace exactvo::formation {
 
 geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement) {
+  if (obstacle.disc) return geometry::Disc{obstacle.disc->center + displacement, obstacle.disc->radius};
   std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
   for (Vec2& p : points) p += displacement;
   return geometry::convex_hull(points);

@@ -7,10 +7,12 @@
 #include <string>
 #include <utility>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/round_polygon.h"
 #include "exactvo/geometry/told_apart.h"
 #include "scene/field_problems.h"
 #include "scene/number_text.h"
@@ -119,16 +121,17 @@ void check_robots(const Scenario& s, Checker& c) {
 void check_starts(const Scenario& s, Checker& c) {
   const detail::ObstacleBoxes boxes(s.obstacles);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    const auto require_clear = [&](const geometry::Obstacle& shape, const char* kind, const std::string& id) {
-      const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
+    const auto require_clear = [&](const auto& obstacle, const char* kind) {
+      const double gap = signed_distance(obstacle, s.robots[i].position) - s.robots[i].radius;
       if (!(gap < 0.0)) return;
-      c.require(false, "/robots/" + std::to_string(i) + "/position",
-                show(s.robots[i].position) + ", overlapping " + kind + " '" + id + "' by " + detail::metres(-gap),
-                "a start that is clear of every obstacle");
+      c.require(
+          false, "/robots/" + std::to_string(i) + "/position",
+          show(s.robots[i].position) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
+          "a start that is clear of every obstacle");
     };
     for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))
-      require_clear(s.obstacles[k].shape, "obstacle", s.obstacles[k].id);
-    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle", o.id);
+      require_clear(s.obstacles[k], "obstacle");
+    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o, "moving obstacle");
   }
 }
 
@@ -143,12 +146,23 @@ void check_profile(const TimedPath& leader, const std::string& at, Checker& c) {
   }
 }
 
+/// What else it is, where it is said to be a disc.
+template <class Obstacle>
+void check_disc(const Obstacle& o, const std::string& at, Checker& c) {
+  const auto* polygon = std::get_if<geometry::Polygon>(&o.shape);
+  if (!o.disc) return;
+  const bool is_whole = o.disc->radius > 0.0 && std::isfinite(o.disc->radius) && geometry::is_finite(o.disc->center);
+  c.require(is_whole && polygon && geometry::holds_disc(*polygon, *o.disc), at + "/disc",
+            geometry::to_string(geometry::ConvexShape{*o.disc}), "a disc in the polygon round it (disc_obstacle.h)");
+}
+
 void check_moving(const Scenario& s, Checker& c) {
   for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k) {
     const MovingObstacle& o = s.moving_obstacles[k];
     const std::string at = "/moving_obstacles/" + std::to_string(k);
     c.require(!geometry::vertices_of(o.shape).empty(), at, "no points", "a polyline or polygon");
     for (Vec2 p : geometry::vertices_of(o.shape)) c.finite(p, at);
+    check_disc(o, at, c);
     c.require(!o.motion.path.empty(), at + "/path", "no points", "at least one point");
     for (Vec2 p : o.motion.path) c.finite(p, at + "/path");
     c.not_negative(o.motion.speed, at + "/speed", "m/s");
@@ -256,6 +270,8 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
   check_robots(scenario, c);
+  for (std::size_t k = 0; k < scenario.obstacles.size(); ++k)
+    check_disc(scenario.obstacles[k], "/obstacles/" + std::to_string(k), c);
   check_moving(scenario, c);
   check_times(rules_of(scenario, {}), scenario.arrival_tolerance, scenario.time_limit, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);

@@ -41,6 +41,7 @@ void Scene::add_pieces(const std::vector<SceneObstacle>& obstacles) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     first_piece_.push_back(pieces_.size());
     parts_.push_back(geometry::parts_of(obstacles[i].shape));
+    if (obstacles[i].disc) parts_.back().pieces = {*obstacles[i].disc};
     for (const geometry::ConvexShape& piece : parts_.back().pieces)
       pieces_.push_back(bodies_.add({BodyKind::enclosure, piece, {}, {i}}));
   }

@@ -44,7 +44,7 @@ Guide::Guide(const Terrain& terrain, Unreachable unreachable, double most_margin
     : unreachable_(unreachable),
       most_margin_(most_margin),
       reach_(terrain, most_margin + kSkins + most_radius),
-      nearest_(terrain.obstacles, reach_),
+      nearest_(reach_),
       space_(terrain.obstacles) {}
 
 CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
@@ -135,8 +135,7 @@ std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
     return "the widest way leaves the robot less than " + metres(kSkins) + " of room, too little to drive";
   std::string text = reach_.why_not(radius, from, to, "the goal");
   const bool asks_for_places_about = to.reach > 0.0 && has_room(radius, from);
-  if (asks_for_places_about && !reach_.is_proven_out_of_reach(radius, from, to) &&
-      !(nearest_.at_least(radius, from, to.place) > to.reach))
+  if (asks_for_places_about && !reach_.is_proven_out_of_reach(radius, from, to))
     text += "; no place within " + metres(to.reach) + " of it was found that can be reached, which is no proof";
   return text;
 }

@@ -2,6 +2,7 @@
 #include "steering/standing.h"
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/round_polygon.h"
 #include "scene/moment.h"
 
 namespace exactvo::formation::detail {
@@ -10,9 +11,10 @@ namespace {
 /// Moments: what has stood for so long counts as standing. A moment at a corner of a path does not.
 constexpr double kStands = 1.0;
 
-/// The convex hull, as which robots avoid it.
+/// The convex hull, as which robots avoid it; of a disc the polygon round it.
 geometry::Obstacle standing_shape(const MovingObstacle& obstacle, Vec2 displacement) {
   const geometry::ConvexShape hull = hull_of(obstacle, displacement);
+  if (const auto* disc = std::get_if<geometry::Disc>(&hull)) return geometry::polygon_round(*disc);
   if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&hull))
     return geometry::Polygon{polygon->vertices, {}};
   const auto& segment = std::get<geometry::Segment>(hull);

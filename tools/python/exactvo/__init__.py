@@ -24,7 +24,7 @@ except ModuleNotFoundError as _error:
     raise _extension_missing() from None
 from . import datasets, lp, routes, shapes, vo
 from .crowd import Crowd, RobotKind, StepReport
-from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError
+from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError, ScenarioWarning
 from .explorer import ExplorerPage, view
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
@@ -55,6 +55,7 @@ __all__ = [
     "Segment",
     "StepReport",
     "Unreachable",
+    "ScenarioWarning",
     "VelocityObstacle",
     "Wall",
     "__version__",

@@ -115,6 +115,7 @@ def read(
     *,
     format: str | None = None,
     units: str = "automatic",
+    unknown: str = "free",
     cell_size: float = 0.0,
     skip_invalid: bool = False,
     repair: bool = False,
@@ -123,13 +124,14 @@ def read(
 
     format         one of `readable_formats()`; else by content and extension
     units          "automatic" (as the file says), "metres" or "degrees"
+    unknown        what unknown cells of ROS maps are: "free" or "blocked"
     cell_size      m: side of a grid's cell where the file does not say; 0: 1 m, scans 0.05 m
     skip_invalid   put what cannot be used into `rejected` instead of raising at the first
     repair         cut what crosses itself, exactly (docs/guide/codes.md)
 
     Raises `DataError` with the feature, ring and vertex, `MissingFileError`, `ArgumentError`.
     """
-    return _file(_exactvo.read_obstacles(os.fspath(path), format, units, cell_size, skip_invalid, repair))
+    return _file(_exactvo.read_obstacles(os.fspath(path), format, units, unknown, cell_size, skip_invalid, repair))
 
 
 def parse_wkt(text: str, *, repair: bool = False) -> ObstacleFile:
@@ -163,6 +165,7 @@ def convert(
     *,
     format: str | None = None,
     units: str = "automatic",
+    unknown: str = "free",
     target_format: str | None = None,
     skip_invalid: bool = False,
     repair: bool = False,
@@ -170,7 +173,7 @@ def convert(
 ) -> list[str]:
     """Reads `source` and writes `target`, as `exactvo convert`: `read` and `write` have the options. Returns what is lost.
     Raises `DataError`, `MissingFileError`, `ArgumentError`."""
-    content = read(source, format=format, units=units, skip_invalid=skip_invalid, repair=repair)
+    content = read(source, format=format, units=units, unknown=unknown, skip_invalid=skip_invalid, repair=repair)
     return write(target, content, format=target_format, metres=metres)
 
 

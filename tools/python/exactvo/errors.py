@@ -26,7 +26,13 @@ __all__ = [
     "ExactVOError",
     "MissingFileError",
     "RouteNotProvenError",
+    "ScenarioWarning",
 ]
+
+
+class ScenarioWarning(UserWarning):
+    """What can be said of a scenario before it is run (`simulate`, `sweep`). `warnings.simplefilter("ignore",
+    exactvo.ScenarioWarning)` silences it, "error" raises it instead of running the scenario."""
 
 
 class ExactVOError(Exception):

@@ -7,7 +7,9 @@ import difflib
 import json
 import os
 import tempfile
+import warnings
 from collections.abc import Callable, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
@@ -17,7 +19,7 @@ import numpy.typing as npt
 
 from . import _exactvo
 from ._calls import explain_calls, is_number
-from .errors import ArgumentError
+from .errors import ArgumentError, ScenarioWarning
 from .explorer import ExplorerPage, view
 from .shapes import Floats, Obstacles, Polygon, ShapeLike, obstacles
 from .vo import HalfPlane
@@ -31,6 +33,9 @@ __all__ = ["METHODS", "JointPlan", "RecordedHalfPlane", "Recording", "Scenario",
 
 #: What `simulate(method=...)` takes: the textbook's baseline, the paper's, with merged enclosures, and the default.
 METHODS: tuple[str, ...] = tuple(_exactvo.method_names())
+
+#: Where `sweep` collects what its runs warn of, which are not the caller's; None: warnings of Python.
+_collected: ContextVar[list[str] | None] = ContextVar("_collected", default=None)
 
 _SOURCES = ("enclosure", "obstacle edge", "robot", "moving obstacle")
 _STATUSES = ("optimal", "relaxed", "infeasible", "no-interior")
@@ -368,7 +373,8 @@ def simulate(
     progress: Callable[[float], Union[bool, None]] | None = None,
 ) -> Recording:
     """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
-    `exactvo simulate`, bit for bit.
+    `exactvo simulate`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
+    that have arrived before they move, by how much `recentre` moves the slots of a formation.
 
     method       "orca" (the textbook's baseline), "ivo-edge" (the paper), "ivo-cluster", "ivo"
     guidance     "route" or "none" instead of the scenario's
@@ -383,10 +389,18 @@ def simulate(
     """
     given = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
     if isinstance(threads, int) and not 0 <= threads <= 1024:
+
+    def warn(text: str) -> None:
+        collected = _collected.get()
+        if collected is None:
+            warnings.warn(text, ScenarioWarning, stacklevel=4)  # this, `simulate`, its wrapper, the caller
+        else:
+            collected.append(text)
+
         raise ArgumentError("threads", repr(threads)[:60], "0 to 1024")
     return Recording(
         _exactvo.simulate(
-            given._native, method, guidance, liveness, controller, integrator, record_all, threads, progress
+            given._native, method, guidance, liveness, controller, integrator, record_all, threads, progress, warn
         )
     )
 

@@ -9,14 +9,15 @@ import itertools
 import json
 import os
 import tempfile
+import warnings
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from ._calls import explain_calls, is_whole
-from .errors import ArgumentError, DataError
-from .simulation import Scenario, _plain, simulate
+from .errors import ArgumentError, DataError, ScenarioWarning
+from .simulation import Scenario, _collected, _plain, simulate
 
 __all__ = ["sweep"]
 
@@ -51,6 +52,7 @@ def sweep(
     jobs         runs at a time, 1 to 1024; the rows are the same
     method and so on: options of `simulate`, the same in all runs in which they are not varied
 
+    What runs warn of is said once each, after the last run, as `ScenarioWarning`.
     Raises `ArgumentError`, `DataError`, `MissingFileError`; of a run that fails the first one's.
     """
     if not isinstance(vary, dict) or not all(isinstance(name, str) for name in vary):
@@ -60,6 +62,7 @@ def sweep(
     target = None if table is None else _csv_name(table)
     values = [_values(name, given) for name, given in vary.items()]
     base = _as_dict(scenario)
+    said: list[str] = []
 
     def run(chosen: tuple[Any, ...]) -> dict[str, Any]:
         fields = json.loads(base)
@@ -69,6 +72,7 @@ def sweep(
                 _set(fields, name, value)
             else:
                 given[name] = value
+        _collected.set(said)
         metrics = dict(simulate(fields, **given).metrics)
         row = dict(zip(vary, chosen))
         for name, count in metrics.pop("decisions").items():
@@ -80,6 +84,8 @@ def sweep(
 
     with ThreadPoolExecutor(jobs) as pool:
         rows = list(pool.map(run, itertools.product(*values)))
+    for text in sorted(set(said)):
+        warnings.warn(text, ScenarioWarning, stacklevel=3)  # this, its wrapper, the caller
     if target is not None:
         _write(target, rows)
     return rows

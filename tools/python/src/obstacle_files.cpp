@@ -19,14 +19,15 @@ namespace fs = std::filesystem;
 using namespace py::literals;
 using datasets::ObstacleFile;
 
-datasets::ReadOptions reading(const py::object& format, const std::string& units, py::handle cell_size,
-                              bool skip_invalid, bool repair) {
+datasets::ReadOptions reading(const py::object& format, const std::string& units, const std::string& unknown,
+                              py::handle cell_size, bool skip_invalid, bool repair) {
   datasets::ReadOptions options;
   if (!format.is_none()) {
     options.format = py::str(format);
     require_word(options.format, "format", datasets::readable_formats());
   }
   options.units = word<datasets::Units>(units, "units", datasets::unit_names(), &datasets::parse);
+  options.unknown = word<datasets::UnknownCells>(unknown, "unknown", datasets::unknown_cells_names(), &datasets::parse);
   options.cell_size = at_least_zero(cell_size, "cell_size");
   options.keep_going = skip_invalid;
   options.repair = repair;
@@ -70,9 +71,9 @@ py::dict as_dict(ObstacleFile file) {
                   "context"_a = datasets::WriteOptions{{}, std::move(file.plane), false, std::move(file.properties)});
 }
 
-py::dict read(const fs::path& path, const py::object& format, const std::string& units, py::handle cell_size,
-              bool skip_invalid, bool repair) {
-  const datasets::ReadOptions options = reading(format, units, cell_size, skip_invalid, repair);
+py::dict read(const fs::path& path, const py::object& format, const std::string& units, const std::string& unknown,
+              py::handle cell_size, bool skip_invalid, bool repair) {
+  const datasets::ReadOptions options = reading(format, units, unknown, cell_size, skip_invalid, repair);
   ObstacleFile file = without_gil([&] { return datasets::read_obstacles(path, options); });
   return as_dict(std::move(file));
 }

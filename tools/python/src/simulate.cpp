@@ -11,6 +11,7 @@
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
 #include "explorer/page.h"
 #include "module.h"
@@ -50,9 +51,25 @@ void fill_columns(Run& run) {
   }
 }
 
+/// Keeps the rows, and tells Python what is said before the run. What Python raises ends the run.
+class WarningSink : public formation::RunSink {
+ public:
+  explicit WarningSink(const py::object& warn) : warn_(warn) {}
+  void begin(const formation::Recording& run) override {
+    const py::gil_scoped_acquire held;
+    for (const std::string& warning : run.warnings) warn_(warning);
+  }
+  void add_row(formation::Step row) override { rows.push_back(std::move(row)); }
+
+  std::vector<formation::Step> rows;
+
+ private:
+  const py::object& warn_;
+};
+
 std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& method, const py::object& guidance,
                               const py::object& liveness, const std::string& controller, const std::string& integrator,
-                              bool record_all, int threads, const py::object& progress) {
+                              bool record_all, int threads, const py::object& progress, const py::object& warn) {
   using namespace formation;
   SimulationOptions options;
   options.method = word<Method>(method, "method", method_names(), &parse);
@@ -70,11 +87,14 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
   };
   auto run = std::make_unique<Run>();
   run->file.scenario = handle.scenario;
+  if (const std::string moved = recentring_notice(handle.scenario, options); !moved.empty()) warn(moved);
+  WarningSink sink(warn);
   {
     const py::gil_scoped_release released;
     run->file.info =
         datasets::run_info(handle.scenario, options, datasets::make_provenance({"exactvo.simulate"}, 0, handle.files));
-    run->file.recording = formation::simulate(handle.scenario, options);
+    run->file.recording = formation::simulate(handle.scenario, options, sink);
+    run->file.recording.steps = std::move(sink.rows);
     Evaluation evaluation = evaluate(handle.scenario, run->file.recording);
     run->metrics = std::move(evaluation.metrics);
     run->file.lyapunov = std::move(evaluation.lyapunov);

@@ -45,6 +45,7 @@ struct BatchFlags {
   std::string shard;
   std::string format;
   std::string units = "automatic";
+  std::string unknown = "free";
   double cell_size = 0.0;
   double tolerance = 0.0;
   std::string partition = "triangles";
@@ -99,6 +100,7 @@ BatchConfiguration configuration_of(const BatchFlags& flags) {
   configuration.reading.repair = flags.repair;
   configuration.reading.cell_size = flags.cell_size;
   require(parse(flags.units, configuration.reading.units), "--units", flags.units, "automatic, metres or degrees");
+  require(parse(flags.unknown, configuration.reading.unknown), "--unknown", flags.unknown, "free or blocked");
   configuration.shapes.facades.tolerance = flags.tolerance;
   configuration.shapes.partition =
       parse_choice<geometry::PartitionMethod>("--partition", flags.partition, geometry::partition_method_names());
@@ -326,6 +328,8 @@ void declare_reading(CLI::App& app, BatchFlags& flags) {
   app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
   app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
+  app.add_option("--unknown", flags.unknown, "What unknown cells of ROS maps are: free, blocked")
+      ->capture_default_str();
   app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)");
   app.add_option("--partition", flags.partition,
                  "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "

@@ -80,6 +80,7 @@ void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string
                  fmt::format("Input format: {}; by default detected from content, then name",
                              fmt::join(datasets::readable_formats(), " ")));
   app.add_option("--units", flags.units, "Units of coordinates: automatic, metres or degrees");
+  app.add_option("--unknown", flags.unknown, "What unknown cells of ROS maps are: free or blocked");
   app.add_option("--cell-size", flags.cell_size, "Cell size of scans, point lists and grids without a scale, m");
 }
 
@@ -90,11 +91,13 @@ void check_format(const std::string& option, const std::string& format, const st
 datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name) {
   check_format(format_name, flags.format, datasets::readable_formats());
   require_known("--units", flags.units, datasets::unit_names());
+  require_known("--unknown", flags.unknown, datasets::unknown_cells_names());
   if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
     throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the default");
   datasets::ReadOptions options;
   options.format = flags.format;
   parse(flags.units, options.units);
+  parse(flags.unknown, options.unknown);
   options.cell_size = flags.cell_size;
   options.keep_going = true;
   return options;

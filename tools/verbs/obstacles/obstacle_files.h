@@ -22,10 +22,11 @@ namespace exactvo::tools {
 struct ReadingFlags {
   std::string format;
   std::string units = "automatic";
+  std::string unknown = "free";
   double cell_size = 0.0;
 };
 
-/// --format (or `format_name`), --units and --cell-size.
+/// --format (or `format_name`), --units, --unknown and --cell-size.
 void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name = "--format");
 
 /// Throws UsageError with the nearest known word. Reading goes on past bad obstacles.

@@ -11,6 +11,7 @@
 
 #include "exactvo/datasets/ranks.h"
 #include "exactvo/formation/crowd_metrics.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/stability.h"
 #include "explorer/packed_run.h"
 #include "explorer/page.h"
@@ -57,25 +58,10 @@ void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) message("warning: " + warning);
 }
 
-/// m: by how much the offsets in use differ from those of the scenario.
-geometry::Vec2 recentred_by(const formation::FormationSpec& spec, const formation::SimulationOptions& options) {
-  const formation::ControllerOptions in_use = options.controller_options.value_or(
-      formation::switched(formation::controller_options_of(options.controller), spec.controller_options));
-  geometry::Vec2 sum{};
-  if (!spec.recentre || !in_use.recentred) return sum;
-  for (const geometry::Vec2 offset : spec.offsets) sum += offset;
-  return -sum / static_cast<double>(spec.offsets.size());
-}
-
 /// How fast a formation can form, and where its slots are, said before the run.
 void announce(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
   if (!scenario.formation) return;
-  const geometry::Vec2 moved = recentred_by(*scenario.formation, options);
-  if (norm(moved) > scenario.arrival_tolerance)
-    message(
-        fmt::format("formation: recentre moves every slot by ({:.4g}, {:.4g}), so that the offsets have no mean; "
-                    "\"recentre\": false keeps them as they are",
-                    moved.x, moved.y));
+  if (const std::string moved = formation::recentring_notice(scenario, options); !moved.empty()) message(moved);
   const formation::Stability s = stability_of(*scenario.formation);
   const bool has_limit = options.integrator == formation::Integrator::euler;
   message(fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s{}",

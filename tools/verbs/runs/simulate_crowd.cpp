@@ -17,6 +17,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_metrics.h"
 #include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/notices.h"
 #include "figures/crowd_figures.h"
 #include "support/rank_watch.h"
 #include "support/terminal.h"
@@ -110,7 +111,10 @@ formation::CrowdRunOptions options_of(const CrowdTask& task) {
 
 /// What is known before the run, where it is found quickly.
 std::vector<std::string> warnings_of(const formation::Scenario& scenario, const formation::CrowdRunOptions& options) {
-  if (scenario.robots.size() > formation::kMostClearances) return {};
+  if (scenario.robots.size() > formation::kMostClearances) {
+    const std::string arrived = formation::arrived_at_start(scenario);
+    return arrived.empty() ? std::vector<std::string>{} : std::vector{arrived};
+  }
   formation::SimulationOptions standard;
   standard.method = formation::Method::orca;
   standard.guidance = options.guidance;

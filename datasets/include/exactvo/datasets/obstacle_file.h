@@ -54,10 +54,23 @@ bool parse(const std::string& text, Units& out);
 /// All, in the order of the enumeration.
 std::vector<std::string> unit_names();
 
+/// What the unknown cells of a map are: those between its thresholds, and transparent ones. Known of ROS maps only.
+enum class UnknownCells {
+  free,    ///< free; a note says how many
+  blocked  ///< obstacles, as the occupied cells; a note says how many
+};
+/// "free", "blocked".
+const char* name(UnknownCells unknown);
+/// False where the word names none.
+bool parse(const std::string& text, UnknownCells& out);
+/// All, in the order of the enumeration.
+std::vector<std::string> unknown_cells_names();
+
 /// How a file is read.
 struct ReadOptions {
   std::string format;              ///< a name of `readable_formats()`; empty: chosen by content, then by extension
   Units units = Units::automatic;  ///< what the numbers mean
+  UnknownCells unknown = UnknownCells::free;
   double cell_size =
       0.0;  ///< m, >= 0: side of a grid's or scan's cell; 0: 1 m for grids without a scale, 0.05 m for scans
   /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.

@@ -102,7 +102,7 @@ enum class MotionLaw {
   hermite       ///< the cubic through both end states (the general integrators)
 };
 
-/// The convex hull of a moving obstacle that was carried so far: the shape that robots keep clear of.
+/// The convex hull of a moving obstacle that was carried so far, or its disc: the shape that robots keep clear of.
 geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement);
 
 /// What a half-plane keeps clear of, as its robot saw it: enough to prove it again. The half-plane excludes the

@@ -34,7 +34,9 @@ struct Robot {
 /// An obstacle that stands still.
 struct SceneObstacle {
   std::string id;            ///< its name in results and messages
-  geometry::Obstacle shape;  ///< m
+  geometry::Obstacle shape;  ///< m; of a disc the polygon round it
+  std::optional<geometry::Disc> disc =
+      {};  ///< m; what it is, where set: then made by `disc_obstacle` (disc_obstacle.h)
 };
 
 /// The set V of allowed velocities: the paper's "[3, 3]^T" can be read either way.
@@ -105,11 +107,12 @@ struct Leader : TimedPath {
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
-/// convex hull and take the whole responsibility.
+/// convex hull, or the disc, and take the whole responsibility.
 struct MovingObstacle {
-  std::string id;            ///< its name in results and messages
-  geometry::Obstacle shape;  ///< m, at t = 0
-  TimedPath motion;          ///< its path's first point is the origin of the displacement
+  std::string id;                           ///< its name in results and messages
+  geometry::Obstacle shape;                 ///< m, at t = 0
+  TimedPath motion;                         ///< its path's first point is the origin of the displacement
+  std::optional<geometry::Disc> disc = {};  ///< m, at t = 0; as of `SceneObstacle`
 };
 
 /// Gains of equations (14), (15) and (17).
