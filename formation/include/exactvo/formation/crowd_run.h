@@ -108,6 +108,9 @@ class CrowdSink {
   virtual ~CrowdSink() = default;
   /// The start, before the first step.
   virtual void begin(const Crowd& crowd) = 0;
+  /// Before a step, when preferred velocities are set: `Crowd::explain` says what it will decide. `steps`: taken so
+  /// far.
+  virtual void before_step(const Crowd& /*crowd*/, std::size_t /*steps*/) {}
   /// After every step; `steps` counts them from 1.
   virtual void add_step(const Crowd& crowd, std::size_t steps) = 0;
   /// For a snapshot, after a step: what it needs to go on from here. What it has taken so far must be safe then.
