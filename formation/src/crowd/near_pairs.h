@@ -92,8 +92,8 @@ struct NearPairs {
 };
 
 /// For each robot of `asked`, whose lists are in `lists`; the first robot there is `begin`. Pairs of a robot ascend by
-/// the other's place. `first_round`: (6) counts, and lists are cut; else all robots that could meet another are
-/// hindered, and lists that were cut are believed.
+/// the other's place. `first_round`: (6) counts, and lists are cut. REQUIRES: in the second, robots that were hindered
+/// in the first.
 void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
                      const std::vector<AskedRobot>& asked, bool first_round, NearLists& lists, NearPairs& out);
 
