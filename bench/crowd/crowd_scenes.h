@@ -57,7 +57,7 @@ class SceneRandom {
 
 namespace scenes {
 
-/// Two robots out of three a place of 4 m^2, each to a random place: dense, and ever denser.
+/// A robot of 1 m a place of 4 m^2, which covers 20 % of the floor, each to a random place: dense, and ever denser.
 inline void crowd(CrowdScene& s, std::size_t count) {
   SceneRandom random;
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -66,6 +66,18 @@ inline void crowd(CrowdScene& s, std::size_t count) {
     const Vec2 at = {2.0 * static_cast<double>(i % side) + 0.5 * random(),
                      2.0 * static_cast<double>(i / side) + 0.5 * random()};
     s.robots.push_back({at - Vec2{width / 2, width / 2}, {width * (random() - 0.5), width * (random() - 0.5)}});
+  }
+}
+
+/// Robots that cover 40 % of the floor, each to a random place.
+inline void dense(CrowdScene& s, std::size_t count) {
+  SceneRandom random;
+  const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  const double width = 1.4 * static_cast<double>(side);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 at = {1.4 * static_cast<double>(i % side) + 0.38 * random(),
+                     1.4 * static_cast<double>(i / side) + 0.38 * random()};
+    s.robots.push_back({at, {width * random(), width * random()}});
   }
 }
 
@@ -194,14 +206,14 @@ inline void clumps(CrowdScene& s, std::size_t count) {
 
 }  // namespace scenes
 
-/// "crowd", "ring", "streams", "groups", "blocks", "pillars", "bodies", "mixture", "jam", "clumps".
+/// "crowd", "dense", "ring", "streams", "groups", "blocks", "pillars", "bodies", "mixture", "jam", "clumps".
 inline CrowdScene crowd_scene(const std::string& kind, std::size_t count) {
   using Make = void (*)(CrowdScene&, std::size_t);
   static const std::vector<std::pair<std::string, Make>> kScenes = {
-      {"crowd", scenes::crowd},     {"ring", scenes::ring},     {"streams", scenes::streams},
-      {"groups", scenes::groups},   {"blocks", scenes::blocks}, {"pillars", scenes::pillars},
-      {"mixture", scenes::mixture}, {"jam", scenes::jam},       {"clumps", scenes::clumps},
-      {"bodies", scenes::bodies}};
+      {"crowd", scenes::crowd},     {"dense", scenes::dense},     {"ring", scenes::ring},
+      {"streams", scenes::streams}, {"groups", scenes::groups},   {"blocks", scenes::blocks},
+      {"pillars", scenes::pillars}, {"mixture", scenes::mixture}, {"jam", scenes::jam},
+      {"clumps", scenes::clumps},   {"bodies", scenes::bodies}};
   CrowdScene s;
   s.kinds.emplace_back();
   for (const auto& [name, make] : kScenes) {

@@ -185,7 +185,7 @@ class CrowdEngine final : public CrowdCore {
   void certify(std::size_t begin, std::size_t end, int round, Array<std::int32_t>& to_x, Array<std::int32_t>& to_y) {
     for_own_ranges(begin, end, [&](std::size_t first, std::size_t last, Scratch& s) {
       const Timed timed(options.time_phases, s.phases.hard);
-      const NearLists& lists = near_lists_of(first - begin, end - begin);
+      NearLists& lists = near_lists_of(first - begin, end - begin);
       hard_.decide(first, last, round, lists, s.hard_level, s.one, s.counts, robots, to_x.data(), to_y.data());
     });
   }

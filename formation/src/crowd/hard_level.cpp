@@ -84,7 +84,7 @@ Motion HardLevel<T>::safe_of(std::size_t robot, int round) const {
 }
 
 template <class T>
-void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, const NearLists& lists, HardBuffers& b,
+void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, NearLists& lists, HardBuffers& b,
                           OneRobotBuffers<T>& one, StepReport& counts, Robots& robots, std::int32_t* to_x,
                           std::int32_t* to_y) const {
   const std::int32_t *wish_x = robots.wish_mx.data(), *wish_y = robots.wish_my.data();
@@ -106,10 +106,9 @@ void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, const 
 }
 
 template <class T>
-void HardLevel<T>::decide_asked(std::size_t first, int round, const NearLists& lists, HardBuffers& b,
-                                OneRobotBuffers<T>& one, StepReport& counts, Robots& robots, std::int32_t* to_x,
-                                std::int32_t* to_y) const {
-  find_near_pairs(robots, kinds_, lists, first, b.asked, round == 0, b.near);
+void HardLevel<T>::decide_asked(std::size_t first, int round, NearLists& lists, HardBuffers& b, OneRobotBuffers<T>& one,
+                                StepReport& counts, Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const {
+  find_near_pairs(robots, kinds_, first, b.asked, round == 0, lists, b.near);
   put_pairs(round, b);
   make_pair_rows(b.pairs);
   std::size_t from = 0;
@@ -162,8 +161,8 @@ Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, std::size_t fir
   if (!found) return safe;
   const Motion wish = wish_of(robot);
   if (grants) return wish;
-  b.rows.clear();
-  for (std::size_t k = first; k < last; ++k) b.rows.push_back(b.pairs.row(k));
+  b.rows.resize(last - first);
+  for (std::size_t k = first; k < last; ++k) b.rows[k - first] = b.pairs.row(k);
   if (violated(b.rows, wish) == nullptr) return wish;
   if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
   return nearest(robot, safe, first, b, one);
@@ -195,8 +194,9 @@ template <class T>
 Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, HardBuffers& b,
                              OneRobotBuffers<T>& one) const {
   const double unit = table_.velocity_step, inward = kHalfDiagonal * unit;
-  const std::size_t obstacles = one_.put_obstacles(robot, one), hard = obstacles + b.rows.size();
-  const std::size_t moving = one.body_lines.size() - one.still, lines = hard + moving;
+  const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
+  const std::size_t obstacles = has_obstacles ? one_.put_obstacles(robot, one) : 0, hard = obstacles + b.rows.size();
+  const std::size_t moving = has_obstacles ? one.body_lines.size() - one.still : 0, lines = hard + moving;
   const std::size_t room = (lines / lp::kSinglePadding + 1) * lp::kSinglePadding;
   for (auto* column : {&b.x, &b.y, &b.offset})
     if (column->size() < room) column->resize(2 * room);
@@ -239,7 +239,7 @@ Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, std::size_t obstacl
   const std::int64_t longest = longest_way(wish.x, wish.y);
   const auto holds = [&](Motion m) {
     return squared_length(m) <= std::min(fastest, static_cast<double>(longest * longest)) &&
-           violated(b.rows, m) == nullptr && one_.keeps_obstacles(robot, obstacles, one, m.x, m.y);
+           violated(b.rows, m) == nullptr && (obstacles == 0 || one_.keeps_obstacles(robot, obstacles, one, m.x, m.y));
   };
   const double per_step = 1.0 / table_.velocity_step;
   const Motion first = whole(b.answer.velocity.x * per_step, b.answer.velocity.y * per_step);

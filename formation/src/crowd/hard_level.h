@@ -45,16 +45,15 @@ class HardLevel {
   /// The motions of robots, into `to_x` and `to_y` by robot. Their wishes, and those of all robots near them, stand in
   /// Robots::wish_mx and wish_my. `round`: 0: from rest on; says in Robots::next_kept which have met another; 1: from
   /// Robots::safe_mx and safe_my on. `lists`: of these robots.
-  void decide(std::size_t first, std::size_t last, int round, const crowd::NearLists& lists, HardBuffers& b,
+  void decide(std::size_t first, std::size_t last, int round, crowd::NearLists& lists, HardBuffers& b,
               OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
               std::int32_t* to_y) const;
 
  private:
   crowd::Motion wish_of(std::size_t robot) const;
   crowd::Motion safe_of(std::size_t robot, int round) const;
-  void decide_asked(std::size_t first, int round, const crowd::NearLists& lists, HardBuffers& b,
-                    OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
-                    std::int32_t* to_y) const;
+  void decide_asked(std::size_t first, int round, crowd::NearLists& lists, HardBuffers& b, OneRobotBuffers<T>& one,
+                    StepReport& counts, crowd::Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const;
   void put_pairs(int round, HardBuffers& b) const;
   crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
                             OneRobotBuffers<T>& one) const;

@@ -3,8 +3,8 @@
 
 /// \file
 /// The pairs that could meet within the step, given what all robots wish, and whether the wishes of a pair are surely
-/// allowed. Exact: pairs are judged one per SIMD lane, in float with bounds of its rounding, and what these leave open
-/// is judged in whole numbers.
+/// allowed. Exact: the pairs of a robot are judged one per SIMD lane, in float with bounds of its rounding, and what
+/// these leave open is judged in whole numbers.
 ///
 /// The search of the first level has listed who is near whom. Where its list may not have all that could be met, the
 /// robots in the window round a robot are looked at one by one.
@@ -39,13 +39,13 @@ inline constexpr std::int64_t kRoundedContact = 8;
 std::int64_t longest_way(std::int32_t wish_x, std::int32_t wish_y);
 inline constexpr double kLongerWay = 1.125, kWayMargin = 6.0;
 
-/// Who is near each robot of a range, as far as StepsOfKind::reach of its kind: the places of the others less its own,
-/// ascending.
+/// Who is near each robot of a range, as far as StepsOfKind::reach of its kind: the places of the others less its own.
+/// The first round of the second level leaves of each list of a hindered robot those that could be met, and then 0.
 class NearLists {
  public:
   static constexpr std::uint8_t kUnknown = 255;
 
-  std::vector<std::int16_t> away;   ///< robot by robot, and room for more
+  std::vector<std::int16_t> away;   ///< robot by robot; readable to kPack beyond each
   std::vector<std::uint8_t> count;  ///< of each robot, or kUnknown: it may have others
 
   /// For so many robots.
@@ -53,16 +53,14 @@ class NearLists {
     if (count.size() < robots) count.resize(robots);
     listed_ = used_ = 0;
   }
-  /// Of the next robot, kMostNeighbours at most. `others`: their places, in any order.
+  /// Of the next robot, kMostNeighbours at most. `others`: their places.
   void add(std::size_t robot, const std::int32_t* others, std::size_t others_count) {
-    if (away.size() < used_ + kMostNeighbours) away.resize(2 * away.size() + kPack);
+    if (away.size() < used_ + 2 * kPack) away.resize(2 * away.size() + 2 * kPack);
     std::int16_t* const to = away.data() + used_;
     for (std::size_t k = 0; k < others_count; ++k) {
       const std::int32_t by = others[k] - static_cast<std::int32_t>(robot);
-      if (by != static_cast<std::int16_t>(by)) return add_unknown();
-      std::size_t at = k;
-      for (; at > 0 && to[at - 1] > by; --at) to[at] = to[at - 1];
-      to[at] = static_cast<std::int16_t>(by);
+      to[k] = static_cast<std::int16_t>(by);
+      if (to[k] != by) return add_unknown();
     }
     used_ += others_count;
     count[listed_++] = static_cast<std::uint8_t>(others_count);
@@ -88,19 +86,15 @@ struct NearPairs {
   Array<std::int32_t> robot, other;  ///< pairs that could meet, of hindered robots, one robot after the other
   std::vector<std::size_t> end;      ///< of each robot's pairs
   std::vector<std::uint8_t> state;   ///< of each robot
+  Array<std::int32_t> round;         ///< around a robot without a list
 
   std::size_t pairs() const { return end.empty() ? 0 : end.back(); }
-
-  // Pairs that are judged.
-  Array<std::int32_t> all_robots, all_others;
-  Array<float> contact;  ///< where there are several kinds
-  std::vector<std::size_t> all_end;
-  std::vector<std::uint8_t> near, clear, doubtful;  ///< a bit each
 };
 
-/// For each robot of `asked`, whose lists are in `lists`; the first robot there is `begin`. `from_rest`: whether (6)
-/// counts; else all robots that could meet another are hindered.
-void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists,
-                     std::size_t begin, const std::vector<AskedRobot>& asked, bool from_rest, NearPairs& out);
+/// For each robot of `asked`, whose lists are in `lists`; the first robot there is `begin`. Pairs of a robot ascend by
+/// the other's place. `first_round`: (6) counts, and lists are cut. REQUIRES: in the second, robots that were hindered
+/// in the first.
+void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
+                     const std::vector<AskedRobot>& asked, bool first_round, NearLists& lists, NearPairs& out);
 
 }  // namespace exactvo::formation::crowd

@@ -146,9 +146,6 @@ void OneRobot<T>::lay_out_rows(std::size_t rows, Buffers& b) const {
 
 template <class T>
 std::size_t OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b) const {
-  b.body_lines.clear();
-  b.still = 0;
-  if (crowd_.edges.empty() && !has_bodies()) return 0;
   const std::size_t edges = lines_of_edges(robot, b);
   b.near.clear();
   lines_of_bodies(robot, b);

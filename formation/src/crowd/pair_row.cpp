@@ -157,28 +157,30 @@ class PairLanes {
     return s;
   }
 
-  /// The normal that hinders the wishes least, bent towards the centres until it separates.
-  HWY_INLINE Split bent() const {
+  /// The direction of the normal that hinders the wishes least.
+  HWY_INLINE Point wanted() const {
+    const Point nearest = nearest_of_parallelogram(safe_end_, more_a_, more_b_);
+    const M crosses = hn::Lt(dot(nearest, nearest), number(1.0));
+    if (hn::AllFalse(Numbers(), crosses)) return nearest;
+    return choose(crosses, reciprocal_normal(d_, wish_a_ - wish_b_, radius_), nearest);
+  }
+
+  /// Between `wanted`, which does not separate, and the centres.
+  HWY_INLINE Split bent(Point wanted) const {
     const N one = number(1.0), zero = number(0.0);
-    Point wanted = nearest_of_parallelogram(safe_end_, more_a_, more_b_);
-    const M crosses = hn::Lt(dot(wanted, wanted), one);
-    if (!hn::AllFalse(Numbers(), crosses))
-      wanted = choose(crosses, reciprocal_normal(d_, wish_a_ - wish_b_, radius_), wanted);
-    Split best = split_along(wanted);
-    const M bends = hn::Not(best.separates);
-    if (hn::AllFalse(Numbers(), bends)) return best;
     const Point middle = centre();
     const N far = hn::Sqrt(dot(wanted, wanted)), near = hn::Sqrt(dot(middle, middle));
     const M has_lengths = hn::And(hn::Gt(far, zero), hn::Gt(near, zero));
     const Point from = hn::Div(one, near) * middle, to = hn::Div(one, far) * wanted;
     N low = zero, high = one;  // low separates, if the centres do
+    Split best = {from, zero, zero, zero, hn::Lt(zero, zero)};
     for (int k = 0; k < kBends; ++k) {
       const N share = hn::Mul(hn::Add(low, high), number(0.5));
       Split s = split_along(hn::Sub(one, share) * from + share * to);
       s.separates = hn::And(s.separates, has_lengths);
       low = hn::IfThenElse(s.separates, share, low);
       high = hn::IfThenElse(s.separates, high, share);
-      take(hn::And(s.separates, bends), s, best);
+      take(s.separates, s, best);
     }
     return best;
   }
@@ -243,49 +245,103 @@ class PairLanes {
   N radius_;
 };
 
-/// Other rows for the first `count` pairs of the block, where there are better ones.
+/// Pairs that wait for better rows until a block of them is full. Normals of rows stand for directions before.
 template <bool kAtRest>
-void bend(PairBlock& block, std::size_t count) {
-  for (std::size_t k = 0; k < count; k += hn::Lanes(Numbers())) {
-    const PairLanes<kAtRest> pairs(block, k);
-    pairs.put_rows(pairs.bent(), {number(0.0), number(0.0)}, block, k);
-  }
-}
-
-/// Pairs that have no room for both wishes along their centres: they wait until a block is full.
-template <bool kAtRest>
-class Hindered {
+class Waiting {
  public:
-  explicit Hindered(PairBlock* of) : of_(of) {}
+  explicit Waiting(PairBlock* of) : of_(of) {}
 
-  void add(std::size_t block, std::size_t k) {
-    some_.copy(count_, of_[block], k, kAtRest);
-    at_[count_] = block * kPack + k;
-    if (++count_ == kPack) bend_all();
+  PairBlock block = {};
+
+  bool empty() const { return count_ == 0; }
+  std::size_t count() const { return count_; }
+  bool is_full() const { return count_ == kPack; }
+  /// Where pair k comes from.
+  std::size_t at(std::size_t k) const { return at_[k]; }
+  /// Takes a pair that comes from `at` from place k of a block; where.
+  std::size_t add(std::size_t at, const PairBlock& from, std::size_t k) {
+    block.copy(count_, from, k, kAtRest);
+    at_[count_] = at;
+    return count_++;
   }
-
-  void bend_all() {
-    bend<kAtRest>(some_, count_);
+  /// The rows of pairs that have some, to where they come from.
+  void give_back() {
     for (std::size_t k = 0; k < count_; ++k) {
-      if ((some_.found >> k & 1U) == 0) continue;
+      if ((block.found >> k & 1U) == 0) continue;
       const std::size_t to = at_[k] % kPack;
-      PairBlock& block = of_[at_[k] / kPack];
-      block.normal_x[to] = some_.normal_x[k];
-      block.normal_y[to] = some_.normal_y[k];
-      block.least[to] = some_.least[k];
-      block.unit_x[to] = some_.unit_x[k];
-      block.unit_y[to] = some_.unit_y[k];
-      block.unit_least[to] = some_.unit_least[k];
-      block.found |= 1U << to;
-      block.grants = (block.grants & ~(1U << to)) | (some_.grants >> k & 1U) << to;
+      PairBlock& out = of_[at_[k] / kPack];
+      out.normal_x[to] = block.normal_x[k];
+      out.normal_y[to] = block.normal_y[k];
+      out.least[to] = block.least[k];
+      out.unit_x[to] = block.unit_x[k];
+      out.unit_y[to] = block.unit_y[k];
+      out.unit_least[to] = block.unit_least[k];
+      out.found |= 1U << to;
+      out.grants = (out.grants & ~(1U << to)) | (block.grants >> k & 1U) << to;
     }
     count_ = 0;
   }
 
  private:
   PairBlock* of_;
-  PairBlock some_ = {};
   std::size_t at_[kPack], count_ = 0;
+};
+
+/// Pairs that have no room for both wishes along their centres: the normal that hinders least, or one on the way from
+/// it to the centres.
+template <bool kAtRest>
+class Hindered {
+ public:
+  explicit Hindered(PairBlock* of) : wait_(of), bend_(of) {}
+
+  void add(std::size_t at, const PairBlock& block, std::size_t k) {
+    wait_.add(at, block, k);
+    if (wait_.is_full()) make_wanted();
+  }
+
+  void finish() {
+    if (!wait_.empty()) make_wanted();
+    if (!bend_.empty()) make_bent();
+  }
+
+ private:
+  HWY_INLINE void make_wanted() {
+    PairBlock& block = wait_.block;
+    const Numbers d;
+    for (std::size_t k = 0; k < wait_.count(); k += hn::Lanes(d)) {
+      const PairLanes<kAtRest> pairs(block, k);
+      const Point wanted = pairs.wanted();
+      const Split s = pairs.split_along(wanted);
+      pairs.put_rows(s, {number(0.0), number(0.0)}, block, k);
+      std::uint32_t rest = bits_of_mask(hn::Not(s.separates));
+      if (wait_.count() - k < hn::Lanes(d)) rest &= (1U << (wait_.count() - k)) - 1U;
+      if (rest == 0) continue;
+      alignas(64) double x[kPack], y[kPack];
+      hn::Store(wanted.x, d, x);
+      hn::Store(wanted.y, d, y);
+      for (; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
+        const std::size_t to = bend_.add(wait_.at(k + lane), block, k + lane);
+        bend_.block.normal_x[to] = x[lane];
+        bend_.block.normal_y[to] = y[lane];
+        if (bend_.is_full()) make_bent();
+      }
+    }
+    wait_.give_back();
+  }
+
+  HWY_INLINE void make_bent() {
+    PairBlock& block = bend_.block;
+    const Numbers d;
+    for (std::size_t k = 0; k < bend_.count(); k += hn::Lanes(d)) {
+      const PairLanes<kAtRest> pairs(block, k);
+      const Point wanted = {hn::Load(d, block.normal_x + k), hn::Load(d, block.normal_y + k)};
+      pairs.put_rows(pairs.bent(wanted), {number(0.0), number(0.0)}, block, k);
+    }
+    bend_.give_back();
+  }
+
+  Waiting<kAtRest> wait_, bend_;
 };
 
 /// Rows along the centres, which are the best ones where both wishes have room; of the other pairs those of the best
@@ -301,9 +357,12 @@ void make_rows(PairBlock* blocks, std::size_t count) {
     pairs.put_rows(s, pairs.last_resort(), block, lane);
     std::uint32_t rest = bits_of_mask(hn::Not(hn::And(s.separates, s.contents_both())));
     if (count - k < hn::Lanes(Numbers())) rest &= (1U << (count - k)) - 1U;
-    for (; rest != 0; rest &= rest - 1) hindered.add(k / kPack, lane + static_cast<std::size_t>(__builtin_ctz(rest)));
+    for (; rest != 0; rest &= rest - 1) {
+      const auto at = static_cast<std::size_t>(__builtin_ctz(rest));
+      hindered.add(k + at, block, lane + at);
+    }
   }
-  hindered.bend_all();
+  hindered.finish();
 }
 
 void gather(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,

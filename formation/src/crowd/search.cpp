@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "crowd/to_front.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
@@ -127,30 +129,34 @@ void nearest(const Candidates& among, const LaneQuery& q, const float* none, Ran
 
 void add_near(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch& s, Candidates& to) {
   const Words words;
-  const auto lowest = hn::Set(words, rule.low), highest = hn::Set(words, rule.high);
+  const auto lowest = hn::Set(words, rule.low), highest = hn::Set(words, rule.high), numbers = hn::Iota(words, 0);
+  std::size_t count = to.count;
   for (std::size_t i = s.from; i < s.to; i += hn::Lanes(words)) {
     const auto y = hn::LoadU(words, robots.y + i);
     const auto there = hn::FirstN(words, std::min(hn::Lanes(words), s.to - i));
     const auto taken = hn::AndNot(hn::Or(hn::Lt(y, lowest), hn::Gt(y, highest)), there);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.x + i), taken), words, to.x + to.count);
-    hn::StoreU(hn::Compress(y, taken), words, to.y + to.count);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.mx + i), taken), words, to.mx + to.count);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.my + i), taken), words, to.my + to.count);
-    const auto robot = hn::Iota(words, static_cast<std::int32_t>(i));
-    hn::StoreU(hn::Compress(robot, taken), words, to.robot + to.count);
-    to.count += hn::CountTrue(words, taken);
+    const ToFront<Words> front(taken);
+    const auto robot = hn::Add(numbers, hn::Set(words, static_cast<std::int32_t>(i)));
+    hn::StoreU(front(hn::LoadU(words, robots.x + i)), words, to.x + count);
+    hn::StoreU(front(y), words, to.y + count);
+    hn::StoreU(front(hn::LoadU(words, robots.mx + i)), words, to.mx + count);
+    hn::StoreU(front(hn::LoadU(words, robots.my + i)), words, to.my + count);
+    hn::StoreU(front(robot), words, to.robot + count);
+    count += hn::CountTrue(words, taken);
   }
+  to.count = count;
 }
 
 void add_all(const RobotColumns& robots, const CandidateStretch& s, bool with_kinds, Candidates& to) {
   const Words words;
   const hn::Rebind<std::uint16_t, Words> tags;
+  const auto numbers = hn::Iota(words, 0);
   for (std::size_t i = s.from, k = to.count; i < s.to; i += hn::Lanes(words), k += hn::Lanes(words)) {
     hn::StoreU(hn::LoadU(words, robots.x + i), words, to.x + k);
     hn::StoreU(hn::LoadU(words, robots.y + i), words, to.y + k);
     hn::StoreU(hn::LoadU(words, robots.mx + i), words, to.mx + k);
     hn::StoreU(hn::LoadU(words, robots.my + i), words, to.my + k);
-    hn::StoreU(hn::Iota(words, static_cast<std::int32_t>(i)), words, to.robot + k);
+    hn::StoreU(hn::Add(numbers, hn::Set(words, static_cast<std::int32_t>(i))), words, to.robot + k);
     if (with_kinds) {
       const auto tag = hn::PromoteTo(words, hn::LoadU(tags, robots.tag + i));
       hn::StoreU(hn::And(tag, hn::Set(words, kKindBits)), words, to.kind + k);
