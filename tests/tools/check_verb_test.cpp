@@ -50,6 +50,19 @@ TEST(CheckVerb, FindsWhatHappensBetweenTwoRows) {
   EXPECT_THAT(held.out, AllOf(HasSubstr("rests at a row until its next row"), HasSubstr("0 overlaps")));
 }
 
+TEST(CheckVerb, CountsWhatSamplesMiss) {
+  // The overlap lasts from 0.4646 s to 0.5354 s of a move of 1 s.
+  EXPECT_THAT(checked(kCrossing, "--radius 0.25 --samples 1").out,
+              HasSubstr("1 sample of each move misses 1 of 1 over"));
+  EXPECT_THAT(checked(kCrossing, "--radius 0.25 --samples 2").out,
+              HasSubstr("2 samples of each move miss 0 of 1 over"));
+  EXPECT_THAT(checked(kCrossing, "--radius 0.25 --samples 3").out,
+              HasSubstr("3 samples of each move miss 1 of 1 over"));
+  EXPECT_THAT(checked(kCrossing, "--radius 2 --samples 1 --json").out, HasSubstr("\"samples\":1,\"missed\":1"));
+  EXPECT_THAT(checked("t,id,x,y\n0,A,0,0\n1,A,4,0\n2,A,8,0\n0,B,4,0\n2,B,4,0\n", "--radius 0.5 --samples 1").out,
+              HasSubstr("misses 0 of 1"));
+}
+
 TEST(CheckVerb, ContactIsClearAndIsSaid) {
   const Outcome outcome = checked("t,id,x,y\n0,A,0,0\n1,A,4,0\n0,B,2,1\n1,B,2,1\n", "--radius 0.5");
   EXPECT_EQ(outcome.status, 0);

@@ -52,7 +52,7 @@ TEST(FigureFiles, AnotherExtensionIsRefusedAndTheThreeAreNamed) {
 
 TEST(FigureFiles, HelpNamesAllThree) {
   const Workplace here;
-  for (const char* verb : {"vo", "explain", "repair", "segment", "generate"})
+  for (const char* verb : {"vo", "explain", "repair", "segment", "generate", "check"})
     EXPECT_THAT(here.run(std::string("help ") + verb).out, HasSubstr("FILE.svg, FILE.png or FILE.pdf")) << verb;
 }
 

@@ -69,6 +69,7 @@ class FigureNames : public testing::TestWithParam<FigureOf> {
     work_.write("s.json", kScene);
     work_.write("bow.wkt", "POLYGON((0 0, 2 2, 2 0, 0 2, 0 0))");
     work_.write("square.wkt", "POLYGON((0 0, 2 0, 2 2, 0 2, 0 0))");
+    work_.write("walk.csv", "t,id,x,y\n0,A,0,0\n1,A,1,0\n0,B,0,1\n1,B,1,1\n");
   }
   /// Files that are called X, in any folder.
   std::size_t traces() const {
@@ -110,7 +111,8 @@ TEST_P(FigureNames, AreRefusedWhereTheyAreUnprintable) {
 TEST_P(FigureNames, DrawInAFolderOfAnyName) {
   const std::string folder = "`touch X`\n'\"\xff";
   fs::create_directories(work_.path() / folder);
-  for (const char* file : {"s.json", "bow.wkt", "square.wkt"}) work_.write(folder + "/" + file, work_.read(file));
+  for (const char* file : {"s.json", "bow.wkt", "square.wkt", "walk.csv"})
+    work_.write(folder + "/" + file, work_.read(file));
   const std::string command = "cd " + shell_word((work_.path() / folder).string()) + " && '" EXACTVO_PROGRAM "' " +
                               GetParam().command + " plain.svg > /dev/null 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0);
@@ -127,6 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FigureOf{"repair", "repair bow.wkt --out repaired.wkt --figure"},
                     FigureOf{"segment", "segment square.wkt --figure"},
                     FigureOf{"route", "route square.wkt --from -2,0 --to 9,1 --radius 0.1 --figure"},
+                    FigureOf{"check", "check walk.csv --radius 0.1 --figure"},
                     FigureOf{"generate", "generate star --count 1 --out star.wkt --figure"}),
     [](const auto& test) { return test.param.verb; });
 

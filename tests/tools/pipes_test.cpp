@@ -137,6 +137,8 @@ TEST(Pipes, AWaitForAWriterEndsAtASignalInEveryVerb) {
       {"route", "p.wkt", "--from", "0,0", "--to", "1,1", "--radius", "0.1"},
       {"route", "s.wkt", "--queries", "p.csv", "--radius", "0.1"},
       {"route", "s.wkt", "--queries", "-", "--radius", "0.1"},
+      {"check", "p.csv", "--radius", "0.1"},
+      {"check", "-", "--radius", "0.1"},
       {"explain", "p.json", "--time", "1", "--robot", "0", "--out", "o.svg"},
       {"lp", "p.json"},
       {"lp", "-"},
@@ -225,10 +227,11 @@ TEST(Pipes, EveryVerbReadsOneOnce) {
       {"s.wkt", "repair PIPE --out r.wkt --figure r.svg"},
       {"s.wkt", "convert PIPE c.geojson"},
       {"s.wkt", "segment PIPE"},
+      {"run/trajectory.csv", "check PIPE --radius 0.01"},
       {"s.wkt", "route PIPE --from -9,0 --to -9,9 --radius 0.5"},
       {"s.wkt", "vo --obstacle PIPE --position 9,9 --velocity 1,0 --radius 0.5 --time-horizon 2"}};
   for (auto [file, command] : commands) {
-    const std::string pipe = "pipe-" + file;
+    const std::string pipe = "pipe-" + std::filesystem::path(file).filename().string();
     if (!here.has(pipe)) make_pipe(here, pipe);
     command.replace(command.find("PIPE"), 4, pipe);
     // A second reading would wait for ever.

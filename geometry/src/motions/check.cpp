@@ -95,7 +95,7 @@ class MovingGrid {
   template <class Visit>
   void meet_and_add(const Piece& piece, const Visit& visit) {
     now_ = piece.motion.from.time;
-    if (++since_swept_ > kept_ + kLeastTable) forget_ended();
+    if (++since_swept_ > kept_ + kLeastSwept) forget_ended();
     adapt_side(piece.box);
     const Cells own = cells_of(piece.box);
     find(piece, own);
@@ -111,7 +111,8 @@ class MovingGrid {
 
  private:
   static constexpr std::int64_t kMostCells = 64;
-  static constexpr std::size_t kLeastTable = std::size_t{1} << 10;
+  static constexpr std::size_t kLeastTable = std::size_t{1} << 12;
+  static constexpr std::size_t kLeastSwept = std::size_t{1} << 10;
   static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
   struct Cells {
     std::int64_t x0, y0, x1, y1;
@@ -227,16 +228,17 @@ class MovingGrid {
 
   static double width_of(const Box& box) { return std::max(box.high.x - box.low.x, box.high.y - box.low.y); }
 
-  /// Lists all anew where cells are far from twice as wide as the mean of the boxes, or pieces are more than lists.
+  /// Lists all anew where cells are far from twice as wide as the mean of the boxes, or lists are fewer than four a
+  /// piece.
   void adapt_side(const Box& next) {
     const std::size_t held = pool_.size() - free_.size();
     const double wanted = 2.0 * (sum_of_widths_ + width_of(next)) / static_cast<double>(held + 1);
     const bool is_usable = wanted > 0.0 && std::isfinite(1.0 / wanted);
     const bool fits = !is_usable || (wanted * per_side_ > 0.25 && wanted * per_side_ < 4.0);
-    if (fits && held < lists_.size()) return;
+    if (fits && 4 * held <= lists_.size()) return;
     if (!fits) per_side_ = 1.0 / wanted;
     std::size_t table = lists_.size();
-    while (table <= held) table *= 4;
+    while (table < 4 * held) table *= 4;
     lists_.assign(table, {});
     large_.clear();
     sum_of_widths_ = 0.0;

@@ -71,6 +71,21 @@ std::string line_of(const OrderedJson& json) {
 
 }  // namespace
 
+void SampledMoves::add(std::size_t agent, const geometry::StraightMotion& piece) {
+  last_[agent] = {piece, last_[agent][0]};
+}
+
+bool SampledMoves::finds(const MotionEvent& event) const {
+  // An event is reported when the first piece begins behind its end, so it ends in one of the body's last two pieces.
+  const std::array<geometry::StraightMotion, 2>& last = last_[event.body];
+  const geometry::StraightMotion& piece = last[0].from.time <= event.last.high ? last[0] : last[1];
+  const double begin = piece.from.time, step = (piece.to.time - begin) / static_cast<double>(samples_);
+  if (event.first.low <= begin) return true;
+  if (!(step > 0.0)) return true;
+  const double next = begin + step * std::ceil((event.first.high - begin) / step);
+  return next <= event.last.low;
+}
+
 std::string CheckAnswer::name_of(std::size_t agent) const {
   return asked_.file.agents[agent];
 }
@@ -184,7 +199,7 @@ void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
     out_.add(fmt::format("... and {} more that come nearer than {:.6g} m\n", apart.size() - kMostListed, asked_.near));
 }
 
-void CheckAnswer::finish(const geometry::MotionCheck& check) {
+void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t missed) {
   list_approaches(check.approaches);
   const datasets::TrajectorySurvey& s = asked_.survey;
   std::size_t fastest = 0, hardest = 0;
@@ -205,27 +220,31 @@ void CheckAnswer::finish(const geometry::MotionCheck& check) {
     }
     OrderedJson notes = OrderedJson::array();
     for (const std::string& note : asked_.file.notes) notes.push_back(note);
-    const OrderedJson whole{{"file", asked_.file.file},
-                            {"format", asked_.file.format},
-                            {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
-                            {"between", word_of(asked_.between)},
-                            {"footprint", asked_.bodies},
-                            {"rows", s.rows()},
-                            {"repeated_rows", asked_.file.repeated},
-                            {"overlaps", check.overlaps},
-                            {"contacts", check.contacts},
-                            {"jumps", jumps_},
-                            {"jump_speed", number_or_null(asked_.jump_speed)},
-                            {"gaps", gaps_},
-                            {"near", asked_.near},
-                            {"approaches", check.approaches.size()},
-                            {"pieces", check.pieces},
-                            {"pairs", check.pairs},
-                            {"edge_pairs", check.edge_pairs},
-                            {"examined", check.examined},
-                            {"most_held", check.most_held},
-                            {"bodies", bodies},
-                            {"notes", notes}};
+    OrderedJson whole{{"file", asked_.file.file},
+                      {"format", asked_.file.format},
+                      {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
+                      {"between", word_of(asked_.between)},
+                      {"footprint", asked_.bodies},
+                      {"rows", s.rows()},
+                      {"repeated_rows", asked_.file.repeated},
+                      {"overlaps", check.overlaps},
+                      {"contacts", check.contacts},
+                      {"jumps", jumps_},
+                      {"jump_speed", number_or_null(asked_.jump_speed)},
+                      {"gaps", gaps_},
+                      {"near", asked_.near},
+                      {"approaches", check.approaches.size()},
+                      {"pieces", check.pieces},
+                      {"pairs", check.pairs},
+                      {"edge_pairs", check.edge_pairs},
+                      {"examined", check.examined},
+                      {"most_held", check.most_held},
+                      {"bodies", bodies},
+                      {"notes", notes}};
+    if (asked_.samples > 0) {
+      whole["samples"] = asked_.samples;
+      whole["missed"] = missed;
+    }
     out_.add(line_of({{"summary", whole}}));
     return out_.flush();
   }
@@ -239,6 +258,9 @@ void CheckAnswer::finish(const geometry::MotionCheck& check) {
   };
   extreme("greatest speed", s.agents()[fastest].speed, "m/s", fastest);
   extreme("greatest acceleration", s.agents()[hardest].acceleration, "m/s^2", hardest);
+  if (asked_.samples > 0)
+    out_.add(fmt::format("{} of each move {} {} of {}\n", counted(asked_.samples, "sample"),
+                         asked_.samples == 1 ? "misses" : "miss", missed, counted(check.overlaps, "overlap")));
   const std::string bound =
       std::isfinite(asked_.jump_speed) ? fmt::format(" (faster than {:.6g} m/s)", asked_.jump_speed) : "";
   out_.add(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),

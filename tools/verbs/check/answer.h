@@ -4,6 +4,7 @@
 /// \file
 /// The answer of `exactvo check` in words and as JSON lines: events and findings as they come up, then the whole.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,6 +27,22 @@ struct CheckedFile {
   double near = 0.0;         ///< m
   double jump_speed = 0.0;   ///< m/s, may be infinite
   double longest_gap = 0.0;  ///< s, may be infinite
+  std::size_t samples = 0;   ///< of each move; 0: not asked
+};
+
+/// Which overlaps a check would miss that looks at each move at so many moments, evenly spaced from its row on.
+class SampledMoves {
+ public:
+  SampledMoves(std::size_t samples, std::size_t agents) : samples_(samples), last_(agents) {}
+
+  /// Pieces in the order in which the stream takes them, each before the stream does.
+  void add(std::size_t agent, const geometry::StraightMotion& piece);
+  /// Whether a sample falls into the event, which was just reported.
+  bool finds(const geometry::MotionEvent& event) const;
+
+ private:
+  std::size_t samples_;
+  std::vector<std::array<geometry::StraightMotion, 2>> last_;  ///< of each agent, the later one first
 };
 
 class CheckAnswer {
@@ -37,8 +54,8 @@ class CheckAnswer {
   void add(const geometry::MotionEvent& event);
   /// A jump, a gap, or neither.
   void look_at(const datasets::Move& move);
-  /// Approaches and the whole.
-  void finish(const geometry::MotionCheck& check);
+  /// Approaches and the whole. `missed`: overlaps that samples do not find.
+  void finish(const geometry::MotionCheck& check, std::uint64_t missed);
 
   std::uint64_t jumps() const { return jumps_; }
   std::uint64_t gaps() const { return gaps_; }

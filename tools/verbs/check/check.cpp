@@ -15,6 +15,7 @@
 #include "exactvo/geometry/motion_certificate.h"
 #include "figures/figure.h"
 #include "support/motion_certificates.h"
+#include "support/parse_errors.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -44,6 +45,7 @@ struct CheckFlags {
   ReadingFlags reading;  ///< of the map
   std::optional<double> radius, near, max_speed, max_gap;
   double scale = 1.0, frame_rate = 0.0;
+  std::size_t samples = 0;
   bool json = false;
 };
 
@@ -317,7 +319,8 @@ ExitCode check(const CheckFlags& flags) {
                           bodies.words,
                           flags.near.value_or(bodies.reach),
                           flags.max_speed.value_or(survey.jump_speed()),
-                          flags.max_gap.value_or(std::numeric_limits<double>::infinity())};
+                          flags.max_gap.value_or(std::numeric_limits<double>::infinity()),
+                          flags.samples};
   CheckAnswer answer(asked, flags.json);
   answer.begin();
 
@@ -327,13 +330,19 @@ ExitCode check(const CheckFlags& flags) {
   if (!flags.figure.empty()) picture.emplace(asked, map.shapes, bodies.of_agent);
   geometry::MotionCheckOptions options{between, asked.near, {}};
   if (certificates) options.met = [&](const MetPair& pair) { certificates->add(pair); };
+  SampledMoves sampled(flags.samples, bodies.of_agent.size());
+  std::uint64_t missed = 0;
   geometry::MotionStream stream(map.shapes, options, [&](const geometry::MotionEvent& event) {
     answer.add(event);
+    if (flags.samples > 0 && event.encounter == geometry::Encounter::overlap && !sampled.finds(event)) ++missed;
     if (picture) picture->add(event);
   });
   for (const RigidBody& body : bodies.of_agent) stream.add_body(body);
   PieceFeed feed(survey.agents(), {between, asked.longest_gap},
-                 [&](std::size_t agent, const geometry::StraightMotion& piece) { stream.add(agent, piece); });
+                 [&](std::size_t agent, const geometry::StraightMotion& piece) {
+                   if (flags.samples > 0) sampled.add(agent, piece);
+                   stream.add(agent, piece);
+                 });
   datasets::Moves moves;
   std::uint64_t done = 0;
   {
@@ -351,7 +360,7 @@ ExitCode check(const CheckFlags& flags) {
   }
   const geometry::MotionCheck result = stream.finish();
   if (certificates) certificates->finish();
-  answer.finish(result);
+  answer.finish(result, missed);
   if (picture) write_figure(picture->figure(result), flags.figure);
   return result.overlaps > 0 ? ExitCode::negative : ExitCode::success;
 }
@@ -390,6 +399,9 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
                  "A faster move is a jump, m/s; by default three times what 95 of 100 moves do not exceed");
   app.add_option("--max-gap", flags.max_gap,
                  "An agent without a row for longer is away, s; by default it goes on to its next row");
+  app.add_option("--samples", flags.samples,
+                 "Count the overlaps that a check misses which looks at each move this many times, from its row on")
+      ->check(whole_number(1, 1000000));
   app.add_flag("--json", flags.json, "One line of JSON for each event, finding and approach, then a summary");
   app.add_option("--certificates", flags.certificates,
                  "FILE for a proof of each pair of motions that come near and stay clear, for audit --certificate");

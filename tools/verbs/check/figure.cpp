@@ -182,7 +182,7 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
     panel.way("way of the other", c.other_way, kOtherColour);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
     const std::string names = c.event.with_obstacle
-                                  ? asked_.file.agents[c.event.body] + " and an obstacle"
+                                  ? asked_.file.agents[c.event.body] + " and " + asked_.obstacles[c.event.other].id
                                   : asked_.file.agents[c.event.body] + " and " + asked_.file.agents[c.event.other];
     sheet.panels.push_back(
         panel.done(fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));

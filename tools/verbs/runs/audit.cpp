@@ -227,8 +227,10 @@ void declare_audit(CLI::App& app, AuditFlags& flags) {
                  "A recording.jsonl, or - for stdin; a crowd's FILE.evr; or a folder searched for both");
   app.add_option("--sample", flags.sample, "Of a recording of a crowd, check about this many motions; 0: all");
   app.add_option("--scenario", flags.scenario, "FILE that the recordings must be of, with its obstacle files");
-  app.add_option("--certificate", flags.certificates,
-                 "FILE with one certificate per line, or the output of vo --json or route --json; - for stdin");
+  app.add_option(
+      "--certificate", flags.certificates,
+      "FILE with one certificate per line, the output of vo --json or route --json, or what check --certificates "
+      "wrote; - for stdin");
   app.add_flag("--json", flags.json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
 }
 
