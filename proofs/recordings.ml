@@ -125,7 +125,9 @@ let answers file text problems =
   let verdicts = List.map verdict all in
   List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) verdicts;
   let valid = List.length (List.filter (( = ) "valid") verdicts) in
-  Printf.printf "%s, %d valid\n" (counted (List.length all) "certificate") valid;
+  let gap a = match Json.find "certificate" a with Some c -> (match Json.find "gap" c with Some (Json.Num g) -> g | _ -> 0.) | None -> 0. in
+  let largest = List.fold_left2 (fun m a v -> if v = "valid" then Float.max m (gap a) else m) 0. all verdicts in
+  Printf.printf "%s, %d valid, up to a gap of %.2g\n" (counted (List.length all) "certificate") valid largest;
   if all = [] then refuse file "" "no answer" "what exactvo lp --json prints" "E_FORMAT_UNKNOWN";
   valid = List.length all
 
