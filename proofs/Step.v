@@ -62,6 +62,23 @@ Proof.
   [| | rewrite (Rplus_comm ((fst x - fst y) * _)) | rewrite (Rplus_comm ((fst x - fst y) * _))]; (apply leg; [lra|]); [right|left|right|left]; lra.
 Qed.
 
+(* --- map and filter for lists of a million: as OCaml they need no stack --- *)
+Definition each {A B} (f : A -> B) (l : list A) : list B := rev' (fold_left (fun done a => f a :: done) l []).
+Definition sift {A} (f : A -> bool) (l : list A) : list A := rev' (fold_left (fun done a => if f a then a :: done else done) l []).
+
+Lemma each_map {A B} (f : A -> B) l : each f l = map f l.
+Proof.
+  assert (h : forall done, fold_left (fun done a => f a :: done) l done = rev (map f l) ++ done).
+  { induction l as [|a t ih]; intro done; simpl; [reflexivity|]. now rewrite ih, <- app_assoc. }
+  unfold each, rev'. now rewrite <- rev_alt, h, app_nil_r, rev_involutive.
+Qed.
+Lemma sift_filter {A} (f : A -> bool) l : sift f l = filter f l.
+Proof.
+  assert (h : forall done, fold_left (fun done a => if f a then a :: done else done) l done = rev (filter f l) ++ done).
+  { induction l as [|a t ih]; intro done; simpl; [reflexivity|]. rewrite ih. destruct (f a); simpl; [now rewrite <- app_assoc|reflexivity]. }
+  unfold sift, rev'. now rewrite <- rev_alt, h, app_nil_r, rev_involutive.
+Qed.
+
 (* --- Things: their boxes, and how the plane is divided among them --- *)
 Definition robot := (box * motion)%type.
 Definition wall := (box * edge)%type.
@@ -78,18 +95,18 @@ Definition around (b c : box) : box :=
   {| x0 := qmin (x0 b) (x0 c); x1 := qmax (x1 b) (x1 c); y0 := qmin (y0 b) (y0 c); y1 := qmax (y1 b) (y1 c) |}.
 Definition middle (a b : Q) : Q := Qmake (Z.div2 (Qnum a + Qnum b)) (Qden a).
 
-Fixpoint longer {A} (l : list A) (than : nat) : bool :=
-  match l, than with _ :: t, S k => longer t k | [], _ => false | _ :: _, O => true end.
+Fixpoint longer {A B} (l : list A) (than : list B) : bool :=
+  match l, than with _ :: t, _ :: k => longer t k | [], _ => false | _ :: _, [] => true end.
 
 Definition cut (l : list robot) : option (bool * Q) :=
   match l with
-  | a :: t => if longer t 8 then
+  | a :: t => if longer t [tt; tt; tt; tt; tt; tt; tt; tt] then
       let b := fold_left (fun b r => around b (fst r)) t (fst a) in
       if qle (qsub (x1 b) (x0 b)) (qsub (y1 b) (y0 b)) then Some (true, middle (y0 b) (y1 b)) else Some (false, middle (x0 b) (x1 b))
     else None
   | [] => None
   end.
-Definition part {A} (reaches : box -> bool) (l : list (box * A)) := filter (fun r => reaches (fst r)) l.
+Definition part {A} (reaches : box -> bool) (l : list (box * A)) := sift (fun r => reaches (fst r)) l.
 
 Definition undivided (l : list robot) (ws : list wall) : bool :=
   all_pairs l && forallb (fun w => forallb (fun a => wall_holds a w) l) ws.
@@ -97,14 +114,14 @@ Fixpoint divide (fuel : nat) (l : list robot) (ws : list wall) : bool :=
   match fuel, cut l with
   | S k, Some (u, p) =>
       let low := part (lows u p) l in let high := part (highs u p) l in
-      if longer l (length low) && longer l (length high)
+      if longer l low && longer l high
       then divide k low (part (lows u p) ws) && divide k high (part (highs u p) ws) else undivided l ws
   | _, _ => undivided l ws
   end.
 
 Definition step (es : list edge) (ms : list motion) : bool :=
   forallb (fun m => qle 0 (size m)) ms
-  && divide 64 (map (fun m => (box_of (size m) (way_of m), m)) ms) (map (fun e => (box_of 0 e, e)) es).
+  && divide 64 (each (fun m => (box_of (size m) (way_of m), m)) ms) (each (fun e => (box_of 0 e, e)) es).
 
 (* --- No pair is left out --- *)
 Definition well_boxed (a : robot) := 0 <= Q2R (size (snd a)) /\ forall x, on (way_of (snd a)) x -> fills (size (snd a)) (fst a) x.
@@ -186,7 +203,7 @@ Proof.
     rewrite Forall_forall in hl, hw. apply wall_ok; auto. }
   induction fuel as [|k ih]; intros l ws hl hw h; simpl in h; [now apply base|].
   destruct (cut l) as [[u p]|]; [|now apply base].
-  match type of h with (if ?c then _ else _) = true => destruct c end; [|now apply base]. unfold part in h.
+  match type of h with (if ?c then _ else _) = true => destruct c end; [|now apply base]. unfold part in h. rewrite !sift_filter in h.
   apply andb_true_iff in h. destruct h as [h1 h2].
   apply ih in h1; [|now apply Forall_filter|now apply Forall_filter]. apply ih in h2; [|now apply Forall_filter|now apply Forall_filter].
   destruct h1 as [f1 w1], h2 as [f2 w2]. rewrite Forall_forall in hl, hw. split.
@@ -213,7 +230,7 @@ Proof. intros i h. induction h as [|a l ha _ ih]; constructor; [|assumption]. ap
 
 Theorem step_sound es ms : step es ms = true -> keeps_apart es ms.
 Proof.
-  unfold step. intro h. apply andb_true_iff in h. destruct h as [r0 h]. rewrite forallb_forall in r0.
+  unfold step. rewrite !each_map. intro h. apply andb_true_iff in h. destruct h as [r0 h]. rewrite forallb_forall in r0.
   apply divide_ok in h.
   - destruct h as [h1 h2]. intros s hs. split.
     + apply pairs_map in h1. apply pairs_impl with (2 := h1). intros a b k. now apply k.

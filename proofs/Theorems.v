@@ -26,7 +26,7 @@ Inductive shape :=
 | Disc (centre : point) (radius : Q)
 | Ellipse (centre : point) (l11 l21 l22 : Q).           (* the unit disc under [l11 0; l21 l22], moved to the centre *)
 
-(* The image of the disc of radius sqrt(m) under [l11 0; l21 l22], moved to the centre. *)
+(* The same of the disc of radius sqrt(m). *)
 Definition in_ellipse (m : R) (c : point) (l11 l21 l22 : Q) (x : vec) := exists a b,
   a * a + b * b <= m /\ x = add (real c) (Q2R l11 * a, Q2R l21 * a + Q2R l22 * b).
 Definition inside (b : shape) (x : vec) : Prop :=
@@ -47,7 +47,7 @@ Definition keeps_clear (c : half_plane) := forall v t o,
   apart (Q2R (radius c)) here there /\                  (* and a line of that normal has a strip `margin` between them: *)
   forall y, dot (sub y here) (sub y here) <= Q2R (radius c) * Q2R (radius c) ->
     dot (real (normal c)) there + Q2R (margin c) <= dot (real (normal c)) y.
-(* Two robots: c is that of one, with the other as its body, a disc; `other` is the offset of the opposite half-plane. *)
+(* Two robots: c is of one (its body does not count), p, r place and radius of the other, `other` the opposite offset. *)
 Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := forall v w t,
   Q2R (offset c) <= dot (real (normal c)) v -> Q2R other <= dot (scale (-1) (real (normal c))) w -> moment (horizon c) t ->
   apart (Q2R (radius c) + Q2R r) (add (real (position c)) (scale t v)) (add (real p) (scale t w)).

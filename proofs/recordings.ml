@@ -125,7 +125,9 @@ let answers file text problems =
   let verdicts = List.map verdict all in
   List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) verdicts;
   let valid = List.length (List.filter (( = ) "valid") verdicts) in
-  Printf.printf "%s, %d valid\n" (counted (List.length all) "certificate") valid;
+  let gap a = match Json.find "certificate" a with Some c -> (match Json.find "gap" c with Some (Json.Num g) -> g | _ -> 0.) | None -> 0. in
+  let largest = List.fold_left2 (fun m a v -> if v = "valid" then Float.max m (gap a) else m) 0. all verdicts in
+  Printf.printf "%s, %d valid, up to a gap of %.2g\n" (counted (List.length all) "certificate") valid largest;
   if all = [] then refuse file "" "no answer" "what exactvo lp --json prints" "E_FORMAT_UNKNOWN";
   valid = List.length all
 
@@ -223,17 +225,19 @@ let crowd file s =
     ignore (need (u32 ())); ignore (f64 ());
     let q = f64 () in let every = u32 () in
     let kinds = Array.of_list (list (u32 ()) (fun () -> let r = f64 () in ignore (f64 ()); r)) in
-    let kind_of = list (u32 ()) (fun () -> let k = u16 () in if k >= Array.length kinds then bad !pos "a robot of an unknown kind" else kinds.(k)) in
+    let kind_of = list (u32 ()) (fun () -> let k = u16 () in if k >= Array.length kinds then bad !pos "a robot of an unknown kind" else k) in
     let edges = list (u32 ()) (fun () -> let x = f64 () in let y = f64 () in let u = f64 () in (x, y, u, f64 ())) in
-    (q, every, kind_of, edges, if version >= 2 then u32 () else 0) in
+    (q, every, (kinds, kind_of), edges, if version >= 2 then u32 () else 0) in
   match block head with
   | None -> bad 8 "its end within the head"
-  | Some (step, _, radii, edges, bodies) ->
-    let n = List.length radii in
-    let numbers = step :: radii @ List.concat_map (fun (a, b, c, d) -> [a; b; c; d]) edges in
+  | Some (step, _, (kinds, kind_of), edges, bodies) ->
+    let n = List.length kind_of in
+    let numbers = step :: Array.to_list kinds @ List.concat_map (fun (a, b, c, d) -> [a; b; c; d]) edges in
     let q = fractions numbers in
     let unit = q step in
-    let es = List.map (fun (a, b, c, d) -> ((q a, q b), (q c, q d))) edges and sizes = List.map q radii in
+    let es = List.rev_map (fun (a, b, c, d) -> ((q a, q b), (q c, q d))) edges in
+    let radii = Array.map q kinds in
+    let sizes = Array.of_list (List.rev (List.rev_map (fun k -> radii.(k)) kind_of)) in
     let x = Array.make n 0 and y = Array.make n 0 in
     let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } in
     let column a = for i = 0 to n - 1 do a.(i) <- a.(i) + difference () done in
@@ -244,10 +248,10 @@ let crowd file s =
             | None -> cut ()
             | Some k ->
               let at v = { unit with qnum = Whole.mul (Whole.of_int v) unit.qnum } in
-              let here = List.init n (fun i -> (at x.(i), at y.(i))) in
+              let here = Array.init n (fun i -> (at x.(i), at y.(i))) in
               (* Of rows of consecutive steps the motion, of others its end. *)
               let before = match last with Some (j, ps) when k = j + 1 -> ps | _ -> here in
-              take t (Printf.sprintf "step %d" k) es (moves sizes before here);
+              take t (Printf.sprintf "step %d" k) es (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
               rows (count + 1) (Some (k, here)))
         | 'E' -> (match block (fun () -> u64 ()) with
             | None -> cut ()
