@@ -85,6 +85,18 @@ TEST(DiscObstacle, EveryMethodGoesRoundItAndTheAuditAgrees) {
   EXPECT_EQ(judged, 16);
 }
 
+TEST(DiscObstacle, AnAuditAgainstALargerDiscFails) {
+  const Scenario s = post();
+  const Recording run = simulate(s);
+  ASSERT_TRUE(audits_clean(s, run));
+  Scenario larger = s;
+  larger.obstacles[0] = disc_obstacle("post", {{0, 0}, 1.2});
+  EXPECT_FALSE(audits_clean(larger, run));
+  larger = s;
+  larger.obstacles[0].disc->radius = 1.001;  // its polygon does not hold it, and no body stands for it
+  EXPECT_FALSE(audits_clean(larger, run));
+}
+
 TEST(DiscObstacle, TheVelocityObstacleIsThatOfTheDisc) {
   const Recording run = simulate(post());
   int discs = 0, others = 0;

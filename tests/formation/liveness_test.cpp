@@ -22,6 +22,8 @@
 namespace exactvo::formation {
 namespace {
 
+using test_scenes::add_robot;
+using test_scenes::add_wall;
 using test_scenes::circle;
 using test_scenes::kTurn;
 using test_scenes::robot;
@@ -638,6 +640,55 @@ TEST(Liveness, PairsThatFallBackKeepWhatIsLeftOfTheirMargin) {
 }
 
 /// The same in millimetres and in kilometres, and far from the origin, as surveyors count.
+TEST(Liveness, PlansKeepTheMarginWhereTheFreeSpaceAllowsIt) {
+  for (const double scale : {1.0, 1e3, 1e-3}) {
+    for (const bool is_mirrored : {false, true}) {
+      if (is_mirrored && scale != 1.0) continue;
+      Scenario s = circle(20, 9.0 * kTurn / 20);  // 9 m
+      s.margins.robot = 0.3 * scale;
+      s.margins.obstacle *= scale;
+      s.arrival_tolerance *= scale;
+      s.neighbour_distance *= scale;
+      for (Robot& r : s.robots) {
+        const auto to = [&](Vec2 p) { return scale * Vec2{is_mirrored ? -p.x : p.x, p.y}; };
+        r.position = to(r.position);
+        r.goals = {to(r.goals[0])};
+        r.radius *= scale;
+        r.max_speed = 3.0 * scale;
+      }
+      const Recording run = simulate(s);
+      const Metrics m = measure(s, run);
+      EXPECT_TRUE(m.all_arrived) << scale << ": " << m.outcome;
+      ASSERT_TRUE(m.plans && m.robot_margin && m.min_robot_clearance);
+      EXPECT_GT(m.plans->groups, 0u) << scale;
+      EXPECT_EQ(m.robot_margin->pair_rows, 0u) << scale << ": it was 1427 with plans that knew no margin";
+      constexpr double kRounding = 1e-6;
+      EXPECT_GE(*m.min_robot_clearance, (1.0 - kRounding) * s.margins.robot) << scale;
+    }
+  }
+}
+
+TEST(Liveness, WhereNoPlanKeepsTheMarginOneWithoutItIsSaid) {
+  // A street in which two have room side by side, but not with the margin between them.
+  Scenario s;
+  s.name = "pass";
+  add_wall(s, {{-9, -1.2}, {9, -1.2}, {9, 1.2}, {-9, 1.2}, {-9, -1.2}});
+  add_robot(s, {-6, 0}, {6, 0});
+  add_robot(s, {6, 0}, {-6, 0});
+  s.margins.robot = 0.6;
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_TRUE(m.all_arrived) << m.outcome;
+  EXPECT_GT(*m.min_robot_clearance, 0.0);
+  ASSERT_TRUE(m.robot_margin);
+  EXPECT_GT(m.robot_margin->pair_rows, 0u);
+  std::size_t said = 0;
+  for (const Step& row : run.steps)
+    for (const RobotStep& r : row.robots) said += r.note.find("does not keep margins.robot") != std::string::npos;
+  EXPECT_EQ(said, run.plans.size());
+  EXPECT_GT(said, 0u);
+}
+
 TEST(Liveness, PlansDependNeitherOnTheUnitNorOnTheOrigin) {
   const Scenario s = test_scenes::siding();
   const auto moved = [&](double scale, Vec2 by) {

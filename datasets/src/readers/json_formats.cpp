@@ -86,8 +86,7 @@ void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) 
   const auto discs = std::count_if(loaded.scenario.obstacles.begin(), loaded.scenario.obstacles.end(),
                                    [](const formation::SceneObstacle& o) { return o.disc.has_value(); });
   if (discs > 0)
-    out.note(
-        "", geometry::counted(static_cast<std::size_t>(discs), "disc") + " taken as polygons of 32 corners round them");
+    out.note("", geometry::counted(static_cast<std::size_t>(discs), "disc") + " read as polygons of 32 corners");
   const std::size_t moving = loaded.scenario.moving_obstacles.size();
   if (moving > 0) out.note("", geometry::counted(moving, "moving obstacle") + " left out, for lack of a fixed place");
 }

@@ -170,7 +170,8 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
 }
 
 void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
-                  std::vector<std::vector<Constraint>>& constraints, double gap) {
+                  std::vector<std::vector<Constraint>>& constraints, const std::vector<double>& gaps) {
+  const auto gap_of = [&](std::size_t i) { return gaps.empty() ? kContactSkin : gaps[i]; };
   const auto yields = [&](std::size_t i) { return now.robots[i].cooperates; };
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     std::vector<Constraint>& mine = constraints[i];
@@ -186,8 +187,9 @@ void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& p
     for (Constraint& c : mine) {
       if (!is_theirs(c)) continue;
       const std::size_t j = c.index;
-      c = planned[i] && planned[j] ? with_plans(now, i, *planned[i], j, *planned[j]).of_a
-                                   : with_a_plan(now, i, j, planned[i].has_value(), gap).of_a;
+      c = planned[i] && planned[j]
+              ? with_plans(now, i, *planned[i], j, *planned[j]).of_a
+              : with_a_plan(now, i, j, planned[i].has_value(), std::max(gap_of(i), gap_of(j))).of_a;
     }
   }
 }

@@ -88,9 +88,10 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
 /// rule R4). `planned`: m/s, the velocities that plans want. If both follow one: the half-plane nearest to both planned
 /// velocities, each robot with half of its slack, so that both satisfy it where the plan is free of collision (lemma
 /// 2). If one does: it may use the whole gap, and the other may not come nearer. Pairs that cannot meet within a step
-/// have none. REQUIRES: half-planes against robots only.
+/// have none. `gaps`: m, of each robot, that one that goes by plan and one that does not keep at least; the larger one
+/// counts. REQUIRES: half-planes against robots only.
 void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
-                  std::vector<std::vector<Constraint>>& constraints, double gap = kContactSkin);
+                  std::vector<std::vector<Constraint>>& constraints, const std::vector<double>& gaps = {});
 
 /// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
 std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,

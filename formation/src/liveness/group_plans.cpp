@@ -77,7 +77,8 @@ Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int r
 
 /// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Who only passes its
 /// goal has it before who stays there; who yields comes last.
-std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const {
+std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, bool with_margin,
+                                             Roadmap& map) const {
   const std::size_t places = map.size();
   std::vector<std::tuple<int, double, std::size_t>> nearest_first;
   for (std::size_t k = 0; k < who.size(); ++k) {
@@ -89,14 +90,14 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
   std::vector<geometry::Disc> taken;
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      taken.push_back({now_[j].position, robots_[j].radius});
+      taken.push_back({now_[j].position, radius_of(j, with_margin)});
   std::vector<PlaceNumber> targets(who.size());
   for (const auto& [rank, from_goal, k] : nearest_first) {
     const std::size_t i = who[k];
-    const double radius = robots_[i].radius;
+    const double radius = robots_[i].radius, kept = radius_of(i, with_margin);
     const auto is_free = [&](Vec2 place) {
       return std::all_of(taken.begin(), taken.end(), [&](const geometry::Disc& t) {
-        const double wanted = (1.0 + kPlannedGap) * (radius + t.radius);
+        const double wanted = (1.0 + kPlannedGap) * (kept + t.radius);
         return squared_norm(place - t.center) >= wanted * wanted;
       });
     };
@@ -115,7 +116,7 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
       targets[k] = *target;
     else if (least == kInfinity)
       targets[k] = map.attach(from[i], radius);
-    taken.push_back({map.place(targets[k]), radius});
+    taken.push_back({map.place(targets[k]), kept});
   }
   return targets;
 }
@@ -139,6 +140,40 @@ std::size_t Groups::most_calls(std::size_t row) const {
   return row == history_.first() ? kCallsFromTheStart : kCallsGoingBack;
 }
 
+/// m: its own, or so much more that the gap of plans is the margin between robots.
+double Groups::radius_of(std::size_t robot, bool with_margin) const {
+  const double radius = robots_[robot].radius;
+  return with_margin ? std::max(radius, (radius + 0.5 * margin_) / (1.0 + kPlannedGap)) : radius;
+}
+
+/// Whether plans of these keep less than the margin where they are not asked for it.
+bool Groups::has_wide_margin(const Members& who) const {
+  constexpr double kRounding = 1.0 + 1e-9;
+  return std::any_of(who.begin(), who.end(),
+                     [&](std::size_t i) { return radius_of(i, true) > kRounding * robots_[i].radius; });
+}
+
+/// From where they are to their targets, on that map, where those who are not of these and stay are blocked.
+JointProblem Groups::problem_for(const Members& who, const std::vector<Vec2>& from, bool with_margin,
+                                 Roadmap& map) const {
+  JointProblem problem;
+  problem.map = &map;
+  problem.is_stopped = is_stopped_;
+  double largest = 0.0;
+  for (const std::size_t i : who) {
+    problem.radii.push_back(radius_of(i, with_margin));
+    largest = std::max(largest, problem.radii.back());
+    if (with_margin) problem.bodies.push_back(robots_[i].radius);
+  }
+  for (std::size_t j = 0; j < now_.size(); ++j)
+    if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
+      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest + radius_of(j, with_margin)));
+  problem.goals = targets_for(who, from, with_margin, map);
+  for (const std::size_t i : who) problem.starts.push_back(map.attach(from[i], robots_[i].radius));
+  return problem;
+}
+
+/// With the margin between robots where there is a plan that leads as far; else without.
 PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row, Detail detail) {
   const Members who = with_groups_of(members);
   const std::vector<Vec2>& from = history_[row];
@@ -146,24 +181,41 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   dissolve_those_of(seeds);
   if (tries_.are_in_vain(time_, now_, who)) return PlanEnd::in_vain;
   Roadmap map = map_for(who, from, replans, detail);
-  for (std::size_t j = 0; j < now_.size(); ++j)
-    if (!contains(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(robots_, who) + robots_[j].radius));
-  JointProblem problem;
-  problem.map = &map;
-  problem.is_stopped = is_stopped_;
-  problem.goals = targets_for(who, from, map);
-  if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
-  for (const std::size_t i : who) {
-    problem.radii.push_back(robots_[i].radius);
-    problem.starts.push_back(map.attach(from[i], robots_[i].radius));
-  }
   const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
-  PlanFound found = search_.best_plan(problem, most_calls(row), has_lanes);
-  course_.search_nodes += found.nodes;
-  if (found.end != PlanEnd::planned) return found.end;
+  const bool is_wide = has_wide_margin(who), asks_for_margin = is_wide && replans == 0;
+  std::optional<Roadmap> roomy;
+  if (asks_for_margin) roomy = map;  // before what stays is blocked
+  const JointProblem problem = problem_for(who, from, false, map);
+  if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
+  PlanFound found;
+  bool keeps_margin = false;
+  if (asks_for_margin) {
+    const JointProblem wider = problem_for(who, from, true, *roomy);
+    const auto leads_as_far = [&](std::size_t k) {
+      return roomy->place(wider.goals[k]) == map.place(problem.goals[k]);
+    };
+    bool lead_as_far = true;
+    for (std::size_t k = 0; k < who.size(); ++k) lead_as_far = lead_as_far && leads_as_far(k);
+    if (lead_as_far) found = search_.best_plan(wider, most_calls(row), has_lanes);
+    course_.search_nodes += found.nodes;
+    keeps_margin = found.end == PlanEnd::planned;
+    if (keeps_margin) start(who, Following(std::move(found.plan), wider.radii), replans, row);
+  }
+  if (!keeps_margin) {
+    found = search_.best_plan(problem, most_calls(row), has_lanes);
+    course_.search_nodes += found.nodes;
+    if (found.end != PlanEnd::planned) return found.end;
+    start(who, Following(std::move(found.plan), problem.radii), replans, row);
+  }
+  Group& g = groups_.back();
+  if (keeps_margin) g.gap = margin_;
+  add_note(notes_[who.front()], plan_words(g) + (is_wide && !keeps_margin ? "; it does not keep margins.robot" : ""));
+  return PlanEnd::planned;
+}
+
+void Groups::start(const Members& who, Following following, int replans, std::size_t row) {
   dissolve_those_of(who);
-  Group& g = groups_.emplace_back(Group{who, Following(std::move(found.plan), problem.radii)});
+  Group& g = groups_.emplace_back(Group{who, std::move(following)});
   g.back_at = history_.last();
   g.back_to = row;
   g.progress = time_;
@@ -178,8 +230,6 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   course_.largest = std::max(course_.largest, who.size());
   made_.push_back(recorded(g));
   forget_without_plan(who);
-  add_note(notes_[who.front()], plan_words(g));
-  return PlanEnd::planned;
 }
 
 JointPlan Groups::recorded(const Group& g) const {

@@ -80,6 +80,9 @@ class Groups {
   bool goes_back(std::size_t robot) const { return is_member(robot) && group(robot).back_at > group(robot).back_to; }
   /// m/s. REQUIRES: a member.
   Vec2 wanted(std::size_t robot) const { return wanted_[robot]; }
+  /// m: the margin between robots that a member's plan keeps, and that it leaves to others too; 0: none. REQUIRES: a
+  /// member.
+  double gap(std::size_t robot) const { return group(robot).gap; }
   /// A group goes back in step or not at all. If half-planes kept one of its robots from what it wanted, the whole
   /// group stands still in this step: its members want nothing. Whether there is such a group.
   bool halt_those_held_back(const Step& row);
@@ -109,6 +112,7 @@ class Groups {
     std::size_t back_at = 0, back_to = 0;  ///< rows of the history: going back while the first is above the second
     double progress = 0.0;                 ///< s, when something was done last
     int replans = 0;                       ///< of its robots, since they had a plan that went on
+    double gap = 0.0;                      ///< m: the margin that its plan keeps between robots; 0: none
     bool is_over = false;
     bool stands_still = false;  ///< in this step
   };
@@ -160,7 +164,12 @@ class Groups {
   bool uses_whole_map(const Members& who) const;
   Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const;
   geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
-  std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
+  double radius_of(std::size_t robot, bool with_margin) const;
+  bool has_wide_margin(const Members& who) const;
+  JointProblem problem_for(const Members& who, const std::vector<Vec2>& from, bool with_margin, Roadmap& map) const;
+  void start(const Members& who, Following following, int replans, std::size_t row);
+  std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, bool with_margin,
+                                       Roadmap& map) const;
   bool serves_any(const Members& seeds, const Members& who, const Roadmap& map,
                   const std::vector<PlaceNumber>& targets) const;
   std::size_t most_calls(std::size_t row) const;
@@ -176,6 +185,7 @@ class Groups {
   std::function<bool()> is_stopped_;
   geometry::Box scene_;  ///< m, of obstacles, robots and goals
   double patience_;      ///< s
+  double margin_;        ///< m, between robots, which plans keep where they can
   double time_ = 0.0;
   std::size_t row_ = 0;
   std::vector<RobotNow> now_;

@@ -153,7 +153,7 @@ class Generator {
     std::vector<std::pair<float, PlaceNumber>> all;
     const float shuffle = kShuffle * 2.0f * static_cast<float>(problem_.radii[i]);
     for (const PlaceNumber to : map_.ways(at))
-      if (map_.room(to) >= problem_.radii[i]) all.emplace_back(distances_[i][to] + shuffle * random.fraction(), to);
+      if (map_.room(to) >= problem_.body(i)) all.emplace_back(distances_[i][to] + shuffle * random.fraction(), to);
     all.emplace_back(distances_[i][at], at);
     std::stable_sort(all.begin(), all.end());
     return all;
@@ -249,7 +249,7 @@ struct JointSearch::Data {
     const auto length = [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem.map, a, b); };
     const auto measure = [&](std::size_t first, std::size_t last, int) {
       for (std::size_t i = first; i < last && !is_stopped(problem); ++i)
-        distances[i] = distances_to(*problem.map, problem.goals[i], problem.radii[i], length);
+        distances[i] = distances_to(*problem.map, problem.goals[i], problem.body(i), length);
     };
     if (tasks)
       tasks->for_ranges(distances.size(), 1, measure);
@@ -280,7 +280,7 @@ struct JointSearch::Data {
       for (std::size_t i = 0; i < distances.size(); ++i) {
         if (is_stopped(problem)) return;
         traffic.add(ways[i], -1.0);
-        in_lanes[i] = distances_to(*problem.map, problem.goals[i], problem.radii[i], cost);
+        in_lanes[i] = distances_to(*problem.map, problem.goals[i], problem.body(i), cost);
         ways[i] = traffic.way_from(problem.starts[i], in_lanes[i]);
         traffic.add(ways[i], 1.0);
       }
@@ -351,7 +351,7 @@ class Tree {
  private:
   const JointProblem& problem_;
   const std::vector<std::vector<float>>& distances_;
-  std::deque<Node> nodes_;  // references stay
+  std::deque<Node> nodes_;                                           // references stay
   std::unordered_map<std::size_t, std::vector<std::size_t>> known_;  // by their hash
 };
 
@@ -361,7 +361,7 @@ void add_constraints(Node& node, const Constraints& so_far, const JointProblem& 
   const std::size_t robot = node.priority[so_far.size()];
   std::vector<PlaceNumber> places;
   for (const PlaceNumber p : problem.map->ways(node.at[robot]))
-    if (problem.map->room(p) >= problem.radii[robot]) places.push_back(p);
+    if (problem.map->room(p) >= problem.body(robot)) places.push_back(p);
   places.push_back(node.at[robot]);
   for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[random.below(k)]);
   for (const PlaceNumber place : places) {

@@ -31,10 +31,13 @@ namespace exactvo::formation::detail {
 
 struct JointProblem {
   const Roadmap* map = nullptr;
-  std::vector<double> radii;              ///< m, of each robot
+  std::vector<double> radii;              ///< m, of each robot, as the others keep clear of it
+  std::vector<double> bodies = {};        ///< m, what ways leave room for; empty: the radii
   std::vector<PlaceNumber> starts;        ///< whose discs do not overlap
   std::vector<PlaceNumber> goals;         ///< the same
   std::function<bool()> is_stopped = {};  ///< asked now and then: true ends every search out of budget
+
+  double body(std::size_t robot) const { return bodies.empty() ? radii[robot] : bodies[robot]; }
 };
 
 struct JointMove {

@@ -198,7 +198,7 @@ void PathAmongOthers::expand(const Query& query, std::size_t arrival) {
   const std::size_t now = position_at(*query.others, arrivals_[arrival].time);
   const std::vector<PlaceNumber>& next = problem_.map->ways(from);
   for (std::size_t k = 0; k < next.size(); ++k)
-    if (problem_.map->room(next[k]) >= problem_.radii[query.robot] && (*query.to_goal)[next[k]] != kFarAway)
+    if (problem_.map->room(next[k]) >= problem_.body(query.robot) && (*query.to_goal)[next[k]] != kFarAway)
       expand_to(query, arrival, now, next[k], edges_.kth_from(from, k));
 }
 

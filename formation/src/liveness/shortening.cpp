@@ -90,7 +90,7 @@ class Shortening {
     if (!to_goal_[robot].empty()) return to_goal_[robot];
     work_ += kForADistance * problem_.map->size();
     return to_goal_[robot] =
-               distances_to(*problem_.map, problem_.goals[robot], problem_.radii[robot],
+               distances_to(*problem_.map, problem_.goals[robot], problem_.body(robot),
                             [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem_.map, a, b); });
   }
 

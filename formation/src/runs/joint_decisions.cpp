@@ -22,9 +22,13 @@ void JointDecisions::look_at_robots(const Groups* groups) {
   robot_constraints(now(), pairs_, others);
   if (!groups || !groups->any()) return;
   std::vector<std::optional<Vec2>> planned(anchors.size());
-  for (std::size_t i = 0; i < planned.size(); ++i)
-    if (groups->is_member(i)) planned[i] = groups->wanted(i);
-  follow_plans(now(), planned, others, gap);
+  std::vector<double> gaps(anchors.size(), gap);
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    if (!groups->is_member(i)) continue;
+    planned[i] = groups->wanted(i);
+    gaps[i] = std::max(gap, groups->gap(i));
+  }
+  follow_plans(now(), planned, others, gaps);
 }
 
 void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time,

@@ -6,7 +6,7 @@
 >>> run.plot()                                                 # doctest: +SKIP
 
 `exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
-`exactvo.Crowd` many robots, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files.
+`exactvo.Crowd` many robots, `exactvo.Navigator` one robot in a control loop, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files.
 SI units: metres, seconds, radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and
 ``where``. The guide: docs/guide/python.md.
 """
@@ -26,6 +26,7 @@ from . import datasets, lp, routes, shapes, vo
 from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError, ScenarioWarning
 from .explorer import ExplorerPage, view
+from .navigator import Navigator, NavigatorDecision
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
 from .simulation import METHODS, Recording, Scenario, read_recording, simulate
@@ -43,6 +44,8 @@ __all__ = [
     "ExactVOError",
     "ExplorerPage",
     "MissingFileError",
+    "Navigator",
+    "NavigatorDecision",
     "Obstacles",
     "Polygon",
     "Recording",
@@ -52,10 +55,10 @@ __all__ = [
     "RouteNotProvenError",
     "RoutePlan",
     "Scenario",
+    "ScenarioWarning",
     "Segment",
     "StepReport",
     "Unreachable",
-    "ScenarioWarning",
     "VelocityObstacle",
     "Wall",
     "__version__",

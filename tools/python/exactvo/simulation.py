@@ -172,6 +172,11 @@ class RecordedHalfPlane:
     clearance: float  #: m, rim to body; negative in overlap
 
 
+def _half_plane_of(fields: tuple[Any, ...]) -> RecordedHalfPlane:
+    half_plane, source, *others = fields
+    return RecordedHalfPlane(HalfPlane(*half_plane), _SOURCES[source], *others)
+
+
 @dataclass(frozen=True, eq=False)
 class JointPlan:
     """The plan of robots that waited for each other (docs/guide/liveness.md): moves one after the other."""
@@ -275,10 +280,7 @@ class Recording:
         `IndexError`, `ArgumentError`."""
         step = range(len(self))[step]
         robot = range(self.position.shape[1])[robot]
-        return tuple(
-            RecordedHalfPlane(HalfPlane(*h), _SOURCES[source], index, certified, hard, active, multiplier, clearance)
-            for h, source, index, certified, hard, active, multiplier, clearance in self._native.half_planes(step, robot)
-        )
+        return tuple(_half_plane_of(fields) for fields in self._native.half_planes(step, robot))
 
     @property
     def plans(self) -> tuple[JointPlan, ...]:
@@ -387,8 +389,6 @@ def simulate(
 
     Raises `ArgumentError`, `DataError`, `MissingFileError`. Ctrl-C ends it. Releases the interpreter's lock.
     """
-    given = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
-    if isinstance(threads, int) and not 0 <= threads <= 1024:
 
     def warn(text: str) -> None:
         collected = _collected.get()
@@ -397,6 +397,8 @@ def simulate(
         else:
             collected.append(text)
 
+    given = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
+    if isinstance(threads, int) and not 0 <= threads <= 1024:
         raise ArgumentError("threads", repr(threads)[:60], "0 to 1024")
     return Recording(
         _exactvo.simulate(

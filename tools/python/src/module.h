@@ -20,6 +20,7 @@ void bind_vo(py::module_& module);
 void bind_routes(py::module_& module);
 void bind_crowd(py::module_& module);
 void bind_simulate(py::module_& module);
+void bind_navigator(py::module_& module);
 void bind_obstacle_files(py::module_& module);
 void bind_rvo2(py::module_& module);
 
