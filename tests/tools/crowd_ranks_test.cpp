@@ -153,7 +153,6 @@ TEST(CrowdOverRanks, WhatIsWrongIsSaidOnce) {
       {"simulate - --decisions none", "scenario: found '-', expected a file"},
       {"simulate none.json --decisions none", "E_FILE_MISSING"},
       {"simulate slow.json --decisions none", "slow.json: robot B: max_speed: found "},
-      {"simulate mixed.json --decisions none --out out", "--out cannot be combined with --decisions none"},
       {"simulate mixed.json --decisions none --record mixed.json/out.evr", "E_FILE_UNWRITABLE"}};
   for (const auto& [arguments, words] : cases) {
     const Outcome outcome = here.run(arguments, over(3));

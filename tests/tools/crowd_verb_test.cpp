@@ -340,6 +340,28 @@ TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
   EXPECT_EQ(found, expected);
 }
 
+TEST(CrowdVerb, AFolderOfAKilledRunIsThatOfAWholeOne) {
+  const Workplace here;
+  here.write("ring.json", R"({"name": "ring", "time_step": 0.05, "time_limit": 60, "horizons": {"least": 0.3},
+    "robots": [{"circle": {"count": 400, "radius": 100}, "max_speed": 1.5}]})");
+  const std::string options = "simulate ring.json --guidance none --no-figures --every 10 --json";
+  const Outcome whole = here.run(options + " --out whole");
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  const std::string run = options + " --out deep/killed --snapshot-every 25 --resume";
+  Outcome outcome;
+  int kills = 0;
+  for (int tenths = 1; outcome = here.run(run, "timeout -s KILL " + std::to_string(0.1 * tenths)), outcome.status != 0;
+       ++tenths) {
+    ASSERT_LT(++kills, 200) << outcome.err;
+    EXPECT_FALSE(here.has("deep/killed/metrics.json"));
+  }
+  EXPECT_GT(kills, 0);
+  EXPECT_TRUE(here.read("deep/killed/recording.evr") == here.read("whole/recording.evr"));
+  EXPECT_TRUE(here.read("deep/killed/trajectory.csv") == here.read("whole/trajectory.csv"));
+  for (const char* left : {"deep/killed.evr", "deep/killed.evr.snapshot", "deep/killed.evr.unfinished"})
+    EXPECT_FALSE(here.has(left)) << left;
+}
+
 TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {
   const Workplace here;
   here.write("ring.json", kRing);

@@ -83,9 +83,12 @@ std::optional<formation::ControllerOptions> controller_options_of(const Simulati
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method =
-      app.add_option("--method,-m", flags.method,
-                     help("Avoidance method (ivo: a way to drive, not the half-plane of vo --variant ivo)",
-                          formation::method_names()))
+      app.add_option(
+             "--method,-m", flags.method,
+             help(
+                 "Avoidance method (ivo: a way to drive, not the half-plane of vo --variant ivo; with --decisions none "
+                 "always orca)",
+                 formation::method_names()))
           ->capture_default_str();
   flags.method_option = method;
   flags.of_goals = {app.add_option(

@@ -78,7 +78,7 @@ function fillStateOnly(run) {
   fact(facts, 'position', `${pair([run.x(row, i), run.y(row, i)])} m`, 'position');
   fact(facts, 'moving at', speedWords([run.vx(row, i), run.vy(row, i)]), 'velocity');
   $('facts').replaceChildren(...facts);
-  $('why').textContent = run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals. ' +
+  $('why').textContent = run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals (exactvo explain computes a decision again; simulate --decisions binding records all). ' +
     'Robots in red had a half-plane relaxed since the row before.';
 }
 
