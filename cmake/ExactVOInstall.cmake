@@ -67,8 +67,10 @@ if(TARGET exactvo)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} COMPONENT runtime OPTIONAL)
 endif()
 # The README's links hold where it is installed as well.
-install(FILES LICENSE README.md CITATION.cff CHANGELOG.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
-install(DIRECTORY docs/guide docs/images docs/adr docs/design DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
+install(FILES LICENSE README.md CITATION.cff CHANGELOG.md CONTRIBUTING.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT runtime)
+install(FILES docs/building.md docs/claims.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
+install(DIRECTORY docs/guide docs/images docs/adr docs/design docs/measurements DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DOCDIR}/datasets COMPONENT runtime)
 

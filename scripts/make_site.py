@@ -30,13 +30,13 @@ def page_of(source):
     name = source.as_posix()
     if name == "README.md":
         return pathlib.Path("index.html")
-    for folder in ("docs/guide", "docs/adr", "docs/design"):
+    for folder in ("docs/guide", "docs/adr", "docs/design", "docs/measurements"):
         if name == folder:
             return pathlib.Path(source.name, "index.html")
         if name.startswith(folder + "/") and name.endswith(".md"):
             stem = "index" if source.stem == "README" else source.stem
             return pathlib.Path(folder.removeprefix("docs/"), stem + ".html")
-    if name in ("HACKING.md", "CHANGELOG.md"):
+    if name in ("HACKING.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/building.md", "docs/claims.md"):
         return pathlib.Path(source.stem.lower() + ".html")
     if name == "examples/python":
         return pathlib.Path("tutorials/index.html")
@@ -129,11 +129,13 @@ def index_of(site, folder, title, sources, words=""):
 
 
 def make_guide(site):
-    pages = [p.relative_to(ROOT) for folder in ("guide", "adr", "design") for p in sorted((ROOT / "docs" / folder).glob("*.md"))]
-    for source in [pathlib.Path("README.md"), pathlib.Path("HACKING.md"), pathlib.Path("CHANGELOG.md"), *pages]:
+    pages = [p.relative_to(ROOT) for folder in ("guide", "adr", "design", "measurements") for p in sorted((ROOT / "docs" / folder).glob("*.md"))]
+    singles = ("README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/building.md", "docs/claims.md")
+    for source in [*map(pathlib.Path, singles), *pages]:
         site.page(source)
-    more = ('<p>Also: <a href="../adr/index.html">decisions and their reasons</a>, <a href="../hacking.html">how the repository is '
-            'laid out</a>, <a href="../changelog.html">what changed</a>.</p>\n')
+    more = ('<p>Also: <a href="../adr/index.html">decisions and their reasons</a>, <a href="../claims.html">claims to check</a>, '
+            '<a href="../hacking.html">how the repository is laid out</a>, <a href="../contributing.html">how to contribute</a>, '
+            '<a href="../changelog.html">what changed</a>.</p>\n')
     index_of(site, "guide", "Guide", [p for p in pages if p.parent.name == "guide"], more)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rooms of formation/src as HACKING.md lists them, from the data up: a file includes its own room and those before it."""
+"""The rooms of formation/src as formation/README.md lists them, from the data up: a file includes its own room and those before it."""
 import pathlib
 import re
 import unittest
@@ -11,9 +11,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([a-z_0-9]+)/', re.MULTILINE)
 
 
 def listed_rooms(text):
-    """The rooms in the table of the section, in its order."""
-    section = text.split("### The rooms of formation", 1)[1].split("\n## ", 1)[0]
-    return re.findall(r"^\| `([a-z_0-9]+)/` \|", section, re.MULTILINE)
+    """The rooms in the table, in its order."""
+    return re.findall(r"^\| `src/([a-z_0-9]+)/` \|", text, re.MULTILINE)
 
 
 def upward(rooms, files):
@@ -32,7 +31,7 @@ def upward(rooms, files):
 
 class Rooms(unittest.TestCase):
     def setUp(self):
-        self.rooms = listed_rooms((ROOT / "HACKING.md").read_text(encoding="utf-8"))
+        self.rooms = listed_rooms((ROOT / "formation" / "README.md").read_text(encoding="utf-8"))
 
     def test_table_lists_the_folders(self):
         folders = {p.name for p in SOURCES.iterdir() if p.is_dir()}
