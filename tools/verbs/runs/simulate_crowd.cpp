@@ -22,6 +22,7 @@
 #include "support/rank_watch.h"
 #include "support/terminal.h"
 #include "support/usage.h"
+#include "verb.h"
 
 namespace exactvo::tools {
 namespace {
