@@ -22,7 +22,9 @@ namespace exactvo::datasets {
 /// Numbers above 0 by their size, eight bins to each doubling.
 class LogHistogram {
  public:
+  /// Counts a value; one that is not above 0, or not finite, is left out.
   void add(double value);
+  /// How many values were counted.
   std::uint64_t count() const { return count_; }
   /// A number that this share of the values does not exceed: the upper end of its bin. REQUIRES: count() > 0.
   double quantile(double share) const;
@@ -34,15 +36,16 @@ class LogHistogram {
 
 /// A greatest value and where it was.
 struct Extreme {
-  double value = 0.0;
+  double value = 0.0;      ///< rounded
   double time = 0.0;       ///< s, the start of the move
   std::uint64_t line = 0;  ///< of the row at its end; 0: none
 };
 
 /// One agent, over all its rows.
 struct AgentSurvey {
-  std::uint64_t rows = 0;
-  double first = 0.0, last = 0.0;                             ///< s
+  std::uint64_t rows = 0;                                     ///< how many there are
+  double first = 0.0;                                         ///< s, of the first row
+  double last = 0.0;                                          ///< s, of the last row
   Extreme speed;                                              ///< m/s
   Extreme acceleration;                                       ///< m/s^2, from one move to the next
   double heading = std::numeric_limits<double>::quiet_NaN();  ///< rad, of the first row that has one
@@ -52,8 +55,9 @@ struct AgentSurvey {
 
 /// A move from one row of an agent to the next.
 struct Move {
-  std::size_t agent = 0;
-  TrajectoryRow from, to;
+  std::size_t agent = 0;                                   ///< its number
+  TrajectoryRow from;                                      ///< where it begins
+  TrajectoryRow to;                                        ///< where it ends
   double interval() const { return to.time - from.time; }  ///< s
   double speed() const;                                    ///< m/s
 };
@@ -72,20 +76,26 @@ class Moves {
 /// The survey of a file.
 class TrajectorySurvey {
  public:
+  /// Takes rows in the order of the file.
   void add(const TrajectoryRow& row);
 
+  /// By number.
   const std::vector<AgentSurvey>& agents() const { return agents_; }
+  /// How many rows were taken.
   std::uint64_t rows() const { return rows_; }
   double first() const { return first_; }  ///< s
   double last() const { return last_; }    ///< s
+  /// Holds all places, m.
   const geometry::Box& extent() const { return extent_; }
   bool is_in_order() const { return in_order_; }  ///< rows come by time
+  /// Whether any row has a heading.
   bool has_headings() const { return has_headings_; }
   double usual_interval() const;  ///< s, the median; 0 where no agent has two rows
 
   /// m/s: a faster move is a jump. Three times the speed that 95 of 100 moves do not exceed, those of speed 0 left out;
   /// infinite where there are fewer than kLeastMoves.
   double jump_speed() const;
+  /// Fewer moves say nothing of the usual speed.
   static constexpr std::uint64_t kLeastMoves = 20;
   /// s: a longer pause between two rows of an agent is a gap. 1.5 times the median of the agent's own intervals, where
   /// it has at least four, else of all.
