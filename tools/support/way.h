@@ -15,8 +15,8 @@
 
 namespace exactvo::tools {
 
-/// From so many robots on places alone are recorded. With recorded decisions 200 robots take minutes where they are
-/// dense, as long as thousands take without.
+/// From so many robots on places alone are recorded: a dense scene of 200 takes 75 times as long with decisions, and
+/// below that either takes seconds.
 inline constexpr std::size_t kManyRobots = 200;
 
 /// What --decisions says.
