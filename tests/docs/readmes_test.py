@@ -26,7 +26,7 @@ def rooms():
     listed = [ROOT / module for module in MODULES]
     for module in ("geometry", "vo", "formation"):
         listed += sorted(p for p in (ROOT / module / "src").iterdir() if p.is_dir())
-    listed += [ROOT / name for name in ("tools", "bench", "tests", "cmake", "scripts", "examples")]
+    listed += [ROOT / "cmake", ROOT / "scripts", *(p.parent for p in ROOT.glob("*/CMakeLists.txt"))]
     listed += sorted(p for p in (ROOT / "tools").iterdir() if p.is_dir())
     listed += sorted(p.parent for p in ROOT.glob("*/src/*/README.md"))
     return sorted(set(listed))
