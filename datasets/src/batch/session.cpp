@@ -41,7 +41,9 @@ void append_robot(JsonWriter& json, const BatchRobot& robot) {
 std::string to_json(const BatchConfiguration& c) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("format", c.reading.format).member("units", name(c.reading.units));
-  json.member("unknown", name(c.reading.unknown)).member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
+  json.member("unknown", name(c.reading.unknown))
+      .member("cell_size", c.reading.cell_size)
+      .member("repair", c.reading.repair);
   json.member("memory_limit", c.memory_limit);
   append_shape_options(json, c.shapes);
   if (c.robot) append_robot(json, *c.robot);

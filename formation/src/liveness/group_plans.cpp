@@ -181,12 +181,12 @@ PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int repl
   dissolve_those_of(seeds);
   if (tries_.are_in_vain(time_, now_, who)) return PlanEnd::in_vain;
   Roadmap map = map_for(who, from, replans, detail);
-  const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
   const bool is_wide = has_wide_margin(who), asks_for_margin = is_wide && replans == 0;
   std::optional<Roadmap> roomy;
   if (asks_for_margin) roomy = map;  // before what stays is blocked
   const JointProblem problem = problem_for(who, from, false, map);
   if (!serves_any(seeds, who, map, problem.goals)) return PlanEnd::no_use;
+  const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
   PlanFound found;
   bool keeps_margin = false;
   if (asks_for_margin) {
