@@ -25,6 +25,8 @@ Module Checked <: Theorems.Verifier.
   Definition chain_sound := Route.chain_sound.
   Definition blocked := Route.blocked.
   Definition blocked_sound := Route.blocked_sound.
+  Definition starts := Step.starts.
+  Definition starts_sound := Step.starts_sound.
   Definition step := Step.step.
   Definition step_sound := Step.step_sound.
   Definition run := Step.run.

@@ -130,7 +130,7 @@ Example half_a_metre_has_room : blocked box (1 # 2) (7 # 2, 2) 0%nat (Some 3%nat
 Proof. vm_compute. reflexivity. Qed.
 
 (* --- A run: the first rows of two robots in a room, past an edge of it --- *)
-Definition edge_of_the_room : list edge := [((d 4 0, d 1351079888211149 50), (d 5854679515581645 50, d 1351079888211149 50))].
+Definition edge_of_the_room : list obstacle := [Wall [(d 4 0, d 1351079888211149 50); (d 5854679515581645 50, d 1351079888211149 50)]].
 Definition sizes : list Q := [d 5404319552844595 55; d 5404319552844595 55].
 Definition first_rows : list (list point) :=
   [[(d 3152519739159347 52, d 5854679515581645 52); (d 5967269506265907 50, d 2 0)];
@@ -142,4 +142,8 @@ Proof. apply run_sound. vm_compute. reflexivity. Qed.
 Example they_cannot_change_places : run edge_of_the_room sizes
   [[(d 3152519739159347 52, d 5854679515581645 52); (d 5967269506265907 50, d 2 0)];
    [(d 5967269506265907 50, d 2 0); (d 3152519739159347 52, d 5854679515581645 52)]] = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* Clear of all edges, and yet not where a robot may be: inside a polygon. *)
+Example inside_is_refuted : run [Solid [[(-2, -2); (9, -2); (9, 9); (-2, 9)]]] sizes first_rows = false.
 Proof. vm_compute. reflexivity. Qed.

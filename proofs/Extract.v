@@ -18,4 +18,4 @@ Extract Constant Z.div2 => "(fun z -> Whole.shift_right z 1)".
 Extraction Inline negb.
 
 Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
-  Checked.route Checked.chain Checked.blocked Checked.step Checked.run moves edges_of qlt.
+  Checked.route Checked.chain Checked.blocked Checked.starts Checked.step edges_of.

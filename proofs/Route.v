@@ -6,13 +6,13 @@ Import ListNotations.
 Open Scope R_scope.
 
 (* --- Routes: no piece is nearer to an edge than the radius, and the first point is in no polygon --- *)
-Definition outside (o : obstacle) (es : list edge) (x : point) : bool :=
+Definition is_outside (o : obstacle) (es : list edge) (x : point) : bool :=
   match o with Wall _ => true | Solid _ => negb (qodd es x) end.
 Definition route (os : list obstacle) (r : Q) (ps : list point) : bool :=
   match ps with
   | a :: _ :: _ => let pieces := sides ps in
       qlt 0 r && forallb (fun o => let es := edges_of o in
-        outside o es a && forallb (fun e => forallb (fun piece => segments_apart r piece e) pieces) es) os
+        is_outside o es a && forallb (fun e => forallb (fun piece => segments_apart r piece e) pieces) es) os
   | _ => false
   end.
 
@@ -38,17 +38,21 @@ Proof.
   destruct hp as [e|hp]; [subst; now apply first|]. apply (ih b) with piece; auto. apply first, (on_second (a, b)).
 Qed.
 
+Lemma is_outside_ok o x : is_outside o (edges_of o) x = true ->
+  match o with Wall _ => True | Solid _ => odd (edges_of o) (real x) = false end.
+Proof. unfold is_outside. destruct o; [auto|]. rewrite qodd_ok. intro h. now apply negb_true_iff in h. Qed.
+
 Theorem route_sound os r ps : route os r ps = true -> forall e x, In e (sides ps) -> on e x -> room os (Q2R r) x.
 Proof.
   unfold route. intro h. destruct ps as [|a [|b t]]; try discriminate. set (ps := a :: b :: t) in *.
   apply andb_true_iff in h; destruct h as [r0 h]. apply qlt_R in r0. rewrite Q2R_0 in r0. rewrite forallb_forall in h.
-  intros piece x hp hx o ho. specialize (h o ho). apply andb_true_iff in h; destruct h as [out h]. rewrite forallb_forall in h.
-  assert (k : forall piece, In piece (sides ps) -> clear (Q2R r) (edges_of o) piece).
-  { intros q hq e u v he hu hv. specialize (h e he). rewrite forallb_forall in h. specialize (h q hq).
-    apply segments_apart_ok in h. destruct h as [_ h]. now apply h. }
-  split; [intros e y he hy; now apply (k piece hp e)|]. destruct o as [l|rs]; [exact I|].
-  apply (pieces_even (Q2R r) _ (b :: t) (rings_closed rs) r0 a) with piece; auto.
-  unfold outside in out. rewrite qodd_ok in out. now apply negb_true_iff in out.
+  intros piece x hp hx.
+  assert (k : forall o, In o os -> forall piece, In piece (sides ps) -> clear (Q2R r) (edges_of o) piece).
+  { intros o ho q hq e u v he hu hv. specialize (h o ho). apply andb_true_iff in h; destruct h as [_ h]. rewrite forallb_forall in h.
+    specialize (h e he). rewrite forallb_forall in h. specialize (h q hq). apply segments_apart_ok in h. destruct h as [_ h]. now apply h. }
+  split; [|intros o e y ho he hy; now apply (k o ho piece hp e)].
+  intros o ho. specialize (h o ho). apply andb_true_iff in h; destruct h as [out _]. apply is_outside_ok in out. destruct o as [l|rs]; [exact I|].
+  apply (pieces_even (Q2R r) _ (b :: t) (rings_closed rs) r0 a (k _ ho) out piece); assumption.
 Qed.
 
 Lemma route_here os r x : route os r [x; x] = true -> room os (Q2R r) (real x).
@@ -160,7 +164,7 @@ Proof.
   intros t' ht. change (off (sides_from (spot a) (map spot (b :: t) ++ [spot a])) (p t')).
   apply (links_off (map edges_of os) r); [assumption| | |exact links].
   - intros y [es [e [hes [he hy]]]]. apply in_map_iff in hes. destruct hes as [o [eo ho]]. subst es.
-    destruct (fr t' ht o ho) as [k _]. now apply (k e).
+    destruct (fr t' ht) as [_ k]. now apply (k o e).
   - simpl in links. apply andb_true_iff in links. destruct links as [l _]. now apply linked_covered with (1 := l).
 Qed.
 
@@ -197,9 +201,9 @@ Qed.
 
 Theorem blocked_sound os r x o e : blocked os r x o e = true -> ~ room os (Q2R r) (real x).
 Proof.
-  unfold blocked. intros h k. destruct (nth_error os o) as [ob|] eqn:ho; [|discriminate]. apply nth_error_In in ho.
-  destruct (k ob ho) as [k1 k2]. destruct e as [i|].
+  unfold blocked. intros h [k2 k1]. destruct (nth_error os o) as [ob|] eqn:ho; [|discriminate]. apply nth_error_In in ho.
+  destruct e as [i|].
   - destruct (nth_error (edges_of ob) i) as [e|] eqn:he; [|discriminate]. apply nth_error_In in he.
-    apply nearer_ok in h. destruct h as [y [hy n]]. apply n. now apply (k1 e).
-  - destruct ob; [discriminate|]. apply andb_true_iff in h. destruct h as [h _]. rewrite qodd_ok in h. congruence.
+    apply nearer_ok in h. destruct h as [y [hy n]]. apply n. now apply (k1 ob e).
+  - specialize (k2 ob ho). destruct ob; [discriminate|]. apply andb_true_iff in h. destruct h as [h _]. rewrite qodd_ok in h. congruence.
 Qed.

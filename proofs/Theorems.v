@@ -13,7 +13,6 @@ Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
 Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
 Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
 Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
-
 Definition point := (Q * Q)%type.
 Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
 
@@ -60,8 +59,7 @@ Definition slow (p : program) (v : vec) :=
   match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
   at_most (Rabs (fst v)) (box_x p) /\ at_most (Rabs (snd v)) (box_y p).
 Definition holds (give : R) (v : vec) (c : row) := Q2R (row_offset c) - give <= dot (real (row_normal c)) v.
-(* Hard ones hold, soft ones are broken by at most `give`. *)
-Definition allowed (give : R) (p : program) (v : vec) :=
+Definition allowed (give : R) (p : program) (v : vec) :=   (* hard ones hold, soft ones are broken by at most `give` *)
   slow p v /\ Forall (fun c => holds (if soft c then give else 0) v c) (rows p).
 (* `pull`, `against`: multipliers, one a row; `mu`: that of the disc. *)
 Record choice := { velocity : point; gap : Q; violation : Q; pull : list Q; mu : Q; against : list Q }.
@@ -92,10 +90,11 @@ Definition crosses (x a b : vec) : bool :=
 Definition odd (es : list edge) (x : vec) : bool :=     (* is the number of crossings odd? *)
   fold_right (fun e sum => xorb (crosses x (real (fst e)) (real (snd e))) sum) false es.
 
-(* The disc has room at x: no edge is nearer than r, and x is in no polygon. *)
-Definition room (os : list obstacle) (r : R) (x : vec) := forall o, In o os ->
-  (forall e y, In e (edges_of o) -> on e y -> apart r x y) /\
+(* The disc has room at x: x is in no polygon, and no edge is nearer than r. *)
+Definition outside (os : list obstacle) (x : vec) := forall o, In o os ->
   match o with Wall _ => True | Solid _ => odd (edges_of o) x = false end.
+Definition room (os : list obstacle) (r : R) (x : vec) := outside os x /\
+  forall o e y, In o os -> In e (edges_of o) -> on e y -> apart r x y.
 Definition near (d : R) (x y : vec) := Rabs (fst y - fst x) < d /\ Rabs (snd y - snd x) < d.
 Definition continuous (p : R -> vec) := forall t, 0 <= t <= 1 -> forall e, 0 < e ->
   exists d, 0 < d /\ forall s, 0 <= s <= 1 -> Rabs (s - t) < d -> near e (p t) (p s).
@@ -109,9 +108,9 @@ Record joint := { spot : point; obstacle_no : nat; edge_no : nat; gap_follows : 
 (* --- Step and Run: all robots move at once, straight and evenly --- *)
 Record motion := { from : point; to : point; size : Q }.
 Definition place (m : motion) (s : R) : vec := mix s (real (from m)) (real (to m)).
-Definition keeps_apart (es : list edge) (ms : list motion) := forall s, 0 <= s <= 1 ->
+Definition keeps_apart (os : list obstacle) (ms : list motion) := forall s, 0 <= s <= 1 ->
   ForallOrdPairs (fun a b => apart (Q2R (size a) + Q2R (size b)) (place a s) (place b s)) ms /\
-  forall m e y, In m ms -> In e es -> on e y -> apart (Q2R (size m)) (place m s) y.
+  forall m, In m ms -> room os (Q2R (size m)) (place m s).
 Definition moves (sizes : list Q) (a b : list point) : list motion :=
   map (fun x => {| size := fst x; from := fst (snd x); to := snd (snd x) |}) (combine sizes (combine a b)).
 Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list point)) : Prop :=
@@ -142,9 +141,10 @@ Module Type Verifier.
     room os (Q2R r) (real s) /\ room os (Q2R r) (real g) /\ ~ way os (Q2R r) (real s) (real g).
   Parameter blocked : list obstacle -> Q -> point -> nat -> option nat -> bool.   (* by an edge, or inside a polygon *)
   Parameter blocked_sound : forall os r x o e, blocked os r x o e = true -> ~ room os (Q2R r) (real x).
-  Parameter step : list edge -> list motion -> bool.
-  Parameter step_sound : forall es ms, step es ms = true -> keeps_apart es ms.
-  Parameter run : list edge -> list Q -> list (list point) -> bool.
-  Parameter run_sound : forall es sizes rows, run es sizes rows = true ->
-    Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart es (moves sizes a b)) rows.
+  Parameter starts step : list obstacle -> list motion -> bool.
+  Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
+  Parameter step_sound : forall os ms, step os ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os ms.
+  Parameter run : list obstacle -> list Q -> list (list point) -> bool.
+  Parameter run_sound : forall os sizes rows, run os sizes rows = true ->
+    Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os (moves sizes a b)) rows.
 End Verifier.

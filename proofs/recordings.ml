@@ -134,31 +134,32 @@ let answers file text problems =
 (* --- Recordings --- *)
 type tally = { mutable asked : int; mutable robots_apart : int; mutable edges_clear : int; mutable first : string option }
 
-let take tally place es ms =
+(* Where robots were outside of all polygons when they came, step says that they stay so: `anew` asks it. *)
+let take tally place ~anew os ms =
   tally.asked <- tally.asked + 1;
-  let all = Checked.step es ms in
+  let all = Checked.step os ms && (not anew || Checked.starts os ms) in
   let robots = all || Checked.step [] ms in
   if robots then tally.robots_apart <- tally.robots_apart + 1;
   if all then tally.edges_clear <- tally.edges_clear + 1
   else if tally.first = None then
-    tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an edge" else ": two robots are not proven apart")
+    tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an obstacle" else ": two robots are not proven apart")
 
-let report t what rows robots edges not_covered incomplete =
-  Printf.printf "%s of %s, %s: %d asked, in %d no two robots overlap, in %d also no robot overlaps one of %s\n"
-    (counted rows "row") (counted robots "robot") what t.asked t.robots_apart t.edges_clear (counted edges "edge");
+let report t what rows robots obstacles not_covered incomplete =
+  Printf.printf "%s of %s, %s: %d asked, in %d no two robots overlap, in %d also no robot overlaps %s\n"
+    (counted rows "row") (counted robots "robot") what t.asked t.robots_apart t.edges_clear obstacles;
   Option.iter (fun f -> Printf.printf "  %s\n" f) t.first;
   print_string "not verified:\n  that the file says what happened; docs/guide/proofs.md has what else is trusted\n";
   List.iter (fun s -> Printf.printf "  %s\n" s) not_covered;
   t.edges_clear = t.asked && not incomplete
 
 let recording file text =
-  let scenario = ref Json.Null and edges = ref [] and sizes = ref [] and bits = ref 0 in
+  let scenario = ref Json.Null and obstacles = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
   let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
   let prepare b =
     bits := b;
     let q = over b in
-    edges := List.concat_map edges_of (List.map (Certificates.obstacle q) Json.(arr (get "obstacles" !scenario)));
+    obstacles := List.map (Certificates.obstacle q) Json.(arr (get "obstacles" !scenario));
     sizes := List.map (fun r -> q Json.(num (get "radius" r))) Json.(arr (get "robots" !scenario)) in
   let header h =
     if Json.find "kind" h <> Some (Json.Str "exactvo-recording") then raise Json.Bad;
@@ -177,7 +178,9 @@ let recording file text =
     let here = let q = over !bits in List.map (fun (x, y) -> (q x, q y)) ps in
     if List.length ps <> !robots then raise Json.Bad;
     (* The row before may have been read with another denominator: the checkers take any. *)
-    take t (Printf.sprintf "row %d" !rows) !edges (moves !sizes (match !last with Some b when not !curved -> b | _ -> here) here);
+    let before, anew = match !last with Some b when not !curved -> (b, false) | _ -> (here, true) in
+    let moves = List.rev (List.rev_map2 (fun size (from, to0) -> { from; to0; size }) !sizes (List.combine before here)) in
+    take t (Printf.sprintf "row %d" !rows) ~anew !obstacles moves;
     Decisions.row decisions !scenario Json.(arr (get "robots" r));
     last := Some here; incr rows in
   List.iteri (fun i l ->
@@ -190,7 +193,8 @@ let recording file text =
     | Json.Obj [((("goal_bodies" | "plan"), _))] -> ()
     | _ | exception Json.Bad -> bad ()) (lines text);
   let decided = Decisions.report decisions in
-  let ok = report t "the first row and each motion to the next" !rows !robots (List.length !edges) !not_covered !curved in
+  let ok = report t "the first row and each motion to the next" !rows !robots
+      (Printf.sprintf "one of %s with %s" (counted (List.length !obstacles) "obstacle") (counted (List.length (List.concat_map edges_of !obstacles)) "edge")) !not_covered !curved in
   if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
   ok && decided
 
@@ -235,7 +239,7 @@ let crowd file s =
     let numbers = step :: Array.to_list kinds @ List.concat_map (fun (a, b, c, d) -> [a; b; c; d]) edges in
     let q = fractions numbers in
     let unit = q step in
-    let es = List.rev_map (fun (a, b, c, d) -> ((q a, q b), (q c, q d))) edges in
+    let walls = List.rev_map (fun (a, b, c, d) -> Wall [(q a, q b); (q c, q d)]) edges in
     let radii = Array.map q kinds in
     let sizes = Array.of_list (List.rev (List.rev_map (fun k -> radii.(k)) kind_of)) in
     let x = Array.make n 0 and y = Array.make n 0 in
@@ -250,15 +254,15 @@ let crowd file s =
               let at v = { unit with qnum = Whole.mul (Whole.of_int v) unit.qnum } in
               let here = Array.init n (fun i -> (at x.(i), at y.(i))) in
               (* Of rows of consecutive steps the motion, of others its end. *)
-              let before = match last with Some (j, ps) when k = j + 1 -> ps | _ -> here in
-              take t (Printf.sprintf "step %d" k) es (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
+              let before, anew = match last with Some (j, ps) when k = j + 1 -> (ps, false) | _ -> (here, true) in
+              take t (Printf.sprintf "step %d" k) ~anew walls (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
               rows (count + 1) (Some (k, here)))
         | 'E' -> (match block (fun () -> u64 ()) with
             | None -> cut ()
             | Some c -> if Int64.to_int c <> count || !pos <> String.length s then bad !pos "an end of other rows than these"; (count, false))
         | _ -> bad !pos "what begins neither a row nor the end" in
     let count, cut_off = rows 0 None in
-    let ok = report t "the first row and each step or row after it" count n (List.length es)
+    let ok = report t "the first row and each step or row after it" count n ("one of " ^ counted (List.length walls) "edge")
       ((if bodies > 0 then [Printf.sprintf "that robots are clear of %s" (counted bodies "body, moving or at rest,")] else []) @ ["speeds"]) cut_off in
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
     ok

@@ -270,7 +270,7 @@ def recordings(tools):
     forged = json.loads(lines[rows[50]])
     robots = forged["row"]["robots"]
     for change, expected in ((lambda: robots.__setitem__(0, dict(robots[0], position=robots[1]["position"])), "two robots are not proven apart"),
-                             (lambda: robots.__setitem__(0, dict(robots[0], position=[0.2, 1.0])), "a robot is not proven clear of an edge")):
+                             (lambda: robots.__setitem__(0, dict(robots[0], position=[0.2, 1.0])), "a robot is not proven clear of an obstacle")):
         change()
         status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[50]] + [json.dumps(forged) + "\n"] + lines[rows[51]:]))
         require(status == 1 and expected in words, words)
@@ -284,6 +284,10 @@ def recordings(tools):
         constraint[place[-1]] += by
         status, _, words = tools.verified("forged.jsonl", "".join(lines[:rows[20]] + [json.dumps(forged) + "\n"] + lines[rows[21]:]))
         require(status == 1 and expected in words, place, words)
+    header = json.loads(lines[0])
+    header["header"]["scenario"]["obstacles"] = [{"id": "all round", "polygon": [[-9, -9], [19, -9], [19, 19], [-9, 19]]}]
+    status, _, words = tools.verified("inside.jsonl", json.dumps(header, separators=(",", ":")) + "\n" + "".join(lines[1:]))
+    require(status == 1 and "row 0: a robot is not proven clear of an obstacle" in words, words)  # clear of all edges, but inside
     status, _, words = tools.verified("cut.jsonl", "".join(lines[:rows[9]]))
     require(status == 2 and "E_CUT_OFF" in words, words)
     status, _, words = tools.verified("no.jsonl", "".join(lines[:rows[9]]) + "{\n")
