@@ -131,6 +131,7 @@ TEST(MotionCheck, FindsWhatAllAgainstAllFinds) {
         check_motions(trajectories, kMap, {between, 0.0}, [&](const MotionEvent& e) { found.push_back(e); });
     const std::vector<MotionEvent> expected = all_against_all(trajectories, kMap, between);
     ASSERT_EQ(found.size(), expected.size()) << "round " << round;
+    ASSERT_TRUE(check.approaches.empty());  // none is asked for
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_EQ(std::tie(found[i].body, found[i].with_obstacle, found[i].other, found[i].encounter),
                 std::tie(expected[i].body, expected[i].with_obstacle, expected[i].other, expected[i].encounter))

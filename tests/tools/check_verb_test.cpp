@@ -130,6 +130,11 @@ TEST(CheckVerb, PlansOfCellsLieOnTheirMap) {
   const Outcome swap = here.run("check swap.paths --radius 0.4 --map grid.map");
   EXPECT_EQ(swap.status, 1);
   EXPECT_THAT(swap.out, HasSubstr("at (1, 2.5)"));
+  const Outcome scaled = here.run("check swap.paths --radius 0.1 --map grid.map --scale 0.5 --cell-size 0.5");
+  EXPECT_THAT(scaled.out, HasSubstr("at (0.5, 1.25)")) << scaled.err;
+  const Outcome mixed = here.run("check swap.paths --radius 0.1 --map grid.map --cell-size 0.5");
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_THAT(mixed.err, HasSubstr("the side of the map's cells, 0.5 m"));
 }
 
 // --- Findings ---
