@@ -19,7 +19,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two agents whose rows are 7 m apart, and who meet between them; C passes by A at 0.4 m.
+/// A and B are 7 m apart at their rows, and meet between them; C passes by A at 0.4 m.
 constexpr const char* kCrossing =
     "t,id,x,y\n0,A,0,0\n0,B,5,-5\n1,A,10,0\n1,B,5,5\n2,A,10,0\n2,C,9,0.9\n3,C,11,0.9\n3,A,10,0\n";
 
