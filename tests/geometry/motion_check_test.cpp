@@ -131,6 +131,7 @@ TEST(MotionCheck, FindsWhatAllAgainstAllFinds) {
         check_motions(trajectories, kMap, {between, 0.0}, [&](const MotionEvent& e) { found.push_back(e); });
     const std::vector<MotionEvent> expected = all_against_all(trajectories, kMap, between);
     ASSERT_EQ(found.size(), expected.size()) << "round " << round;
+    ASSERT_TRUE(check.approaches.empty());  // none is asked for
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_EQ(std::tie(found[i].body, found[i].with_obstacle, found[i].other, found[i].encounter),
                 std::tie(expected[i].body, expected[i].with_obstacle, expected[i].other, expected[i].encounter))
@@ -245,7 +246,7 @@ TEST(MotionCheck, ObstaclesThatComeNearAreListed) {
   EXPECT_GE(judged, 100u);
 }
 
-TEST(MotionStream, GivesWhatAllTogetherGivesAndForgetsWhatHasEnded) {
+TEST(MotionStream, EqualsCheckMotionsAndForgetsEndedPieces) {
   SeededRandom random(seed_of_run(56));
   std::size_t judged = 0;
   for (int round = 0; round < 20; ++round) {
@@ -279,7 +280,7 @@ TEST(MotionStream, GivesWhatAllTogetherGivesAndForgetsWhatHasEnded) {
   EXPECT_GE(judged, 100u);
 }
 
-TEST(MotionStream, ForgetsPiecesThatNothingFollows) {
+TEST(MotionStream, ForgetsPiecesWithoutSuccessor) {
   geometry::MotionStream stream(kMap, {}, [](const MotionEvent&) {});
   for (int b = 0; b < 10; ++b) stream.add_body(geometry::disc_body(0.1));
   for (int k = 0; k < 3000; ++k)
@@ -299,7 +300,7 @@ TEST(MotionStream, PiecesOutOfOrderAreAMistake) {
   EXPECT_THROW(stream.add(stream.add_body(geometry::disc_body(0.1)), {{0, {20, 0}}, {3, {21, 0}}}), std::logic_error);
 }
 
-TEST(MotionCheck, NamesAllPairsThatAProofHasToSpeakOf) {
+TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
   SeededRandom random(seed_of_run(57));
   std::size_t clear = 0, proven = 0;
   for (int round = 0; round < 30; ++round) {

@@ -19,7 +19,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two agents whose rows are 7 m apart, and who meet between them; C passes by A at 0.4 m.
+/// A and B are 7 m apart at their rows, and meet between them; C passes by A at 0.4 m.
 constexpr const char* kCrossing =
     "t,id,x,y\n0,A,0,0\n0,B,5,-5\n1,A,10,0\n1,B,5,5\n2,A,10,0\n2,C,9,0.9\n3,C,11,0.9\n3,A,10,0\n";
 
@@ -130,6 +130,11 @@ TEST(CheckVerb, PlansOfCellsLieOnTheirMap) {
   const Outcome swap = here.run("check swap.paths --radius 0.4 --map grid.map");
   EXPECT_EQ(swap.status, 1);
   EXPECT_THAT(swap.out, HasSubstr("at (1, 2.5)"));
+  const Outcome scaled = here.run("check swap.paths --radius 0.1 --map grid.map --scale 0.5 --cell-size 0.5");
+  EXPECT_THAT(scaled.out, HasSubstr("at (0.5, 1.25)")) << scaled.err;
+  const Outcome mixed = here.run("check swap.paths --radius 0.1 --map grid.map --cell-size 0.5");
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_THAT(mixed.err, HasSubstr("the side of the map's cells, 0.5 m"));
 }
 
 // --- Findings ---

@@ -438,7 +438,7 @@ class Approaches {
     return found == all_.end() ? near_ : std::max(0.0, found->second.clearance.high);
   }
   void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other) {
-    if (!(v.clearance.low < near_)) return;
+    if (near_ == 0.0 || !(v.clearance.low < near_)) return;
     const auto [place, is_new] = all_.try_emplace(
         Key{body, with_obstacle, other}, Approach{body, with_obstacle, other, v.clearance, v.nearest_time, v.place});
     if (is_new) return;

@@ -100,6 +100,18 @@ std::string CheckAnswer::other_of(bool with_obstacle, std::size_t other) const {
   return with_obstacle ? obstacle_name(other) : name_of(other);
 }
 
+void CheckAnswer::put(const std::string& text) {
+  constexpr std::size_t kChunk = std::size_t{1} << 16;
+  waiting_ += text;
+  if (waiting_.size() > kChunk) print_waiting();
+}
+
+void CheckAnswer::print_waiting() {
+  if (progress_) progress_->clear();
+  print(waiting_);
+  waiting_.clear();
+}
+
 void CheckAnswer::begin() {
   if (json_) return;
   const datasets::TrajectorySurvey& s = asked_.survey;
@@ -114,7 +126,7 @@ void CheckAnswer::begin() {
                           : "");
   if (!asked_.obstacles.empty())
     text += fmt::format("map: {}, {}\n", asked_.map, counted(asked_.obstacles.size(), "obstacle"));
-  out_.add(shown_lines(text));
+  put(shown_lines(text));
 }
 
 void CheckAnswer::add(const MotionEvent& e) {
@@ -126,7 +138,7 @@ void CheckAnswer::add(const MotionEvent& e) {
     json["clearance"] = bounds_json(e.clearance);
     json["time"] = e.nearest_time;
     json["place"] = json_point(e.place);
-    return out_.add(line_of(json));
+    return put(line_of(json));
   }
   const std::string first = seconds(e.first.low), last = seconds(e.last.high);
   const std::string when =
@@ -136,7 +148,7 @@ void CheckAnswer::add(const MotionEvent& e) {
   if (e.encounter == Encounter::overlap)
     text +=
         fmt::format(", {} deep at {} s", between_text(-e.clearance.high, -e.clearance.low), seconds(e.nearest_time));
-  out_.add(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
+  put(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
 }
 
 void CheckAnswer::look_at(const Move& move) {
@@ -156,19 +168,18 @@ void CheckAnswer::look_at(const Move& move) {
       OrderedJson json = finding("jump");
       json["length"] = norm(move.to.at - move.from.at);
       json["speed"] = move.speed();
-      out_.add(line_of(json));
+      put(line_of(json));
     }
-    if (is_gap) out_.add(line_of(finding("gap")));
+    if (is_gap) put(line_of(finding("gap")));
     return;
   }
   const std::string where = fmt::format("{}, {} {}: ", name_of(move.agent), asked_.file.row_word, move.to.line);
   if (is_jump && jumps_ <= kMostListed)
-    out_.add(shown(fmt::format("jump: {}{:.6g} m in {:.6g} s, {:.6g} m/s", where, norm(move.to.at - move.from.at),
-                               move.interval(), move.speed())) +
-             "\n");
+    put(shown(fmt::format("jump: {}{:.6g} m in {:.6g} s, {:.6g} m/s", where, norm(move.to.at - move.from.at),
+                          move.interval(), move.speed())) +
+        "\n");
   if (is_gap && gaps_ <= kMostListed)
-    out_.add(
-        shown(fmt::format("gap: {}no row from {} s to {} s", where, seconds(move.from.time), seconds(move.to.time))) +
+    put(shown(fmt::format("gap: {}no row from {} s to {} s", where, seconds(move.from.time), seconds(move.to.time))) +
         "\n");
 }
 
@@ -179,7 +190,7 @@ void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
       json[a.with_obstacle ? "obstacle" : "other"] = a.with_obstacle ? asked_.obstacles[a.other].id : name_of(a.other);
       json["time"] = a.nearest_time;
       json["place"] = json_point(a.place);
-      out_.add(line_of(json));
+      put(line_of(json));
     }
     return;
   }
@@ -190,13 +201,13 @@ void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
             [](const Approach& a, const Approach& b) { return a.clearance.low < b.clearance.low; });
   for (std::size_t k = 0; k < std::min(apart.size(), kMostListed); ++k) {
     const Approach& a = apart[k];
-    out_.add(shown(fmt::format("near: {} and {}, {} apart at {} s, at {}", name_of(a.body),
-                               other_of(a.with_obstacle, a.other), between_text(a.clearance.low, a.clearance.high),
-                               seconds(a.nearest_time), place_text(a.place))) +
-             "\n");
+    put(shown(fmt::format("near: {} and {}, {} apart at {} s, at {}", name_of(a.body),
+                          other_of(a.with_obstacle, a.other), between_text(a.clearance.low, a.clearance.high),
+                          seconds(a.nearest_time), place_text(a.place))) +
+        "\n");
   }
   if (apart.size() > kMostListed)
-    out_.add(fmt::format("... and {} more that come nearer than {:.6g} m\n", apart.size() - kMostListed, asked_.near));
+    put(fmt::format("... and {} more that come nearer than {:.6g} m\n", apart.size() - kMostListed, asked_.near));
 }
 
 void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t missed) {
@@ -245,27 +256,27 @@ void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t misse
       whole["samples"] = asked_.samples;
       whole["missed"] = missed;
     }
-    out_.add(line_of({{"summary", whole}}));
-    return out_.flush();
+    put(line_of({{"summary", whole}}));
+    return print_waiting();
   }
-  if (jumps_ > kMostListed) out_.add(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));
-  if (gaps_ > kMostListed) out_.add(fmt::format("... and {} more gaps\n", gaps_ - kMostListed));
+  if (jumps_ > kMostListed) put(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));
+  if (gaps_ > kMostListed) put(fmt::format("... and {} more gaps\n", gaps_ - kMostListed));
   const auto extreme = [&](const char* what, const Extreme& e, const char* unit, std::size_t agent) {
     if (e.line > 0)
-      out_.add(shown(fmt::format("{}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit, name_of(agent),
-                                 seconds(e.time), asked_.file.row_word, e.line)) +
-               "\n");
+      put(shown(fmt::format("{}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit, name_of(agent), seconds(e.time),
+                            asked_.file.row_word, e.line)) +
+          "\n");
   };
   extreme("greatest speed", s.agents()[fastest].speed, "m/s", fastest);
   extreme("greatest acceleration", s.agents()[hardest].acceleration, "m/s^2", hardest);
   if (asked_.samples > 0)
-    out_.add(fmt::format("{} of each move {} {} of {}\n", counted(asked_.samples, "sample"),
-                         asked_.samples == 1 ? "misses" : "miss", missed, counted(check.overlaps, "overlap")));
+    put(fmt::format("{} of each move {} {} of {}\n", counted(asked_.samples, "sample"),
+                    asked_.samples == 1 ? "misses" : "miss", missed, counted(check.overlaps, "overlap")));
   const std::string bound =
       std::isfinite(asked_.jump_speed) ? fmt::format(" (faster than {:.6g} m/s)", asked_.jump_speed) : "";
-  out_.add(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),
-                       counted(jumps_, "jump"), bound, counted(gaps_, "gap")));
-  out_.flush();
+  put(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),
+                  counted(jumps_, "jump"), bound, counted(gaps_, "gap")));
+  print_waiting();
 }
 
 }  // namespace exactvo::tools

@@ -49,6 +49,9 @@ class CheckAnswer {
  public:
   CheckAnswer(const CheckedFile& asked, bool json) : asked_(asked), json_(json) {}
 
+  /// A line of progress, which gives way to what is printed; null: none.
+  void set_progress(ProgressLine* line) { progress_ = line; }
+
   /// Before the rest: what was read, and which motion between rows is assumed.
   void begin();
   void add(const geometry::MotionEvent& event);
@@ -64,11 +67,15 @@ class CheckAnswer {
   std::string name_of(std::size_t agent) const;
   std::string obstacle_name(std::size_t obstacle) const;
   std::string other_of(bool with_obstacle, std::size_t other) const;
+  /// Prints in chunks.
+  void put(const std::string& text);
+  void print_waiting();
   void list_approaches(const std::vector<geometry::Approach>& approaches);
 
   const CheckedFile& asked_;
   bool json_;
-  ChunkedOutput out_;
+  ProgressLine* progress_ = nullptr;
+  std::string waiting_;  ///< to be printed
   std::uint64_t jumps_ = 0, gaps_ = 0;
 };
 

@@ -190,19 +190,19 @@ CheckMap map_of(const CheckFlags& flags, const TrajectoryFile& file) {
 /// Cells of a plan to the middle of the map's cells, whose rows count from the top.
 class Placing {
  public:
-  Placing(const TrajectoryFile& file, const CheckMap& map, double scale) : scale_(scale) {
-    if (file.in_cells && map.cells) rows_ = static_cast<double>(map.cells->rows);
-    side_ = map.cell_side;
+  Placing(const TrajectoryFile& file, const CheckMap& map, double scale) : side_(map.cell_side) {
+    if (!file.in_cells || !map.cells) return;
+    require(scale == side_, "--scale", fmt::format("{}", scale),
+            fmt::format("the side of the map's cells, {} m (--cell-size changes it)", side_));
+    top_ = side_ * static_cast<double>(map.cells->rows);
   }
   void place(TrajectoryRow& row) const {
-    if (!rows_) return;
-    const double column = row.at.x / scale_, from_top = row.at.y / scale_;
-    row.at = {side_ * (column + 0.5), side_ * (*rows_ - (from_top + 0.5))};
+    if (top_) row.at = {row.at.x + 0.5 * side_, *top_ - (row.at.y + 0.5 * side_)};
   }
 
  private:
-  double scale_, side_ = 1.0;
-  std::optional<double> rows_;
+  double side_;                ///< m
+  std::optional<double> top_;  ///< m, of the map
 };
 
 // --- Certificates ---
@@ -347,6 +347,7 @@ ExitCode check(const CheckFlags& flags) {
   std::uint64_t done = 0;
   {
     ProgressLine progress(static_cast<double>(survey.rows()), "rows");
+    answer.set_progress(&progress);
     for_each_row(reader, survey.is_in_order(), placing, [&](const TrajectoryRow& row) {
       datasets::Move move;
       if (moves.next(row, move)) answer.look_at(move);
@@ -357,6 +358,7 @@ ExitCode check(const CheckFlags& flags) {
       if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
     });
     feed.finish();
+    answer.set_progress(nullptr);
   }
   const geometry::MotionCheck result = stream.finish();
   if (certificates) certificates->finish();
