@@ -345,6 +345,7 @@ void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds
     }
     out.end[k] = taker.count();
   }
+  for (std::size_t k = taker.count(); k % kPack != 0; ++k) out.robot[k] = out.other[k] = 0;  // read, but not used
 }
 
 }  // namespace exactvo::formation::crowd

@@ -83,9 +83,10 @@ struct NearPairs {
       kHindered = 2,                         ///< and then not all wishes are surely allowed
       kOverlaps = 4;                         ///< another overlaps it by more than kRoundedContact
 
-  Array<std::int32_t> robot, other;  ///< pairs that could meet, of hindered robots, one robot after the other
-  std::vector<std::size_t> end;      ///< of each robot's pairs
-  std::vector<std::uint8_t> state;   ///< of each robot
+  /// Pairs that could meet, of hindered robots, one robot after the other; robots up to a multiple of kPack.
+  Array<std::int32_t> robot, other;
+  std::vector<std::size_t> end;     ///< of each robot's pairs
+  std::vector<std::uint8_t> state;  ///< of each robot
 
   // Pairs that are judged, robot by robot; arrays have room for kPack more.
   Array<std::int32_t> judged_other, own_x, own_y, own_wish_x, own_wish_y;
