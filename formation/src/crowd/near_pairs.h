@@ -3,7 +3,7 @@
 
 /// \file
 /// The pairs that could meet within the step, given what all robots wish, and whether the wishes of a pair are surely
-/// allowed. Exact: the pairs of a robot are judged one per SIMD lane, in float with bounds of its rounding, and what
+/// allowed. Exact: pairs are judged one per SIMD lane, in float with bounds of its rounding, and what
 /// these leave open is judged in whole numbers.
 ///
 /// The search of the first level has listed who is near whom. Where its list may not have all that could be met, the
@@ -83,10 +83,16 @@ struct NearPairs {
       kHindered = 2,                         ///< and then not all wishes are surely allowed
       kOverlaps = 4;                         ///< another overlaps it by more than kRoundedContact
 
-  Array<std::int32_t> robot, other;  ///< pairs that could meet, of hindered robots, one robot after the other
-  std::vector<std::size_t> end;      ///< of each robot's pairs
-  std::vector<std::uint8_t> state;   ///< of each robot
-  Array<std::int32_t> round;         ///< around a robot without a list
+  /// Pairs that could meet, of hindered robots, one robot after the other; robots up to a multiple of kPack.
+  Array<std::int32_t> robot, other;
+  std::vector<std::size_t> end;     ///< of each robot's pairs
+  std::vector<std::uint8_t> state;  ///< of each robot
+
+  // Pairs that are judged, robot by robot; arrays have room for kPack more.
+  Array<std::int32_t> judged_other, own_x, own_y, own_wish_x, own_wish_y;
+  Array<float> contact;                             ///< R, where there are several kinds
+  std::vector<std::size_t> judged_end;              ///< of each robot's
+  std::vector<std::uint8_t> near, clear, doubtful;  ///< a bit each
 
   std::size_t pairs() const { return end.empty() ? 0 : end.back(); }
 };

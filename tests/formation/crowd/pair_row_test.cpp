@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "lp/sets/target.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation::crowd {
@@ -218,6 +220,33 @@ TEST(PairRow, Lemma5_WishesThatStayApartAreNotHindered) {
     ++apart;
   }
   EXPECT_GT(apart, 20000U);
+}
+
+TEST(PairRow, ManyPairsAtOnceGetTheRowsOfEachAloneOnEveryTarget) {
+  PairMaker make(6);
+  std::vector<PairInStep> pairs;
+  std::vector<PairRows> alone;
+  for (int k = 0; k < 5000; ++k) {
+    pairs.push_back(make.next());
+    alone.push_back(pair_rows(pairs.back()));
+  }
+  std::size_t targets = 0;
+  for (const char* target : {"", "AVX3", "AVX2", "SSE4", "SSE2"}) {
+    if (!lp::limit_batch_target(target)) continue;  // not on this machine
+    ++targets;
+    PairTable table;
+    table.lay_out(pairs.size(), true);
+    for (std::size_t k = 0; k < pairs.size(); ++k) table.put(k, pairs[k], k % 2 == 0);
+    make_pair_rows(table);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const MotionRow expected = k % 2 == 0 ? alone[k].a : alone[k].b, got = table.row(k);
+      ASSERT_TRUE(got.nx == expected.nx && got.ny == expected.ny && got.least == expected.least)
+          << target << ' ' << text(pairs[k]);
+      ASSERT_TRUE(table.found(k));
+    }
+  }
+  lp::limit_batch_target("");
+  EXPECT_GT(targets, 2U);
 }
 
 TEST(PairRow, TheOrderOfIdsIsAllThatTellsTheTwoApart) {
