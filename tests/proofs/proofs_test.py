@@ -318,7 +318,7 @@ def recordings(tools):
              "obstacles": [{"id": "w", "polygon": [[20, -3], [24, -3], [24, 3], [20, 3]]}],
              "robots": [{"circle": {"count": 60}}, {"grid": {"columns": 10, "rows": 10, "spacing": 2, "corner": [60, -10], "goal": [-110, 0]}}]}
     evr = tools.folder / "crossing.evr"
-    run(tools.program, "simulate", tools.file("crossing.json", json.dumps(scene)), "--engine", "crowd", "--record", evr, check=True)
+    run(tools.program, "simulate", tools.file("crossing.json", json.dumps(scene)), "--decisions", "none", "--record", evr, check=True)
     data = evr.read_bytes()
     status, _, words = tools.verified("crowd.evr", data)
     require(status == 0 and re.search(r"^(\d+) rows of 160 robots, .*: \1 asked, in \1 no two robots overlap, in \1 also no robot overlaps one of 4 edges", words, re.M), words)

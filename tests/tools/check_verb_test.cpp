@@ -201,7 +201,7 @@ TEST(CheckVerb, RecordingsOfCrowdsAreChecked) {
   here.write("c.json", R"({"name": "c", "robots": [{"id": "a", "position": [0, 0], "goal": [4, 0]},
     {"id": "b", "position": [4, 0.1], "goal": [0, 0.1]}], "time_limit": 20,
     "obstacles": [{"id": "wall", "polyline": [[0, 3], [4, 3]]}]})");
-  ASSERT_EQ(here.run("simulate c.json --engine crowd --record c.evr").status, 0);
+  ASSERT_EQ(here.run("simulate c.json --decisions none --record c.evr").status, 0);
   const Outcome outcome = here.run("check c.evr --json");
   EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
   EXPECT_EQ(json_lines(outcome.out).back()["summary"]["format"], "crowd-recording");

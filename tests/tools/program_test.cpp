@@ -387,7 +387,7 @@ TEST(Simulate, RobotsThatHaveArrivedBeforeTheyMoveAreNamedByBothEngines) {
   const Workplace here;
   here.write("small.json", R"({ "name": "small", "time_limit": 5,
     "robots": [ { "id": "a", "position": [0, 0], "goal": [0.05, 0], "radius": 0.01 } ] })");
-  for (const std::string engine : {"", " --engine crowd"})
+  for (const std::string engine : {"", " --decisions none"})
     EXPECT_THAT(here.run("simulate small.json" + engine).err,
                 HasSubstr("warning: 1 robot within arrival_tolerance, 0.1 m, of the goal at the start"))
         << engine;
