@@ -91,5 +91,19 @@ TEST(ReservedRun, TheSameBitsOnTwoThreadsAndFromASnapshot) {
   }
 }
 
+/// Reservations keep more than the radii: robots pushed each other off such goals by turns until time ran out.
+TEST(ReservedRun, RobotsStayAtGoalsThatAreAsNearToEachOtherAsTheirRadiiAllow) {
+  for (const double apart : {1.0, 1.0028, 1.0045}) {
+    test::SeededRandom random(test::seed_of_run(23));
+    Scenario s = run_along_routes(crowded_box(30, 15.0, random));
+    // Two robots with goals `apart` from each other, in the midst of the others.
+    s.robots[1].goals = {s.robots[0].goals.back() + Vec2{apart * 2.0 * s.robots[0].radius, 0.0}};
+    s.time_limit = 200.0;
+    const CrowdRunReport r = run_crowd(s, {});
+    EXPECT_EQ(r.arrived + r.goal_taken.size(), s.robots.size()) << apart;
+    EXPECT_LT(r.time, s.time_limit) << apart;
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::formation

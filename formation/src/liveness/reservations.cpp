@@ -13,14 +13,12 @@ namespace exactvo::formation::detail {
 
 namespace {
 
-// Found by measuring. Safety does not depend on them, liveness on the order of the first two and kPlaceReached only.
+// Found by measuring. Safety does not depend on them, liveness on the order of kKeptFromOthers, the first and kPlaceReached only.
 
 // Diameters of the widest robot.
-/// What the way of a new reservation keeps beside the radii from others.
-constexpr double kMargin = 4e-3;
-/// The same, of robots that drive.
+/// What robots that drive keep from others besides the radii.
 constexpr double kDrivenMargin = 2e-3;
-static_assert(kPlaceReached < kMargin - kDrivenMargin, "who has all but reached its place is in nobody's way");
+static_assert(kPlaceReached < kKeptFromOthers - kDrivenMargin, "who has all but reached its place is in nobody's way");
 /// What ways keep beside the radius from obstacles, unless they begin or end nearer to one.
 constexpr double kWallMargin = 5e-4;
 /// Between places.
@@ -123,7 +121,7 @@ Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, doubl
       time_step_(time_step),
       diameter_(2.0 * widest),
       pitch_(kPlacePitch * diameter_),
-      reach_(2.0 * kLongestDrive * pitch_ + (1.0 + kMargin) * diameter_),
+      reach_(2.0 * kLongestDrive * pitch_ + (1.0 + kKeptFromOthers) * diameter_),
       who_(who),
       of_(robots),
       reserved_(robots, who == WhoReserves::all),
@@ -407,7 +405,7 @@ bool Reservations::is_there_room(std::size_t i, const Option& to, std::size_t ne
   for (std::size_t k = near; k < near_end; ++k) {
     const std::uint32_t j = list_[k];
     const RobotUnderWay& other = (*robots_)[j];
-    const double keep = r.radius + other.radius + kMargin * diameter_;
+    const double keep = r.radius + other.radius + kKeptFromOthers * diameter_;
     if (is_pushing_[j]) {  // sets out after this one
       if (comes_near_until_left(p, q, at(j), keep) || squared_distance(q, at(j), places_[j]) < keep * keep)
         return false;

@@ -55,6 +55,10 @@ struct RobotUnderWay {
 
 /// Diameters of the widest robot: a place is reached that is no farther away.
 inline constexpr double kPlaceReached = 1e-3;
+/// Diameters of the widest robot: what the way of a new reservation keeps from others besides the radii.
+inline constexpr double kKeptFromOthers = 4e-3;
+/// The same: two robots can be at their places at one time if these are farther apart than the radii and this.
+inline constexpr double kRoomBetweenPlaces = kKeptFromOthers + 2.0 * kPlaceReached;
 
 /// Which robots reserve places.
 enum class WhoReserves {

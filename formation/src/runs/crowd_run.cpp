@@ -23,6 +23,7 @@
 #include "runs/journeys.h"
 #include "runs/run_schedule.h"
 #include "scene/free_space.h"
+#include "scene/goals.h"
 #include "scene/number_text.h"
 #include "steering/guide.h"
 
@@ -107,7 +108,7 @@ class CrowdRun {
     if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
     const std::size_t robots = scenario.robots.size();
     crowd_.positions(at_);
-    journeys_.emplace(scenario, guide_ ? &*guide_ : nullptr, scenario.liveness, at_, RoomAtEnds{},
+    journeys_.emplace(scenario, guide_ ? &*guide_ : nullptr, scenario.liveness, at_, room_at_ends(),
                       scenario.horizons.orca);
     preferred_.resize(robots);
     turned_.resize(robots);
@@ -144,13 +145,23 @@ class CrowdRun {
     journeys_->look_along(i);
   }
 
+  // Robots with a reservation do not evade moving obstacles.
+  bool has_reservations() const {
+    return scenario_.liveness == Liveness::plan && !scenario_.robots.empty() && scenario_.moving_obstacles.empty();
+  }
+
+  /// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would push
+  /// each other off them by turns.
+  RoomAtEnds room_at_ends() const {
+    RoomAtEnds room;
+    if (has_reservations()) room.margin = kRoomBetweenPlaces * 2.0 * largest_radius(scenario_.robots);
+    return room;
+  }
+
   void make_reservations() {
-    // Robots with a reservation do not evade moving obstacles.
-    if (scenario_.liveness != Liveness::plan || scenario_.robots.empty() || !scenario_.moving_obstacles.empty()) return;
-    double widest = 0.0;
-    for (const Robot& r : scenario_.robots) widest = std::max(widest, r.radius);
+    if (!has_reservations()) return;
     space_.emplace(scenario_.obstacles);
-    reservations_.emplace(*space_, journeys_->size(), scenario_.time_step, widest);
+    reservations_.emplace(*space_, journeys_->size(), scenario_.time_step, largest_radius(scenario_.robots));
     under_way_.resize(journeys_->size());
   }
 
