@@ -168,6 +168,29 @@ TEST(TakenGoals, LastPlacesOfTwoLeaveRoomForBothWhereThereIsAny) {
   }
 }
 
+/// A robot that passes a taken goal on its way beside it drives on, in the same row and in later ones.
+TEST(TakenGoals, ARobotThatPassesATakenGoalBesideItGoesOnToItsLastGoal) {
+  for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
+    Scenario s;
+    s.time_limit = 60.0;
+    s.robots = {robot("R1", {-1, 0}, {0, 0}), robot("R2", {5, 0}, {0, 0})};
+    s.robots[1].goals.push_back({0, 5});
+    SimulationOptions options;
+    options.liveness = liveness;
+    const Recording run = simulate(s, options);
+    EXPECT_LT(norm(run.steps.back().robots[1].position - Vec2{0, 5}), s.arrival_tolerance) << run.outcome;
+    std::size_t passed = 0;
+    for (const Step& row : run.steps) {
+      if (row.robots[1].note.find("goal 1 passed") == std::string::npos) continue;
+      ++passed;
+      EXPECT_NE(row.robots[1].mode, Mode::staying);
+      EXPECT_EQ(row.robots[1].note.find("stays"), std::string::npos) << row.robots[1].note;
+    }
+    EXPECT_EQ(passed, 1U);
+    EXPECT_TRUE(audits_clean(s, run));
+  }
+}
+
 /// Of robots that go as near as they can to goals out of reach, those that find the place taken stay beside it. They
 /// pushed each other off it until time ran out, and some were said to stay for one that had never been at its goal.
 TEST(TakenGoals, WhoseNearestPlaceIsTakenStaysBesideIt) {

@@ -13,7 +13,8 @@ namespace exactvo::formation::detail {
 
 namespace {
 
-// Found by measuring. Safety does not depend on them, liveness on the order of kKeptFromOthers, the first and kPlaceReached only.
+// Found by measuring. Safety does not depend on them, liveness on the order of kKeptFromOthers, the first and
+// kPlaceReached only.
 
 // Diameters of the widest robot.
 /// What robots that drive keep from others besides the radii.

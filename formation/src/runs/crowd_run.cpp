@@ -150,8 +150,8 @@ class CrowdRun {
     return scenario_.liveness == Liveness::plan && !scenario_.robots.empty() && scenario_.moving_obstacles.empty();
   }
 
-  /// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would push
-  /// each other off them by turns.
+  /// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would
+  /// push each other off them by turns.
   RoomAtEnds room_at_ends() const {
     RoomAtEnds room;
     if (has_reservations()) room.margin = kRoomBetweenPlaces * 2.0 * largest_radius(scenario_.robots);
@@ -410,8 +410,8 @@ class CrowdRun {
     before_.swap(at_);
     crowd_.positions(at_);
     for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
-    const bool is_settled = report_.time >= journeys_->settled_from() + 2.0 * scenario_.time_step;
-    if (at_ != before_ || !(is_settled || moving_.empty())) moved_ = report_.steps;
+    const bool obstacles_rest = report_.time >= journeys_->moving_until() + 2.0 * scenario_.time_step;
+    if (at_ != before_ || !(obstacles_rest || moving_.empty())) moved_ = report_.steps;
     if (sink_) sink_->add_step(crowd_, report_.steps);
   }
 
@@ -439,6 +439,7 @@ class CrowdRun {
   bool repeats_itself() const {
     const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
     if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
+    if (static_cast<double>(report_.steps - moved_) * scenario_.time_step < journeys_->longest_pause()) return false;
     if (reservations_ && std::max(moved_, reserved_) + reservations_->patience() > report_.steps) return false;
     bool is_so = true;
     for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(turned_[i]);

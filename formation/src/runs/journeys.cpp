@@ -93,6 +93,7 @@ std::string Journeys::name_of_goal(std::size_t i) const {
 bool Journeys::pass_goal(std::size_t i) {
   if (has_last_goal(i) || !(is_within_reach(i) || rests_beside(i))) return false;
   ++journeys_[i].goal;
+  journeys_[i].has_passed_goal = true;
   add_note(journeys_[i].note, passed_goal_words(journeys_[i].goal));
   set_out(i);  // which may note that the next one is out of reach
   return true;
@@ -158,8 +159,9 @@ void Journeys::look_at_moving_obstacles(double time, const std::vector<MovedObst
   standing_changed_ = standing_->changes() != before;
 }
 
-double Journeys::settled_from() const {
-  return standing_ ? moving_until_ + (1.0 + kLooksAgainAfter + kForGood) * moment(scenario_.horizons) : moving_until_;
+/// An obstacle counts as standing after a moment; then its robots look again, and at last stay for good.
+double Journeys::longest_pause() const {
+  return standing_ ? (1.0 + kLooksAgainAfter + kForGood) * moment(scenario_.horizons) : 0.0;
 }
 
 void Journeys::go_round(std::size_t i, bool goes_by_plan) {
@@ -213,6 +215,11 @@ EndNow Journeys::end_now(std::size_t i, bool may_rest) const {
   const bool counts = j.nearest || j.course || !guide_;
   const bool is_there = j.nearest ? j.has_come_nearest : is_within_reach(i);
   return {at_[i], end_of(i), counts, counts && ends_here(i), !j.nearest, is_there, may_rest};
+}
+
+bool Journeys::look_at_claims(std::vector<EndNow> ends) {
+  for (Journey& j : journeys_) j.has_passed_goal = false;
+  return claims_->look(std::move(ends));
 }
 
 Vec2 Journeys::beside_taken(std::size_t i, Vec2 preferred) const {

@@ -63,6 +63,7 @@ struct Journey {
   double looks_again = 0.0;             ///< s: then the robot looks for a way round it again
   double waits_since = 0.0;             ///< s: since then the robot has stood before an obstacle that rests for good
   bool waits_for_good = false;          ///< so long that it stays there
+  bool has_passed_goal = false;         ///< since the last look at claims, which are of the goal before
   KeepRight keep_right;                 ///< liveness, rule R1
   std::string note;                     ///< what has changed, for the next row of a recording
 };
@@ -98,7 +99,7 @@ class Journeys {
   /// What of robot i concerns claims; `may_rest`: the robot goes by no joint plan.
   EndNow end_now(std::size_t i, bool may_rest) const;
   /// Ends that are taken, by the present ends of all robots. Whether something has changed.
-  bool look_at_claims(std::vector<EndNow> ends) { return claims_->look(std::move(ends)); }
+  bool look_at_claims(std::vector<EndNow> ends);
   bool has_claims() const { return claims_.has_value(); }
 
   /// m/s: straight for `Journey::heading`, or beside a place that is taken.
@@ -129,18 +130,18 @@ class Journeys {
   bool at_goal(std::size_t i) const { return has_last_goal(i) && is_within_reach(i); }
   bool is_at_end(std::size_t i) const { return at_goal(i) || journeys_[i].has_come_nearest; }
   /// Another robot has taken the place where its way ends.
-  bool is_taken(std::size_t i) const { return claims_ && claims_->taken_by(i); }
-  bool rests_beside(std::size_t i) const { return claims_ && claims_->rests(i); }
+  bool is_taken(std::size_t i) const { return has_claim_news(i) && claims_->taken_by(i); }
+  bool rests_beside(std::size_t i) const { return has_claim_news(i) && claims_->rests(i); }
   /// Since this step.
-  bool has_come_to_rest(std::size_t i) const { return claims_ && claims_->has_come_to_rest(i); }
+  bool has_come_to_rest(std::size_t i) const { return has_claim_news(i) && claims_->has_come_to_rest(i); }
   /// Robot i makes no more way, unless it is pushed. `rests_beside` is another question.
   bool stays(std::size_t i) const;
   /// m, to the end of the way.
   double way_left(std::size_t i) const;
   /// s: from then on all moving obstacles rest for good.
   double moving_until() const { return moving_until_; }
-  /// s: from then on no journey changes because of them unless its robot moves.
-  double settled_from() const;
+  /// s: if no robot and no obstacle moves for so long, no journey changes any more because of moving obstacles.
+  double longest_pause() const;
 
   /// Why robot i is not at its goal, in words without its name; empty where nothing is known but that it is under way.
   std::string why_not_there(std::size_t i) const;
@@ -158,6 +159,7 @@ class Journeys {
   void get_shared(crowd::SnapshotReader& from);
 
  private:
+  bool has_claim_news(std::size_t i) const { return claims_ && !journeys_[i].has_passed_goal; }
   Destination destination(std::size_t i) const;
   double reach_of_goal(std::size_t i) const;
   void plan_course(std::size_t i);

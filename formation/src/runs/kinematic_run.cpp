@@ -241,7 +241,7 @@ class KinematicRun {
 
   bool stays(std::size_t i) const {
     if (goes_by_plan(i)) return false;
-    return journeys_.rests_beside(i) ? is_at_rest(i) : journeys_.stays(i);
+    return journeys_.rests_beside(i) && journeys_.ends_here(i) ? is_at_rest(i) : journeys_.stays(i);
   }
 
   /// Whether a robot has neither arrived nor stays, or something still comes to push one.

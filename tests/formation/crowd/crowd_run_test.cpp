@@ -184,5 +184,25 @@ TEST(CrowdRoutes, ACarThatParksInTheOnlyDoorIsNamed) {
   }
 }
 
+/// With liveness off nothing but the pause before a parked car changes any more: the run must not end before it.
+TEST(CrowdRoutes, ARunDoesNotStandStillWhileARobotStillLooksForAWayRoundACar) {
+  Scenario s = scenario_of({robot("R1", {-20.0, 0.0}, {{6.0, 0.0}})});
+  s.guidance = Guidance::route;
+  s.liveness = Liveness::off;
+  s.obstacles = {{"lower", geometry::Polyline{{{1.0, -9.0}, {1.0, -1.0}}}},
+                 {"upper", geometry::Polyline{{{1.0, 1.0}, {1.0, 9.0}}}},
+                 {"round", geometry::Polyline{{{1.0, 9.0}, {9.0, 9.0}, {9.0, -9.0}, {1.0, -9.0}}}}};
+  MovingObstacle car;
+  car.id = "car";
+  car.shape = geometry::Polygon{{{1.5, -5.0}, {2.5, -5.0}, {2.5, -2.0}, {1.5, -2.0}}, {}};
+  car.motion.path = {{0.0, 0.0}, {0.0, 3.4}};
+  car.motion.speed = 2.0;
+  s.moving_obstacles = {car};
+  const CrowdRunReport r = run_crowd(s, {});
+  EXPECT_FALSE(r.stands_still) << "the robot stays for good, and with that the run ends by itself";
+  EXPECT_EQ(r.route_cut.size(), 1U);
+  EXPECT_LT(r.time, 60.0);
+}
+
 }  // namespace
 }  // namespace exactvo::formation
