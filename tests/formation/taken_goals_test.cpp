@@ -168,8 +168,8 @@ TEST(TakenGoals, LastPlacesOfTwoLeaveRoomForBothWhereThereIsAny) {
   }
 }
 
-/// A robot that passes a taken goal on its way beside it drives on, in the same row and in later ones.
-TEST(TakenGoals, ARobotThatPassesATakenGoalBesideItGoesOnToItsLastGoal) {
+/// A goal on the way at which another robot rests: the audit proves that it was reached, so the robot presses for it.
+TEST(TakenGoals, AGoalOnTheWayThatIsTakenIsReachedAllTheSame) {
   for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
     Scenario s;
     s.time_limit = 60.0;
@@ -179,14 +179,6 @@ TEST(TakenGoals, ARobotThatPassesATakenGoalBesideItGoesOnToItsLastGoal) {
     options.liveness = liveness;
     const Recording run = simulate(s, options);
     EXPECT_LT(norm(run.steps.back().robots[1].position - Vec2{0, 5}), s.arrival_tolerance) << run.outcome;
-    std::size_t passed = 0;
-    for (const Step& row : run.steps) {
-      if (row.robots[1].note.find("goal 1 passed") == std::string::npos) continue;
-      ++passed;
-      EXPECT_NE(row.robots[1].mode, Mode::staying);
-      EXPECT_EQ(row.robots[1].note.find("stays"), std::string::npos) << row.robots[1].note;
-    }
-    EXPECT_EQ(passed, 1U);
     EXPECT_TRUE(audits_clean(s, run));
   }
 }

@@ -148,11 +148,11 @@ TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
   place().write("bad.json", R"({"name": "a", "robots": [{"id": "R", "position": [0], "goal": [9, 0]}]})");
   EXPECT_THAT(place().run("simulate bad.json").err, HasSubstr("expected at least 2 entries ([x, y], m) [E_COUNT]"));
   place().write("bad.json", R"({"name": "a", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}],
-                               "obstacles": [{"id": "U", "disc": [1, 2]}]})");
+                               "obstacles": [{"id": "U", "circle": [1, 2]}]})");
   EXPECT_THAT(
       place().run("simulate bad.json").err,
       HasSubstr(
-          R"(found only the keys "id", "disc", expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
+          R"(found only the keys "id", "circle", expected "polyline", or "polygon", or "disc", or "file" [E_NO_ALTERNATIVE])"));
 }
 
 TEST(Messages, AMistypedGeneratorIsAnsweredWithThoseThereAre) {
@@ -416,9 +416,10 @@ TEST(Messages, AVelocityOfAnObstacleIsReferredToMovingObstacles) {
                                     std::string(key) + R"(": [1, 0]}]})");
     const Outcome outcome = place().run("simulate moves.json");
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("/obstacles/1/" + std::string(key) + ": found an unknown key \"" + key +
-                                       "\", expected an obstacle that stands; one that moves goes into the list "
-                                       "\"moving_obstacles\", with a \"path\" and a \"speed\" [E_KEY_UNKNOWN]"));
+    EXPECT_THAT(outcome.err,
+                HasSubstr("/obstacles/1/" + std::string(key) + ": found an unknown key \"" + key +
+                          "\", expected an obstacle that stands; one that moves goes into the list "
+                          "\"moving_obstacles\", with a \"path\" and a \"speed\", or a \"velocity\" [E_KEY_UNKNOWN]"));
   }
 }
 

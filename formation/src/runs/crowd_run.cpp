@@ -109,7 +109,7 @@ class CrowdRun {
     const std::size_t robots = scenario.robots.size();
     crowd_.positions(at_);
     journeys_.emplace(scenario, guide_ ? &*guide_ : nullptr, scenario.liveness, at_, room_at_ends(),
-                      scenario.horizons.orca);
+                      scenario.horizons.orca, TakenOnTheWay::passed_beside);
     preferred_.resize(robots);
     turned_.resize(robots);
     arrived_.resize(robots);

@@ -26,8 +26,13 @@ constexpr double kForGood = 2.0;          // moments, before an obstacle that re
 }  // namespace
 
 Journeys::Journeys(const Scenario& scenario, Guide* guide, Liveness liveness, const std::vector<Vec2>& at,
-                   const RoomAtEnds& room, double horizon)
-    : scenario_(scenario), guide_(guide), liveness_(liveness), at_(at), journeys_(scenario.robots.size()) {
+                   const RoomAtEnds& room, double horizon, TakenOnTheWay taken)
+    : scenario_(scenario),
+      guide_(guide),
+      liveness_(liveness),
+      taken_(taken),
+      at_(at),
+      journeys_(scenario.robots.size()) {
   if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
   for (const MovingObstacle& o : scenario.moving_obstacles)
     moving_until_ = std::max(moving_until_, rests_from(o.motion));
@@ -39,7 +44,10 @@ void Journeys::choose_last_places(const RoomAtEnds& room, double horizon) {
   last_places_ = last_places(scenario_, room);
   std::vector<RobotPlace> ends;
   for (std::size_t i = 0; i < journeys_.size(); ++i) {
-    for (const Vec2 goal : scenario_.robots[i].goals) ends.push_back({i, goal});
+    if (taken_ == TakenOnTheWay::passed_beside)
+      for (const Vec2 goal : scenario_.robots[i].goals) ends.push_back({i, goal});
+    else
+      ends.push_back({i, {}});
     ends.back().place = last_places_[i];
   }
   const bool may_end_elsewhere = guide_ && scenario_.unreachable == Unreachable::nearest;
@@ -91,7 +99,8 @@ std::string Journeys::name_of_goal(std::size_t i) const {
 }
 
 bool Journeys::pass_goal(std::size_t i) {
-  if (has_last_goal(i) || !(is_within_reach(i) || rests_beside(i))) return false;
+  const bool passes_beside = taken_ == TakenOnTheWay::passed_beside && rests_beside(i);
+  if (has_last_goal(i) || !(is_within_reach(i) || passes_beside)) return false;
   ++journeys_[i].goal;
   journeys_[i].has_passed_goal = true;
   add_note(journeys_[i].note, passed_goal_words(journeys_[i].goal));
@@ -212,7 +221,8 @@ void Journeys::look_whether_it_waits(std::size_t i, bool may_wait) {
 
 EndNow Journeys::end_now(std::size_t i, bool may_rest) const {
   const Journey& j = journeys_[i];
-  const bool counts = j.nearest || j.course || !guide_;
+  const bool has_way = j.nearest || j.course || !guide_;
+  const bool counts = has_way && (ends_here(i) || taken_ == TakenOnTheWay::passed_beside);
   const bool is_there = j.nearest ? j.has_come_nearest : is_within_reach(i);
   return {at_[i], end_of(i), counts, counts && ends_here(i), !j.nearest, is_there, may_rest};
 }

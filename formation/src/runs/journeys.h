@@ -68,13 +68,19 @@ struct Journey {
   std::string note;                     ///< what has changed, for the next row of a recording
 };
 
+/// What a robot does about a goal on its way that is taken.
+enum class TakenOnTheWay {
+  passed_beside,  ///< the robot comes beside it and goes on to its next goal
+  reached         ///< the robot presses for it: an audit of decisions proves of each goal that it was reached
+};
+
 class Journeys {
  public:
   /// All must outlive it. `guide`: null where robots head straight for their goals. `at`: the positions of the robots,
   /// kept up to date by the run. `room`: what robots leave each other where they end. `horizon`: s, for which
   /// half-planes between robots look ahead.
   Journeys(const Scenario& scenario, Guide* guide, Liveness liveness, const std::vector<Vec2>& at,
-           const RoomAtEnds& room, double horizon);
+           const RoomAtEnds& room, double horizon, TakenOnTheWay taken);
 
   std::size_t size() const { return journeys_.size(); }
   const Journey& operator[](std::size_t i) const { return journeys_[i]; }
@@ -92,7 +98,8 @@ class Journeys {
   void go_round(std::size_t i, bool goes_by_plan = false);
   /// Whether robot i waits for good. `may_wait`: the robot is at rest, and goes by no joint plan.
   void look_whether_it_waits(std::size_t i, bool may_wait);
-  /// Sets out for the next goal where robot i has reached one on its way, or rests beside it; returns whether it did.
+  /// Sets out for the next goal where robot i has reached one on its way, or rests beside it and may pass it; returns
+  /// whether it did.
   bool pass_goal(std::size_t i);
   /// Where robot i heads from here.
   void look_along(std::size_t i);
@@ -170,6 +177,7 @@ class Journeys {
   const Scenario& scenario_;
   Guide* guide_;
   Liveness liveness_;
+  TakenOnTheWay taken_;
   const std::vector<Vec2>& at_;
   std::vector<Journey> journeys_;
   std::vector<Vec2> last_places_;              ///< empty: the last goals

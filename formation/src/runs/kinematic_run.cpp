@@ -39,7 +39,8 @@ class KinematicRun {
         own_(rules_, scene_.bodies()),
         ways_(scenario.robots.size()),
         journeys_(scenario, guide, liveness_, positions_, room_at_ends(scenario),
-                  options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots),
+                  options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots,
+                  TakenOnTheWay::reached),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario.obstacles),
         joint_(
             rules_, scenario.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
