@@ -263,7 +263,7 @@ let crowd file s =
         | _ -> bad !pos "what begins neither a row nor the end" in
     let count, cut_off = rows 0 None in
     let ok = report t "the first row and each step or row after it" count n ("one of " ^ counted (List.length walls) "edge")
-      ((if bodies > 0 then [Printf.sprintf "that robots are clear of %s" (counted bodies "body, moving or at rest,")] else []) @ ["speeds"]) cut_off in
+      ((if bodies > 0 then [Printf.sprintf "that robots are clear of %d %s, moving or at rest," bodies (if bodies = 1 then "body" else "bodies")] else []) @ ["speeds"]) cut_off in
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
     ok
 

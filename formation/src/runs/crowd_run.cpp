@@ -322,7 +322,8 @@ class CrowdRun {
     const Vec2 preferred = journeys_->beside_taken(i, journeys_->preferred(i));
     if (scenario_.liveness == Liveness::off) return preferred;
     const double held_up = (*journeys_)[i].keep_right.held_up;
-    const Vec2 turned = journeys_->kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience);
+    const bool waits = (*journeys_)[i].cut_by.has_value();  // not for robots
+    const Vec2 turned = journeys_->kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience, !waits);
     if ((*journeys_)[i].keep_right.held_up != held_up) turned_[i] = report_.steps;
     return turned;
   }

@@ -204,5 +204,22 @@ TEST(CrowdRoutes, ARunDoesNotStandStillWhileARobotStillLooksForAWayRoundACar) {
   EXPECT_LT(r.time, 60.0);
 }
 
+/// The goal is under a parked car: rule R1 led the robot round the car until time ran out.
+TEST(CrowdRoutes, ARobotWaitsBeforeACarThatParksOnItsGoal) {
+  Scenario s = scenario_of({robot("R1", {0.0, 0.0}, {{10.0, 0.0}})});
+  s.guidance = Guidance::route;
+  MovingObstacle car;
+  car.id = "car";
+  car.shape = geometry::Polygon{{{9.0, -6.0}, {11.0, -6.0}, {11.0, -3.0}, {9.0, -3.0}}, {}};
+  car.motion.path = {{0.0, 0.0}, {0.0, 4.5}};
+  car.motion.speed = 2.0;
+  s.moving_obstacles = {car};
+  const CrowdRunReport r = run_crowd(s, {});
+  EXPECT_EQ(r.arrived, 0U);
+  ASSERT_EQ(r.route_cut.size(), 1U);
+  EXPECT_LT(r.path_length, 15.0);
+  EXPECT_LT(r.time, 60.0);
+}
+
 }  // namespace
 }  // namespace exactvo::formation

@@ -5,14 +5,14 @@ data = '@name@.dat'
 if (!exists('formats')) formats = 'svg png pdf'
 do for [format in formats] {
   if (format eq 'svg') {
-    set terminal svg enhanced size @width@,@height@ font 'DejaVu Sans,13' background rgb 'white'
+    set terminal svg enhanced rounded size @width@,@height@ font 'DejaVu Sans,13' background rgb 'white'
   }
   if (format eq 'png') {
-    set terminal pngcairo enhanced size 1.4 * @width@,1.4 * @height@ font 'DejaVu Sans,13' fontscale 1.05 \
+    set terminal pngcairo enhanced rounded size 1.4 * @width@,1.4 * @height@ font 'DejaVu Sans,13' fontscale 1.05 \
       linewidth 1.4 pointscale 1.4
   }
   if (format eq 'pdf') {
-    set terminal pdfcairo enhanced size @width@ / 96.0,@height@ / 96.0 font 'DejaVu Sans,13' fontscale 0.5625 \
+    set terminal pdfcairo enhanced rounded size @width@ / 96.0,@height@ / 96.0 font 'DejaVu Sans,13' fontscale 0.5625 \
       linewidth 1.5 pointscale 0.75
   }
   reset

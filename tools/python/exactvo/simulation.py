@@ -375,7 +375,7 @@ def simulate(
     progress: Callable[[float], Union[bool, None]] | None = None,
 ) -> Recording:
     """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
-    `exactvo simulate`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
+    `exactvo simulate --decisions binding`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
     that have arrived before they move, by how much `recentre` moves the slots of a formation.
 
     method       "orca" (the textbook's baseline), "ivo-edge" (the paper), "ivo-cluster", "ivo"

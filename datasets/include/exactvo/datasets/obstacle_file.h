@@ -70,7 +70,7 @@ std::vector<std::string> unknown_cells_names();
 struct ReadOptions {
   std::string format;              ///< a name of `readable_formats()`; empty: chosen by content, then by extension
   Units units = Units::automatic;  ///< what the numbers mean
-  UnknownCells unknown = UnknownCells::free;
+  UnknownCells unknown = UnknownCells::free;  ///< what unknown cells of a grid become
   double cell_size =
       0.0;  ///< m, >= 0: side of a grid's or scan's cell; 0: 1 m for grids without a scale, 0.05 m for scans
   /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.

@@ -18,9 +18,9 @@ SceneObstacle disc_obstacle(std::string id, const geometry::Disc& disc);
 /// A disc that moves. Throws std::invalid_argument as `geometry::polygon_round`.
 MovingObstacle moving_disc(std::string id, const geometry::Disc& disc, TimedPath motion);
 
-/// m: from x to the disc's rim or the shape's edges; negative inside (geometry/distance.h). Of a moving obstacle where
-/// it stands at t = 0. Rounded.
+/// m: from x to the disc's rim or the shape's edges; negative inside (geometry/distance.h). Rounded.
 double signed_distance(const SceneObstacle& obstacle, Vec2 x);
+/// The same of a moving obstacle where it stands at t = 0.
 double signed_distance(const MovingObstacle& obstacle, Vec2 x);
 
 /// A shape grown by a length: of a disc its centre, as a segment from a point to itself, and its radius; of others the
@@ -29,7 +29,9 @@ struct Core {
   geometry::Obstacle shape;  ///< m
   double grown = 0.0;        ///< m
 };
+/// What an obstacle is, exactly.
 Core core_of(const SceneObstacle& obstacle);
+/// The same of a moving obstacle where it stands at t = 0.
 Core core_of(const MovingObstacle& obstacle);
 
 /// A velocity that is taken at a time and kept until the next one.
