@@ -137,13 +137,22 @@ Definition first_rows : list (list point) :=
    [(d 3287401707159321 52, d 5795027405883229 52); (d 5934531597776325 50, d 8977300771548525 52)];
    [(d 3427300325464883 52, d 714317889352501 49); (d 5898432158740415 50, d 4491062039922825 51)];
    [(d 1789076048998239 51, d 5627875860636307 52); (d 183147997495149 45, d 4511925497897165 51)]].
-Definition they_keep_apart : all_steps (fun a b => keeps_apart edge_of_the_room (moves sizes a b)) first_rows.
+Definition they_keep_apart : all_steps (fun a b => keeps_apart edge_of_the_room [] (moves sizes a b)) (with_start first_rows).
 Proof. apply run_sound. vm_compute. reflexivity. Qed.
-Example they_cannot_change_places : run edge_of_the_room sizes
+Example they_cannot_change_places : run edge_of_the_room [] sizes
   [[(d 3152519739159347 52, d 5854679515581645 52); (d 5967269506265907 50, d 2 0)];
    [(d 5967269506265907 50, d 2 0); (d 3152519739159347 52, d 5854679515581645 52)]] = false.
 Proof. vm_compute. reflexivity. Qed.
 
 (* Clear of all edges, and yet not where a robot may be: inside a polygon. *)
-Example inside_is_refuted : run [Solid [[(-2, -2); (9, -2); (9, 9); (-2, 9)]]] sizes first_rows = false.
+Example inside_is_refuted : run [Solid [[(-2, -2); (9, -2); (9, 9); (-2, 9)]]] [] sizes first_rows = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* One row that is not right; a disc that the first robot passes at exactly its distance, and one that is in its way. *)
+Example one_row_is_judged : run edge_of_the_room [] [1; 1] [[(0, 9); (1, 9)]] = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition post (r : Q) : list motion := [{| from := (1, 2); to := (1, 2); size := r |}].
+Definition it_passes_the_post : all_steps (fun a b => keeps_apart [] (post 1) (moves [1] a b)) (with_start [[(-(5), 0)]; [(7, 0)]]).
+Proof. apply run_sound. vm_compute. reflexivity. Qed.
+Example a_larger_post_is_in_its_way : run [] (post (1025 # 1024)) [1] [[(-(5), 0)]; [(7, 0)]] = false.
 Proof. vm_compute. reflexivity. Qed.

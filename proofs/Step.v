@@ -119,10 +119,12 @@ Fixpoint divide (fuel : nat) (l : list robot) (ws : list wall) : bool :=
   | _, _ => undivided l ws
   end.
 
-Definition step_apart (es : list edge) (ms : list motion) : bool :=
-  forallb (fun m => qlt 0 (size m)) ms
-  && divide 64 (each (fun m => (box_of (size m) (way_of m), m)) ms) (each (fun e => (box_of 0 e, e)) es).
-Definition step (os : list obstacle) (ms : list motion) : bool := step_apart (flat_map edges_of os) ms.
+Definition boxed (m : motion) : robot := (box_of (size m) (way_of m), m).
+Definition step_apart (es : list edge) (discs ms : list motion) : bool :=
+  forallb (fun m => qlt 0 (size m)) ms && let l := each boxed ms in
+  divide 64 l (each (fun e => (box_of 0 e, e)) es)
+  && forallb (fun d => qle 0 (size d) && let b := boxed d in forallb (pair_holds b) l) discs.
+Definition step (os : list obstacle) (discs ms : list motion) : bool := step_apart (flat_map edges_of os) discs ms.
 
 (* Once outside of all polygons, robots that keep clear of the edges stay so: only at the start this is asked. *)
 Definition starts (os : list obstacle) (ms : list motion) : bool :=
@@ -233,20 +235,25 @@ Qed.
 Lemma pairs_impl {A} (R S : A -> A -> Prop) l : (forall a b, R a b -> S a b) -> ForallOrdPairs R l -> ForallOrdPairs S l.
 Proof. intros i h. induction h as [|a l ha _ ih]; constructor; [|assumption]. apply Forall_impl with (2 := ha). apply i. Qed.
 
-Lemma step_apart_ok es ms : step_apart es ms = true ->
-  (forall m, In m ms -> 0 < Q2R (size m)) /\ ForallOrdPairs robots_keep ms /\ forall m e, In m ms -> In e es -> edge_keeps m e.
+Lemma boxed_ok m : 0 <= Q2R (size m) -> well_boxed (boxed m).
+Proof. intro h. split; [exact h|]. intros x hx. now apply box_of_ok. Qed.
+
+Lemma step_apart_ok es discs ms : step_apart es discs ms = true ->
+  (forall m, In m ms -> 0 < Q2R (size m)) /\ ForallOrdPairs robots_keep ms /\ (forall m e, In m ms -> In e es -> edge_keeps m e)
+  /\ forall d m, In d discs -> In m ms -> robots_keep d m.
 Proof.
-  unfold step_apart. rewrite !each_map. intro h. apply andb_true_iff in h. destruct h as [r0 h]. rewrite forallb_forall in r0.
+  unfold step_apart. rewrite !each_map. intro h. apply andb_true_iff in h. destruct h as [r0 h]. apply andb_true_iff in h.
+  destruct h as [h hd]. rewrite forallb_forall in r0, hd.
   assert (p : forall m, In m ms -> 0 < Q2R (size m)).
   { intros m hm. specialize (r0 m hm). apply qlt_R in r0. now rewrite Q2R_0 in r0. }
-  split; [exact p|]. apply divide_ok in h.
-  - destruct h as [h1 h2]. split; [apply pairs_map in h1; exact h1|].
-    intros m e hm he. apply (h2 (box_of (size m) (way_of m), m) (box_of 0 e, e)).
-    + now apply (in_map (fun m => (box_of (size m) (way_of m), m))).
-    + now apply (in_map (fun e => (box_of 0 e, e))).
-  - apply Forall_forall. intros x hx. apply in_map_iff in hx. destruct hx as [m [e hm]]. subst x. split; simpl.
-    + left. now apply p.
-    + intros x hx. now apply box_of_ok.
+  assert (w : Forall well_boxed (map boxed ms)).
+  { apply Forall_forall. intros x hx. apply in_map_iff in hx. destruct hx as [m [e hm]]. subst x. apply boxed_ok. left. now apply p. }
+  split; [exact p|]. apply divide_ok in h; [|exact w|].
+  - destruct h as [h1 h2]. split; [apply pairs_map in h1; exact h1|]. split.
+    + intros m e hm he. apply (h2 (boxed m) (box_of 0 e, e)); [now apply in_map|]. now apply (in_map (fun e => (box_of 0 e, e))).
+    + intros d m hd' hm. specialize (hd d hd'). apply andb_true_iff in hd. destruct hd as [d0 hd]. apply qle_R in d0. rewrite Q2R_0 in d0.
+      rewrite forallb_forall in hd. rewrite Forall_forall in w. apply (in_map boxed) in hm.
+      exact (pair_ok (boxed d) (boxed m) (boxed_ok d d0) (w _ hm) (hd _ hm)).
   - apply Forall_forall. intros x hx. apply in_map_iff in hx. destruct hx as [e [k he]]. subst x. intros x hx. now apply box_of_ok.
 Qed.
 
@@ -256,13 +263,14 @@ Proof.
   unfold place. rewrite mix_0. apply is_outside_ok. now apply h.
 Qed.
 
-Theorem step_sound os ms : step os ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os ms.
+Theorem step_sound os discs ms : step os discs ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os discs ms.
 Proof.
-  unfold step. intros h start s hs. apply step_apart_ok in h. destruct h as [p [h1 h2]].
+  unfold step. intros h start s hs. apply step_apart_ok in h. destruct h as [p [h1 [h2 h3]]].
   assert (k : forall m o e x y, In m ms -> In o os -> In e (edges_of o) -> on (way_of m) x -> on e y -> apart (Q2R (size m)) x y).
   { intros m o e x y hm ho he hx hy. apply on_mix in hx. destruct hx as [q [hq ex]]. subst x.
     apply (h2 m e hm); [|exact hq|exact hy]. apply in_flat_map. now exists o. }
-  split; [apply pairs_impl with (2 := h1); intros a b q; now apply q|]. intros m hm. split.
+  split; [apply pairs_impl with (2 := h1); intros a b q; now apply q|]. intros m hm.
+  split; [|intros d hd; now apply (h3 d m)]. split.
   - intros o ho. specialize (start m hm o ho). destruct o as [l|rs]; [exact I|]. unfold place in start. rewrite mix_0 in start.
     apply (piece_even (Q2R (size m)) _ (from m) (to m) (rings_closed rs) (p m hm)); [|exact start|now apply place_on].
     intros e x y he hx hy. now apply (k m (Solid rs) e).
@@ -270,10 +278,10 @@ Proof.
 Qed.
 
 (* --- Runs --- *)
-Fixpoint steps (os : list obstacle) (sizes : list Q) (rows : list (list point)) : bool :=
-  match rows with a :: ((b :: _) as r) => step os (moves sizes a b) && steps os sizes r | _ => true end.
-Definition run (os : list obstacle) (sizes : list Q) (rows : list (list point)) : bool :=
-  forallb (fun r => Nat.eqb (length r) (length sizes)) rows && steps os sizes rows
+Fixpoint steps (os : list obstacle) (discs : list motion) (sizes : list Q) (rows : list (list point)) : bool :=
+  match rows with a :: ((b :: _) as r) => step os discs (moves sizes a b) && steps os discs sizes r | _ => true end.
+Definition run (os : list obstacle) (discs : list motion) (sizes : list Q) (rows : list (list point)) : bool :=
+  forallb (fun r => Nat.eqb (length r) (length sizes)) rows && steps os discs sizes (with_start rows)
   && match rows with a :: _ => starts os (moves sizes a a) | [] => true end.
 
 (* Where a robot is at a row, it came from the row before. *)
@@ -287,16 +295,16 @@ Proof.
   - destruct (ih a b c la lb m hm) as [n [hn e]]. exists n. split; [now right|exact e].
 Qed.
 
-Lemma steps_ok os sizes rows : Forall (fun r => length r = length sizes) rows -> steps os sizes rows = true ->
+Lemma steps_ok os discs sizes rows : Forall (fun r => length r = length sizes) rows -> steps os discs sizes rows = true ->
   match rows with a :: _ => forall b m, In m (moves sizes a b) -> outside os (place m 0) | [] => True end ->
-  all_steps (fun a b => keeps_apart os (moves sizes a b)) rows.
+  all_steps (fun a b => keeps_apart os discs (moves sizes a b)) rows.
 Proof.
   induction rows as [|a [|b t] ih]; intros l h start; [exact I|exact I|]. simpl in h. apply andb_true_iff in h. destruct h as [h1 h2].
   inversion l as [|? ? la l']; subst. inversion l' as [|? ? lb _]; subst.
-  assert (k : keeps_apart os (moves sizes a b)) by (apply step_sound; [exact h1|apply start]).
+  assert (k : keeps_apart os discs (moves sizes a b)) by (apply step_sound; [exact h1|apply start]).
   split; [exact k|]. apply ih; [exact l'|exact h2|]. intros c m hm.
   destruct (came_from sizes a b c la lb m hm) as [n [hn e]].
-  destruct (k 1 ltac:(lra)) as [_ r]. destruct (r n hn) as [r' _]. unfold place in *. rewrite mix_1 in r'. now rewrite mix_0, <- e.
+  destruct (k 1 ltac:(lra)) as [_ r]. destruct (r n hn) as [[r' _] _]. unfold place in *. rewrite mix_1 in r'. now rewrite mix_0, <- e.
 Qed.
 
 Lemma at_rest sizes : forall a n, In n (moves sizes a a) -> from n = to n.
@@ -304,14 +312,14 @@ Proof.
   induction sizes as [|r sizes ih]; intros [|x a] n hn; try (now destruct hn). destruct hn as [e|hn]; [now subst|now apply (ih a)].
 Qed.
 
-Theorem run_sound os sizes rows : run os sizes rows = true ->
-  Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os (moves sizes a b)) rows.
+Theorem run_sound os discs sizes rows : run os discs sizes rows = true ->
+  Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os discs (moves sizes a b)) (with_start rows).
 Proof.
   unfold run. intro h. apply andb_true_iff in h; destruct h as [h first]. apply andb_true_iff in h; destruct h as [l h].
   assert (l' : Forall (fun r => length r = length sizes) rows).
   { apply Forall_forall. intros r hr. rewrite forallb_forall in l. now apply PeanoNat.Nat.eqb_eq, l. }
-  split; [exact l'|]. apply steps_ok; [exact l'|exact h|]. destruct rows as [|a t]; [exact I|]. intros b m hm.
-  inversion l' as [|? ? la _]; subst. destruct (came_from sizes a a b la la m hm) as [n [hn e]].
+  split; [exact l'|]. destruct rows as [|a t]; [exact I|]. inversion l' as [|? ? la _]; subst.
+  apply steps_ok; [now constructor|exact h|]. intros b m hm. destruct (came_from sizes a a b la la m hm) as [n [hn e]].
   pose proof (starts_sound _ _ first) as k.
   specialize (k n hn). unfold place in *. rewrite mix_0 in *. now rewrite <- e, <- (at_rest sizes a n hn).
 Qed.

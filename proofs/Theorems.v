@@ -13,8 +13,7 @@ Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
 Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
 Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
 Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
-Definition point := (Q * Q)%type.
-Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
+Definition point := (Q * Q)%type.  Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
 
 Inductive hull (ps : list point) : vec -> Prop :=       (* convex hull; of two points: the segment between them *)
 | corner p : In p ps -> hull ps (real p)
@@ -43,7 +42,7 @@ Definition moment (h : option Q) (t : R) := 0 <= t /\ match h with Some q => t <
 Definition keeps_clear (c : half_plane) := forall v t o,
   Q2R (offset c) <= dot (real (normal c)) v -> moment (horizon c) t -> inside (body c) o ->
   let there := add o (scale t (real (body_velocity c))) in let here := add (real (position c)) (scale t v) in
-  apart (Q2R (radius c)) here there /\                  (* and a line of that normal has a strip `margin` between them: *)
+  apart (Q2R (radius c)) here there /\     (* and an empty strip across the normal, margin / |normal| wide, parts them: *)
   forall y, dot (sub y here) (sub y here) <= Q2R (radius c) * Q2R (radius c) ->
     dot (real (normal c)) there + Q2R (margin c) <= dot (real (normal c)) y.
 (* Two robots: c is of one (its body does not count), p, r place and radius of the other, `other` the opposite offset. *)
@@ -74,8 +73,7 @@ Definition gives_least (p : program) (c : choice) := allowed (Q2R (violation c))
 (* --- Route and Chain: a disc among walls and polygons with holes --- *)
 Inductive obstacle := Wall (line : list point) | Solid (rings : list (list point)).
 Definition edge := (point * point)%type.
-Fixpoint sides_from (a : point) (ps : list point) : list edge :=
-  match ps with [] => [] | b :: r => (a, b) :: sides_from b r end.
+Fixpoint sides_from (a : point) (ps : list point) : list edge := match ps with [] => [] | b :: r => (a, b) :: sides_from b r end.
 Definition sides (ps : list point) : list edge := match ps with [] => [] | a :: r => sides_from a r end.
 Definition ring_sides (ps : list point) : list edge := match ps with [] => [] | a :: r => sides_from a (r ++ [a]) end.
 Definition edges_of (o : obstacle) : list edge := match o with Wall l => sides l | Solid rs => flat_map ring_sides rs end.
@@ -105,16 +103,17 @@ Definition way (os : list obstacle) (r : R) (s g : vec) := exists p,
    that edge leads to the next corner. *)
 Record joint := { spot : point; obstacle_no : nat; edge_no : nat; gap_follows : bool }.
 
-(* --- Step and Run: all robots move at once, straight and evenly --- *)
+(* --- Step and Run: all robots move at once, straight and evenly, past edges and discs that do too or stand still --- *)
 Record motion := { from : point; to : point; size : Q }.
 Definition place (m : motion) (s : R) : vec := mix s (real (from m)) (real (to m)).
-Definition keeps_apart (os : list obstacle) (ms : list motion) := forall s, 0 <= s <= 1 ->
-  ForallOrdPairs (fun a b => apart (Q2R (size a) + Q2R (size b)) (place a s) (place b s)) ms /\
-  forall m, In m ms -> room os (Q2R (size m)) (place m s).
+Definition parted (s : R) (a b : motion) := apart (Q2R (size a) + Q2R (size b)) (place a s) (place b s).
+Definition keeps_apart (os : list obstacle) (discs ms : list motion) := forall s, 0 <= s <= 1 ->
+  ForallOrdPairs (parted s) ms /\ forall m, In m ms -> room os (Q2R (size m)) (place m s) /\ forall d, In d discs -> parted s d m.
 Definition moves (sizes : list Q) (a b : list point) : list motion :=
   map (fun x => {| size := fst x; from := fst (snd x); to := snd (snd x) |}) (combine sizes (combine a b)).
 Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list point)) : Prop :=
   match rows with a :: ((b :: _) as r) => P a b /\ all_steps P r | _ => True end.
+Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows | [] => [] end.   (* rest, then the steps *)
 
 (* --- The promises --- *)
 Module Type Verifier.
@@ -141,10 +140,11 @@ Module Type Verifier.
     room os (Q2R r) (real s) /\ room os (Q2R r) (real g) /\ ~ way os (Q2R r) (real s) (real g).
   Parameter blocked : list obstacle -> Q -> point -> nat -> option nat -> bool.   (* by an edge, or inside a polygon *)
   Parameter blocked_sound : forall os r x o e, blocked os r x o e = true -> ~ room os (Q2R r) (real x).
-  Parameter starts step : list obstacle -> list motion -> bool.
+  Parameter starts : list obstacle -> list motion -> bool.
   Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
-  Parameter step_sound : forall os ms, step os ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os ms.
-  Parameter run : list obstacle -> list Q -> list (list point) -> bool.
-  Parameter run_sound : forall os sizes rows, run os sizes rows = true ->
-    Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os (moves sizes a b)) rows.
+  Parameter step : list obstacle -> list motion -> list motion -> bool.
+  Parameter step_sound : forall os discs ms, step os discs ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os discs ms.
+  Parameter run : list obstacle -> list motion -> list Q -> list (list point) -> bool.   (* also of one row *)
+  Parameter run_sound : forall os discs sizes rows, run os discs sizes rows = true ->
+    Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os discs (moves sizes a b)) (with_start rows).
 End Verifier.

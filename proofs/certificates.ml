@@ -111,6 +111,8 @@ let obstacle q o =
   | Some l, None -> Wall (ring 2 l)
   | None, Some p -> Solid (ring 3 p :: (match Json.find "holes" o with Some h -> List.map (ring 3) (Json.arr h) | None -> []))
   | _ -> raise Json.Bad
+(* One that stands still. *)
+let disc q d = let centre = plain q (Json.get "centre" d) in { from = centre; to0 = centre; size = q Json.(num (get "radius" d)) }
 
 type listed = { json : Json.t; bits : int; mutable ready : (int * obstacle list) option }
 let obstacles : listed option ref = ref None

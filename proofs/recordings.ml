@@ -135,10 +135,10 @@ let answers file text problems =
 type tally = { mutable asked : int; mutable robots_apart : int; mutable edges_clear : int; mutable first : string option }
 
 (* Where robots were outside of all polygons when they came, step says that they stay so: `anew` asks it. *)
-let take tally place ~anew os ms =
+let take tally place ~anew os discs ms =
   tally.asked <- tally.asked + 1;
-  let all = Checked.step os ms && (not anew || Checked.starts os ms) in
-  let robots = all || Checked.step [] ms in
+  let all = Checked.step os discs ms && (not anew || Checked.starts os ms) in
+  let robots = all || Checked.step [] [] ms in
   if robots then tally.robots_apart <- tally.robots_apart + 1;
   if all then tally.edges_clear <- tally.edges_clear + 1
   else if tally.first = None then
@@ -153,13 +153,15 @@ let report t what rows robots obstacles not_covered incomplete =
   t.edges_clear = t.asked && not incomplete
 
 let recording file text =
-  let scenario = ref Json.Null and obstacles = ref [] and sizes = ref [] and bits = ref 0 in
+  let scenario = ref Json.Null and obstacles = ref [] and discs = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
   let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
   let prepare b =
     bits := b;
     let q = over b in
-    obstacles := List.map (Certificates.obstacle q) Json.(arr (get "obstacles" !scenario));
+    let round, others = List.partition (fun o -> Json.find "disc" o <> None) Json.(arr (get "obstacles" !scenario)) in
+    obstacles := List.map (Certificates.obstacle q) others;
+    discs := List.map (fun o -> Certificates.disc q (Json.get "disc" o)) round;
     sizes := List.map (fun r -> q Json.(num (get "radius" r))) Json.(arr (get "robots" !scenario)) in
   let header h =
     if Json.find "kind" h <> Some (Json.Str "exactvo-recording") then raise Json.Bad;
@@ -180,7 +182,7 @@ let recording file text =
     (* The row before may have been read with another denominator: the checkers take any. *)
     let before, anew = match !last with Some b when not !curved -> (b, false) | _ -> (here, true) in
     let moves = List.rev (List.rev_map2 (fun size (from, to0) -> { from; to0; size }) !sizes (List.combine before here)) in
-    take t (Printf.sprintf "row %d" !rows) ~anew !obstacles moves;
+    take t (Printf.sprintf "row %d" !rows) ~anew !obstacles !discs moves;
     Decisions.row decisions !scenario Json.(arr (get "robots" r));
     last := Some here; incr rows in
   List.iteri (fun i l ->
@@ -194,7 +196,8 @@ let recording file text =
     | _ | exception Json.Bad -> bad ()) (lines text);
   let decided = Decisions.report decisions in
   let ok = report t "the first row and each motion to the next" !rows !robots
-      (Printf.sprintf "one of %s with %s" (counted (List.length !obstacles) "obstacle") (counted (List.length (List.concat_map edges_of !obstacles)) "edge")) !not_covered !curved in
+      (Printf.sprintf "one of %s with %s%s" (counted (List.length !obstacles) "obstacle") (counted (List.length (List.concat_map edges_of !obstacles)) "edge")
+        (if !discs = [] then "" else " and of " ^ counted (List.length !discs) "disc")) !not_covered !curved in
   if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
   ok && decided
 
@@ -255,7 +258,7 @@ let crowd file s =
               let here = Array.init n (fun i -> (at x.(i), at y.(i))) in
               (* Of rows of consecutive steps the motion, of others its end. *)
               let before, anew = match last with Some (j, ps) when k = j + 1 -> (ps, false) | _ -> (here, true) in
-              take t (Printf.sprintf "step %d" k) ~anew walls (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
+              take t (Printf.sprintf "step %d" k) ~anew walls [] (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
               rows (count + 1) (Some (k, here)))
         | 'E' -> (match block (fun () -> u64 ()) with
             | None -> cut ()

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/round_polygon.h"
 #include "preflight/open_way.h"
 #include "reach/reachability.h"
 #include "support/seeded_random.h"
@@ -162,6 +165,42 @@ TEST(Preflight, AChainOfSeveralObstaclesIsNamed) {
   const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, halves));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0], HasSubstr("obstacles 'north' and 'south' enclose it, with 2 gaps of at most 0.6 m"));
+}
+
+TEST(Preflight, AGapBetweenDiscsThatTheirPolygonsCloseIsNoProof) {
+  // The gap lies between two corners of the polygons, where these are widest.
+  constexpr double kPost = 5.0;
+  const double angle = geometry::kPi / geometry::kRoundCorners;
+  const Vec2 along{std::cos(angle), std::sin(angle)}, across{-along.y, along.x};
+  const auto posts = [&](double gap) {
+    const double to_centre = kPost + 0.5 * gap;
+    const Vec2 a = -to_centre * along, b = to_centre * along;
+    return scene(-12.0 * across, {12.0 * across},
+                 {disc_obstacle("left", {a, kPost}),
+                  disc_obstacle("right", {b, kPost}),
+                  {"room", geometry::Polyline{{a, a + 20.0 * across, b + 20.0 * across, b}}}});
+  };
+  const Scenario wide = posts(2 * kRadius + 0.04);
+  for (double y = -12.0; y <= 12.0; y += 0.01)  // it can drive straight on
+    for (const SceneObstacle& o : wide.obstacles) ASSERT_GT(signed_distance(o, y * across), kRadius);
+  const auto open = warnings_before(wide);
+  ASSERT_EQ(open.size(), 1u);
+  EXPECT_THAT(open[0], HasSubstr("has no route to it: obstacles 'left', 'right' and 'room' enclose it"));
+  EXPECT_THAT(open[0], HasSubstr("no proof, as discs count as the polygons round them, up to 0.0242 m wider"));
+  EXPECT_THAT(open[0], testing::Not(HasSubstr("cannot be reached")));
+
+  const auto closed = warnings_before(posts(2 * kRadius - 0.04));
+  ASSERT_EQ(closed.size(), 1u);
+  EXPECT_THAT(closed[0], HasSubstr("cannot be reached: obstacles 'left', 'right' and 'room' enclose it"));
+  EXPECT_THAT(closed[0], testing::Not(HasSubstr("proof")));
+  EXPECT_TRUE(warnings_before(posts(2 * kRadius + 0.06)).empty());
+
+  // A large disc elsewhere has no part in a room of walls.
+  const auto elsewhere =
+      warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.9)}, disc_obstacle("far", {{80, 0}, 50.0})}));
+  ASSERT_EQ(elsewhere.size(), 1u);
+  EXPECT_THAT(elsewhere[0], HasSubstr("cannot be reached: obstacle 'room' encloses it"));
+  EXPECT_THAT(elsewhere[0], testing::Not(HasSubstr("proof")));
 }
 
 TEST(Preflight, WallsThatCrossOrTouchCloseARoom) {

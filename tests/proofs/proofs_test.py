@@ -269,6 +269,8 @@ def recordings(tools):
     require(len(rows) > 100, len(rows))
     forged = json.loads(lines[rows[50]])
     robots = forged["row"]["robots"]
+    robots_at_start = json.loads(lines[rows[0]])["row"]["robots"]
+    bodies = [line for line in lines[:rows[0]] if line.startswith('{"body"')]
     for change, expected in ((lambda: robots.__setitem__(0, dict(robots[0], position=robots[1]["position"])), "two robots are not proven apart"),
                              (lambda: robots.__setitem__(0, dict(robots[0], position=[0.2, 1.0])), "a robot is not proven clear of an obstacle")):
         change()
@@ -288,10 +290,30 @@ def recordings(tools):
     header["header"]["scenario"]["obstacles"] = [{"id": "all round", "polygon": [[-9, -9], [19, -9], [19, 19], [-9, 19]]}]
     status, _, words = tools.verified("inside.jsonl", json.dumps(header, separators=(",", ":")) + "\n" + "".join(lines[1:]))
     require(status == 1 and "row 0: a robot is not proven clear of an obstacle" in words, words)  # clear of all edges, but inside
+    # A disc at its very distance from where the robot stands, and one larger by 2^-20 m; and another that overlaps it.
+    (x, y), radius = robots_at_start[0]["position"], json.loads(lines[0])["header"]["scenario"]["robots"][0]["radius"]
+    still = [lines[rows[0]], '{"end":{"rows":1}}\n']
+    for more, holds in ((0.0, True), (2.0**-20, False)):
+        discs = [{"id": "post", "disc": {"centre": [x, y + 2 * radius], "radius": radius + more}},
+                 {"id": "beside", "disc": {"centre": [x, y + 3 * radius], "radius": radius}}]
+        header["header"]["scenario"]["obstacles"] = discs
+        status, _, words = tools.verified("discs.jsonl", "".join([json.dumps(header, separators=(",", ":")) + "\n", *bodies] + still))
+        require((status == 0) == holds and "one of 0 obstacles with 0 edges and of 2 discs" in words, more, words)
     status, _, words = tools.verified("cut.jsonl", "".join(lines[:rows[9]]))
     require(status == 2 and "E_CUT_OFF" in words, words)
     status, _, words = tools.verified("no.jsonl", "".join(lines[:rows[9]]) + "{\n")
     require(status == 2 and "E_FORMAT_SYNTAX" in words, words)
+
+    posts = {"name": "posts", "time_limit": 20, "robots": [{"id": "R1", "position": [-4, 0.1], "radius": 0.4, "max_speed": 1, "goals": [[4, 0]]}],
+             "obstacles": [{"id": "post", "disc": {"centre": [0, 0], "radius": 1}}]}
+    out = tools.folder / "posts"
+    run(tools.program, "simulate", tools.file("posts.json", json.dumps(posts)), "--no-figures", "--out", out, check=True)
+    text = (out / "recording.jsonl").read_text()
+    require('"disc":{"centre"' in text.splitlines()[0], "no disc in the recording")
+    status, _, words = tools.verified("posts.jsonl", text)
+    require(status == 0 and re.search(r"^(\d+) rows of 1 robot, .*: \1 asked, .* in \1 also no robot overlaps .* and of 1 disc$", words, re.M), words)
+    status, _, words = tools.verified("larger.jsonl", text.replace('"centre":[0,0],"radius":1}', '"centre":[0,0],"radius":1.25}', 1))
+    require(status == 1 and "a robot is not proven clear of an obstacle" in words, words)
 
     out = tools.folder / "A7"
     run(tools.program, "simulate", tools.source / "datasets/data/paper/A7.json", "--no-figures", "--out", out, check=True)

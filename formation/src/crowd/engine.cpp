@@ -257,7 +257,7 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t k = 0; k < count; ++k) require_preference(s.preferred[k], first + k);
   }
 
-  /// Into s.px, s.py, s.disc, by slot; 0 of lanes that hold nobody.
+  /// Into s.px, s.py, s.disc, by slot; 0 of lanes without a robot.
   void put_preferred(const Pack* packs, std::size_t count, Scratch& s) const {
     if (steering) ask_steering(packs[0].begin, packs[count - 1].end, s);
     for (std::size_t p = 0; p < count; ++p) {
@@ -272,7 +272,7 @@ class CrowdEngine final : public CrowdCore {
     }
   }
 
-  /// Of each lane what a table says of its kind; `otherwise` where nobody is.
+  /// Of each lane what a table says of its kind; `otherwise` in lanes without a robot.
   void put_by_kind(const Pack& pack, const std::vector<T>& table, T otherwise, T* by_lane) const {
     std::fill(by_lane, by_lane + kPack, table[0]);
     for (std::size_t lane = 0; table_.is_mixed() && lane < pack.size(); ++lane)

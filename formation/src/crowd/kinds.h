@@ -16,7 +16,7 @@ namespace exactvo::formation::crowd {
 /// What a search for neighbours looks up, of every kind.
 struct ReachTable {
   std::vector<float> none;     ///< squared lattice steps, without the bits of a number: keys from here on do not count
-  std::vector<float> reach;    ///< squared lattice steps, rounded up: who is farther cannot be met within the step
+  std::vector<float> reach;    ///< squared lattice steps, rounded up: beyond it no robot can be met in the step
   std::vector<float> meeting;  ///< squared lattice steps, rounded up: as far as the second level looks (near_pairs.h)
   std::vector<double> window;  ///< lattice steps, how far a search goes at most
   std::vector<std::int32_t> whole_window;  ///< the same, down to a whole number, 2^30 at most

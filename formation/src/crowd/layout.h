@@ -22,11 +22,11 @@ inline constexpr std::int32_t kIndexBits = 0xFF;
 /// A robot's kind rides in the low bits of its tag.
 inline constexpr std::int32_t kKindBits = 0x3FFF;
 inline constexpr int kMostNeighbours = 15, kMostRanks = kMostNeighbours + 1;
-/// Edges and bodies at rest that a robot of a pack has half-planes against; who has more is decided alone.
+/// Edges and bodies at rest that a robot of a pack has half-planes against; a robot with more is decided alone.
 inline constexpr std::size_t kMostEdges = 12;
 /// The same of bodies that move.
 inline constexpr std::size_t kMostMoving = 4;
-/// Arrays of robots end with so many that are nobody's, so that whole registers may be read.
+/// Arrays of robots end with this many entries of no robot, so that whole registers may be read.
 inline constexpr std::size_t kPadding = 64;
 /// Coordinates stay below it, so that differences fit 32 bits.
 inline constexpr std::int32_t kLatticeEnd = 1 << 30;
@@ -73,10 +73,10 @@ struct Ranked {
   alignas(64) float key[kMostRanks][kPack];
 };
 
-/// What the robots of a pack ask of a search, by lane. Lanes that hold nobody want nobody: their `none` is 0.
+/// What the robots of a pack ask of a search, by lane. Lanes without a robot want no neighbour: their `none` is 0.
 struct LaneLimits {
   alignas(64) float none[kPack];           ///< squared lattice steps: keys from here on do not count
-  alignas(64) float reach[kPack];          ///< squared lattice steps: who is nearer can be met within the step
+  alignas(64) float reach[kPack];          ///< squared lattice steps: a nearer robot can be met within the step
   alignas(64) std::int32_t wanted[kPack];  ///< neighbours at most
   alignas(64) std::int32_t window[kPack];  ///< lattice steps: the hint of a robot with fewer neighbours
   alignas(64) std::int32_t kind[kPack];

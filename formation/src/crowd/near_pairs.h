@@ -6,8 +6,8 @@
 /// allowed. Exact: pairs are judged one per SIMD lane, in float with bounds of its rounding, and what
 /// these leave open is judged in whole numbers.
 ///
-/// The search of the first level has listed who is near whom. Where its list may not have all that could be met, the
-/// robots in the window round a robot are looked at one by one.
+/// The search of the first level has listed the robots near each robot. Where its list may not have all that could be
+/// met, the robots in the window round a robot are looked at one by one.
 ///
 /// With the names of pair_row.h, at u = 0 and N = 2^20 D / |D| rounded to whole numbers, both wishes satisfy their rows
 /// if N.D - bar >= max(0, -N.w_a) + max(0, N.w_b). A component of N is off by 1/2, and bar <= R |N| + 4. So, with
@@ -39,8 +39,9 @@ inline constexpr std::int64_t kRoundedContact = 8;
 std::int64_t longest_way(std::int32_t wish_x, std::int32_t wish_y);
 inline constexpr double kLongerWay = 1.125, kWayMargin = 6.0;
 
-/// Who is near each robot of a range, as far as StepsOfKind::reach of its kind: the places of the others less its own.
-/// The first round of the second level leaves of each list of a hindered robot those that could be met, and then 0.
+/// The robots near each robot of a range, as far as StepsOfKind::reach of its kind: the places of the others less its
+/// own. The first round of the second level leaves of each list of a hindered robot those that could be met, and then
+/// 0.
 class NearLists {
  public:
   static constexpr std::uint8_t kUnknown = 255;
@@ -48,7 +49,7 @@ class NearLists {
   std::vector<std::int16_t> away;   ///< robot by robot; readable to kPack beyond each
   std::vector<std::uint8_t> count;  ///< of each robot, or kUnknown: it may have others
 
-  /// For so many robots.
+  /// Empties the lists; from now on they are of `robots` robots.
   void clear(std::size_t robots) {
     if (count.size() < robots) count.resize(robots);
     listed_ = used_ = 0;

@@ -138,7 +138,7 @@ class PackSearch {
       const std::int64_t nth = row - pack.cells.row0;
       const Stretch stretch = nth < Pack::kKeptStretches ? pack.stretches[nth] : robots_.stretch(pack.cells, row);
       if (stretch.from == stretch.to) continue;
-      // A strip that reaches beyond the window: who is farther from the box in y than the pack looks is left out.
+      // A strip that reaches beyond the window: robots farther from the box in y than the pack looks are left out.
       some[count++] = {stretch.from, stretch.to, row == pack.cells.row0 || row == pack.cells.row1};
       if (count < Pack::kKeptStretches) continue;
       add_candidates(columns, rule, some, count, out.others, out.self);
@@ -171,7 +171,7 @@ class PackSearch {
     return false;
   }
 
-  /// Whom the next step will ask how far, and who has more in reach than neighbours.
+  /// The robots that the next step will ask how far, and those with more in reach than neighbours.
   void take_finds(Pack& pack, const PackBuffers& found) const {
     std::int32_t* const hints = robots_.hint.data() + pack.begin;
     if (pack.size() == kPack)

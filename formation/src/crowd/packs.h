@@ -3,7 +3,7 @@
 
 /// \file
 /// The neighbours of robots that stand next to each other in the sorted order, up to sixteen at once: they share the
-/// candidates of one window, which is widened until nobody nearer can be missing.
+/// candidates of one window, which is widened until no nearer robot can be missing.
 
 #include "crowd/kinds.h"
 #include "crowd/layout.h"

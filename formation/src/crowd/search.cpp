@@ -80,7 +80,7 @@ class SortedLists {
 struct KeyMaker {
   W own_x, own_y, nobody;
 
-  /// Of kBatch candidates from k on; of those from `end` on, nobody's.
+  /// Of kBatch candidates from k on; of those from `end` on, no robot's.
   template <bool kSome>
   HWY_INLINE void make(const Candidates& among, std::size_t k, W* key) const {
     const Floats d;
@@ -170,7 +170,7 @@ void add_to_table(const RobotColumns& robots, const CandidateRule& rule, const C
   const Words words;
   for (const CandidateStretch* s = stretches; s != stretches + count; ++s) {
     const std::size_t first = std::max(rule.begin, s->from), last = std::min(rule.end, s->to);
-    if (first < last) {  // what is written beyond is overwritten by later stretches, or nobody's
+    if (first < last) {  // what is written beyond is overwritten by later stretches, or of no robot
       const auto number = static_cast<std::int32_t>(to.count + first - s->from);
       for (std::size_t k = 0; k < last - first; k += hn::Lanes(words))
         hn::StoreU(hn::Iota(words, number + static_cast<std::int32_t>(k)), words, self + (first - rule.begin) + k);

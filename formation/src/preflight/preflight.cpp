@@ -88,7 +88,9 @@ std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes
     warn_of_obstacles(s, in_the_way, t, out);
     return std::nullopt;
   }
-  out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
+  const bool is_proof = !reach.is_open_past_discs(robot.radius, from, to);
+  out.push_back(t.name + (is_proof ? ", cannot be reached: " : ", has no route to it: ") +
+                reach.why_not(robot.radius, from, to, "it"));
   return std::nullopt;
 }
 

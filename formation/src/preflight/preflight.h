@@ -12,8 +12,9 @@ namespace exactvo::formation::detail {
 
 /// Warnings about what a scenario asks for and cannot get, one line each:
 ///   - a goal, or a slot at the leader's end, that lies inside an obstacle or nearer to one than the robot's radius;
-///     that is proven out of reach (reachability.h), from the start or the last goal that is not; or that a moving
-///     obstacle covers where it comes to rest;
+///     that is proven out of reach (reachability.h), from the start or the last goal that is not; that is out of reach
+///     past the polygons round discs, and perhaps not past the discs, said as "has no route to it" and "no proof"; or
+///     that a moving obstacle covers where it comes to rest;
 ///   - two goals or slots too near to each other for both robots; last goals nearer than radii and margin take; a goal
 ///     on the way that another robot at its last goal leaves no room in, if no plan makes it;
 ///   - two robots that must pass each other but provably have no room, or not enough for the gaps that plans keep

@@ -12,6 +12,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/round_polygon.h"
 #include "scene/goals.h"
 
 namespace exactvo::formation::detail {
@@ -74,6 +75,8 @@ double distance_beyond(const Separated& answer, double radius, Vec2 goal) {
   return least;
 }
 
+constexpr double kBeyondReach = 1.0001;  // times the reach, for rounding
+
 }  // namespace
 
 std::string printed_place(Vec2 place) {
@@ -119,15 +122,40 @@ std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, cons
 }
 
 bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destination& to) {
-  constexpr double kRounding = 1.0001;  // of the reach
   if (terrain_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
   const geometry::RoutePlan& of_robot = plan(radius);
   if (!of_robot.is_reachable(from, from) || of_robot.is_reachable(from, to.place)) return false;
-  if (to.reach == 0.0 || at_least(radius, from, to.place) > kRounding * to.reach) return true;
+  if (to.reach == 0.0 || at_least(radius, from, to.place) > kBeyondReach * to.reach) return true;
   // A robot that is free at a place p within reach: from p to the destination nothing comes nearer than its radius
   // less the reach. A robot so much smaller would have a route.
   const double less = std::nextafter(radius - to.reach, 0.0);
   return less > kLeastPlanned && !plan(less).is_reachable(from, to.place);
+}
+
+/// Math: the polygon lies in the disc grown by the excess e. So a disc of radius r that is free beside the discs is
+/// free beside their polygons with the radius r - e. A chain without a disc on it needs no such argument.
+bool Reachability::is_open_past_discs(double radius, Vec2 from, const Destination& to) {
+  const double excess = excess_of_discs();
+  if (excess == 0.0 || !map().covers(from) || !map().covers(to.place)) return false;
+  const std::optional<Separated> separated = shut_off(radius, from, to.place);
+  const auto is_on_disc = [&](const geometry::ChainPoint& p) {
+    return terrain_.obstacles[p.on.obstacle].disc.has_value();
+  };
+  if (separated && std::none_of(separated->chain.begin(), separated->chain.end(), is_on_disc) &&
+      (to.reach == 0.0 || distance_beyond(*separated, radius, to.place) > kBeyondReach * to.reach))
+    return false;
+  const double less = std::nextafter(radius - excess, 0.0);
+  return !(less > kLeastPlanned) || !is_proven_out_of_reach(less, from, to);
+}
+
+/// m: how far corners of the polygons lie beyond the rims at most.
+double Reachability::excess_of_discs() const {
+  double excess = 0.0;
+  for (const SceneObstacle& o : terrain_.obstacles)
+    if (o.disc)
+      excess =
+          std::max(excess, geometry::kRoundExcess * o.disc->radius + 0x1p-45 * (norm(o.disc->center) + o.disc->radius));
+  return excess;
 }
 
 double Reachability::at_least(double radius, Vec2 from, Vec2 goal) {
@@ -177,6 +205,15 @@ const EdgesByPlace& Reachability::edges() {
 }
 
 std::string Reachability::why_not(double radius, Vec2 from, const Destination& to, const std::string& goal) {
+  std::string text = why_not_past_polygons(radius, from, to, goal);
+  if (is_open_past_discs(radius, from, to))
+    text += "; this is no proof, as discs count as the polygons round them, up to " +
+            number_text(excess_of_discs(), 3) + " m wider";
+  return text;
+}
+
+std::string Reachability::why_not_past_polygons(double radius, Vec2 from, const Destination& to,
+                                                const std::string& goal) {
   if (!map().covers(from) || !map().covers(to.place)) return goal + " is too far from all obstacles";
   if (const std::optional<Separated> separated = shut_off(radius, from, to.place))
     return words_of(*separated, radius, goal, to.place);

@@ -4,8 +4,10 @@
 /// \file
 /// Which places robots can reach among the static obstacles of a scene, and why not the others. Exact for a place
 /// (geometry/routes.h). A place counts as reached within a disc about it: that some place in the disc can be reached is
-/// exact too; that none can is proven by `is_proven_out_of_reach`, or left open. Moving obstacles and other robots are
-/// not considered, nor the margins that a method keeps.
+/// exact too; that none can is proven by `is_proven_out_of_reach`, or left open. A disc counts as the polygon round it,
+/// which is wider by up to kRoundExcess of its radius (geometry/round_polygon.h): that a place can be reached holds of
+/// the disc; that none can holds of it unless `is_open_past_discs`. Moving obstacles and other robots are not
+/// considered, nor the margins that a method keeps.
 
 #include <map>
 #include <optional>
@@ -60,8 +62,13 @@ class Reachability {
   /// The destination, or of 64 places within its reach the first that a disc of `radius` can get to.
   std::optional<Vec2> reachable_place(double radius, Vec2 from, const Destination& to);
 
-  /// Whether no place within reach of the destination can be reached: proven, up to a rounding that leaves it open.
+  /// Whether no place within reach of the destination can be reached: proven of the polygons, up to a rounding that
+  /// leaves it open.
   bool is_proven_out_of_reach(double radius, Vec2 from, const Destination& to);
+
+  /// Whether what is out of reach past the polygons round discs may be in reach past the discs: a disc takes part, and
+  /// a robot smaller by what the polygons are wider is not proven to have no route. Certified where false.
+  bool is_open_past_discs(double radius, Vec2 from, const Destination& to);
 
   /// m, >= 0: no place that a disc can reach is nearer to the goal; proven up to rounding. 0 where the disc is not free
   /// at `from`. REQUIRES: the goal cannot be reached; radius no more than the largest of the robots and `most_extra`.
@@ -71,7 +78,8 @@ class Reachability {
   bool is_shut_off(double radius, Vec2 from, Vec2 goal);
 
   /// "obstacles 'a' and 'b' enclose the start, with gaps of at most 0.9 m for a robot 1 m wide"; the goal is called
-  /// `goal`. A goal that leaves the robot no room and is shut off for a smaller one as well is said to be enclosed.
+  /// `goal`. A goal that leaves the robot no room and is shut off for a smaller one as well is said to be enclosed. The
+  /// words say where it is no proof, as the goal `is_open_past_discs`.
   /// REQUIRES: the destination's place itself cannot be reached.
   std::string why_not(double radius, Vec2 from, const Destination& to, const std::string& goal);
 
@@ -83,6 +91,8 @@ class Reachability {
   const std::vector<SceneObstacle>& obstacles() const { return terrain_.obstacles; }
 
  private:
+  double excess_of_discs() const;
+  std::string why_not_past_polygons(double radius, Vec2 from, const Destination& to, const std::string& goal);
   std::optional<geometry::Separated> shut_off(double radius, Vec2 from, Vec2 goal);
   double distance_to_edges(Vec2 place, double most);
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;

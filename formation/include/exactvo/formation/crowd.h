@@ -100,9 +100,9 @@ struct CrowdOptions {
   bool certified = true;     ///< false: offsets are rounded to nearest and nothing is promised; for comparison
   int threads = 1;           ///< 1 ... 1024, oneTBB's; 0: as many as there are
   bool time_phases = false;  ///< fills Crowd::phases
-  /// Who steps the same crowd together with this process (ranks.h): `step` decides for a share of the robots, and all
-  /// ranks have all. Lives as long as the crowd. Null: nobody. What `step` throws, of whatever kind, is followed by
-  /// `Ranks::fail`.
+  /// The processes that step the same crowd together with this one (ranks.h): `step` decides for a share of the robots,
+  /// and all ranks have all. Lives as long as the crowd. Null: none. What `step` throws, of whatever kind, is followed
+  /// by `Ranks::fail`.
   Ranks* ranks = nullptr;
 };
 
@@ -287,7 +287,7 @@ class Crowd {
 
   /// How many robots there are.
   std::size_t size() const;
-  /// Above every id: arrays by id have this length. Entries of ids that name nobody are neither read nor written.
+  /// Above every id: arrays by id have this length. Entries of ids that name no robot are neither read nor written.
   std::size_t id_end() const;
   /// As they were given.
   const CrowdOptions& options() const;
