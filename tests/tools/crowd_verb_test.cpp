@@ -166,6 +166,27 @@ TEST(CrowdVerb, AFolderOfARunWithoutDecisionsHasAllThatOneWithThemHas) {
   EXPECT_FALSE(here.has("out/recording.evr") || here.has("out/explorer.html"));
 }
 
+constexpr const char* kPillar = R"({"name": "pillar", "time_limit": 30, "guidance": "none",
+  "robots": [{"id": "a", "position": [-4, 0.1], "goal": [6, 0]}],
+  "obstacles": [{"id": "wall", "polyline": [[-5, 3], [6, 3]]}, {"id": "pillar", "disc": {"centre": [0, 0], "radius": 0.5}}],
+  "moving_obstacles": [{"id": "cart", "disc": {"centre": [0, -3], "radius": 0.5}, "velocity": [0, 0.1]}]})";
+
+TEST(CrowdVerb, ExplainNamesDiscsAtRestAndMovingObstacles) {
+  const Workplace here;
+  here.write("pillar.json", kPillar);
+  const Outcome explained = here.run("explain pillar.json --decisions none --time 1 --robot a");
+  ASSERT_EQ(explained.status, 0) << explained.err;
+  EXPECT_THAT(explained.out, HasSubstr("of obstacle pillar"));
+  EXPECT_THAT(explained.out, HasSubstr("moving obstacle cart"));
+  std::string alone = kPillar;
+  alone.erase(alone.find(",\n  \"moving_obstacles\""));
+  here.write("alone.json", alone + "}");
+  const Outcome resting = here.run("explain alone.json --decisions none --time 1 --robot a");
+  ASSERT_EQ(resting.status, 0) << resting.err;
+  EXPECT_THAT(resting.out, HasSubstr("of obstacle pillar"));
+  EXPECT_THAT(resting.out, Not(HasSubstr("moving obstacle")));
+}
+
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   const Workplace here;
   here.write("ring.json", kRing);
