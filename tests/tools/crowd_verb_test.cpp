@@ -187,6 +187,23 @@ TEST(CrowdVerb, ExplainNamesDiscsAtRestAndMovingObstacles) {
   EXPECT_THAT(resting.out, Not(HasSubstr("moving obstacle")));
 }
 
+/// The word "double" stands in the command lines of both; the decisions differ in their last bits.
+TEST(CrowdVerb, ExplainTakesThePrecisionFromItsOptionAlone) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const auto half_planes = [&](const std::string& folder, const std::string& precision) {
+    EXPECT_EQ(here.run("simulate ring.json --decisions none --no-figures" + precision + " --out " + folder).status, 0);
+    const Outcome explained = here.run("explain " + folder + " --time 4 --robot G1/7 --json");
+    EXPECT_EQ(explained.status, 0) << explained.err;
+    return json::parse(explained.out)["half_planes"];
+  };
+  const json expected = half_planes("single", "");
+  EXPECT_EQ(half_planes("double-0", ""), expected);
+  EXPECT_EQ(half_planes("double-1", " --precision float"), expected);
+  EXPECT_NE(half_planes("fine-0", " --precision double"), expected);
+  EXPECT_NE(half_planes("fine-1", " --precision=double"), expected);
+}
+
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   const Workplace here;
   here.write("ring.json", kRing);

@@ -206,6 +206,19 @@ Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, Sce
   return {std::move(*found.decision), std::move(found.remarks)};
 }
 
+/// What a command line gives as --precision; empty where it does not.
+std::string precision_in(const nlohmann::json& command) {
+  const std::string option = "--precision";
+  std::string precision, before;
+  for (const auto& item : command) {
+    const std::string word = item.is_string() ? item.get<std::string>() : "";
+    if (before == option) precision = word;
+    if (word.rfind(option + "=", 0) == 0) precision = word.substr(option.size() + 1);
+    before = word;
+  }
+  return precision;
+}
+
 /// What the metrics.json beside a recording without decisions says. Throws DataError (E_FORMAT_UNKNOWN) where there is
 /// none, or the scenario was changed since.
 CrowdMade made_as(const std::filesystem::path& recording) {
@@ -228,8 +241,7 @@ CrowdMade made_as(const std::filesystem::path& recording) {
   parse(metrics.value("guidance", "none"), *made.options.guidance);
   made.liveness = formation::Liveness::off;
   parse(metrics.value("liveness", "off"), *made.liveness);
-  if (metrics.value(command, Json()).dump().find("double") != std::string::npos)
-    made.options.precision = formation::CrowdPrecision::double_lines;
+  parse(precision_in(metrics.value(command, Json())), made.options.precision);
   return made;
 }
 
