@@ -204,6 +204,24 @@ TEST(CrowdVerb, ExplainTakesThePrecisionFromItsOptionAlone) {
   EXPECT_NE(half_planes("fine-1", " --precision=double"), expected);
 }
 
+TEST(CrowdVerb, ExplainRefusesARunWhoseMapWasChanged) {
+  const Workplace here;
+  const auto map_to = [&](int x) {
+    here.write("map.wkt", "POLYGON ((4 4, " + std::to_string(x) + " 4, 6 6, 4 6, 4 4))\n");
+  };
+  map_to(6);
+  here.write("mapped.json", R"({"name": "mapped", "robots": [{"id": "a", "position": [0, 0], "goal": [3, 3]}],
+    "obstacles": [{"file": "map.wkt"}]})");
+  const Outcome run = here.run("simulate mapped.json --decisions none --no-figures --out out");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string explain = "explain out --time 1 --robot a";
+  EXPECT_EQ(here.run(explain).status, 0);
+  map_to(7);
+  const Outcome changed = here.run(explain);
+  EXPECT_NE(changed.status, 0);
+  EXPECT_THAT(changed.err, HasSubstr("or was changed, expected explain SCENARIO"));
+}
+
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   const Workplace here;
   here.write("ring.json", kRing);
