@@ -349,6 +349,16 @@ TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
   EXPECT_EQ(json::parse(here.run("simulate street.json --decisions none --json").out)["stands_still"], true);
 }
 
+/// Its goal on the way is taken, which it passes by resting beside it.
+TEST(CrowdVerb, ARobotThatRestsBesideATakenGoalOnTheWayArrivesAtItsLast) {
+  const Workplace here;
+  here.write("two.json", R"({"name": "two", "time_limit": 60, "horizons": {"least": 0.5}, "robots": [
+      {"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goals": [[0, 0], [0, 5]]}]})");
+  const Outcome run = here.run("simulate two.json --decisions none --fail-unless-arrived --json");
+  EXPECT_EQ(run.status, 0) << run.out;
+  EXPECT_EQ(json::parse(run.out)["outcome"], "all robots arrived");
+}
+
 TEST(CrowdVerb, DrawMakesMapsAndSaysThatARecordingWasCutOff) {
   const Workplace here;
   here.write("ring.json", kRing);
