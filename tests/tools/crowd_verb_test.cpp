@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -426,6 +427,37 @@ TEST(CrowdVerb, AFolderOfAKilledRunIsThatOfAWholeOne) {
   EXPECT_TRUE(here.read("deep/killed/trajectory.csv") == here.read("whole/trajectory.csv"));
   for (const char* left : {"deep/killed.evr", "deep/killed.evr.snapshot", "deep/killed.evr.unfinished"})
     EXPECT_FALSE(here.has(left)) << left;
+}
+
+/// A gnuplot that kills its parent: the run has ended, and its figures are not drawn yet.
+TEST(CrowdVerb, ARunKilledWhileItsFiguresAreDrawnGoesOn) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const std::string options = "simulate ring.json --decisions none";
+  ASSERT_EQ(here.run(options + " --no-figures --out whole").status, 0);
+  std::filesystem::create_directory(here.path() / "bin");
+  here.write("bin/gnuplot", "#!/bin/sh\nkill -KILL $PPID\n");
+  std::filesystem::permissions(here.path() / "bin/gnuplot", std::filesystem::perms::owner_all);
+  const std::string run = options + " --snapshot-every 5 --resume --out out";
+  EXPECT_NE(here.run(run, "PATH=\"$PWD/bin:$PATH\"").status, 0);
+  EXPECT_FALSE(here.has("out/metrics.json"));
+  EXPECT_TRUE(here.has("out.evr.snapshot"));
+  const Outcome resumed = here.run(run + " --no-figures");
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("goes on from"));
+  EXPECT_TRUE(here.read("out/recording.evr") == here.read("whole/recording.evr"));
+  for (const char* left : {"out.evr", "out.evr.snapshot", "out.evr.unfinished"}) EXPECT_FALSE(here.has(left)) << left;
+}
+
+TEST(CrowdVerb, AFileInThePlaceOfTheRecordingOfAFolderStays) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  here.write("out.evr", "other bytes");
+  const Outcome run = here.run("simulate ring.json --decisions none --no-figures --snapshot-every 5 --force --out out");
+  EXPECT_EQ(run.status, 2) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("out.evr: found a file, expected none"));
+  EXPECT_EQ(here.read("out.evr"), "other bytes");
+  EXPECT_FALSE(here.has("out"));
 }
 
 TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {
