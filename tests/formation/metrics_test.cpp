@@ -68,6 +68,16 @@ TEST(Metrics, WhoSkipsAGoalOnTheWayHasNotArrived) {
   EXPECT_EQ(m.last_arrival_time.value(), 2.0);
 }
 
+/// It passed the first goal beside a robot that rests there, as rows do not show.
+TEST(Metrics, ARobotThatComesToItsLastGoalHasArrivedWhateverItPassed) {
+  Scenario s = scene_of({{2.0, 0.0}});
+  s.robots[0].goals = {{10.0, 0.0}, {2.0, 0.0}};
+  const Metrics m = measure(s, recording_of({{at({0, 0})}, {at({8, 0})}, {at({2, 0})}, {at({2, 0})}}));
+  EXPECT_TRUE(m.all_arrived);
+  EXPECT_EQ(m.last_arrival_time.value(), 2.0);
+  EXPECT_FALSE(measure(s, recording_of({{at({0, 0})}, {at({2, 0})}, {at({8, 0})}})).all_arrived);
+}
+
 TEST(Metrics, WhoEndsElsewhereHasNotArrived) {
   const Metrics m = measure(scene_of({{2.0, 0.0}}), recording_of({{at({2, 0})}, {at({5, 0})}}));
   EXPECT_FALSE(m.all_arrived);

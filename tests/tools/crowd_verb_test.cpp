@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -166,6 +167,62 @@ TEST(CrowdVerb, AFolderOfARunWithoutDecisionsHasAllThatOneWithThemHas) {
   EXPECT_FALSE(here.has("out/recording.evr") || here.has("out/explorer.html"));
 }
 
+constexpr const char* kPillar = R"({"name": "pillar", "time_limit": 30, "guidance": "none",
+  "robots": [{"id": "a", "position": [-4, 0.1], "goal": [6, 0]}],
+  "obstacles": [{"id": "wall", "polyline": [[-5, 3], [6, 3]]}, {"id": "pillar", "disc": {"centre": [0, 0], "radius": 0.5}}],
+  "moving_obstacles": [{"id": "cart", "disc": {"centre": [0, -3], "radius": 0.5}, "velocity": [0, 0.1]}]})";
+
+TEST(CrowdVerb, ExplainNamesDiscsAtRestAndMovingObstacles) {
+  const Workplace here;
+  here.write("pillar.json", kPillar);
+  const Outcome explained = here.run("explain pillar.json --decisions none --time 1 --robot a");
+  ASSERT_EQ(explained.status, 0) << explained.err;
+  EXPECT_THAT(explained.out, HasSubstr("of obstacle pillar"));
+  EXPECT_THAT(explained.out, HasSubstr("moving obstacle cart"));
+  std::string alone = kPillar;
+  alone.erase(alone.find(",\n  \"moving_obstacles\""));
+  here.write("alone.json", alone + "}");
+  const Outcome resting = here.run("explain alone.json --decisions none --time 1 --robot a");
+  ASSERT_EQ(resting.status, 0) << resting.err;
+  EXPECT_THAT(resting.out, HasSubstr("of obstacle pillar"));
+  EXPECT_THAT(resting.out, Not(HasSubstr("moving obstacle")));
+}
+
+/// The word "double" stands in the command lines of both; the decisions differ in their last bits.
+TEST(CrowdVerb, ExplainTakesThePrecisionFromItsOptionAlone) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const auto half_planes = [&](const std::string& folder, const std::string& precision) {
+    EXPECT_EQ(here.run("simulate ring.json --decisions none --no-figures" + precision + " --out " + folder).status, 0);
+    const Outcome explained = here.run("explain " + folder + " --time 4 --robot G1/7 --json");
+    EXPECT_EQ(explained.status, 0) << explained.err;
+    return json::parse(explained.out)["half_planes"];
+  };
+  const json expected = half_planes("single", "");
+  EXPECT_EQ(half_planes("double-0", ""), expected);
+  EXPECT_EQ(half_planes("double-1", " --precision float"), expected);
+  EXPECT_NE(half_planes("fine-0", " --precision double"), expected);
+  EXPECT_NE(half_planes("fine-1", " --precision=double"), expected);
+}
+
+TEST(CrowdVerb, ExplainRefusesARunWhoseMapWasChanged) {
+  const Workplace here;
+  const auto map_to = [&](int x) {
+    here.write("map.wkt", "POLYGON ((4 4, " + std::to_string(x) + " 4, 6 6, 4 6, 4 4))\n");
+  };
+  map_to(6);
+  here.write("mapped.json", R"({"name": "mapped", "robots": [{"id": "a", "position": [0, 0], "goal": [3, 3]}],
+    "obstacles": [{"file": "map.wkt"}]})");
+  const Outcome run = here.run("simulate mapped.json --decisions none --no-figures --out out");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string explain = "explain out --time 1 --robot a";
+  EXPECT_EQ(here.run(explain).status, 0);
+  map_to(7);
+  const Outcome changed = here.run(explain);
+  EXPECT_NE(changed.status, 0);
+  EXPECT_THAT(changed.err, HasSubstr("or was changed, expected explain SCENARIO"));
+}
+
 TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   const Workplace here;
   here.write("ring.json", kRing);
@@ -293,6 +350,16 @@ TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
   EXPECT_EQ(json::parse(here.run("simulate street.json --decisions none --json").out)["stands_still"], true);
 }
 
+/// Its goal on the way is taken, which it passes by resting beside it.
+TEST(CrowdVerb, ARobotThatRestsBesideATakenGoalOnTheWayArrivesAtItsLast) {
+  const Workplace here;
+  here.write("two.json", R"({"name": "two", "time_limit": 60, "horizons": {"least": 0.5}, "robots": [
+      {"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goals": [[0, 0], [0, 5]]}]})");
+  const Outcome run = here.run("simulate two.json --decisions none --fail-unless-arrived --json");
+  EXPECT_EQ(run.status, 0) << run.out;
+  EXPECT_EQ(json::parse(run.out)["outcome"], "all robots arrived");
+}
+
 TEST(CrowdVerb, DrawMakesMapsAndSaysThatARecordingWasCutOff) {
   const Workplace here;
   here.write("ring.json", kRing);
@@ -360,6 +427,37 @@ TEST(CrowdVerb, AFolderOfAKilledRunIsThatOfAWholeOne) {
   EXPECT_TRUE(here.read("deep/killed/trajectory.csv") == here.read("whole/trajectory.csv"));
   for (const char* left : {"deep/killed.evr", "deep/killed.evr.snapshot", "deep/killed.evr.unfinished"})
     EXPECT_FALSE(here.has(left)) << left;
+}
+
+/// A gnuplot that kills its parent: the run has ended, and its figures are not drawn yet.
+TEST(CrowdVerb, ARunKilledWhileItsFiguresAreDrawnGoesOn) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const std::string options = "simulate ring.json --decisions none";
+  ASSERT_EQ(here.run(options + " --no-figures --out whole").status, 0);
+  std::filesystem::create_directory(here.path() / "bin");
+  here.write("bin/gnuplot", "#!/bin/sh\nkill -KILL $PPID\n");
+  std::filesystem::permissions(here.path() / "bin/gnuplot", std::filesystem::perms::owner_all);
+  const std::string run = options + " --snapshot-every 5 --resume --out out";
+  EXPECT_NE(here.run(run, "PATH=\"$PWD/bin:$PATH\"").status, 0);
+  EXPECT_FALSE(here.has("out/metrics.json"));
+  EXPECT_TRUE(here.has("out.evr.snapshot"));
+  const Outcome resumed = here.run(run + " --no-figures");
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("goes on from"));
+  EXPECT_TRUE(here.read("out/recording.evr") == here.read("whole/recording.evr"));
+  for (const char* left : {"out.evr", "out.evr.snapshot", "out.evr.unfinished"}) EXPECT_FALSE(here.has(left)) << left;
+}
+
+TEST(CrowdVerb, AFileInThePlaceOfTheRecordingOfAFolderStays) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  here.write("out.evr", "other bytes");
+  const Outcome run = here.run("simulate ring.json --decisions none --no-figures --snapshot-every 5 --force --out out");
+  EXPECT_EQ(run.status, 2) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("out.evr: found a file, expected none"));
+  EXPECT_EQ(here.read("out.evr"), "other bytes");
+  EXPECT_FALSE(here.has("out"));
 }
 
 TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {

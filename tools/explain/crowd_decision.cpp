@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "support/terminal.h"
@@ -22,7 +23,7 @@ namespace {
 constexpr double kOnLatticeLine = 1e-4;
 
 /// The obstacle that has these ends among its corners, if one has.
-std::vector<std::size_t> owner_of(const geometry::Segment& edge, const Scenario& scenario) {
+std::vector<std::size_t> obstacle_of(const geometry::Segment& edge, const Scenario& scenario) {
   for (std::size_t o = 0; o < scenario.obstacles.size(); ++o) {
     const std::vector<Vec2> corners = geometry::vertices_of(scenario.obstacles[o].shape);
     const auto has = [&](Vec2 p) { return std::find(corners.begin(), corners.end(), p) != corners.end(); };
@@ -63,11 +64,10 @@ class AtStep : public formation::CrowdSink {
       add(d, step, n.half_plane, ConstraintSource::robot, n.robot, geometry::Disc{{}, 0.0}, {n.robot}, n.touching);
     for (const CrowdExplanation::Edge& edge : e.edges)
       add(d, step, edge.half_plane, ConstraintSource::obstacle_edge, step.constraints.size(), edge.edge,
-          owner_of(edge.edge, scenario_), edge.touching);
+          obstacle_of(edge.edge, scenario_), edge.touching);
     for (const CrowdExplanation::Body& body : e.bodies) {
-      const std::size_t moving = moving_number(crowd, body.body);
-      add(d, step, body.half_plane, ConstraintSource::moving_obstacle, moving, geometry::Disc{{}, 0.0}, {moving},
-          body.touching);
+      const Owner owner = owner_of(crowd, body.body);
+      add(d, step, body.half_plane, owner.source, owner.number, owner.shape, {owner.number}, body.touching);
     }
     step.status = e.kept || step.constraints.empty() ? lp::Status::optimal : lp::Status::relaxed;
     for (const formation::DecisionConstraint& c : step.constraints) {
@@ -94,14 +94,23 @@ class AtStep : public formation::CrowdSink {
     return row;
   }
 
-  /// Of those that move, in the order of the scenario.
-  static std::size_t moving_number(const Crowd& crowd, formation::ObstacleId id) {
-    std::size_t number = 0;
+  /// What a body of the crowd is in the scenario.
+  struct Owner {
+    ConstraintSource source;
+    std::size_t number;  ///< of the obstacle, or of the moving obstacle
+    geometry::ConvexShape shape;
+  };
+
+  /// Of bodies that move, and of discs at rest, each in the order of the scenario.
+  Owner owner_of(const Crowd& crowd, formation::ObstacleId id) const {
+    std::size_t moving = 0, obstacle = 0;
     for (const formation::CrowdBodyState& body : crowd.bodies()) {
-      if (body.id == id) break;
-      number += body.moves;
+      while (!body.moves && !scenario_.obstacles.at(obstacle).disc) ++obstacle;  // it has edges instead
+      if (body.id == id && body.moves) return {ConstraintSource::moving_obstacle, moving, geometry::Disc{{}, 0.0}};
+      if (body.id == id) return {ConstraintSource::enclosure, obstacle, body.shape};
+      ++(body.moves ? moving : obstacle);
     }
-    return number;
+    throw std::logic_error("a half-plane against no body of the crowd");
   }
 
   void add(Decision& d, RobotStep& step, const geometry::HalfPlane& half_plane, ConstraintSource source,

@@ -155,7 +155,7 @@ Metrics CrowdEvaluator::finish(const CrowdRunReport& report, std::vector<std::st
     const detail::RobotCourse& course = parts_->robots[i];
     RobotMetrics& robot = m.robots.emplace_back();
     robot.id = scenario.robots[i].id;
-    robot.arrival_time = course.settled.since();
+    robot.arrival_time = course.arrival();
     robot.arrived = robot.arrival_time.has_value();
     course.write_to(robot, m);
     if (robot.arrived) robot.detour = std::max(0.0, robot.path_length - detail::way_to_goals(scenario.robots[i]));

@@ -136,7 +136,7 @@ void MetricsAccumulator::write_formation(Metrics& m) const {
 void MetricsAccumulator::write_arrivals(Metrics& m) const {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     RobotMetrics& out = m.robots[i];
-    out.arrival_time = robots_[i].settled.since();
+    out.arrival_time = robots_[i].arrival();
     if (m.leader_arrival_time && out.arrival_time)
       out.arrival_time = std::max(*out.arrival_time, *m.leader_arrival_time);
     out.arrived = out.arrival_time.has_value() && (!scenario_.formation || m.leader_arrival_time.has_value());

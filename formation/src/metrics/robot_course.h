@@ -41,7 +41,8 @@ struct RobotCourse {
   std::optional<Vec2> acceleration;
   double path_length = 0.0;
   std::size_t goal = 0;  ///< which it heads for
-  SettledSince settled;
+  SettledSince settled;  ///< at its last goal, with all goals on the way passed, or in its slot
+  SettledSince at_last;  ///< at its last goal, whatever was passed
   double jitter = 0.0, velocity_variation = 0.0, peak_acceleration = 0.0;
   double last_turn = 0.0;
   std::size_t reversals = 0;
@@ -62,13 +63,18 @@ struct RobotCourse {
 
   /// A robot with goals passes at most one goal on the way a row, within the tolerance or its radius.
   void arrive(const Robot& spec, double tolerance, double time, Vec2 place) {
-    double error = std::numeric_limits<double>::infinity();
-    if (goal + 1 < spec.goals.size()) {
-      if (norm(place - spec.goals[goal]) <= std::max(tolerance, spec.radius)) ++goal;
-    } else {
-      error = norm(place - spec.goals.back());
-    }
-    settled.add(time, error, tolerance);
+    const double error = norm(place - spec.goals.back());
+    const bool is_on_the_way = goal + 1 < spec.goals.size();
+    if (is_on_the_way && norm(place - spec.goals[goal]) <= std::max(tolerance, spec.radius)) ++goal;
+    settled.add(time, is_on_the_way ? std::numeric_limits<double>::infinity() : error, tolerance);
+    at_last.add(time, error, tolerance);
+  }
+
+  /// A robot that came to its last goal and is there at the end has arrived: rows do not show that it passed a taken
+  /// goal by resting beside it. Goals on the way matter only for when, but a robot that never left has not passed them.
+  std::optional<double> arrival() const {
+    if (settled.since()) return settled.since();
+    return at_last.since() > 0.0 ? at_last.since() : std::nullopt;
   }
 
   /// Its path, and what it adds to the run's.
@@ -83,8 +89,8 @@ struct RobotCourse {
   /// For snapshots: the same list of fields both ways.
   template <class Stream>
   void fields(Stream& stream) {
-    stream.fields(position, velocity, acceleration, path_length, goal, settled.since_, jitter, velocity_variation,
-                  peak_acceleration, last_turn, reversals);
+    stream.fields(position, velocity, acceleration, path_length, goal, settled.since_, at_last.since_, jitter,
+                  velocity_variation, peak_acceleration, last_turn, reversals);
   }
 
  private:

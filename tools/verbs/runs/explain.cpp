@@ -206,30 +206,51 @@ Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, Sce
   return {std::move(*found.decision), std::move(found.remarks)};
 }
 
+/// What a command line gives as --precision; empty where it does not.
+std::string precision_in(const nlohmann::json& command) {
+  const std::string option = "--precision";
+  std::string precision, before;
+  for (const auto& item : command) {
+    const std::string word = item.is_string() ? item.get<std::string>() : "";
+    if (before == option) precision = word;
+    if (word.rfind(option + "=", 0) == 0) precision = word.substr(option.size() + 1);
+    before = word;
+  }
+  return precision;
+}
+
+/// Whether every file that a run has read, its scenario and maps for instance, is where it was, with the same bytes.
+bool are_unchanged(const nlohmann::json& inputs) {
+  return std::all_of(inputs.begin(), inputs.end(), [](const nlohmann::json& input) {
+    std::error_code unknown;
+    const std::string path = input.value("path", "");
+    return std::filesystem::is_regular_file(path, unknown) &&
+           datasets::sha256_of_file(path) == input.value("sha256", "");
+  });
+}
+
 /// What the metrics.json beside a recording without decisions says. Throws DataError (E_FORMAT_UNKNOWN) where there is
-/// none, or the scenario was changed since.
+/// none, or an input was changed since.
 CrowdMade made_as(const std::filesystem::path& recording) {
   using Json = nlohmann::json;
   std::ifstream file(recording.parent_path() / "metrics.json");
   const Json metrics = Json::parse(file, nullptr, false);
-  const Json::json_pointer first("/provenance/inputs/0"), command("/provenance/command_line");
-  std::error_code unknown;
+  const Json::json_pointer inputs("/provenance/inputs"), first("/provenance/inputs/0");
+  const Json::json_pointer command("/provenance/command_line");
   CrowdMade made;
   if (recording.filename() == "recording.evr" && metrics.is_object() && metrics.contains(first))
     made.scenario = metrics[first].value("path", "");
-  if (!std::filesystem::is_regular_file(made.scenario, unknown) ||
-      datasets::sha256_of_file(made.scenario) != metrics[first].value("sha256", ""))
+  if (made.scenario.empty() || !are_unchanged(metrics[inputs]))
     throw datasets::DataError(datasets::DataCode::format_unknown, recording.string(), "",
-                              "the recording of a crowd (.evr), without decisions, and its scenario is not where "
-                              "metrics.json says, or was changed",
+                              "the recording of a crowd (.evr), without decisions, and its scenario or a map is not "
+                              "where metrics.json says, or was changed",
                               "explain SCENARIO, which computes the decision again, or a run with --decisions binding; "
                               "audit, convert, draw and view read recordings of crowds");
   made.options.guidance = formation::Guidance::none;
   parse(metrics.value("guidance", "none"), *made.options.guidance);
   made.liveness = formation::Liveness::off;
   parse(metrics.value("liveness", "off"), *made.liveness);
-  if (metrics.value(command, Json()).dump().find("double") != std::string::npos)
-    made.options.precision = formation::CrowdPrecision::double_lines;
+  parse(precision_in(metrics.value(command, Json())), made.options.precision);
   return made;
 }
 

@@ -104,10 +104,13 @@ void write_page(const FinishedRun& run, const std::string& packed, const std::fi
   write_text(folder / kPageName, explorer_page({{page_key(title), title, "", packed}}));
 }
 
-/// Printed before it is published: where stdout takes no more, nothing is written at all.
-void publish(const SimulateFlags& flags, const FinishedRun& finished, StagedFolder& folder) {
+/// Printed before it is published: where stdout takes no more, nothing is written at all. `beside`: the recording,
+/// where it is not in the folder yet.
+void publish(const SimulateFlags& flags, const FinishedRun& finished, StagedFolder& folder,
+             const std::filesystem::path& beside = {}) {
   if (interrupted()) throw Interrupted();
   print(results(flags, finished));
+  if (!beside.empty()) std::filesystem::rename(beside, folder.path() / "recording.evr");
   const std::optional<datasets::RunInfo> replaced = run_in(flags.out);
   if (flags.no_figures) remove_figures(flags.out);
   remove_other_recordings(flags.out, folder.path());
@@ -171,7 +174,8 @@ FinishedRun simulate_decisions(const SimulateFlags& flags, const datasets::Loade
 
 // --- Without ---
 
-/// Into the folder, whose recording stands beside it meanwhile where a run must be able to go on.
+/// Into the folder. Where a run must be able to go on, its recording and its snapshot stand beside the folder until all
+/// else is made.
 std::optional<FinishedRun> crowd_into_folder(const SimulateFlags& flags, CrowdTask task) {
   const bool is_first = !task.ranks || task.ranks->rank() == 0, has_snapshots = flags.crowd.snapshot_every > 0;
   std::optional<StagedFolder> folder;
@@ -179,14 +183,12 @@ std::optional<FinishedRun> crowd_into_folder(const SimulateFlags& flags, CrowdTa
   std::filesystem::path beside(flags.out);
   if (!beside.has_filename()) beside = beside.parent_path();
   beside += ".evr";
-  if (has_snapshots || !is_first)
-    task.record = beside;
-  else
-    task.record = folder->path() / "recording.evr";
+  task.record = has_snapshots || !is_first ? beside : folder->path() / "recording.evr";
+  task.keeps_snapshot = has_snapshots;
+  if (has_snapshots && is_first) take_up(beside);
   std::optional<FinishedRun> finished = run_on_crowd(task);
   if (!finished) return std::nullopt;
-  const std::filesystem::path recording = folder->path() / "recording.evr";
-  if (has_snapshots) std::filesystem::rename(task.record, recording);
+  const std::filesystem::path& recording = task.record;
   const std::string metrics = finished->metrics_json();
   write_text(folder->path() / "metrics.json", metrics);
   write_crowd_table(*finished, recording, folder->path());
@@ -195,7 +197,8 @@ std::optional<FinishedRun> crowd_into_folder(const SimulateFlags& flags, CrowdTa
     draw_crowd_figures(recording, folder->path() / "figures");
     write_page(*finished, packed_crowd(recording, {}, metrics).packed, folder->path());
   }
-  publish(flags, *finished, *folder);
+  publish(flags, *finished, *folder, has_snapshots ? recording : std::filesystem::path());
+  if (has_snapshots) remove_snapshot(recording);
   return finished;
 }
 

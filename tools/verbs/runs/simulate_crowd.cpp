@@ -40,12 +40,16 @@ datasets::DataError refusal(const std::string& file, const formation::CrowdError
 
 // --- Snapshots ---
 
+std::string snapshot_name(const std::string& record) {
+  return record + ".snapshot";
+}
+
 /// Beside the recording: what run it is of, and the snapshot.
 class SnapshotFile {
  public:
   /// `identity`: of the inputs and of all options that the result depends on.
   SnapshotFile(const std::string& record, std::string identity)
-      : record_(record), path_(record + ".snapshot"), identity_(std::move(identity)) {}
+      : record_(record), path_(snapshot_name(record)), identity_(std::move(identity)) {}
 
   void keep(const std::string& snapshot) const { datasets::write_file_atomically(path_, identity_ + "\n" + snapshot); }
 
@@ -60,11 +64,6 @@ class SnapshotFile {
                                 "one of this scenario, these options and this version; without --resume the run "
                                 "begins anew");
     return text.substr(end + 1);
-  }
-
-  void remove() const {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
   }
 
   const std::string& path() const { return path_; }
@@ -157,6 +156,21 @@ void refuse_crowd_flags(const CrowdFlags& flags) {
     if (option->count() > 0) throw lacking(option->get_name(), "--decisions none", reason(option->get_name()));
 }
 
+void take_up(const std::filesystem::path& record) {
+  if (!std::filesystem::exists(record)) return;
+  const std::filesystem::path unfinished = datasets::unfinished_name(record);
+  if (!std::filesystem::exists(snapshot_name(record.string())) || std::filesystem::exists(unfinished))
+    throw datasets::DataError(datasets::DataCode::file_unwritable, record.string(), "", "a file",
+                              "none, since the recording stands there until the folder is whole: move it, or give "
+                              "--out another name");
+  std::filesystem::rename(record, unfinished);
+}
+
+void remove_snapshot(const std::filesystem::path& record) {
+  std::error_code ignored;
+  std::filesystem::remove(snapshot_name(record.string()), ignored);
+}
+
 datasets::RunInfo crowd_info(const CrowdTask& task) {
   return datasets::crowd_run_info(task.read.scenario, options_of(task),
                                   datasets::make_provenance(command_line(), task.simulation.seed, task.read.files));
@@ -197,7 +211,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
   if (!task.record.empty() && is_first)
     recorder.emplace(task.record, scenario, flags.every,
                      has_snapshots ? datasets::Unfinished::stays : datasets::Unfinished::goes);
-  if (has_snapshots && is_first && options.resume_from.empty()) snapshot.remove();
+  if (has_snapshots && is_first && options.resume_from.empty()) remove_snapshot(task.record);
   formation::CrowdEvaluator evaluator(scenario, recorder ? &*recorder : nullptr);
   formation::CrowdRunReport report;
   try {
@@ -216,7 +230,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
   if (is_interrupted) throw Interrupted();
   if (!is_first) return std::nullopt;
   if (recorder) recorder->finish();
-  if (has_snapshots) snapshot.remove();
+  if (has_snapshots && !task.keeps_snapshot) remove_snapshot(task.record);
   finished.metrics = evaluator.finish(report, std::move(warnings));
   return finished;
 }

@@ -40,10 +40,18 @@ struct CrowdTask {
   const datasets::LoadedScenario& read;  ///< with the liveness of the command line
   std::filesystem::path record = {};     ///< FILE.evr; empty: none. Snapshots stand beside it
   formation::Ranks* ranks = nullptr;     ///< that run it together with this process
+  bool keeps_snapshot = false;  ///< after the run, until `remove_snapshot`: what follows may be interrupted too
 };
 
 /// Runs it. Nothing in ranks other than the first. Throws DataError, UsageError, Interrupted.
 std::optional<FinishedRun> run_on_crowd(const CrowdTask& task);
+
+/// For a run that keeps a snapshot beside `record`: a recording there that an interrupted run has left with its
+/// snapshot becomes an unfinished one, to go on with. Throws DataError (E_FILE_UNWRITABLE) where another file stands
+/// there.
+void take_up(const std::filesystem::path& record);
+/// The snapshot beside a recording, if there is one.
+void remove_snapshot(const std::filesystem::path& record);
 
 /// What was run, before it is.
 datasets::RunInfo crowd_info(const CrowdTask& task);
