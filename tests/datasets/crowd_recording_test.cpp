@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "exactvo/formation/speed_profile.h"
 #include "refusal.h"
 #include "temporary_folder.h"
@@ -442,6 +443,35 @@ TEST_F(CrowdRecordings, RobotsKeepTheirIds) {
   write_crowd_csv(folder_ / "c.evr", table);
   table.commit();
   EXPECT_NE(content_of(folder_ / "c.csv").find(",\"R, \"\"1\"\"\"\n"), std::string::npos);
+}
+
+TEST_F(CrowdRecordings, AnIdOfTwoRobotsIsRefused) {
+  Scenario scenario = crossing();
+  scenario.robots[70].id = "G2/61";
+  record(scenario, 40);
+  std::string whole = content_of(folder_ / "c.evr");
+  EXPECT_GT(rows_of(folder_ / "c.evr").first, 0u);
+  // The same with the id of another robot in its place, and a checksum that fits.
+  const std::size_t size = number_at(whole, 8);
+  std::string head = whole.substr(24, size);
+  const std::size_t at = head.rfind("61");
+  ASSERT_NE(at, std::string::npos);
+  head.replace(at, 2, "60");
+  const std::string changed =
+      whole.substr(0, 8) + in_bytes(size) + in_bytes(fnv1a(head)) + head + whole.substr(24 + size);
+  const DataError refusal = refusal_of([&] { rows_of(put("twice.evr", changed)); });
+  EXPECT_EQ(refusal.code(), DataCode::format_syntax);
+  EXPECT_NE(std::string(refusal.what()).find("an id that another robot has"), std::string::npos) << refusal.what();
+  TrajectoryReader reader((folder_ / "twice.evr").string());
+  EXPECT_EQ(refusal_of([&] { reader.read([](const TrajectoryRow&) {}); }).code(), DataCode::format_syntax);
+}
+
+TEST_F(CrowdRecordings, RobotsOfOneIdAreRecordedWithoutIds) {
+  Scenario scenario = crossing();
+  scenario.robots[70].id = scenario.robots[3].id;
+  record(scenario, 40);
+  EXPECT_EQ(content_of(folder_ / "c.evr").substr(0, 8), "EXACTVR2");
+  EXPECT_EQ(CrowdRecordingReader(folder_ / "c.evr").head().name_of(70), "#71");
 }
 
 TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {

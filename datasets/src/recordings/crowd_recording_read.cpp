@@ -8,7 +8,9 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <string_view>
 #include <system_error>
+#include <unordered_set>
 #include <vector>
 
 #include "exactvo/geometry/shape_numbers.h"
@@ -113,6 +115,7 @@ namespace {
 void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
   constexpr std::int64_t kLongest = 1 << 16;
   std::string id;
+  std::unordered_set<std::string_view> seen;  // of ids, whose texts stay where they are: memory is reserved
   head.ids.reserve(head.kind_of.size());
   while (head.ids.size() < head.kind_of.size()) {
     const std::int64_t shared = in.difference(), rest = in.difference();
@@ -121,6 +124,7 @@ void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
     id = id.substr(0, static_cast<std::size_t>(shared)) + in.text(static_cast<std::size_t>(rest));
     in.require(id.size() <= kLongest, "an id of more than 2^16 bytes");
     head.ids.push_back(id);
+    in.require(seen.insert(head.ids.back()).second, "an id that another robot has");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <ostream>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "exactvo/geometry/require.h"
@@ -23,7 +24,9 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
   }
   std::string_view before;
+  std::unordered_set<std::string_view> seen;
   for (const formation::Robot& robot : scenario.robots) {
+    ids_differ_ = seen.insert(robot.id).second && ids_differ_;
     append_id(ids_, robot.id, before);
     before = robot.id;
   }
@@ -59,7 +62,7 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   row_.y.assign(robots, 0);
   last_.x = last_.y = row_.x;
   row_.kept.assign(robots, 1);
-  const bool has_ids = robots == robots_;  // else the crowd is another one than the scenario's
+  const bool has_ids = robots == robots_ && ids_differ_;  // of another number the crowd is not the scenario's
   const std::string head = to_bytes(head_, has_ids ? ids_ : std::string());
   std::string out(kCrowdMarks[has_ids ? 2 : 1]);
   append(out, static_cast<std::uint64_t>(head.size()));

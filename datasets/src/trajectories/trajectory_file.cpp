@@ -112,6 +112,7 @@ std::size_t TrajectorySink::agent(std::string_view id) {
 }
 
 void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line, double heading) {
+  EXACTVO_REQUIRE(agent < last_.size(), std::to_string(agent) + " of " + std::to_string(last_.size()));
   const geometry::Vec2 metres = options_.scale * at;
   if (!std::isfinite(time)) refuse(DataCode::not_finite, line, number_text(time), "a finite time");
   if (!is_finite(metres))

@@ -24,7 +24,7 @@ class TrajectorySink {
   TrajectoryFile& file() { return file_; }
   /// The number of an agent, made when it first comes up.
   std::size_t agent(std::string_view id);
-  /// `at` in the file's unit of length; `time` in s.
+  /// `at` in the file's unit of length; `time` in s. REQUIRES: a number of `agent`.
   void row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line,
            double heading = std::numeric_limits<double>::quiet_NaN());
   /// s, of a frame. Notes once where no frame rate is known. `of_file`: frames a second as the file says, 0 if not.

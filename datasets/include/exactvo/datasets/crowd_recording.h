@@ -69,8 +69,8 @@ struct CrowdRow {
 /// (formation/crowd_run.h) goes on writing behind the rows that the snapshot knows of: the file is the same.
 class CrowdRecorder : public formation::CrowdSink {
  public:
-  /// The robots of the crowd have the ids of the scenario's, if there are as many. Throws DataError
-  /// (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
+  /// The robots of the crowd have the ids of the scenario's, if there are as many and no two are the same; else none.
+  /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
   CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every,
                 Unfinished unfinished = Unfinished::goes);
   void begin(const formation::Crowd& crowd) override;
@@ -95,6 +95,7 @@ class CrowdRecorder : public formation::CrowdSink {
   CrowdRecordingHead head_;  ///< without ids
   std::size_t robots_ = 0;   ///< of the scenario
   std::string ids_;          ///< as they stand in the file
+  bool ids_differ_ = true;   ///< all of them
   CrowdRow row_, last_;      ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
   std::vector<geometry::Vec2> body_start_;
