@@ -158,19 +158,30 @@ class TagAttributes {
 
 // --- Obstacles of crowds ---
 
+/// The obstacle that a body is; none of ellipses, and of discs that are nearly points far away.
+std::optional<formation::SceneObstacle> obstacle_of(const geometry::ConvexShape& body, std::string id) {
+  if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body))
+    return formation::SceneObstacle{std::move(id), geometry::Polygon{polygon->vertices, {}}};
+  if (const auto* segment = std::get_if<geometry::Segment>(&body))
+    return formation::SceneObstacle{std::move(id), geometry::Polyline{{segment->a, segment->b}}};
+  const auto* disc = std::get_if<geometry::Disc>(&body);
+  if (disc == nullptr) return std::nullopt;
+  try {
+    return formation::disc_obstacle(std::move(id), *disc);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 void add_bodies(const std::vector<CrowdBodyRecord>& bodies, TrajectoryFile& file) {
   std::size_t left_out = 0;
   for (const CrowdBodyRecord& body : bodies) {
-    const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
-    if (polygon == nullptr || body.moves) {
-      ++left_out;
-      continue;
-    }
-    file.obstacles.push_back(
-        {"body " + std::to_string(file.obstacles.size() + 1), geometry::Polygon{polygon->vertices, {}}});
+    std::optional<formation::SceneObstacle> obstacle;
+    if (!body.moves) obstacle = obstacle_of(body.shape, "body " + std::to_string(file.obstacles.size() + 1));
+    obstacle ? file.obstacles.push_back(std::move(*obstacle)) : static_cast<void>(++left_out);
   }
   if (left_out > 0)
-    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are round were left out of the map");
+    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are ellipses were left out of the map");
 }
 
 }  // namespace
