@@ -246,6 +246,87 @@ TEST(MotionCheck, ObstaclesThatComeNearAreListed) {
   EXPECT_GE(judged, 100u);
 }
 
+TEST(MotionCheck, EdgesWhoseLengthUnderflowsAreLookedAt) {
+  // The square of the edge's length is 1.44 * 2^-1074, which no double holds.
+  const std::vector<Obstacle> map{Polyline{{{0, 0}, {1.2 * 0x1p-537, 0}}}};
+  std::size_t overlaps = 0;
+  const Trajectory resting{{{0, {0.9, 0}}, {1, {0.9, 0}}}, geometry::disc_body(1.0)};
+  check_motions({resting}, map, {}, [&](const MotionEvent& e) { overlaps += e.encounter == Encounter::overlap; });
+  EXPECT_EQ(overlaps, 1u);
+}
+
+TEST(MotionCheck, DiscsOfTheMapAreThemselves) {
+  // A body that passes at a corner of the square round the disc, in contact with the disc, and a bit deeper.
+  const std::vector<Obstacle> map{Polyline{{{20, 20}, {21, 20}}}, Polygon{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}}};
+  geometry::MotionCheckOptions options{Between::straight, 0.5};
+  options.discs = {std::nullopt, geometry::Disc{{0, 0}, 1.0}};
+  std::vector<Encounter> found;
+  for (const double x : {1.5, std::nextafter(1.5, 0.0), 0.0}) {
+    std::vector<MotionEvent> events;
+    const Trajectory passing{{{0, {x, -3}}, {1, {x, 3}}}, geometry::disc_body(0.5)};
+    const MotionCheck check =
+        check_motions({passing}, map, options, [&](const MotionEvent& e) { events.push_back(e); });
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_TRUE(events[0].with_obstacle);
+    EXPECT_EQ(events[0].other, 1u);
+    EXPECT_EQ(check.approaches.size(), 1u);
+    found.push_back(events[0].encounter);
+  }
+  EXPECT_EQ(found, (std::vector<Encounter>{Encounter::contact, Encounter::overlap, Encounter::overlap}));
+  // (1.1, 1.1) is 0.056 m clear of the disc, and overlaps the corner.
+  const Trajectory resting{{{0, {1.1, 1.1}}, {1, {1.1, 1.1}}}, geometry::disc_body(0.5)};
+  const MotionCheck clear = check_motions({resting}, map, options, [](const MotionEvent&) { FAIL(); });
+  ASSERT_EQ(clear.approaches.size(), 1u);
+  EXPECT_NEAR(clear.approaches[0].clearance.low, 1.1 * std::sqrt(2.0) - 1.5, 1e-12);
+  options.discs.pop_back();
+  EXPECT_THROW(check_motions({resting}, map, options, [](const MotionEvent&) {}), std::logic_error);
+}
+
+TEST(MotionCheck, DiscsOfTheMapAreBodiesAtRest) {
+  SeededRandom random(seed_of_run(58));
+  std::size_t touched = 0, near = 0;
+  for (int round = 0; round < 60; ++round) {
+    const bool whole_numbers = round % 2 == 0;
+    const auto all = random_trajectories(random, 6, whole_numbers);
+    geometry::MotionCheckOptions options{Between::straight, round % 3 == 0 ? 0.0 : 0.7};
+    std::vector<Obstacle> map;
+    for (int k = 0; k < 5; ++k) {
+      map.push_back(Polyline{{{0, 0}, {5, 5}}});  // which does not matter
+      Vec2 at = random.in_box(6.0);
+      if (whole_numbers) at = {std::nearbyint(at.x), std::nearbyint(at.y)};
+      options.discs.emplace_back(
+          geometry::Disc{at, whole_numbers ? 0.5 * random.integer(0, 4) : random.uniform(0.1, 2.0)});
+    }
+    std::map<Key, Encounter> worst;
+    const MotionCheck check = check_motions(all, map, options, [&](const MotionEvent& e) {
+      Encounter& w = worst.try_emplace({e.body, e.with_obstacle, e.other}, e.encounter).first->second;
+      w = std::max(w, e.encounter);
+    });
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t k = 0; k < map.size(); ++k) {
+        const geometry::Disc& disc = *options.discs[k];
+        Encounter expected = Encounter::clear;
+        double least = INFINITY;
+        for (const StraightMotion& m : pieces_of(all[i], Between::straight)) {
+          const MotionVerdict v = examine(m, all[i].body, geometry::held({m.from.time, disc.center}, m.to.time),
+                                          geometry::disc_body(disc.radius));
+          expected = std::max(expected, v.encounter);
+          least = std::min(least, v.clearance.low);
+        }
+        const auto found = worst.find({i, true, k});
+        ASSERT_EQ(found == worst.end() ? Encounter::clear : found->second, expected);
+        const bool is_listed = std::any_of(check.approaches.begin(), check.approaches.end(), [&](const auto& a) {
+          return a.body == i && a.with_obstacle && a.other == k;
+        });
+        ASSERT_EQ(is_listed, options.near > 0.0 && least < options.near);
+        touched += expected == Encounter::clear ? 0 : 1;
+        near += is_listed ? 1 : 0;
+      }
+  }
+  EXPECT_GE(touched, 100u);
+  EXPECT_GE(near, 100u);
+}
+
 TEST(MotionStream, EqualsCheckMotionsAndForgetsEndedPieces) {
   SeededRandom random(seed_of_run(56));
   std::size_t judged = 0;

@@ -207,6 +207,41 @@ TEST(CheckVerb, RecordingsOfCrowdsAreChecked) {
   EXPECT_EQ(json_lines(outcome.out).back()["summary"]["format"], "crowd-recording");
 }
 
+TEST(CheckVerb, DiscsOfRecordingsAreDiscs) {
+  // The robot rests where it touches the corners of a polygon round the disc, but not the disc.
+  const Workplace here;
+  const auto scenario = [&](double reach) {
+    const double angle = std::acos(-1.0) / 32.0;
+    json robot{{"id", "a"}, {"radius", 0.5}, {"max_speed", 1}};
+    robot["position"] = robot["goal"] = {reach * std::cos(angle), reach * std::sin(angle)};
+    const json disc{{"id", "pillar"}, {"disc", {{"centre", {0, 0}}, {"radius", 10}}}};
+    return json{{"name", "c"},
+                {"guidance", "none"},
+                {"time_limit", 1},
+                {"robots", json::array({robot})},
+                {"obstacles", json::array({disc})},
+                {"margins", {{"obstacle", 0}}}}
+        .dump();
+  };
+  here.write("clear.json", scenario(10.52));
+  ASSERT_EQ(here.run("simulate clear.json --decisions all --out run --no-figures --force").status, 0);
+  ASSERT_EQ(here.run("simulate clear.json --decisions none --record c.evr --force").status, 0);
+  std::size_t judged = 0;
+  for (const char* file : {"run/recording.jsonl", "c.evr"}) {
+    const Outcome clear = here.run(std::string("check ") + file + " --near 0.1");
+    EXPECT_EQ(clear.status, 0) << file << clear.out << clear.err;
+    EXPECT_THAT(clear.out, AllOf(HasSubstr("1 obstacle"), HasSubstr("near: a and "), HasSubstr("0.02"))) << file;
+    EXPECT_THAT(clear.err, Not(HasSubstr("left out")));
+    EXPECT_EQ(here.run(std::string("check ") + file + " --radius 0.53").status, 1);
+    EXPECT_EQ(here.run(std::string("check ") + file + " --certificates proofs.jsonl").status, 0);
+    const Outcome audit = here.run("audit --certificate proofs.jsonl --json");
+    EXPECT_EQ(audit.status, 0) << audit.err;
+    EXPECT_GE(json::parse(audit.out)["valid"], 1);
+    ++judged;
+  }
+  EXPECT_EQ(judged, 2u);
+}
+
 // --- Certificates and figures ---
 
 TEST(CheckVerb, CertificatesAreAcceptedByTheAudit) {

@@ -63,7 +63,8 @@ bool looks_like_mapf_paths(std::string_view beginning) {
 
 void read_mapf_paths(const std::filesystem::path& path, TrajectorySink& out) {
   out.file().in_cells = true;
-  TextLines lines(path);
+  constexpr std::size_t kLongestPath = std::size_t{1} << 24;  // a line is the whole way of an agent
+  TextLines lines(path.string(), kLongestPath);
   for (std::string_view line; lines.next(line);) {
     line = trimmed(line);
     if (line.empty()) continue;

@@ -14,6 +14,9 @@
 
 namespace exactvo::datasets {
 
+/// Bytes: no row of a trajectory is longer.
+inline constexpr std::size_t kLongestRow = std::size_t{1} << 16;
+
 /// Where readers put rows: gives agents numbers, checks times and places.
 class TrajectorySink {
  public:

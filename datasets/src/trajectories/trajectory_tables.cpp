@@ -16,9 +16,6 @@
 namespace exactvo::datasets {
 namespace {
 
-/// No row of a trajectory is longer.
-constexpr std::size_t kLongestRow = std::size_t{1} << 16;
-
 std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower)
@@ -76,7 +73,8 @@ std::size_t numbers_in(std::string_view line) {
   return std::all_of(fields.begin(), fields.end(), is_number) ? fields.size() : 0;
 }
 
-/// Ids that are whole numbers in the form 1.0000000e+00 get their plain form.
+/// Ids that are whole numbers in the form 1.0000000e+00 get their plain form. Only for tables that hold nothing but
+/// numbers: elsewhere ids are texts, and 007 is another one than 7.
 std::string_view plain_id(std::string_view field, std::string& memory) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
@@ -129,11 +127,13 @@ char separator_of(std::string_view header) {
   return ' ';
 }
 
+enum class Ids { texts, numbers };
+
 /// The rows behind a header.
 class TableRows {
  public:
-  TableRows(const Columns& columns, std::size_t count, TrajectorySink& out)
-      : columns_(columns), count_(count), out_(out) {
+  TableRows(const Columns& columns, std::size_t count, Ids ids, TrajectorySink& out)
+      : columns_(columns), count_(count), ids_(ids), out_(out) {
     if (columns_[kIdColumn] == kNoColumn) out.file().notes.emplace_back("no column of ids: all rows are of one agent");
   }
 
@@ -150,8 +150,8 @@ class TableRows {
                             : out_.time_of_frame(number(kFrameColumn, "a frame"), frame_rate);
     const double heading = columns_[kHeadingColumn] == kNoColumn ? std::numeric_limits<double>::quiet_NaN()
                                                                  : number(kHeadingColumn, "a heading");
-    const std::string_view id =
-        columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : plain_id(fields[columns_[kIdColumn]], memory_);
+    std::string_view id = columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : fields[columns_[kIdColumn]];
+    if (ids_ == Ids::numbers) id = plain_id(id, memory_);
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
     out_.row(out_.agent(id), time, {unit * number(kXColumn, "x"), unit * number(kYColumn, "y")}, line, heading);
   }
@@ -159,6 +159,7 @@ class TableRows {
  private:
   Columns columns_;
   std::size_t count_;
+  Ids ids_;
   TrajectorySink& out_;
   std::string memory_;
 };
@@ -168,7 +169,7 @@ constexpr double kMetresOfCentimetre = 0.01;
 /// Rows of numbers without a header.
 void read_numbers(const std::filesystem::path& path, const Columns& columns, std::size_t count, TrajectorySink& out) {
   TextLines lines(path.string(), kLongestRow);
-  TableRows rows(columns, count, out);
+  TableRows rows(columns, count, Ids::numbers, out);
   std::vector<std::string_view> fields;
   for (std::string_view line; lines.next(line);) {
     split(lines.number() == 1 ? without_mark(line) : line, ' ', fields);
@@ -210,7 +211,7 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
     if (!has_place_and_time(columns))
       out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60),
                  "a header with the columns t,id,x,y and, where there is one, theta");
-    rows.emplace(columns, fields.size(), out);
+    rows.emplace(columns, fields.size(), Ids::texts, out);
   }
 }
 
@@ -239,7 +240,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     if (line.empty()) continue;
     if (line.front() != '#') {
       if (!rows) {
-        rows.emplace(columns, count, out);
+        rows.emplace(columns, count, Ids::texts, out);
         rows->frame_rate = frame_rate;
         rows->unit = unit;
       }

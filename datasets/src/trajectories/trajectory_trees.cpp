@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trajectories in JSON and XML: TrajNet++ (a JSON object a line), SUMO's floating car data, and recordings of this
 // program.
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <optional>
 #include <pugixml.hpp>
+#include <stdexcept>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/pi.h"
 #include "files/text_file.h"
@@ -19,71 +24,113 @@ namespace {
 
 // --- XML, a tag at a time ---
 
-/// The tags of a text of XML, one after the other: neither content nor a tree is kept.
+/// No tag is longer, and no element deeper.
+constexpr std::size_t kLongestTag = std::size_t{1} << 16, kDeepestElement = 64;
+
+/// The tags of a text of XML, one after the other: neither content nor a tree is kept, only the names of the elements
+/// that are open. Refuses tags, comments and elements that do not end.
 class XmlTags {
  public:
-  explicit XmlTags(const std::filesystem::path& path) : lines_(path) {}
+  XmlTags(const std::filesystem::path& path, const TrajectorySink& out) : in_(path, std::ios::binary), out_(out) {}
 
-  /// The next tag without its brackets; false at the end. Comments and declarations are passed over.
+  /// The next tag that opens an element, without its brackets; false at the end. Whatever else there is, is passed
+  /// over.
   bool next() {
-    for (;;) {
-      if (!seek("<")) return false;
-      line_ = lines_.number();
-      if (starts_with("<!--")) {
-        seek("-->");
+    if (is_new_open_) open_.push_back(name_);
+    is_new_open_ = false;
+    for (char c = '\0'; take(c);) {
+      if (c != '<') continue;
+      line_ = number_;
+      if (!read_tag() || tag_.front() == '!') continue;
+      name_ = tag_.substr(tag_.front() == '/' ? 1 : 0);
+      name_.resize(std::min(name_.find_first_of(" \t\r\n/"), name_.size()));
+      if (name_.empty()) refuse(excerpt("<" + tag_ + ">", 0), "the name of an element");
+      if (tag_.front() == '/') {
+        if (open_.empty() || open_.back() != name_)
+          refuse(in_words("</", name_), open_.empty() ? "no end of an element" : in_words("</", open_.back()));
+        open_.pop_back();
         continue;
       }
-      tag_.clear();
-      char quote = '\0';
-      for (;; ++at_) {
-        while (at_ >= text_.size()) {
-          if (!refill()) return false;
-        }
-        const char c = text_[at_];
-        if (quote == '\0' && c == '>') break;
-        if (c == '"' || c == '\'') quote = quote == '\0' ? c : quote == c ? '\0' : quote;
-        tag_ += c;
-      }
-      ++at_;
-      tag_.erase(0, 1);
+      if (open_.empty() && has_root_) refuse(in_words("<", name_), "nothing behind the first element");
+      has_root_ = true;
+      is_new_open_ = tag_.back() != '/';
+      if (open_.size() >= kDeepestElement)
+        out_.refuse(DataCode::nesting, line_, in_words("<", name_),
+                    "at most " + std::to_string(kDeepestElement) + " elements within each other");
       return true;
     }
+    line_ = number_;
+    if (!open_.empty()) refuse("the end of the file", in_words("</", open_.back()));
+    return false;
   }
   const std::string& tag() const { return tag_; }
+  const std::string& name() const { return name_; }
   std::uint64_t line() const { return line_; }
+  /// Whether the tag stands in an element of that name.
+  bool is_within(std::string_view name) const { return std::find(open_.begin(), open_.end(), name) != open_.end(); }
 
  private:
-  bool refill() {
-    std::string_view line;
-    if (!lines_.next(line)) return false;
-    text_.assign(line).push_back('\n');
-    at_ = 0;
+  /// False for comments, instructions and quoted content, which are passed over.
+  bool read_tag() {
+    tag_.clear();
+    char quote = '\0';
+    for (char c = '\0';;) {
+      if (!take(c))
+        refuse("the end of the file", quote == '\0' ? "the end of the tag" : "the end of the tag's quotation");
+      if (quote == '\0' && c == '>') break;
+      if (c == '<')
+        tag_.substr(0, 1) == "!" ? refuse("an entity or another declaration in one", "XML without entities of its own")
+                                 : refuse(excerpt("<" + tag_, 0, 40), "the end of the tag before the next one");
+      if (c == '"' || c == '\'') quote = quote == '\0' ? c : quote == c ? '\0' : quote;
+      if (tag_.size() == kLongestTag)
+        out_.refuse(DataCode::size, line_, "a tag of more than " + std::to_string(kLongestTag) + " bytes",
+                    "shorter tags");
+      tag_ += c;
+      if (tag_ == "!--") return pass("-->", "the end of the comment");
+      if (tag_ == "![CDATA[") return pass("]]>", "]]>");
+      if (tag_ == "?") return pass("?>", "?>");
+    }
+    if (tag_.empty()) refuse("<>", "the name of an element");
     return true;
   }
-  bool starts_with(std::string_view word) const { return text_.compare(at_, word.size(), word) == 0; }
-  /// Moves to the word; behind it where it is no bracket that opens.
-  bool seek(std::string_view word) {
-    for (;;) {
-      const std::size_t found = at_ < text_.size() ? text_.find(word, at_) : std::string::npos;
-      if (found != std::string::npos) {
-        at_ = word == "<" ? found : found + word.size();
-        return true;
-      }
-      if (!refill()) return false;
+  bool pass(std::string_view end, const char* expected) {
+    std::string last;
+    for (char c = '\0'; last != end;) {
+      if (!take(c)) refuse("the end of the file", expected);
+      if (last.size() == end.size()) last.erase(0, 1);
+      last += c;
     }
+    return false;
+  }
+  bool take(char& c) {
+    if (at_ == block_.size()) {
+      call_wait_hook();
+      block_.resize(kWaitHookBytes);
+      in_.read(block_.data(), static_cast<std::streamsize>(block_.size()));
+      block_.resize(static_cast<std::size_t>(in_.gcount()));
+      at_ = 0;
+      if (block_.empty()) return false;
+    }
+    c = block_[at_++];
+    if (c == '\n') ++number_;
+    return true;
+  }
+  /// A tag for messages: names may be long, or not printable.
+  static std::string in_words(const char* bracket, const std::string& name) {
+    return excerpt(bracket + name + ">", 0, 40);
+  }
+  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+    out_.refuse(DataCode::format_syntax, line_, found, expected);
   }
 
-  TextLines lines_;
-  std::string text_, tag_;
+  std::ifstream in_;
+  const TrajectorySink& out_;
+  std::string block_, tag_, name_;
+  std::vector<std::string> open_;
   std::size_t at_ = 0;
-  std::uint64_t line_ = 0;
+  std::uint64_t line_ = 0, number_ = 1;
+  bool is_new_open_ = false, has_root_ = false;
 };
-
-bool is_element(const std::string& tag, std::string_view name) {
-  return tag.compare(0, name.size(), name) == 0 &&
-         (tag.size() == name.size() || tag[name.size()] == ' ' || tag[name.size()] == '\n' ||
-          tag[name.size()] == '\t' || tag[name.size()] == '/');
-}
 
 /// The attributes of one tag.
 class TagAttributes {
@@ -111,19 +158,30 @@ class TagAttributes {
 
 // --- Obstacles of crowds ---
 
+/// The obstacle that a body is; none of ellipses, and of discs that are nearly points far away.
+std::optional<formation::SceneObstacle> obstacle_of(const geometry::ConvexShape& body, std::string id) {
+  if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body))
+    return formation::SceneObstacle{std::move(id), geometry::Polygon{polygon->vertices, {}}};
+  if (const auto* segment = std::get_if<geometry::Segment>(&body))
+    return formation::SceneObstacle{std::move(id), geometry::Polyline{{segment->a, segment->b}}};
+  const auto* disc = std::get_if<geometry::Disc>(&body);
+  if (disc == nullptr) return std::nullopt;
+  try {
+    return formation::disc_obstacle(std::move(id), *disc);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 void add_bodies(const std::vector<CrowdBodyRecord>& bodies, TrajectoryFile& file) {
   std::size_t left_out = 0;
   for (const CrowdBodyRecord& body : bodies) {
-    const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
-    if (polygon == nullptr || body.moves) {
-      ++left_out;
-      continue;
-    }
-    file.obstacles.push_back(
-        {"body " + std::to_string(file.obstacles.size() + 1), geometry::Polygon{polygon->vertices, {}}});
+    std::optional<formation::SceneObstacle> obstacle;
+    if (!body.moves) obstacle = obstacle_of(body.shape, "body " + std::to_string(file.obstacles.size() + 1));
+    obstacle ? file.obstacles.push_back(std::move(*obstacle)) : static_cast<void>(++left_out);
   }
   if (left_out > 0)
-    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are round were left out of the map");
+    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are ellipses were left out of the map");
 }
 
 }  // namespace
@@ -137,7 +195,7 @@ bool looks_like_trajnet(std::string_view beginning) {
 }
 
 void read_trajnet(const std::filesystem::path& path, TrajectorySink& out) {
-  TextLines lines(path);
+  TextLines lines(path.string(), kLongestRow);
   std::size_t predictions = 0;
   const std::string& name = out.file().file;
   std::string id;
@@ -164,18 +222,14 @@ bool looks_like_sumo_fcd(std::string_view beginning) {
 }
 
 void read_sumo_fcd(const std::filesystem::path& path, TrajectorySink& out) {
-  XmlTags tags(path);
+  XmlTags tags(path, out);
   double time = 0.0;
-  bool has_time = false, has_headings = false;
+  bool has_headings = false;
   while (tags.next()) {
-    if (tags.tag().compare(0, 7, "!ENTITY") == 0 || tags.tag().find("<!ENTITY") != std::string::npos)
-      out.refuse(DataCode::format_syntax, tags.line(), "an entity", "XML without entities of its own");
-    if (is_element(tags.tag(), "timestep")) {
-      time = TagAttributes(tags.tag(), tags.line(), out).number("time");
-      has_time = true;
-    }
-    if (!is_element(tags.tag(), "vehicle") && !is_element(tags.tag(), "person")) continue;
-    if (!has_time) out.refuse(DataCode::format_syntax, tags.line(), excerpt(tags.tag(), 0), "a timestep round it");
+    if (tags.name() == "timestep") time = TagAttributes(tags.tag(), tags.line(), out).number("time");
+    if (tags.name() != "vehicle" && tags.name() != "person") continue;
+    if (!tags.is_within("timestep"))
+      out.refuse(DataCode::format_syntax, tags.line(), excerpt(tags.tag(), 0), "a timestep round it");
     const TagAttributes vehicle(tags.tag(), tags.line(), out);
     double heading = std::numeric_limits<double>::quiet_NaN();
     if (vehicle.has("angle")) {

@@ -262,17 +262,30 @@ class MovingGrid {
   std::vector<std::uint32_t> large_, found_;
 };
 
-/// A quick filter in plain doubles. For vectors whose coordinates are differences of two doubles, rounded, a dot or
-/// cross product is wrong by at most 4 * 2^-53 of the sum of the sizes of its two products, and a bit; the root that
-/// makes a length by 2 * 2^-53 of itself. `kQuick` is more than twice as much. What underflows may be wrong by some
-/// 2^-1074, which is nothing beside `kQuick` of kLeastSize.
+/// A quick filter in plain doubles. It proves that n.v > reach |n|, where n is a vector of doubles, so that its own
+/// rounding does not matter, and v stands for a difference of two points. With u = 2^-53:
+///
+///  - x + y differs from n.v by at most 3 u (|x| + |y|): v, the products and the sum are rounded;
+///  - `wanted` is wrong by at most 5 u of itself: the length by 2 u, the sum of radii by 2 u, the product; its sum with
+///    what follows is rounded once more;
+///  - n across an edge is across b - a as it was rounded, so the edge leaves the line across n by up to
+///    2 u |n.x n.y| / |n| from a to b, which is much where it is long. Points of it that are farther than `reach` from
+///    the disc's centre need no proof. One that is nearer is w = v - d from a, |d| <= reach, and beyond the line by at
+///    most n.w <= u (|n.x w.x| + |n.y w.y|) <= u (|x| + |y| + reach |n|), up to u^2. Along an edge n.w has the sign
+///    that does no harm.
+///
+/// All that is less than 4.1 u (|x| + |y|) + 7.1 u wanted; `kQuick` is 16 u. Between two times the bound holds too,
+/// since |x| + |y| is convex. A product that underflows is wrong by some 2^-1074, which is nothing beside `kQuick` of
+/// kLeastSize; n shorter than kLeastLength have no length, since its square underflows.
 constexpr double kQuick = 0x1p-49;
 constexpr double kLeastSize = 0x1p-900;
+constexpr double kLeastLength = 0x1p-450;
 
 /// Whether n.v > reach |n| for certain. `length`: |n|, rounded.
 bool surely_beyond(Vec2 n, double length, Vec2 v, double reach) {
   const double x = n.x * v.x, y = n.y * v.y, wanted = reach * length;
-  return wanted > kLeastSize && x + y > wanted + kQuick * (std::fabs(x) + std::fabs(y) + wanted);
+  return length > kLeastLength && wanted > kLeastSize &&
+         x + y > wanted + kQuick * (std::fabs(x) + std::fabs(y) + wanted);
 }
 
 /// Whether two discs are apart by more than `reach` all the time, between the lines across one of the ends of their
@@ -382,9 +395,17 @@ class Events {
 /// The map's edges by place, and which obstacle each belongs to.
 class Map {
  public:
-  explicit Map(const std::vector<Obstacle>& obstacles) : obstacles_(obstacles) {
-    std::vector<Box> boxes;
+  Map(const std::vector<Obstacle>& obstacles, const std::vector<std::optional<Disc>>& discs) : obstacles_(obstacles) {
+    EXACTVO_REQUIRE(discs.empty() || discs.size() == obstacles.size(), std::to_string(discs.size()));
+    std::vector<Box> boxes, boxes_of_discs;
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      if (!discs.empty() && discs[k]) {
+        const auto& [center, radius] = *discs[k];
+        EXACTVO_REQUIRE(is_finite(center) && std::isfinite(radius) && radius >= 0.0, hex_text(radius));
+        discs_.push_back({k, *discs[k]});
+        boxes_of_discs.push_back(swept_box({{0.0, center}, {0.0, center}}, radius, 0.0));
+        continue;
+      }
       Box whole;
       for (const Segment& edge : edges_of(obstacles[k])) {
         EXACTVO_REQUIRE(is_finite(edge.a) && is_finite(edge.b), excerpt({edge.a, edge.b}));
@@ -403,6 +424,7 @@ class Map {
     }
     if (!boxes.empty()) grid_ = BoxGrid(std::move(boxes));
     if (!extents_.empty()) solids_ = BoxGrid(extents_);
+    if (!boxes_of_discs.empty()) by_disc_ = BoxGrid(std::move(boxes_of_discs));
   }
 
   /// Calls visit(edge, obstacle) for each edge whose box meets this one.
@@ -416,14 +438,22 @@ class Map {
     if (!solid_.empty()) solids_.for_each_meeting(box, [&](std::size_t i) { visit(solid_[i]); });
   }
 
+  /// Calls visit(disc, obstacle) for each obstacle that is a disc and whose box meets this one.
+  template <class Visit>
+  void for_each_disc(const Box& box, const Visit& visit) const {
+    if (!discs_.empty())
+      by_disc_.for_each_meeting(box, [&](std::size_t i) { visit(discs_[i].second, discs_[i].first); });
+  }
+
   const Obstacle& operator[](std::size_t k) const { return obstacles_[k]; }
 
  private:
   const std::vector<Obstacle>& obstacles_;
+  std::vector<std::pair<std::size_t, Disc>> discs_;  ///< and which obstacle each is
   std::vector<Segment> edges_;
   std::vector<std::size_t> owner_, solid_;
   std::vector<Box> extents_;
-  BoxGrid grid_, solids_;
+  BoxGrid grid_, solids_, by_disc_;
 };
 
 /// The least approach of each pair so far.
@@ -484,7 +514,7 @@ class Sweep {
         std::function<void(const MotionEvent&)> report)
       : options_(std::move(options)),
         near_(options_.near),
-        map_(obstacles),
+        map_(obstacles, options_.discs),
         events_(std::move(report), check_),
         approaches_(near_) {
     EXACTVO_REQUIRE(near_ >= 0.0 && std::isfinite(near_), hex_text(near_));
@@ -518,6 +548,7 @@ class Sweep {
       meet_at_ends(number);
     }
     meet_map(piece, body);
+    meet_discs(piece, body);
     body.last = motion.to;
     body.serial = piece.serial;
     grid_.meet_and_add(piece, [&](const Piece& other) {
@@ -593,6 +624,24 @@ class Sweep {
       body.outside = false;
       events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
     }
+  }
+
+  /// A disc of the map is a body at rest: radii are added as exactly as those of two bodies.
+  void meet_discs(const Piece& piece, const SweptBody& body) {
+    const StraightMotion& m = piece.motion;
+    map_.for_each_disc(swept_box(m, body.reach, 2.0 * near_), [&](const Disc& disc, std::size_t k) {
+      ++check_.edge_pairs;
+      const StraightMotion rest = held({m.from.time, disc.center}, m.to.time);
+      if (options_.met) options_.met({piece.body, m, true, k, rest});
+      if (surely_clear(m, body.reach, rest, disc.radius, approaches_.limit(piece.body, true, k))) return;
+      ++check_.examined;
+      const RigidBody round = disc_body(disc.radius);
+      if (near_ == 0.0 && encounter(m, body.shape, rest, round) == Encounter::clear) return;
+      const MotionVerdict verdict = examine(m, body.shape, rest, round);
+      approaches_.add(verdict, piece.body, true, k);
+      if (verdict.encounter == Encounter::clear) return;
+      events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
+    });
   }
 
   /// An edge that is not touched, but may be near.

@@ -161,8 +161,9 @@ struct CheckMap {
   std::string name;
   std::vector<formation::SceneObstacle> obstacles;
   std::vector<geometry::Obstacle> shapes;
-  std::optional<datasets::MapSize> cells;  ///< of a Moving AI map
-  double cell_side = 1.0;                  ///< m
+  std::vector<std::optional<geometry::Disc>> discs;  ///< of each obstacle, where it is one
+  std::optional<datasets::MapSize> cells;            ///< of a Moving AI map
+  double cell_side = 1.0;                            ///< m
 };
 
 CheckMap map_of(const CheckFlags& flags, const TrajectoryFile& file) {
@@ -183,7 +184,10 @@ CheckMap map_of(const CheckFlags& flags, const TrajectoryFile& file) {
       if (reading.cell_size > 0.0) map.cell_side = reading.cell_size;
     }
   }
-  for (const formation::SceneObstacle& o : map.obstacles) map.shapes.push_back(o.shape);
+  for (const formation::SceneObstacle& o : map.obstacles) {
+    map.shapes.push_back(o.shape);
+    map.discs.push_back(o.disc);
+  }
   return map;
 }
 
@@ -218,12 +222,14 @@ class CertificateFile {
   void add(const MetPair& pair) {
     const BodyInMotion a{pair.motion, &bodies_.of_agent[pair.body]};
     const geometry::Motion motion = pair.motion, other = pair.other_motion;
-    if (pair.with_obstacle) {
+    if (pair.with_obstacle && !map_.discs[pair.other]) {
       const formation::SceneObstacle& obstacle = map_.obstacles[pair.other];
       const auto proof = geometry::certify(motion, *a.body, obstacle.shape);
       return proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
     }
-    const BodyInMotion b{pair.other_motion, &bodies_.of_agent[pair.other]};
+    RigidBody disc;  // an obstacle that is one is a body at rest
+    if (pair.with_obstacle) disc = geometry::disc_body(map_.discs[pair.other]->radius);
+    const BodyInMotion b{pair.other_motion, pair.with_obstacle ? &disc : &bodies_.of_agent[pair.other]};
     const auto proof = geometry::certify(motion, *a.body, other, *b.body);
     proof ? write(certificate_json(*proof, a, b)) : write_none(pair);
   }
@@ -328,7 +334,7 @@ ExitCode check(const CheckFlags& flags) {
   if (!flags.certificates.empty()) certificates.emplace(flags.certificates, file, bodies, map);
   std::optional<CheckPicture> picture;
   if (!flags.figure.empty()) picture.emplace(asked, map.shapes, bodies.of_agent);
-  geometry::MotionCheckOptions options{between, asked.near, {}};
+  geometry::MotionCheckOptions options{between, asked.near, {}, map.discs};
   if (certificates) options.met = [&](const MetPair& pair) { certificates->add(pair); };
   SampledMoves sampled(flags.samples, bodies.of_agent.size());
   std::uint64_t missed = 0;

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "exactvo/geometry/motions.h"
@@ -37,7 +38,7 @@ struct MetPair {
   StraightMotion motion;        ///< of `body`
   bool with_obstacle = false;   ///< whether `other` is an obstacle
   std::size_t other = 0;        ///< number of the other body, or of the obstacle
-  StraightMotion other_motion;  ///< of the other body
+  StraightMotion other_motion;  ///< of the other body; of an obstacle that is a disc, at rest
 };
 
 /// What is asked.
@@ -47,6 +48,9 @@ struct MotionCheckOptions {
   /// Called for each pair whose boxes, each grown by half of `near`, meet: what a proof has to speak of. An obstacle is
   /// named once for each piece. May be empty.
   std::function<void(const MetPair&)> met{};
+  /// Of each obstacle: where set, the obstacle is this disc itself, with its inside, and its shape does not matter.
+  /// Empty: none is.
+  std::vector<std::optional<Disc>> discs{};
 };
 
 /// Two bodies, or a body and an obstacle, that touch or overlap for a while without a break.
@@ -78,7 +82,7 @@ struct Approach {
 struct MotionCheck {
   std::size_t pieces = 0;            ///< of motion
   std::size_t pairs = 0;             ///< of pieces whose boxes meet at the same time
-  std::size_t edge_pairs = 0;        ///< of pieces and edges whose boxes meet
+  std::size_t edge_pairs = 0;        ///< of pieces and edges, or discs of the map, whose boxes meet
   std::size_t examined = 0;          ///< of both, those that the quick filter could not clear
   std::size_t overlaps = 0;          ///< events
   std::size_t contacts = 0;          ///< events
@@ -111,7 +115,8 @@ class MotionStream {
 
 /// Reports every contact and overlap, in the order in which they end (ties by bodies). Two events of a pair whose
 /// moments may be the same are one. Exact. REQUIRES: finite numbers, times that do not fall, at least one point a
-/// trajectory, bodies as in motions.h, valid obstacles, near >= 0.
+/// trajectory, bodies as in motions.h, valid obstacles, near >= 0;
+/// of discs none or one entry an obstacle, finite, with a radius >= 0.
 MotionCheck check_motions(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& map,
                           const MotionCheckOptions& options, const std::function<void(const MotionEvent&)>& report);
 
