@@ -186,6 +186,11 @@ TEST(CrowdVerb, ExplainNamesDiscsAtRestAndMovingObstacles) {
   ASSERT_EQ(resting.status, 0) << resting.err;
   EXPECT_THAT(resting.out, HasSubstr("of obstacle pillar"));
   EXPECT_THAT(resting.out, Not(HasSubstr("moving obstacle")));
+  // The pillar is the only body there.
+  const json counts = json::parse(here.run("simulate alone.json --decisions none --json").out)["decisions"];
+  EXPECT_GT(counts["against_bodies"], 0);
+  EXPECT_THAT(here.run("simulate alone.json --decisions none").out,
+              HasSubstr(" against bodies (discs at rest and moving obstacles)\n"));
 }
 
 /// The word "double" stands in the command lines of both; the decisions differ in their last bits.

@@ -130,8 +130,8 @@ std::string decision_lines(const datasets::RunInfo& info, const formation::Metri
   return text + fmt::format(
                     ", {} cut short before another robot, {} with a reserved place, {} stopped before an edge, "
                     "{} overlapping; none recorded\n"
-                    "  half-planes  in a decision {:.3g} against robots, {:.3g} against edges, {:.3g} against moving "
-                    "obstacles\n",
+                    "  half-planes  in a decision {:.3g} against robots, {:.3g} against edges, {:.3g} against bodies "
+                    "(discs at rest and moving obstacles)\n",
                     c.cut_short, c.reserved, c.stopped, c.overlapping, share(c.against_robots), share(c.against_edges),
                     share(c.against_moving));
 }

@@ -88,7 +88,7 @@ struct CrowdRunReport {
   std::size_t stopped = 0;             ///< decisions to stay, for lack of anything else that meets no edge
   std::size_t half_planes = 0;         ///< against robots
   std::size_t edges = 0;               ///< half-planes against edges of obstacles
-  std::size_t bodies = 0;              ///< half-planes against moving obstacles
+  std::size_t bodies = 0;              ///< half-planes against bodies: discs at rest and moving obstacles
   std::uint64_t digest = 0;            ///< Crowd::digest at the end
   bool stands_still = false;           ///< it ended early: no step changes anything any more (exact)
   bool interrupted = false;            ///< progress stopped it
