@@ -9,7 +9,7 @@
 // step lasts 0.1 s.
 //
 // Two textbook loops, both with doubles and the hashed grid of the check, adapted: `same boxes` has the grid hold the
-// boxes of motions, as the check does, and samples each pair whose boxes meet at ten moments; `grid a sample` has it
+// boxes of motions, as the check does, and samples each pair whose boxes meet at ten moments; `grid per sample` has it
 // hold positions, ten times a step. Verdicts are compared before anything is timed: whatever a sample finds the check
 // must find; what only the check finds is counted as missed.
 #include <algorithm>
@@ -267,7 +267,7 @@ int run(int agents, int steps, int rounds) {
   }
   const double own = median(ours), boxed = median(same), gridded = median(each);
   std::printf(
-      "check: %.3f s; ten samples: %.3f s with the same boxes (%.2f times), %.3f s with a grid a sample (%.2f times)\n",
+      "check: %.3f s; ten samples: %.3f s with the same boxes (%.2f times), %.3f s with a grid per sample (%.2f times)\n",
       own, boxed, boxed / own, gridded, gridded / own);
   return 0;
 }

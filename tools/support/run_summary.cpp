@@ -133,7 +133,7 @@ std::string decision_lines(const datasets::RunInfo& info, const formation::Metri
                     "  half-planes  in a decision {:.3g} against robots, {:.3g} against edges, {:.3g} against bodies "
                     "(discs at rest and moving obstacles)\n",
                     c.cut_short, c.reserved, c.stopped, c.overlapping, share(c.against_robots), share(c.against_edges),
-                    share(c.against_moving));
+                    share(c.against_bodies));
 }
 
 std::string motion_lines(const formation::Metrics& m) {

@@ -79,7 +79,7 @@ class Collector {
 
   virtual void add(const RawGeometry& raw);
   virtual void pass_over(std::string place, std::string text);
-  /// Of the file, or of a layer.
+  /// A note on the file or on a layer.
   virtual void note(std::string place, std::string text);
   /// Before a geometry that may name a reference system: 0 where it names none. Throws ReferenceSystemMet, or DataError
   /// (E_PROJECTION) where an earlier geometry of the file names another.

@@ -80,7 +80,7 @@ geometry::Ring polygon_round(geometry::Vec2 center, double radius);
 
 // wkb_text.cpp, within another file: places and ids begin with those given
 bool is_wkb_text(std::string_view text);
-/// Of the geometry, 0 where it names none.
+/// The SRID of the geometry; 0 if it names none.
 int srid_of_wkb_text(std::string_view text);
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 

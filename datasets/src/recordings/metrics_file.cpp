@@ -63,7 +63,7 @@ void append_decisions(JsonWriter& json, const RunInfo& info, const formation::Me
   of_crowd("widened", &formation::CrowdMetrics::widened);
   of_crowd("against_robots", &formation::CrowdMetrics::against_robots);
   of_crowd("against_edges", &formation::CrowdMetrics::against_edges);
-  of_crowd("against_bodies", &formation::CrowdMetrics::against_moving);
+  of_crowd("against_bodies", &formation::CrowdMetrics::against_bodies);
   json.end_object();
 }
 

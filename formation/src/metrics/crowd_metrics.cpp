@@ -67,7 +67,7 @@ CrowdMetrics counts_of(const CrowdRunReport& r) {
   c.widened = r.widened;
   c.against_robots = r.half_planes;
   c.against_edges = r.edges;
-  c.against_moving = r.bodies;
+  c.against_bodies = r.bodies;
   c.stands_still = r.stands_still;
   c.digest = r.digest;
   return c;

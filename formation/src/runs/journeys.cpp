@@ -29,7 +29,6 @@ Journeys::Journeys(const Scenario& scenario, Guide* guide, Liveness liveness, co
                    const RoomAtEnds& room, double horizon, TakenOnTheWay taken)
     : scenario_(scenario),
       guide_(guide),
-      liveness_(liveness),
       taken_(taken),
       at_(at),
       journeys_(scenario.robots.size()) {

@@ -176,7 +176,6 @@ class Journeys {
 
   const Scenario& scenario_;
   Guide* guide_;
-  Liveness liveness_;
   TakenOnTheWay taken_;
   const std::vector<Vec2>& at_;
   std::vector<Journey> journeys_;

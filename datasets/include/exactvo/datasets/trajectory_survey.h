@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// What trajectories say of themselves before they are checked: how many rows and agents, which time and extent, how
-/// often rows come, which speeds and accelerations they imply, and from where on a move is a jump and a pause a gap. In
-/// memory that grows with the number of agents alone.
+/// A survey of trajectories before they are checked: the numbers of rows and agents, time and extent, the interval
+/// between rows, the implied speeds and accelerations, and the bounds beyond which a move is a jump and a pause is a
+/// gap. Its memory grows with the number of agents only.
 ///
 /// Speeds, accelerations and bounds are rounded; nothing exact depends on them.
 

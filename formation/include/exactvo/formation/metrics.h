@@ -92,7 +92,7 @@ struct CrowdMetrics {
   std::size_t widened = 0;         ///< with more than 10 neighbours
   std::size_t against_robots = 0;  ///< half-planes
   std::size_t against_edges = 0;   ///< half-planes against edges of obstacles
-  std::size_t against_moving = 0;  ///< half-planes against bodies: discs at rest and moving obstacles
+  std::size_t against_bodies = 0;  ///< half-planes against bodies: discs at rest and moving obstacles
   bool stands_still = false;       ///< it ended early: no step changes anything any more (exact)
   std::uint64_t digest = 0;        ///< Crowd::digest at the end
 };
