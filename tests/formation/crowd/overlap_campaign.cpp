@@ -89,11 +89,12 @@ int run(const std::string& kind, std::uint64_t count, std::uint64_t seed) {
     robots += report.robots;
     steps += report.steps * report.robots;
     arrived += report.arrived;
-    motions += check.motions;
-    overlaps += check.overlaps;
+    motions += check.found.motions;
+    overlaps += check.found.overlaps;
     reported += report.overlapping;
     cut_short += report.cut_short;
-    if (check.overlaps > 0) std::printf("scene %llu: %s\n", static_cast<unsigned long long>(k), check.first.c_str());
+    if (check.found.overlaps > 0)
+      std::printf("scene %llu: %s\n", static_cast<unsigned long long>(k), check.found.first.c_str());
     if (count >= 20 && k % (count / 20) == 0)
       std::fprintf(stderr, "%llu of %llu, %zu motions, %zu overlaps\n", static_cast<unsigned long long>(k),
                    static_cast<unsigned long long>(count), motions, overlaps);

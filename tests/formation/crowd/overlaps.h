@@ -23,29 +23,40 @@ namespace exactvo::formation {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
-/// Looks at each step of a run of a crowd.
-class OverlapCheck : public CrowdSink {
- public:
-  explicit OverlapCheck(const Scenario& scenario) {
-    for (const Robot& r : scenario.robots) radius_.push_back(r.radius);
-  }
+/// A place in whole lattice steps.
+struct LatticePlace {
+  std::int64_t x, y;
+};
 
+/// Of the robots with these numbers in a crowd whose places are `positions`, by id.
+inline std::vector<LatticePlace> lattice_places(const Crowd& crowd, const std::vector<RobotId>& robots) {
+  std::vector<Vec2> at;
+  crowd.positions(at);
+  const double step = crowd.options().position_step;
+  std::vector<LatticePlace> places;
+  for (const RobotId id : robots)
+    places.push_back({static_cast<std::int64_t>(at[id].x / step), static_cast<std::int64_t>(at[id].y / step)});
+  return places;
+}
+
+/// Looks at the motions of all robots in a step.
+class MotionOverlaps {
+ public:
   std::size_t motions = 0;   ///< of pairs near enough to be looked at
   std::size_t overlaps = 0;  ///< of these
   std::string first;         ///< losslessly
 
-  void begin(const Crowd& crowd) override {
-    step_ = crowd.options().position_step;
-    to_ = places_of(crowd);
-  }
-
-  void add_step(const Crowd& crowd, std::size_t steps) override {
-    from_ = std::move(to_);
-    to_ = places_of(crowd);
+  /// Robot k moves from `from[k]` to `to[k]` in lattice steps of `step` metres; `radius[k]` in metres.
+  void look(std::vector<LatticePlace> from, std::vector<LatticePlace> to, const std::vector<double>& radius,
+            double step, std::size_t steps) {
+    from_ = std::move(from);
+    to_ = std::move(to);
+    radius_ = &radius;
+    step_ = step;
     std::int64_t longest = 0, widest = 0;
     for (std::size_t i = 0; i < from_.size(); ++i) {
       longest = std::max({longest, std::abs(to_[i].x - from_[i].x), std::abs(to_[i].y - from_[i].y)});
-      widest = std::max(widest, static_cast<std::int64_t>(std::ceil(radius_[i] / step_)));
+      widest = std::max(widest, static_cast<std::int64_t>(std::ceil(radius[i] / step_)));
     }
     const std::int64_t reach = 2 * (longest + widest) + 2;
     order_.resize(from_.size());
@@ -57,19 +68,6 @@ class OverlapCheck : public CrowdSink {
   }
 
  private:
-  struct Place {
-    std::int64_t x, y;
-  };
-
-  std::vector<Place> places_of(const Crowd& crowd) const {
-    std::vector<Vec2> at;
-    crowd.positions(at);
-    std::vector<Place> places;
-    for (const Vec2 p : at)
-      places.push_back({static_cast<std::int64_t>(p.x / step_), static_cast<std::int64_t>(p.y / step_)});
-    return places;
-  }
-
   void look_at(std::size_t i, std::size_t j, std::size_t steps) {
     ++motions;
     const Int128 dx = from_[j].x - from_[i].x, dy = from_[j].y - from_[i].y;
@@ -89,7 +87,7 @@ class OverlapCheck : public CrowdSink {
     std::snprintf(text, sizeof text,
                   "step %zu: robots %zu and %zu, D (%lld, %lld), M (%lld, %lld), radii %a and %a, step %a", steps, i, j,
                   static_cast<long long>(dx), static_cast<long long>(dy), static_cast<long long>(mx),
-                  static_cast<long long>(my), radius_[i], radius_[j], step_);
+                  static_cast<long long>(my), (*radius_)[i], (*radius_)[j], step_);
     first = text;
   }
 
@@ -104,18 +102,44 @@ class OverlapCheck : public CrowdSink {
   /// Whether a / b, in squared lattice steps, is below the squared sum of the radii. Exact: doubles decide where they
   /// can.
   bool is_below(Int128 a, Int128 b, std::size_t i, std::size_t j) const {
-    const double sum = (radius_[i] + radius_[j]) / step_;
+    const double sum = ((*radius_)[i] + (*radius_)[j]) / step_;
     const double left = static_cast<double>(a), right = sum * sum * static_cast<double>(b);
     if (left > right * (1.0 + 0x1p-45)) return false;
     if (left < right * (1.0 - 0x1p-45)) return true;
-    const mpq_class radii = (mpq_class(radius_[i]) + mpq_class(radius_[j])) / mpq_class(step_);
+    const mpq_class radii = (mpq_class((*radius_)[i]) + mpq_class((*radius_)[j])) / mpq_class(step_);
     return mpq_class(whole(a)) < radii * radii * whole(b);
   }
 
-  std::vector<double> radius_;
+  const std::vector<double>* radius_ = nullptr;
   double step_ = 1.0;
-  std::vector<Place> from_, to_;
+  std::vector<LatticePlace> from_, to_;
   std::vector<std::size_t> order_;
+};
+
+/// Looks at each step of a run of a crowd.
+class OverlapCheck : public CrowdSink {
+ public:
+  explicit OverlapCheck(const Scenario& scenario) {
+    for (const Robot& r : scenario.robots) {
+      robots_.push_back(static_cast<RobotId>(robots_.size()));
+      radius_.push_back(r.radius);
+    }
+  }
+
+  MotionOverlaps found;
+
+  void begin(const Crowd& crowd) override { to_ = lattice_places(crowd, robots_); }
+
+  void add_step(const Crowd& crowd, std::size_t steps) override {
+    std::vector<LatticePlace> from = std::move(to_);
+    to_ = lattice_places(crowd, robots_);
+    found.look(std::move(from), to_, radius_, crowd.options().position_step, steps);
+  }
+
+ private:
+  std::vector<RobotId> robots_;
+  std::vector<double> radius_;
+  std::vector<LatticePlace> to_;
 };
 
 }  // namespace exactvo::formation
