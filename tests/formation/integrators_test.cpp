@@ -17,16 +17,6 @@ using detail::step_body;
 constexpr double kGain = 37.5;  // 1/s
 constexpr double kAgreement = 1e-9;
 
-BodyState after(Integrator integrator, double dt, double duration) {
-  BodyState s{{1.0, -2.0}, {3.0, 0.5}};
-  const auto steps = static_cast<int>(std::lround(duration / dt));
-  for (int k = 0; k < steps; ++k) {
-    const double angle = 0.3 * k * dt;
-    s = step_body(integrator, s, {2.0 * std::cos(angle), 2.0 * std::sin(angle)}, Decay(kGain, dt));
-  }
-  return s;
-}
-
 TEST(Integrators, ExactIsTheClosedFormAtAnyStep) {
   const Vec2 w{0.7, -0.2};
   const BodyState start{{0.0, 0.0}, {3.0, 1.0}};
@@ -35,15 +25,6 @@ TEST(Integrators, ExactIsTheClosedFormAtAnyStep) {
   const BodyState once = step_body(Integrator::exact, start, w, Decay(kGain, 1.0));
   EXPECT_LT(norm(many.position - once.position), 1e-12);
   EXPECT_LT(norm(many.velocity - once.velocity), 1e-12);
-}
-
-TEST(Integrators, AdaptiveOnesAgreeWithExact) {
-  const BodyState exact = after(Integrator::exact, 0.02, 5.0);
-  for (const Integrator integrator : {Integrator::dopri5, Integrator::rosenbrock4}) {
-    const BodyState other = after(integrator, 0.02, 5.0);
-    EXPECT_LT(norm(other.position - exact.position), kAgreement) << name(integrator);
-    EXPECT_LT(norm(other.velocity - exact.velocity), kAgreement) << name(integrator);
-  }
 }
 
 TEST(Integrators, RungeKuttaIsOfFourthOrder) {

@@ -335,8 +335,7 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
         &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
-  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
-                                  &AuditReport::has_integrated})
+  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -362,10 +361,6 @@ std::vector<std::string> not_audited(const AuditReport& report) {
     words.emplace_back(
         "what robots track whose controller adds to the choice, or bounds its change: that they track "
         "one velocity over the step is asked, not which");
-  if (report.has_integrated)
-    words.emplace_back(
-        "that rows of dopri5 and rosenbrock4 solve the law of motion better than to a millionth (what is "
-        "proven clear is the cubic through them)");
   return words;
 }
 

@@ -25,9 +25,6 @@ using geometry::Vec2;
 /// A step's results are sums of terms that passed fewer than this many roundings (rk4, the longest, 40).
 constexpr double kRoundings = 64 * 0x1p-53;
 
-/// Of dopri5 and rosenbrock4, whose tolerance is 1e-12 a step: what is farther off than this did not come from them.
-constexpr double kAdaptive = 0x1p-20;
-constexpr double kAdaptiveAtRest = 1e-9;  ///< m/s
 /// m/s: who stands for a thousand steps has velocities below the smallest normal number, which round absolutely.
 constexpr double kSubnormal = 0x1p-1050;
 
@@ -72,11 +69,8 @@ class SequenceAudit : public RowAudit {
       const Rational z2 = z * z, z3 = z2 * z;
       law_ = Law{exactly_that(1 - z + z2 / 2 - z3 / 6 + z3 * z / 24),
                  exactly_that(run.duration * (1 - z / 2 + z2 / 6 - z3 / 24)), z};
-    } else if (sgn(z) > 0) {
-      const Interval remains = exact::decay(z);
-      law_ = Law{remains, (exactly_that(Rational(1)) - remains) / exactly_that(k), z};
-      is_adaptive_ = true;
-      run.tally.report.has_integrated = true;
+    } else if (integrator != "exact") {
+      run.tally.refuted(AuditPoint::sequence, "the integrator '" + integrator + "' is unknown");
     }
     if (!tracks_its_choice()) run.tally.report.has_sums = true;
   }
@@ -146,12 +140,8 @@ class SequenceAudit : public RowAudit {
 
   void check_step(const RowInRun& at) override {
     for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
-      const bool holds = follows(at.row.robots[i], at.next->robots[i]);
-      const std::string& robot = run_.scenario.robots[i].id;
-      if (holds && law_ && is_adaptive_)
-        run_.tally.open(AuditPoint::sequence, at_row(at.number, robot + " was integrated with a tolerance"));
-      else
-        ask(holds, at.number, robot + " does not get to the next row by its law of motion");
+      ask(follows(at.row.robots[i], at.next->robots[i]), at.number,
+          run_.scenario.robots[i].id + " does not get to the next row by its law of motion");
     }
   }
 
@@ -167,11 +157,8 @@ class SequenceAudit : public RowAudit {
   /// m: what a step's position may be off, of terms of this size; speeds in m/s are worth a step and what z makes of
   /// it.
   Rational rounding(const Rational& position, const Rational& speeds) const {
-    const Rational z = law_->z,
-                   growth = is_adaptive_ ? Rational(1) : Rational(1 + z + z * z + z * z * z + z * z * z * z);
-    const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : kSubnormal);
-    return Rational(is_adaptive_ ? kAdaptive : kRoundings) * (position + run_.duration * growth * speeds) +
-           run_.duration * at_rest;
+    const Rational z = law_->z, growth = 1 + z + z * z + z * z * z + z * z * z * z;
+    return Rational(kRoundings) * (position + run_.duration * growth * speeds) + run_.duration * Rational(kSubnormal);
   }
 
   bool follows_tracking(const RobotStep& from, const RobotStep& to) const {
@@ -202,7 +189,6 @@ class SequenceAudit : public RowAudit {
   const AuditedRun& run_;
   std::optional<exact::ExactWay> leader_;
   std::optional<Law> law_;  ///< of a formation
-  bool is_adaptive_ = false;
 };
 
 }  // namespace

@@ -274,11 +274,11 @@ constexpr const char* kNumberWords[] = {"an ulp up", "an ulp down", "a part in 1
 
 const std::vector<std::string>& other_words() {
   static const std::vector<std::string> words{
-      "optimal",     "relaxed",   "infeasible", "no-interior",   "direct",         "boost",    "following",
-      "pushing-out", "staying",   "arrived",    "enclosure",     "robot",          "straight", "exponential",
-      "hermite",     "exact",     "euler",      "rk4",           "dopri5",         "ivo",      "orca",
-      "default",     "corrected", "disc",       "right",         "left",           "top",      "bottom",
-      "nan",         "inf",       "",           "obstacle-edge", "moving-obstacle"};
+      "optimal",        "relaxed", "infeasible", "no-interior", "direct",   "boost",       "following", "pushing-out",
+      "staying",        "arrived", "enclosure",  "robot",       "straight", "exponential", "hermite",   "exact",
+      "euler",          "rk4",     "rk5",        "ivo",         "orca",     "default",     "corrected", "disc",
+      "right",          "left",    "top",        "bottom",      "nan",      "inf",         "",          "obstacle-edge",
+      "moving-obstacle"};
   return words;
 }
 

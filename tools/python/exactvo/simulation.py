@@ -382,7 +382,7 @@ def simulate(
     guidance     "route" or "none" instead of the scenario's
     liveness     "plan", "bias" or "off" instead of the scenario's
     controller   of formations: "paper-literal", "paper-signs", "corrected", "default"
-    integrator   of formations: "exact", "euler", "rk4", "dopri5", "rosenbrock4"
+    integrator   of formations: "exact", "euler", "rk4"
     record_all   keep every half-plane of every decision, not only those that bind
     threads      that search for joint plans, 0 to 1024; 0: as many as there are. The result is the same
     progress     called with the simulated time (s) about ten times a second; False ends the run there

@@ -101,7 +101,6 @@ struct AuditReport {
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
-  bool has_integrated = false;      ///< a run was integrated by dopri5 or rosenbrock4
 
   /// Nothing is refuted, no motion open, and no recording ends early.
   bool clean() const;

@@ -36,11 +36,9 @@ enum class Controller {
 
 /// How second-order robots are integrated over a time step.
 enum class Integrator {
-  exact,       ///< in closed form
-  euler,       ///< explicit Euler
-  rk4,         ///< the classic Runge-Kutta method
-  dopri5,      ///< Boost.Odeint's Dormand-Prince, adaptive within the step
-  rosenbrock4  ///< Boost.Odeint's Rosenbrock method, adaptive within the step
+  exact,  ///< in closed form
+  euler,  ///< explicit Euler
+  rk4     ///< the classic Runge-Kutta method
 };
 
 /// The options that a controller consists of.
@@ -60,12 +58,10 @@ constexpr geometry::Names<Controller, 4> word_table(Controller) {
            {Controller::corrected, "corrected"},
            {Controller::standard, "default"}}};
 }
-constexpr geometry::Names<Integrator, 5> word_table(Integrator) {
+constexpr geometry::Names<Integrator, 3> word_table(Integrator) {
   return {{{Integrator::exact, "exact"},
            {Integrator::euler, "euler"},
-           {Integrator::rk4, "rk4"},
-           {Integrator::dopri5, "dopri5"},
-           {Integrator::rosenbrock4, "rosenbrock4"}}};
+           {Integrator::rk4, "rk4"}}};
 }
 constexpr geometry::Names<Guidance, 2> word_table(Guidance) {
   return {{{Guidance::none, "none"}, {Guidance::route, "route"}}};
