@@ -24,7 +24,7 @@ __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
 /// Looks at each step of a run of a crowd.
-class OverlapCheck : public CrowdSink {
+class OverlapCheck : public RunSink {
  public:
   explicit OverlapCheck(const Scenario& scenario) {
     for (const Robot& r : scenario.robots) radius_.push_back(r.radius);
@@ -34,14 +34,12 @@ class OverlapCheck : public CrowdSink {
   std::size_t overlaps = 0;  ///< of these
   std::string first;         ///< losslessly
 
-  void begin(const Crowd& crowd) override {
-    step_ = crowd.options().position_step;
-    to_ = places_of(crowd);
-  }
-
-  void add_step(const Crowd& crowd, std::size_t steps) override {
+  void add_state(const RunState& now) override {
+    const std::size_t steps = now.steps;
+    step_ = now.crowd->options().position_step;
     from_ = std::move(to_);
-    to_ = places_of(crowd);
+    to_ = places_of(now.positions);
+    if (steps == 0) return;
     std::int64_t longest = 0, widest = 0;
     for (std::size_t i = 0; i < from_.size(); ++i) {
       longest = std::max({longest, std::abs(to_[i].x - from_[i].x), std::abs(to_[i].y - from_[i].y)});
@@ -61,9 +59,7 @@ class OverlapCheck : public CrowdSink {
     std::int64_t x, y;
   };
 
-  std::vector<Place> places_of(const Crowd& crowd) const {
-    std::vector<Vec2> at;
-    crowd.positions(at);
+  std::vector<Place> places_of(const std::vector<Vec2>& at) const {
     std::vector<Place> places;
     for (const Vec2 p : at)
       places.push_back({static_cast<std::int64_t>(p.x / step_), static_cast<std::int64_t>(p.y / step_)});
