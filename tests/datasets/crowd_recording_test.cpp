@@ -13,6 +13,7 @@
 
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/datasets/trajectory_file.h"
+#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/speed_profile.h"
 #include "refusal.h"
 #include "temporary_folder.h"
@@ -20,9 +21,9 @@
 namespace exactvo::datasets::test {
 namespace {
 
-using formation::CrowdRunOptions;
-using formation::CrowdRunReport;
+using formation::RunReport;
 using formation::Scenario;
+using formation::SimulationOptions;
 using geometry::Vec2;
 
 /// Sixty through sixty, round two blocks; denser than half-planes hold.
@@ -38,11 +39,11 @@ Scenario crossing(const std::string& guidance = "none") {
 
 class CrowdRecordings : public TemporaryFolder {
  protected:
-  CrowdRunReport record(const Scenario& scenario, std::uint32_t every, int threads = 1) {
+  RunReport record(const Scenario& scenario, std::uint32_t every, int threads = 1) {
     CrowdRecorder recorder(folder_ / "c.evr", scenario, every);
-    CrowdRunOptions options;
+    SimulationOptions options;
     options.threads = threads;
-    const CrowdRunReport report = run_crowd(scenario, options, &recorder);
+    const RunReport report = run_crowd(scenario, options, &recorder);
     recorder.finish();
     return report;
   }
@@ -71,13 +72,10 @@ std::pair<std::size_t, bool> rows_of(const std::filesystem::path& path) {
 }
 
 /// Keeps what a run shows.
-struct Kept : formation::CrowdSink {
-  void begin(const formation::Crowd& crowd) override { add_step(crowd, 0); }
-  void add_step(const formation::Crowd& crowd, std::size_t) override {
-    rows.emplace_back();
-    crowd.positions(rows.back());
-    marks.emplace_back();
-    crowd.kept(marks.back());
+struct Kept : formation::RunSink {
+  void add_state(const formation::RunState& now) override {
+    rows.push_back(now.positions);
+    now.crowd->kept(marks.emplace_back());
   }
   std::vector<std::vector<geometry::Vec2>> rows;
   std::vector<std::vector<std::uint8_t>> marks;
@@ -113,8 +111,8 @@ TEST_F(CrowdRecordings, Property1_WhatIsReadIsWhatWasRun) {
 TEST_F(CrowdRecordings, MovingObstaclesGoAlongTheirPathsAndAnAuditJudgesThem) {
   const Scenario scenario = traffic();
   for (const std::uint32_t every : {1U, 3U}) {
-    const CrowdRunReport run = record(scenario, every);
-    EXPECT_GT(run.bodies, 1000U);
+    const RunReport run = record(scenario, every);
+    EXPECT_GT(run.against_bodies, 1000U);
     CrowdRecordingReader reader(folder_ / "c.evr");
     ASSERT_EQ(reader.head().bodies.size(), 2U);
     EXPECT_TRUE(reader.head().bodies[0].moves);
@@ -130,7 +128,7 @@ TEST_F(CrowdRecordings, MovingObstaclesGoAlongTheirPathsAndAnAuditJudgesThem) {
     EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
     EXPECT_GT(audit.near_bodies, 20U);
   }
-  const CrowdRunReport one = record(scenario, 1), two = record(scenario, 1, 2);
+  const RunReport one = record(scenario, 1), two = record(scenario, 1, 2);
   EXPECT_EQ(one.digest, two.digest);
 }
 
@@ -154,7 +152,7 @@ TEST_F(CrowdRecordings, DiscsAreBodiesAndAnAuditJudgesThem) {
 }
 
 TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
-  const CrowdRunReport run = record(crossing(), 1);
+  const RunReport run = record(crossing(), 1);
   EXPECT_GT(run.relaxed, 0U);
   EXPECT_GT(run.cut_short, 0U);
   EXPECT_EQ(run.overlapping, 0U);
@@ -170,17 +168,31 @@ TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
   EXPECT_LT(some.motions, 4000U);
 }
 
+/// The state of a crowd that no run has made.
+void add_state_of(const formation::Crowd& crowd, std::size_t steps, CrowdRecorder& to) {
+  std::vector<Vec2> places, velocities;
+  crowd.positions(places);
+  crowd.velocities(velocities);
+  to.add_state({steps, 0.0, places, velocities, &crowd});
+}
+
+/// The state of two robots of a crowd elsewhere, with marks of what is kept.
+void add_other(CrowdRecorder& to, std::size_t steps, const formation::CrowdKind& kind, Vec2 a, Vec2 b) {
+  formation::Crowd other;
+  other.add_kind(kind);
+  other.add_robot(a);
+  other.add_robot(b);
+  other.step();
+  add_state_of(other, steps, to);
+}
+
 /// Robots put elsewhere by other means than the crowd's.
-struct Moved : formation::CrowdSink {
+struct Moved : formation::RunSink {
   explicit Moved(CrowdRecorder& to) : to_(to) {}
-  void begin(const formation::Crowd& crowd) override { to_.begin(crowd); }
-  void add_step(const formation::Crowd&, std::size_t steps) override {
-    formation::Crowd other;
-    other.add_kind({0.5, 1.0, 5.0, 15.0, 10});
-    other.add_robot({0.1 * static_cast<double>(steps), 0.0});
-    other.add_robot({3.0 - 0.1 * static_cast<double>(steps), 0.4});
-    other.step();  // with marks of what is kept
-    to_.add_step(other, steps);
+  void add_state(const formation::RunState& now) override {
+    if (now.steps == 0) return to_.add_state(now);
+    const auto steps = static_cast<double>(now.steps);
+    add_other(to_, now.steps, {0.5, 1.0, 5.0, 15.0, 10}, {0.1 * steps, 0.0}, {3.0 - 0.1 * steps, 0.4});
   }
   CrowdRecorder& to_;
 };
@@ -204,18 +216,13 @@ TEST_F(CrowdRecordings, AnAuditFindsOverlapsSpeedAndWalls) {
 }
 
 /// Two robots that are where they are put, with marks as if they had kept everything.
-struct Put : formation::CrowdSink {
+struct Put : formation::RunSink {
   using Places = std::function<std::pair<geometry::Vec2, geometry::Vec2>(double steps)>;
   Put(CrowdRecorder& to, Places places) : to_(to), places_(std::move(places)) {}
-  void begin(const formation::Crowd& crowd) override { to_.begin(crowd); }
-  void add_step(const formation::Crowd&, std::size_t steps) override {
-    formation::Crowd other;
-    other.add_kind({0.01, 1.0, 5.0, 15.0, 10});  // so small that nothing touches
-    const auto [a, b] = places_(static_cast<double>(steps));
-    other.add_robot(a);
-    other.add_robot(b);
-    other.step();
-    to_.add_step(other, steps);
+  void add_state(const formation::RunState& now) override {
+    if (now.steps == 0) return to_.add_state(now);
+    const auto [a, b] = places_(static_cast<double>(now.steps));
+    add_other(to_, now.steps, {0.01, 1.0, 5.0, 15.0, 10}, a, b);  // so small that nothing touches
   }
   CrowdRecorder& to_;
   Places places_;
@@ -294,8 +301,8 @@ CrowdAuditReport audit_beside_bodies(const std::filesystem::path& path, const st
   };
   Scenario scenario;
   CrowdRecorder recorder(path, scenario, 1);
-  recorder.begin(crowd_at(0.5, 0));
-  for (std::size_t step = 1; step <= 10; ++step) recorder.add_step(crowd_at(0.01, step), step);  // touches nothing
+  add_state_of(crowd_at(0.5, 0), 0, recorder);
+  for (std::size_t step = 1; step <= 10; ++step) add_state_of(crowd_at(0.01, step), step, recorder);  // touches nothing
   recorder.finish();
   return audit_crowd_recording(path);
 }
@@ -323,7 +330,7 @@ TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
 }
 
 TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {
-  const CrowdRunReport one = record(crossing("route"), 5), two = record(crossing("route"), 5, 2);
+  const RunReport one = record(crossing("route"), 5), two = record(crossing("route"), 5, 2);
   EXPECT_EQ(one.digest, two.digest);
   EXPECT_EQ(one.digest, run_crowd(crossing("route"), {}).digest);
   EXPECT_EQ(one.steps, two.steps);
@@ -338,16 +345,14 @@ TEST_F(CrowdRecordings, AlongRoutesAllArriveAndWhoHasNoneStays) {
       "obstacles": [{"polyline": [[0, -10], [0, -2]]}, {"polyline": [[0, 2], [0, 10]]},
                     {"polyline": [[18, -2], [22, -2], [22, 2], [18, 2], [18, -2]]}]})",
                                            "rooms.json", {});
-  const CrowdRunReport run = run_crowd(scenario, {});
+  const RunReport run = run_crowd(scenario, {});
   EXPECT_EQ(run.arrived, 20U);
-  EXPECT_EQ(run.staying, 1U);
-  ASSERT_TRUE(run.last_arrival && run.median_arrival);
-  EXPECT_LE(*run.median_arrival, *run.last_arrival);
+  EXPECT_EQ(run.without_route.size(), 1U);
   EXPECT_GT(run.path_length, 20 * 6.0);
 }
 
 TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefused) {
-  const CrowdRunReport run = record(crossing(), 1);
+  const RunReport run = record(crossing(), 1);
   const std::string whole = content_of(folder_ / "c.evr");
   for (const std::size_t size : {whole.size() - 1, whole.size() - 2, whole.size() / 2}) {
     const auto [rows, cut_off] = rows_of(put("cut.evr", whole.substr(0, size)));
@@ -537,7 +542,7 @@ struct Killed {};
 /// lost or spoilt.
 std::string snapshot_before_death(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t every,
                                   std::size_t snapshot_every, std::size_t last, std::string from) {
-  CrowdRunOptions options;
+  SimulationOptions options;
   options.snapshot_every = snapshot_every;
   options.resume_from = std::move(from);
   std::string kept;
@@ -558,7 +563,7 @@ std::string bytes_of(const std::filesystem::path& path) {
 
 TEST_F(CrowdRecordings, GoOnFromAnySnapshotToTheSameBytes) {
   for (const auto& [scenario, every] : {std::pair(crossing(), 1U), {crossing("route"), 7U}, {traffic(), 10U}}) {
-    const CrowdRunReport whole = record(scenario, every);
+    const RunReport whole = record(scenario, every);
     const std::string bytes = bytes_of(folder_ / "c.evr");
     std::size_t deaths = 0;
     for (const std::size_t steps : {1U, 13U, 40U}) {
@@ -569,19 +574,19 @@ TEST_F(CrowdRecordings, GoOnFromAnySnapshotToTheSameBytes) {
         snapshot = snapshot_before_death(folder_ / "d.evr", scenario, every, steps, 2, std::move(snapshot));
         std::ofstream(folder_ / "d.evr.unfinished", std::ios::app | std::ios::binary) << "half a row";
       }
-      CrowdRunOptions options;
+      SimulationOptions options;
       options.resume_from = snapshot;
       options.threads = 2;
       CrowdRecorder recorder(folder_ / "d.evr", scenario, every, Unfinished::stays);
-      const CrowdRunReport report = run_crowd(scenario, options, &recorder);
+      const RunReport report = run_crowd(scenario, options, &recorder);
       recorder.finish();
       EXPECT_TRUE(bytes_of(folder_ / "d.evr") == bytes) << scenario.name << " every " << steps;
       EXPECT_FALSE(std::filesystem::exists(folder_ / "d.evr.unfinished"));
       EXPECT_EQ(report.digest, whole.digest);
       EXPECT_EQ(report.steps, whole.steps);
       EXPECT_EQ(report.path_length, whole.path_length);
-      EXPECT_EQ(report.half_planes, whole.half_planes);
-      EXPECT_EQ(report.median_arrival, whole.median_arrival);
+      EXPECT_EQ(report.against_robots, whole.against_robots);
+      EXPECT_EQ(report.outcome, whole.outcome);
       EXPECT_EQ(report.arrived, whole.arrived);
     }
     EXPECT_GT(deaths, 5U) << scenario.name;
@@ -592,7 +597,7 @@ TEST_F(CrowdRecordings, SnapshotsThatWereChangedOrAreOfSomethingElseAreRefused) 
   const Scenario scenario = crossing();
   const std::string snapshot = snapshot_before_death(folder_ / "d.evr", scenario, 1, 10, 2, "");
   const auto expect_refused = [](const Scenario& s, std::string from) {
-    CrowdRunOptions options;
+    SimulationOptions options;
     options.resume_from = std::move(from);
     try {
       run_crowd(s, options);
@@ -613,7 +618,7 @@ TEST_F(CrowdRecordings, SnapshotsThatWereChangedOrAreOfSomethingElseAreRefused) 
 
 TEST_F(CrowdRecordings, GoOnOnlyWithTheRowsThatTheSnapshotKnowsOf) {
   const Scenario scenario = crossing();
-  CrowdRunOptions options;
+  SimulationOptions options;
   options.resume_from = snapshot_before_death(folder_ / "d.evr", scenario, 1, 10, 2, "");
   {
     CrowdRecorder other(folder_ / "d.evr", scenario, 2, Unfinished::stays);

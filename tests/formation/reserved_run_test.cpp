@@ -39,7 +39,7 @@ std::vector<Scene> scenes() {
 
 TEST(ReservedRun, EverybodyArrivesAndNobodyOverlaps) {
   for (const auto& [name, s] : scenes()) {
-    const CrowdRunReport r = run_crowd(s, {});
+    const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.arrived, s.robots.size()) << name;
     EXPECT_EQ(r.overlapping, 0u) << name;
     EXPECT_GT(r.reserved, 0u) << name;
@@ -52,7 +52,7 @@ TEST(ReservedRun, WithoutAJamNobodyReservesBeforeItIsAtItsGoal) {
   s = run_along_routes(s);
   EXPECT_EQ(run_crowd(s, {}).arrived, 5u);
   s.time_limit = 10.0;  // 15 m
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_EQ(r.arrived, 0u);
   EXPECT_EQ(r.reserved, 0u);
 }
@@ -62,7 +62,7 @@ TEST(ReservedRun, OffAndBiasReserveNothing) {
     Scenario s = run_along_routes(street(14, 3.0));
     s.time_limit = 60.0;
     s.liveness = liveness;
-    const CrowdRunReport r = run_crowd(s, {});
+    const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.reserved, 0u);
     EXPECT_EQ(r.overlapping, 0u);
     EXPECT_LT(r.arrived, s.robots.size()) << "there is a jam to get out of";
@@ -73,18 +73,18 @@ TEST(ReservedRun, OffAndBiasReserveNothing) {
 TEST(ReservedRun, TheSameBitsOnTwoThreadsAndFromASnapshot) {
   test::SeededRandom random(test::seed_of_run(22));
   const Scenario s = run_along_routes(door(24, 1.5, random));
-  CrowdRunOptions options;
+  SimulationOptions options;
   std::vector<std::string> snapshots;
   options.snapshot_every = 150;
   options.keep_snapshot = [&](const std::string& bytes) { snapshots.push_back(bytes); };
-  const CrowdRunReport whole = run_crowd(s, options);
+  const RunReport whole = run_crowd(s, options);
   ASSERT_GE(snapshots.size(), 2u);
   options.threads = 2;
   EXPECT_EQ(run_crowd(s, options).digest, whole.digest);
   for (const std::string& bytes : std::vector<std::string>(snapshots)) {
-    CrowdRunOptions again;
+    SimulationOptions again;
     again.resume_from = bytes;
-    const CrowdRunReport r = run_crowd(s, again);
+    const RunReport r = run_crowd(s, again);
     EXPECT_EQ(r.digest, whole.digest);
     EXPECT_EQ(r.steps, whole.steps);
     EXPECT_EQ(r.reserved, whole.reserved);
@@ -99,7 +99,7 @@ TEST(ReservedRun, RobotsStayAtGoalsThatAreAsNearToEachOtherAsTheirRadiiAllow) {
     // Two robots with goals `apart` from each other, in the midst of the others.
     s.robots[1].goals = {s.robots[0].goals.back() + Vec2{apart * 2.0 * s.robots[0].radius, 0.0}};
     s.time_limit = 200.0;
-    const CrowdRunReport r = run_crowd(s, {});
+    const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.arrived + r.goal_taken.size(), s.robots.size()) << apart;
     EXPECT_LT(r.time, s.time_limit) << apart;
   }

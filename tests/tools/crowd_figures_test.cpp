@@ -11,6 +11,7 @@
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/crowd_run.h"
 
 namespace exactvo::tools {
 namespace {
@@ -36,7 +37,7 @@ class CrowdFigures : public testing::Test {
   const std::filesystem::path path_ =
       std::filesystem::temp_directory_path() /
       (std::string("exactvo_crowd_figures_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".evr");
-  formation::CrowdRunReport report_;
+  formation::RunReport report_;
   CrowdCourse course_;
 };
 

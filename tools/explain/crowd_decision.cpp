@@ -33,22 +33,21 @@ std::vector<std::size_t> obstacle_of(const geometry::Segment& edge, const Scenar
 }
 
 /// Takes one decision, right before it is carried out.
-class AtStep : public formation::CrowdSink {
+class AtStep : public formation::RunSink {
  public:
   AtStep(const Scenario& scenario, std::string method, std::size_t robot, std::size_t step)
       : scenario_(scenario), method_(std::move(method)), robot_(robot), step_(step) {}
 
-  void begin(const Crowd&) override {}
-  void add_step(const Crowd&, std::size_t) override {}
-  void before_step(const Crowd& crowd, std::size_t steps) override {
-    if (steps == step_) take(crowd);
+  void before_step(const formation::RunState& now) override {
+    if (now.steps == step_) take(now);
   }
   CrowdDecision& taken() { return taken_; }
 
  private:
-  void take(const Crowd& crowd) {
+  void take(const formation::RunState& now) {
+    const Crowd& crowd = *now.crowd;
     const CrowdExplanation e = crowd.explain(static_cast<formation::RobotId>(robot_));
-    formation::Step row = places(crowd);
+    formation::Step row = places(now);
     RobotStep& step = row.robots[robot_];
     step.preferred = e.preferred;
     step.chosen = e.chosen;
@@ -78,18 +77,15 @@ class AtStep : public formation::CrowdSink {
     add_remarks(e);
   }
 
-  formation::Step places(const Crowd& crowd) const {
-    std::vector<Vec2> position, velocity;
-    crowd.positions(position);
-    crowd.velocities(velocity);
+  static formation::Step places(const formation::RunState& now) {
     formation::Step row;
-    row.time = static_cast<double>(step_) * scenario_.time_step;
-    row.robots.resize(position.size());
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      row.robots[i].position = row.robots[i].anchor = position[i];
-      row.robots[i].velocity = row.robots[i].anchor_velocity = velocity[i];
+    row.time = now.time;
+    row.robots.resize(now.positions.size());
+    for (std::size_t i = 0; i < now.positions.size(); ++i) {
+      row.robots[i].position = row.robots[i].anchor = now.positions[i];
+      row.robots[i].velocity = row.robots[i].anchor_velocity = now.velocities[i];
     }
-    for (const formation::CrowdBodyState& body : crowd.bodies())
+    for (const formation::CrowdBodyState& body : now.crowd->bodies())
       if (body.moves) row.moving.push_back({body.displacement, body.velocity});
     return row;
   }
@@ -147,12 +143,12 @@ class AtStep : public formation::CrowdSink {
 
 }  // namespace
 
-CrowdDecision crowd_decision(const Scenario& scenario, formation::CrowdRunOptions options, const std::string& method,
+CrowdDecision crowd_decision(const Scenario& scenario, formation::SimulationOptions options, const std::string& method,
                              std::size_t robot, double time) {
   constexpr double kSameRow = 1e-6;  // of a step
   AtStep at(scenario, method, robot, static_cast<std::size_t>(time / scenario.time_step + kSameRow));
   options.progress = [&](double) { return !interrupted() && !at.taken().decision; };
-  const formation::CrowdRunReport report = run_crowd(scenario, options, &at);
+  const formation::RunReport report = run_crowd(scenario, options, &at);
   if (interrupted()) throw Interrupted();
   at.taken().end = report.time;
   return std::move(at.taken());

@@ -22,7 +22,7 @@ struct CrowdDecision {
 /// The decision of a robot in the step at `time` (s, >= 0), with all half-planes; of the others it has places and
 /// velocities. Multipliers are not known. `method`: how the run is made, in words. `options.progress` is replaced.
 /// Throws what run_crowd throws, and Interrupted.
-CrowdDecision crowd_decision(const formation::Scenario& scenario, formation::CrowdRunOptions options,
+CrowdDecision crowd_decision(const formation::Scenario& scenario, formation::SimulationOptions options,
                              const std::string& method, std::size_t robot, double time);
 
 }  // namespace exactvo::tools

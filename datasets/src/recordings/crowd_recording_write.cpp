@@ -71,13 +71,6 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   return out + head;
 }
 
-void CrowdRecorder::begin(const formation::Crowd& crowd) {
-  file_.continue_behind(0);
-  put(head_of(crowd));
-  take(crowd);
-  write_row();
-}
-
 // What a row is the difference from, and what will be in the next one. The positions of that one come with its step.
 
 void CrowdRecorder::save(std::ostream& to) {
@@ -94,8 +87,8 @@ void CrowdRecorder::save(std::ostream& to) {
   to.write(out.data(), static_cast<std::streamsize>(out.size()));
 }
 
-void CrowdRecorder::restore(const formation::Crowd& crowd, std::istream& from) {
-  head_of(crowd);
+void CrowdRecorder::restore(const formation::RunState& now, std::istream& from) {
+  head_of(*now.crowd);
   const std::string bytes{std::istreambuf_iterator<char>(from), std::istreambuf_iterator<char>()};
   const std::string name = "a snapshot";
   CrowdBytes in(bytes, name, 0);
@@ -115,26 +108,31 @@ void CrowdRecorder::restore(const formation::Crowd& crowd, std::istream& from) {
   file_.continue_behind(bytes_);
 }
 
-void CrowdRecorder::take(const formation::Crowd& crowd) {
-  crowd.positions(at_);
-  for (std::size_t i = 0; i < at_.size(); ++i) {
-    row_.x[i] = static_cast<std::int32_t>(at_[i].x / head_.position_step);
-    row_.y[i] = static_cast<std::int32_t>(at_[i].y / head_.position_step);
+void CrowdRecorder::take(const formation::RunState& now) {
+  for (std::size_t i = 0; i < now.positions.size(); ++i) {
+    row_.x[i] = static_cast<std::int32_t>(now.positions[i].x / head_.position_step);
+    row_.y[i] = static_cast<std::int32_t>(now.positions[i].y / head_.position_step);
   }
   for (std::size_t k = 0; k < body_ids_.size(); ++k) {
-    const geometry::Vec2 at = crowd.body_displacement(body_ids_[k]) - body_start_[k];
+    const geometry::Vec2 at = now.crowd->body_displacement(body_ids_[k]) - body_start_[k];
     row_.body_x[k] = static_cast<std::int64_t>(at.x / head_.position_step);
     row_.body_y[k] = static_cast<std::int64_t>(at.y / head_.position_step);
   }
 }
 
-void CrowdRecorder::add_step(const formation::Crowd& crowd, std::size_t steps) {
-  crowd.kept(kept_);
-  for (std::size_t i = 0; i < kept_.size(); ++i) row_.kept[i] &= kept_[i];
-  row_.step = static_cast<std::uint32_t>(steps);
-  take(crowd);
+void CrowdRecorder::add_state(const formation::RunState& now) {
+  EXACTVO_REQUIRE(now.crowd, "the state of no crowd");
+  if (now.steps == 0) {
+    file_.continue_behind(0);
+    put(head_of(*now.crowd));
+  } else {
+    now.crowd->kept(kept_);
+    for (std::size_t i = 0; i < kept_.size(); ++i) row_.kept[i] &= kept_[i];
+  }
+  row_.step = static_cast<std::uint32_t>(now.steps);
+  take(now);
   is_due_ = true;
-  if (steps % head_.every == 0) write_row();
+  if (now.steps % head_.every == 0) write_row();
 }
 
 void CrowdRecorder::write_row() {

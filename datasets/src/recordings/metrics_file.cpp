@@ -114,12 +114,13 @@ RunInfo run_info(const formation::Scenario& scenario, const formation::Simulatio
   return info;
 }
 
-RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::CrowdRunOptions& options,
+RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                        Provenance provenance) {
   RunInfo info{scenario.name, name(formation::Method::orca), std::nullopt, std::nullopt, std::move(provenance)};
   const formation::Guidance guidance = options.guidance.value_or(scenario.guidance);
   if (guidance != formation::Guidance::none) info.guidance = name(guidance);
-  if (scenario.liveness != formation::Liveness::off) info.liveness = name(scenario.liveness);
+  const formation::Liveness liveness = options.liveness.value_or(scenario.liveness);
+  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
   info.decisions = "none";
   return info;
 }

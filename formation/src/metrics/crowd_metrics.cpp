@@ -21,9 +21,6 @@ namespace {
 using crowd::SnapshotReader;
 using crowd::SnapshotWriter;
 
-/// So many robots are named in an outcome; `Metrics::stuck` has all.
-constexpr std::size_t kReasonsNamed = 3;
-
 Recording straight_run(const Scenario& scenario) {
   Recording run;
   run.motion = MotionLaw::straight;
@@ -32,7 +29,7 @@ Recording straight_run(const Scenario& scenario) {
 }
 
 /// By robot: why it is not at its goal; empty where it is, or nothing is known.
-std::vector<std::string> reasons(const Scenario& scenario, const CrowdRunReport& report) {
+std::vector<std::string> reasons(const Scenario& scenario, const RunReport& report) {
   std::vector<std::string> by_robot(scenario.robots.size());
   for (const auto* robots : {&report.without_route, &report.goal_taken, &report.route_cut})
     for (const RobotNotThere& r : *robots) by_robot[r.robot] = r.why;
@@ -47,55 +44,27 @@ std::string where_words(const Robot& spec, const detail::RobotCourse& course) {
          (rests ? "at rest" : "still moving at " + detail::number_text(speed, 3) + " m/s");
 }
 
-/// `because`: the sentences of those that have a reason.
-std::string end_words(const Metrics& m, const std::vector<std::string>& because, bool is_out_of_time) {
-  std::string text = detail::arrival_words(m.arrived, m.robots.size(), is_out_of_time);
-  const std::size_t named = std::min(kReasonsNamed, because.size());
-  for (std::size_t k = 0; k < named; ++k) text += "; " + because[k];
-  if (because.size() > named) text += "; " + std::to_string(because.size() - named) + " more for such reasons";
-  if (m.crowd->stands_still) text += "; nothing moves, and every further step would repeat the last";
-  return text;
-}
-
-CrowdMetrics counts_of(const CrowdRunReport& r) {
-  CrowdMetrics c;
-  c.cut_short = r.cut_short;
-  c.reserved = r.reserved;
-  c.stopped = r.stopped;
-  c.overlapping = r.overlapping;
-  c.touching = r.touching;
-  c.widened = r.widened;
-  c.against_robots = r.half_planes;
-  c.against_edges = r.edges;
-  c.against_bodies = r.bodies;
-  c.stands_still = r.stands_still;
-  c.digest = r.digest;
-  return c;
-}
-
 }  // namespace
 
 struct CrowdEvaluator::Parts {
-  Parts(const Scenario& s, CrowdSink* n) : scenario(s), run(straight_run(s)), next(n), robots(s.robots.size()) {
+  Parts(const Scenario& s, RunSink* n) : scenario(s), run(straight_run(s)), next(n), robots(s.robots.size()) {
     if (robots.size() <= kMostClearances) clearances.emplace(s, run);
   }
 
-  void add(const Crowd& crowd, std::size_t steps) {
-    crowd.positions(position);
-    crowd.velocities(velocity);
-    const double time = static_cast<double>(steps) * scenario.time_step;
+  void add(const RunState& now) {
+    const std::vector<Vec2>&position = now.positions, &velocity = now.velocities;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       const Robot& spec = scenario.robots[i];
-      if (steps > 0)
+      if (now.steps > 0)
         robots[i].move_to(position[i], velocity[i], scenario.time_step,
                           detail::RobotCourse::kLeastHeadway * spec.max_speed);
       else
         robots[i].position = position[i], robots[i].velocity = velocity[i];
-      robots[i].arrive(spec, scenario.arrival_tolerance, time, position[i]);
+      robots[i].arrive(spec, scenario.arrival_tolerance, now.time, position[i]);
     }
     if (!clearances) return;
     detail::RowState row;
-    row.time = time;
+    row.time = now.time;
     row.robots.reserve(robots.size());
     for (std::size_t i = 0; i < robots.size(); ++i) row.robots.push_back({position[i], velocity[i], false});
     clearances->add(std::move(row));
@@ -103,24 +72,18 @@ struct CrowdEvaluator::Parts {
 
   const Scenario& scenario;
   const Recording run;
-  CrowdSink* next;
+  RunSink* next;
   std::vector<detail::RobotCourse> robots;
   std::optional<detail::ClearanceSweep> clearances;
-  std::vector<Vec2> position, velocity;
 };
 
-CrowdEvaluator::CrowdEvaluator(const Scenario& scenario, CrowdSink* next)
+CrowdEvaluator::CrowdEvaluator(const Scenario& scenario, RunSink* next)
     : parts_(std::make_unique<Parts>(scenario, next)) {}
 CrowdEvaluator::~CrowdEvaluator() = default;
 
-void CrowdEvaluator::begin(const Crowd& crowd) {
-  parts_->add(crowd, 0);
-  if (parts_->next) parts_->next->begin(crowd);
-}
-
-void CrowdEvaluator::add_step(const Crowd& crowd, std::size_t steps) {
-  parts_->add(crowd, steps);
-  if (parts_->next) parts_->next->add_step(crowd, steps);
+void CrowdEvaluator::add_state(const RunState& now) {
+  parts_->add(now);
+  if (parts_->next) parts_->next->add_state(now);
 }
 
 void CrowdEvaluator::save(std::ostream& to) {
@@ -135,7 +98,7 @@ void CrowdEvaluator::save(std::ostream& to) {
   whole.finish();
 }
 
-void CrowdEvaluator::restore(const Crowd& crowd, std::istream& from) {
+void CrowdEvaluator::restore(const RunState& now, std::istream& from) {
   const std::string expected = "those of a run of this scenario and these options";
   SnapshotReader whole(from, expected);
   std::istringstream own(whole.get<std::string>()), next(whole.get<std::string>());
@@ -144,13 +107,13 @@ void CrowdEvaluator::restore(const Crowd& crowd, std::istream& from) {
   if (of_own.get<std::size_t>() != parts_->robots.size()) crowd::refuse_snapshot("another number of robots", expected);
   for (detail::RobotCourse& r : parts_->robots) r.fields(of_own);
   if (parts_->clearances) parts_->clearances->get(of_own);
-  if (parts_->next) parts_->next->restore(crowd, next);
+  if (parts_->next) parts_->next->restore(now, next);
 }
 
-Metrics CrowdEvaluator::finish(const CrowdRunReport& report, std::vector<std::string> warnings) const {
+Metrics CrowdEvaluator::finish(const RunReport& report, std::vector<std::string> warnings) const {
   const Scenario& scenario = parts_->scenario;
   Metrics m;
-  m.crowd = counts_of(report);
+  m.crowd = report;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const detail::RobotCourse& course = parts_->robots[i];
     RobotMetrics& robot = m.robots.emplace_back();
@@ -174,15 +137,12 @@ Metrics CrowdEvaluator::finish(const CrowdRunReport& report, std::vector<std::st
   m.wall_time = report.wall_time;
   m.warnings = std::move(warnings);
   const std::vector<std::string> why = reasons(scenario, report);
-  std::vector<std::string> because;
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
     if (m.robots[i].arrived) continue;
     const std::string& id = scenario.robots[i].id;
-    if (!why[i].empty()) because.push_back(id + " " + why[i]);
-    m.stuck.push_back(why[i].empty() ? id + " " + where_words(scenario.robots[i], parts_->robots[i]) : because.back());
+    m.stuck.push_back(id + " " + (why[i].empty() ? where_words(scenario.robots[i], parts_->robots[i]) : why[i]));
   }
-  const bool is_out_of_time = report.time >= (1.0 - 1e-9) * scenario.time_limit;
-  m.outcome = detail::collision_words(m) + end_words(m, because, is_out_of_time);
+  m.outcome = detail::collision_words(m) + report.outcome;
   return m;
 }
 

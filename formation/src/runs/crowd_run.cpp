@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <sstream>
 #include <string>
@@ -20,8 +19,7 @@
 #include "exactvo/geometry/told_apart.h"
 #include "liveness/reservations.h"
 #include "motion/leader.h"
-#include "runs/journeys.h"
-#include "runs/run_schedule.h"
+#include "runs/robot_run.h"
 #include "scene/free_space.h"
 #include "scene/goals.h"
 #include "scene/number_text.h"
@@ -43,6 +41,9 @@ constexpr std::size_t kLookAgain = 8;
 
 /// Neighbours of a robot, the number of RVO2's examples and of the published comparisons.
 constexpr int kNeighbours = 10;
+
+/// So many robots are named in an outcome.
+constexpr std::size_t kReasonsNamed = 3;
 
 /// The lattice reaches so many times as far as robots, goals and obstacles.
 constexpr double kReach = 2.0;
@@ -82,7 +83,7 @@ double position_step_for(const Scenario& s) {
   return crowd::lattice_for(kReach * extent(s), fastest(s) * s.time_step);
 }
 
-CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
+CrowdOptions options_of(const Scenario& s, const SimulationOptions& options) {
   CrowdOptions out;
   out.time_step = s.time_step;
   out.precision = options.precision;
@@ -92,84 +93,137 @@ CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
   return out;
 }
 
-class CrowdRun {
+// Robots with a reservation do not evade moving obstacles.
+bool has_reservations(const Scenario& s, Liveness liveness) {
+  return liveness == Liveness::plan && !s.robots.empty() && s.moving_obstacles.empty();
+}
+
+/// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would push
+/// each other off them by turns.
+RoomAtEnds room_at_ends_of(const Scenario& s, Liveness liveness) {
+  RoomAtEnds room;
+  if (has_reservations(s, liveness)) room.margin = kRoomBetweenPlaces * 2.0 * largest_radius(s.robots);
+  return room;
+}
+
+class CrowdSteps final : public Stepper {
  public:
-  CrowdRun(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink)
-      : scenario_(scenario),
+  /// All must outlive it; `sink` may be null.
+  CrowdSteps(RobotsOfRun& robots, const SimulationOptions& options, Liveness liveness, RunSink* sink)
+      : scenario_(robots.scenario),
         options_(options),
+        liveness_(liveness),
         ranks_(options.ranks),
-        sink_(is_first() ? sink : nullptr),
-        crowd_(options_of(scenario, options)),
-        ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
+        sink_(sink),
+        crowd_(options_of(scenario_, options)),
+        ends_(share_ends(robots.size(), ranks_ ? ranks_->size() : 1)),
+        robots_(robots),
+        at_(robots.at),
+        velocity_(robots.velocity),
+        journeys_(robots.journeys),
+        report_(robots.report) {
     add_robots();
-    for (const SceneObstacle& o : scenario.obstacles) o.disc ? crowd_.add_body(*o.disc) : crowd_.add_obstacle(o.shape);
-    for (const MovingObstacle& o : scenario.moving_obstacles)
+    for (const SceneObstacle& o : scenario_.obstacles) o.disc ? crowd_.add_body(*o.disc) : crowd_.add_obstacle(o.shape);
+    for (const MovingObstacle& o : scenario_.moving_obstacles)
       moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
-    if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
-    const std::size_t robots = scenario.robots.size();
     crowd_.positions(at_);
-    journeys_.emplace(scenario, guide_ ? &*guide_ : nullptr, scenario.liveness, at_, room_at_ends(),
-                      scenario.horizons.orca, TakenOnTheWay::passed_beside);
-    preferred_.resize(robots);
-    turned_.resize(robots);
-    arrived_.resize(robots);
-    if (journeys_->has_claims()) ends_now_.resize(robots);
-    make_reservations();
+    crowd_.velocities(velocity_);
+    preferred_.resize(robots.size());
+    turned_.resize(robots.size());
+    if (journeys_.has_claims()) ends_now_.resize(robots.size());
+    if (has_reservations(scenario_, liveness)) make_reservations();
+    options.resume_from.empty() ? set_out() : restore(options.resume_from);
   }
 
-  CrowdRunReport run() {
-    const Clock::time_point start = Clock::now();
-    options_.resume_from.empty() ? begin() : restore(options_.resume_from);
-    const std::size_t most = steps_of_run(scenario_);
-    for (After after = what_follows(false); report_.steps < most && after == After::step;) {
-      step();
-      after = what_follows(options_.progress && !options_.progress(report_.time));
-      report_.interrupted = after == After::stop;
-      const bool is_due = options_.snapshot_every > 0 && report_.steps % options_.snapshot_every == 0;
-      if (options_.keep_snapshot && (is_due || report_.interrupted)) keep_snapshot();
-    }
-    finish();
-    report_.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
-    return report_;
+  void decide() override {
+    set_out_obstacles();
+    look_at_obstacles();
+    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
+    if (journeys_.has_claims()) look_at_claims();
+    if (reservations_) reserve();
+    for (std::size_t i = own_begin(); i < own_end(); ++i)
+      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
+    share_preferred();
+    crowd_.set_preferred(preferred_);
   }
+
+  void move() override {
+    const StepReport s = crowd_.step();
+    report_.relaxed += s.relaxed;
+    report_.cut_short += s.cut_short;
+    report_.reserved += s.reserved;
+    report_.overlapping += s.overlapping;
+    report_.touching += s.touching;
+    report_.widened += s.widened;
+    report_.stopped += s.stopped;
+    report_.against_robots += s.neighbours;
+    report_.against_edges += s.edges;
+    report_.against_bodies += s.bodies;
+    crowd_.positions(at_);
+    crowd_.velocities(velocity_);
+    const bool obstacles_rest = end_of_step() >= journeys_.moving_until() + 2.0 * scenario_.time_step;
+    if (at_ != robots_.before || !(obstacles_rest || moving_.empty())) moved_ = report_.steps + 1;
+  }
+
+  bool goes_on() const override {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) {
+      const bool rests = journeys_.rests_beside(i) && journeys_.ends_here(i);
+      if (!journeys_.at_goal(i) && !journeys_.stays(i) && !rests) return true;
+    }
+    return false;
+  }
+
+  /// What a step does follows from places, velocities, aims, claims and reservations, and from whose turn it is to look
+  /// along its route. In as many steps as there are turns none of these has changed, from velocities of 0 on: so the
+  /// next ones do what they have done.
+  bool repeats_itself() const override {
+    const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
+    if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
+    if (static_cast<double>(report_.steps - moved_) * scenario_.time_step < journeys_.longest_pause()) return false;
+    if (reservations_ && std::max(moved_, reserved_) + reservations_->patience() > report_.steps) return false;
+    bool is_so = true;
+    for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(turned_[i]);
+    return (ranks_ ? ranks_->least(is_so) : is_so) != 0;
+  }
+
+  void end_step(bool is_stopped) override {
+    const bool is_due = options_.snapshot_every > 0 && report_.steps % options_.snapshot_every == 0;
+    if (options_.keep_snapshot && (is_due || is_stopped) && gather_journeys()) options_.keep_snapshot(snapshot());
+  }
+
+  bool finish() override {
+    report_.digest = crowd_.digest();
+    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
+    if (journeys_.has_claims()) look_at_claims();
+    return gather_journeys();
+  }
+
+  std::string why_not_there(std::size_t i) const override { return journeys_.why_not_there(i); }
+  std::size_t most_named() const override { return kReasonsNamed; }
+  const Crowd* crowd() const override { return &crowd_; }
 
  private:
-  void begin() {
-    report_.robots = journeys_->size();
-    for (std::size_t i = own_begin(); i < own_end(); ++i) set_out(i);
-    if (sink_) sink_->begin(crowd_);
+  void set_out() {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) {
+      journeys_.set_out(i);
+      journeys_.look_along(i);
+    }
+    if (sink_) sink_->add_state(state_of(robots_, &crowd_));
   }
 
-  void set_out(std::size_t i) {
-    journeys_->set_out(i);
-    journeys_->look_along(i);
-  }
-
-  // Robots with a reservation do not evade moving obstacles.
-  bool has_reservations() const {
-    return scenario_.liveness == Liveness::plan && !scenario_.robots.empty() && scenario_.moving_obstacles.empty();
-  }
-
-  /// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would
-  /// push each other off them by turns.
-  RoomAtEnds room_at_ends() const {
-    RoomAtEnds room;
-    if (has_reservations()) room.margin = kRoomBetweenPlaces * 2.0 * largest_radius(scenario_.robots);
-    return room;
-  }
+  /// s: when the present step ends.
+  double end_of_step() const { return static_cast<double>(report_.steps + 1) * scenario_.time_step; }
 
   void make_reservations() {
-    if (!has_reservations()) return;
     space_.emplace(scenario_.obstacles);
-    reservations_.emplace(*space_, journeys_->size(), scenario_.time_step, largest_radius(scenario_.robots));
-    under_way_.resize(journeys_->size());
+    reservations_.emplace(*space_, journeys_.size(), scenario_.time_step, largest_radius(scenario_.robots));
+    under_way_.resize(journeys_.size());
   }
 
   // --- Ranks: each looks where robots own_begin() to own_end() are to go ---
 
-  bool is_first() const { return !ranks_ || ranks_->rank() == 0; }
   std::size_t own_begin() const {
-    return ranks_ && !is_first() ? ends_[static_cast<std::size_t>(ranks_->rank()) - 1] : 0;
+    return ranks_ && ranks_->rank() > 0 ? ends_[static_cast<std::size_t>(ranks_->rank()) - 1] : 0;
   }
   std::size_t own_end() const { return ends_[ranks_ ? static_cast<std::size_t>(ranks_->rank()) : 0]; }
 
@@ -192,18 +246,16 @@ class CrowdRun {
         for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) get(from, i);
       }
     }
-    report_.arrived = 0;
-    for (std::size_t i = 0; i < journeys_->size(); ++i) report_.arrived += journeys_->at_goal(i);
-    return is_first();
+    return !ranks_ || ranks_->rank() == 0;
   }
 
   void put(SnapshotWriter& to, std::size_t i) const {
-    journeys_->put(i, to);
-    to.fields(turned_[i], arrived_[i]);
+    journeys_.put(i, to);
+    to.put(turned_[i]);
   }
   void get(SnapshotReader& from, std::size_t i) {
-    journeys_->get(i, from);
-    from.fields(turned_[i], arrived_[i]);
+    journeys_.get(i, from);
+    from.get(turned_[i]);
   }
 
   void require_same_states() const {
@@ -214,19 +266,15 @@ class CrowdRun {
 
   // --- Snapshots: the run, the crowd, the sink, and a checksum ---
 
-  void keep_snapshot() {
-    if (gather_journeys()) options_.keep_snapshot(snapshot());
-  }
-
   /// REQUIRES: all journeys are here.
   std::string snapshot() const {
     std::ostringstream run, crowd, sink, whole;
     SnapshotWriter of_run(run), to(whole);
-    of_run.put(journeys_->size());
+    of_run.put(journeys_.size());
     for_each_count(report_, [&](const auto& count) { of_run.put(count); });
     of_run.fields(moved_, claimed_, reserved_);
-    journeys_->put_shared(of_run);
-    for (std::size_t i = 0; i < journeys_->size(); ++i) put(of_run, i);
+    journeys_.put_shared(of_run);
+    for (std::size_t i = 0; i < journeys_.size(); ++i) put(of_run, i);
     if (reservations_) reservations_->put(of_run);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
@@ -241,19 +289,20 @@ class CrowdRun {
     std::istringstream run(from.get<std::string>()), crowd(from.get<std::string>()), sink(from.get<std::string>());
     from.finish();
     SnapshotReader of_run(run, kSnapshotOfRun);
-    require(is_at_end(whole) && of_run.get<std::size_t>() == journeys_->size());
+    require(is_at_end(whole) && of_run.get<std::size_t>() == journeys_.size());
     for_each_count(report_, [&](auto& count) { of_run.get(count); });
     of_run.fields(moved_, claimed_, reserved_);
-    journeys_->get_shared(of_run);
-    for (std::size_t i = 0; i < journeys_->size(); ++i) get(of_run, i);
+    journeys_.get_shared(of_run);
+    for (std::size_t i = 0; i < journeys_.size(); ++i) get(of_run, i);
     if (reservations_) reservations_->get(of_run);
     const CrowdOptions wanted = crowd_.options();
     crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
     require(is_at_end(run) && found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
-            found.precision == wanted.precision && crowd_.id_end() == journeys_->size());
+            found.precision == wanted.precision && crowd_.id_end() == journeys_.size());
     crowd_.positions(at_);
-    if (sink_) sink_->restore(crowd_, sink);
+    crowd_.velocities(velocity_);
+    if (sink_) sink_->restore(state_of(robots_, &crowd_), sink);
   }
 
   static bool is_at_end(std::istream& from) { return from.peek() == std::istream::traits_type::eof(); }
@@ -264,8 +313,8 @@ class CrowdRun {
   /// What adds up from step to step.
   template <class Report, class Visit>
   static void for_each_count(Report& r, const Visit& visit) {
-    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.cut_short, &r.reserved, &r.overlapping,
-                        &r.touching, &r.widened, &r.stopped, &r.half_planes, &r.edges, &r.bodies})
+    for (auto* count : {&r.steps, &r.relaxed, &r.cut_short, &r.reserved, &r.overlapping, &r.touching, &r.widened,
+                        &r.stopped, &r.against_robots, &r.against_edges, &r.against_bodies})
       visit(*count);
     for (auto* number : {&r.time, &r.path_length}) visit(*number);
   }
@@ -304,34 +353,33 @@ class CrowdRun {
   // --- One robot ---
 
   void look(std::size_t i) {
-    const Journey& j = (*journeys_)[i];
+    const Journey& j = journeys_[i];
     const auto aim = [&] {
-      return std::tuple(j.goal, j.heading.x, j.heading.y, journeys_->stays(i), j.course ? j.course->next : 0);
+      return std::tuple(j.goal, j.heading.x, j.heading.y, journeys_.stays(i), j.course ? j.course->next : 0);
     };
     const auto before = aim();
-    if (journeys_->pass_goal(i)) journeys_->look_along(i);
-    journeys_->look_whether_it_waits(i, velocity_[i] == Vec2{});
-    journeys_->go_round(i);
-    const bool is_there = journeys_->at_goal(i);
-    if (!is_there || !arrived_[i]) arrived_[i] = is_there ? std::optional(report_.time) : std::nullopt;
-    if (is_there || j.waits_for_room || j.nearest || (report_.steps + i) % kLookAgain == 0) journeys_->look_along(i);
-    if (!journeys_->take_note(i).empty() || aim() != before) turned_[i] = report_.steps;
+    if (journeys_.pass_goal(i)) journeys_.look_along(i);
+    journeys_.look_whether_it_waits(i, velocity_[i] == Vec2{});
+    journeys_.go_round(i);
+    if (journeys_.at_goal(i) || j.waits_for_room || j.nearest || (report_.steps + i) % kLookAgain == 0)
+      journeys_.look_along(i);
+    if (!journeys_.take_note(i).empty() || aim() != before) turned_[i] = report_.steps;
   }
 
   Vec2 preferred_of(std::size_t i) {
-    const Vec2 preferred = journeys_->beside_taken(i, journeys_->preferred(i));
-    if (scenario_.liveness == Liveness::off) return preferred;
-    const double held_up = (*journeys_)[i].keep_right.held_up;
-    const bool waits = (*journeys_)[i].cut_by.has_value();  // not for robots
-    const Vec2 turned = journeys_->kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience, !waits);
-    if ((*journeys_)[i].keep_right.held_up != held_up) turned_[i] = report_.steps;
+    const Vec2 preferred = journeys_.beside_taken(i, journeys_.preferred(i));
+    if (liveness_ == Liveness::off) return preferred;
+    const double held_up = journeys_[i].keep_right.held_up;
+    const bool waits = journeys_[i].cut_by.has_value();  // not for robots
+    const Vec2 turned = journeys_.kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience, !waits);
+    if (journeys_[i].keep_right.held_up != held_up) turned_[i] = report_.steps;
     return turned;
   }
 
   void look_at_claims() {
-    for (std::size_t i = own_begin(); i < own_end(); ++i) ends_now_[i] = journeys_->end_now(i, true);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) ends_now_[i] = journeys_.end_now(i, true);
     if (ranks_) ranks_->share({{ends_now_.data(), in_bytes(ends_, sizeof(EndNow))}});
-    if (journeys_->look_at_claims(ends_now_)) claimed_ = report_.steps;
+    if (journeys_.look_at_claims(ends_now_)) claimed_ = report_.steps;
   }
 
   // --- Reservations ---
@@ -347,16 +395,16 @@ class CrowdRun {
   bool has_reserved(std::size_t i) const { return reservations_ && reservations_->reserved()[i] != 0; }
 
   RobotUnderWay under_way(std::size_t i) const {
-    const Journey& j = (*journeys_)[i];
+    const Journey& j = journeys_[i];
     RobotUnderWay r;
     r.position = at_[i];
     r.velocity = velocity_[i];
     r.radius = scenario_.robots[i].radius;
     r.max_speed = scenario_.robots[i].max_speed;
     r.leg = static_cast<std::uint32_t>(j.goal);
-    r.yields = journeys_->stays(i) || journeys_->is_taken(i);
-    r.goal = journeys_->end_of(i);
-    r.is_at_goal = !j.nearest && journeys_->at_goal(i);
+    r.yields = journeys_.stays(i) || journeys_.is_taken(i);
+    r.goal = journeys_.end_of(i);
+    r.is_at_goal = !j.nearest && journeys_.at_goal(i);
     r.ahead.front() = j.heading;
     if (!j.course) return r;
     const std::vector<Vec2>& points = j.course->points;
@@ -369,9 +417,9 @@ class CrowdRun {
 
   /// Straight on to where each is at the end of the step, up to half a step of the lattice.
   void set_out_obstacles() {
-    const double end = static_cast<double>(report_.steps + 1) * scenario_.time_step;
     for (std::size_t k = 0; k < moving_.size(); ++k) {
-      const Vec2 way = displacement_at(scenario_.moving_obstacles[k], end) - crowd_.body_displacement(moving_[k]);
+      const Vec2 way =
+          displacement_at(scenario_.moving_obstacles[k], end_of_step()) - crowd_.body_displacement(moving_[k]);
       crowd_.set_body_velocity(moving_[k], way / scenario_.time_step);
     }
   }
@@ -380,114 +428,22 @@ class CrowdRun {
     moved_obstacles_.clear();
     for (const MovingObstacle& o : scenario_.moving_obstacles)
       moved_obstacles_.push_back({displacement_at(o, report_.time), leader_at(o.motion, report_.time).velocity});
-    journeys_->look_at_moving_obstacles(report_.time, moved_obstacles_);
-  }
-
-  void step() {
-    set_out_obstacles();
-    look_at_obstacles();
-    crowd_.velocities(velocity_);
-    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
-    if (journeys_->has_claims()) look_at_claims();
-    if (reservations_) reserve();
-    for (std::size_t i = own_begin(); i < own_end(); ++i)
-      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
-    share_preferred();
-    crowd_.set_preferred(preferred_);
-    if (sink_) sink_->before_step(crowd_, report_.steps);
-    const StepReport s = crowd_.step();
-    ++report_.steps;
-    report_.time = static_cast<double>(report_.steps) * scenario_.time_step;
-    report_.relaxed += s.relaxed;
-    report_.cut_short += s.cut_short;
-    report_.reserved += s.reserved;
-    report_.overlapping += s.overlapping;
-    report_.touching += s.touching;
-    report_.widened += s.widened;
-    report_.stopped += s.stopped;
-    report_.half_planes += s.neighbours;
-    report_.edges += s.edges;
-    report_.bodies += s.bodies;
-    before_.swap(at_);
-    crowd_.positions(at_);
-    for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
-    const bool obstacles_rest = report_.time >= journeys_->moving_until() + 2.0 * scenario_.time_step;
-    if (at_ != before_ || !(obstacles_rest || moving_.empty())) moved_ = report_.steps;
-    if (sink_) sink_->add_step(crowd_, report_.steps);
-  }
-
-  /// The least of what the ranks want.
-  enum class After { stop, step, nothing };
-  After what_follows(bool is_stopped) {
-    const After own = is_stopped ? After::stop : goes_on() ? After::step : After::nothing;
-    const After all = ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
-    report_.stands_still = all == After::step && repeats_itself();
-    return report_.stands_still ? After::nothing : all;
-  }
-
-  /// Whether one of the own robots has neither arrived nor stays.
-  bool goes_on() const {
-    for (std::size_t i = own_begin(); i < own_end(); ++i) {
-      const bool rests = journeys_->rests_beside(i) && journeys_->ends_here(i);
-      if (!journeys_->at_goal(i) && !journeys_->stays(i) && !rests) return true;
-    }
-    return false;
-  }
-
-  /// Whether no step changes anything any more. What a step does follows from places, velocities, aims, claims and
-  /// reservations, and from whose turn it is to look along its route. In as many steps as there are turns none of these
-  /// has changed, from velocities of 0 on: so the next ones do what they have done.
-  bool repeats_itself() const {
-    const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
-    if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
-    if (static_cast<double>(report_.steps - moved_) * scenario_.time_step < journeys_->longest_pause()) return false;
-    if (reservations_ && std::max(moved_, reserved_) + reservations_->patience() > report_.steps) return false;
-    bool is_so = true;
-    for (std::size_t i = own_begin(); i < own_end(); ++i) is_so = is_so && is_long_ago(turned_[i]);
-    return (ranks_ ? ranks_->least(is_so) : is_so) != 0;
-  }
-
-  // --- The end ---
-
-  void finish() {
-    report_.digest = crowd_.digest();
-    crowd_.velocities(velocity_);
-    for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
-    if (journeys_->has_claims()) look_at_claims();
-    if (!gather_journeys()) return;
-    std::vector<double> times;
-    for (std::size_t i = 0; i < journeys_->size(); ++i) {
-      if (arrived_[i]) times.push_back(*arrived_[i]);
-      if (!journeys_->at_goal(i)) say_why_not_there(i);
-    }
-    report_.staying = report_.without_route.size();
-    std::sort(times.begin(), times.end());
-    if (2 * times.size() > journeys_->size()) report_.median_arrival = times[journeys_->size() / 2];
-    if (!times.empty()) report_.last_arrival = times.back();
-  }
-
-  void say_why_not_there(std::size_t i) {
-    const Journey& j = (*journeys_)[i];
-    std::string why = journeys_->why_not_there(i);
-    if (!j.no_way.empty())
-      report_.without_route.push_back({i, std::move(why)});
-    else if (journeys_->is_taken(i))
-      report_.goal_taken.push_back({i, std::move(why)});
-    else if (j.cut_by)
-      report_.route_cut.push_back({i, std::move(why)});
+    journeys_.look_at_moving_obstacles(report_.time, moved_obstacles_);
   }
 
   const Scenario& scenario_;
-  const CrowdRunOptions& options_;
+  const SimulationOptions& options_;
+  Liveness liveness_;
   Ranks* ranks_;
-  CrowdSink* sink_;
+  RunSink* sink_;
   Crowd crowd_;
   std::vector<std::size_t> ends_;  ///< of the shares of the robots, by rank
-  std::optional<Guide> guide_;
-  std::vector<Vec2> at_, before_, velocity_, preferred_;
-  std::optional<Journeys> journeys_;
-  std::vector<std::size_t> turned_;             ///< step at which a journey has changed last
-  std::vector<std::optional<double>> arrived_;  ///< s: since then the robot is at its last goal
+  RobotsOfRun& robots_;
+  std::vector<Vec2>&at_, &velocity_;
+  Journeys& journeys_;
+  RunReport& report_;
+  std::vector<Vec2> preferred_;
+  std::vector<std::size_t> turned_;  ///< step at which a journey has changed last
   std::vector<ObstacleId> moving_;
   std::vector<MovedObstacle> moved_obstacles_;
   std::vector<EndNow> ends_now_;        ///< with claims
@@ -497,7 +453,6 @@ class CrowdRun {
   std::size_t reserved_ = 0;  ///< step at which a reservation changed last
   std::size_t moved_ = 0;     ///< the last step in which something moved
   std::size_t claimed_ = 0;   ///< step at which a claim changed last
-  CrowdRunReport report_;
 };
 
 }  // namespace
@@ -523,10 +478,21 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   return problems;
 }
 
-CrowdRunReport run_crowd(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink) {
+RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, RunSink* sink) {
   const std::vector<ScenarioProblem> problems = crowd_problems(scenario);
   EXACTVO_REQUIRE(problems.empty(), problems.front().pointer + ": " + problems.front().found);
-  return CrowdRun(scenario, options, sink).run();
+  const Clock::time_point start = Clock::now();
+  RunSchedule schedule(scenario, options, std::chrono::milliseconds{0});
+  std::optional<Guide> guide;
+  if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide.emplace(scenario, 0.0);
+  const Liveness liveness = options.liveness.value_or(scenario.liveness);
+  RobotsOfRun robots(scenario, guide ? &*guide : nullptr, liveness, room_at_ends_of(scenario, liveness),
+                     scenario.horizons.orca, TakenOnTheWay::passed_beside);
+  RunSink* const first_sink = options.ranks && options.ranks->rank() > 0 ? nullptr : sink;
+  CrowdSteps steps(robots, options, liveness, first_sink);
+  RunReport report = RobotRun(robots, steps, schedule, first_sink, options.ranks).run();
+  report.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+  return report;
 }
 
 }  // namespace exactvo::formation

@@ -91,7 +91,7 @@ class FormationRun {
     RowFeed rows(recording, scene_.bodies(), goal_bodies_, plans_ ? &plans_->groups().plans() : nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
-    for (; !schedule_.ends_at(k) && !out_of_bounds(); ++k) {
+    for (; !schedule_.ends_at(k) && !schedule_.is_stopped(schedule_.time(k)) && !out_of_bounds(); ++k) {
       Step row = decide_all(schedule_.time(k));
       move(row);
       rows.add(std::move(row));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinematic robots with goals: Section V.A. The loop over time and when it ends, and the order in which a step is
-// decided. Where robots are going is in journeys.h.
+// Kinematic robots with goals: Section V.A. The order in which a step is decided, with every decision on record.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,8 +9,8 @@
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
 #include "runs/joint_decisions.h"
-#include "runs/journeys.h"
 #include "runs/own_decision.h"
+#include "runs/robot_run.h"
 #include "runs/rows.h"
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
@@ -26,29 +25,32 @@ namespace {
 
 using geometry::norm;
 
-class KinematicRun {
+class KinematicSteps final : public Stepper {
  public:
-  /// Without a guide robots head straight for their goals.
-  KinematicRun(const Scenario& scenario, const SimulationOptions& options, Guide* guide)
-      : scenario_(scenario),
+  /// Without a guide robots head straight for their goals. All must outlive it.
+  KinematicSteps(RobotsOfRun& robots, const SimulationOptions& options, Guide* guide, RunSchedule& schedule,
+                 Recording& recording, RunSink& sink)
+      : scenario_(robots.scenario),
         guide_(guide),
-        liveness_(liveness_of(scenario, options)),
-        rules_(rules_of(scenario, options)),
-        scene_(scenario, options),
-        schedule_(scenario, options),
+        liveness_(liveness_of(scenario_, options)),
+        rules_(rules_of(scenario_, options)),
+        scene_(scenario_, options),
+        schedule_(schedule),
         own_(rules_, scene_.bodies()),
-        ways_(scenario.robots.size()),
-        journeys_(scenario, guide, liveness_, positions_, room_at_ends(scenario),
-                  options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots,
-                  TakenOnTheWay::reached),
-        walls_(guide ? std::vector<SceneObstacle>{} : scenario.obstacles),
+        robots_(robots),
+        positions_(robots.at),
+        velocities_(robots.velocity),
+        journeys_(robots.journeys),
+        ways_(robots.size()),
+        walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
-            rules_, scenario.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
-            [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
-    if (liveness_ != Liveness::off && scenario.robots.size() > 1)
-      groups_.emplace(scenario, rules_, scenario.robots, guide ? guide->space() : open_space_,
+            rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
+            [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
+        recording_(recording) {
+    if (liveness_ != Liveness::off && robots.size() > 1)
+      groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
-    for (const Robot& robot : scenario.robots) {
+    for (const Robot& robot : scenario_.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
     }
@@ -56,23 +58,56 @@ class KinematicRun {
       look_at_goal(i);
       journeys_.set_out(i);
     }
-  }
-
-  void run(Recording& recording, RunSink& sink) {
     recording.motion = MotionLaw::straight;
     recording.time_step = scenario_.time_step;
-    RowFeed rows(recording, scene_.bodies(), goal_bodies_, groups_ ? &groups_->plans() : nullptr, sink);
-    std::size_t k = 0;
-    for (; !schedule_.ends_at(k) && !all_arrived() && (k == 0 || goes_on()); ++k) {
-      Step row = decide_all(schedule_.time(k));
-      move(row);
-      rows.add(std::move(row));
+    rows_.emplace(recording, scene_.bodies(), goal_bodies_, groups_ ? &groups_->plans() : nullptr, sink);
+  }
+
+  void decide() override { row_ = decide_all(schedule_.time(robots_.report.steps)); }
+
+  void move() override {
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      velocities_[i] = row_.robots[i].chosen;
+      positions_[i] += scenario_.time_step * row_.robots[i].chosen;
     }
-    rows.add(final_row(schedule_.time(k)));
-    recording.outcome = outcome();
-    if (guide_) recording.routes = journeys_.routes();
-    if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
-    rows.finish();
+    rows_->add(std::move(row_));
+  }
+
+  /// Not where all have arrived; else also where something still comes to push one.
+  bool goes_on() const override {
+    bool all_arrived = true, all_done = true;
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      all_arrived = all_arrived && journeys_.at_goal(i);
+      all_done = all_done && (journeys_.at_goal(i) || stays(i));
+    }
+    return !all_arrived && (robots_.report.steps == 0 || now_ < journeys_.moving_until() || !all_done);
+  }
+
+  bool finish() override {
+    rows_->add(final_row(schedule_.time(robots_.report.steps)));
+    if (guide_) recording_.routes = journeys_.routes();
+    if (liveness_ == Liveness::plan) recording_.liveness = groups_ ? groups_->course() : LivenessCourse{};
+    rows_->finish();
+    return true;
+  }
+
+  std::string why_not_there(std::size_t i) const override {
+    const std::string why = journeys_.why_not_there(i);
+    if (!ways_[i].follower.circled()) return why;
+    const std::string circled = "completed a full circuit of the obstacle without finding a way to its goal";
+    return why.empty() ? circled : circled + "; " + scenario_.robots[i].id + " " + why;
+  }
+
+  std::size_t most_named() const override { return ways_.size(); }
+
+  void add_words(std::string& outcome) const override {
+    outcome += no_passing_words();
+    std::vector<std::size_t> waiting;
+    for (std::size_t i = 0; i < ways_.size(); ++i)
+      if (!journeys_.at_goal(i) && !journeys_.rests_beside(i)) waiting.push_back(i);
+    if (!groups_ || waiting.empty()) return;
+    add_note(outcome, groups_->no_plan_words(waiting));
+    add_note(outcome, groups_->still_going_words());
   }
 
  private:
@@ -80,12 +115,6 @@ class KinematicRun {
   void look_at_goal(std::size_t i) {
     ways_[i].head_for(journeys_.aim_of(i), scene_, rules_, scenario_.robots[i].radius, positions_[i]);
     goal_bodies_.push_back({now_, i, journeys_[i].goal, ways_[i].field->shapes()});
-  }
-
-  bool all_arrived() const {
-    for (std::size_t i = 0; i < ways_.size(); ++i)
-      if (!journeys_.at_goal(i)) return false;
-    return true;
   }
 
   Step decide_all(double time) {
@@ -231,26 +260,11 @@ class KinematicRun {
     return norm(velocities_[i]) <= kAtRest * scenario_.robots[i].max_speed;
   }
 
-  void move(const Step& row) {
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      velocities_[i] = row.robots[i].chosen;
-      positions_[i] += scenario_.time_step * row.robots[i].chosen;
-    }
-  }
-
   // --- The end ---
 
   bool stays(std::size_t i) const {
     if (goes_by_plan(i)) return false;
     return journeys_.rests_beside(i) && journeys_.ends_here(i) ? is_at_rest(i) : journeys_.stays(i);
-  }
-
-  /// Whether a robot has neither arrived nor stays, or something still comes to push one.
-  bool goes_on() const {
-    if (now_ < journeys_.moving_until()) return true;
-    for (std::size_t i = 0; i < ways_.size(); ++i)
-      if (!journeys_.at_goal(i) && !stays(i)) return true;
-    return false;
   }
 
   Step final_row(double time) const {
@@ -263,27 +277,6 @@ class KinematicRun {
     return row;
   }
 
-  std::string outcome() const {
-    std::string text = arrivals();
-    std::vector<std::size_t> waiting;
-    bool all_there = true;
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
-      if (journeys_.at_goal(i)) continue;
-      all_there = false;
-      if (!journeys_.rests_beside(i)) waiting.push_back(i);
-      if (ways_[i].follower.circled())
-        text += "; " + scenario_.robots[i].id +
-                " completed a full circuit of the obstacle without finding a way to its goal";
-      if (const std::string why = journeys_.why_not_there(i); !why.empty())
-        text += "; " + scenario_.robots[i].id + " " + why;
-    }
-    if (!all_there) text += no_passing_words();
-    if (!groups_ || waiting.empty()) return text;
-    add_note(text, groups_->no_plan_words(waiting));
-    add_note(text, groups_->still_going_words());
-    return text;
-  }
-
   /// The first pairs that cannot both be where they are to go.
   std::string no_passing_words() const {
     constexpr std::size_t kNamed = 3;
@@ -293,34 +286,38 @@ class KinematicRun {
     return text;
   }
 
-  std::string arrivals() const {
-    std::size_t arrived = 0;
-    for (std::size_t i = 0; i < ways_.size(); ++i) arrived += journeys_.at_goal(i);
-    return arrival_words(arrived, ways_.size(), goes_on());
-  }
-
   const Scenario& scenario_;
   Guide* guide_;
   Liveness liveness_;
   DecisionRules rules_;
   Scene scene_;
-  RunSchedule schedule_;
+  RunSchedule& schedule_;
   double now_ = 0.0;  ///< s, of the present row
   OwnDecision own_;
-  std::vector<Vec2> positions_, velocities_;
+  RobotsOfRun& robots_;
+  std::vector<Vec2>&positions_, &velocities_;
+  Journeys& journeys_;
   std::vector<OwnWay> ways_;
-  Journeys journeys_;
   ObstacleSpace walls_, open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
   JointDecisions joint_;
   std::vector<GoalBodies> goal_bodies_;
+  Recording& recording_;
+  std::optional<RowFeed> rows_;
+  Step row_;  ///< decided, but not carried out
 };
 
 }  // namespace
 
 void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Guide* guide, Recording& recording,
                    RunSink& sink) {
-  KinematicRun(scenario, options, guide).run(recording, sink);
+  RunSchedule schedule(scenario, options);
+  RobotsOfRun robots(scenario, guide, liveness_of(scenario, options), room_at_ends(scenario),
+                     options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots,
+                     TakenOnTheWay::reached);
+  KinematicSteps steps(robots, options, guide, schedule, recording, sink);
+  sink.add_state(state_of(robots, nullptr));
+  recording.outcome = RobotRun(robots, steps, schedule, &sink).run().outcome;
 }
 
 }  // namespace exactvo::formation::detail

@@ -3,7 +3,7 @@
 
 /// \file
 /// What both kinds of run share: time steps, the end by time limit or by the caller, when the caller hears of them,
-/// when everything is kept. That robots have arrived or diverged ends a run too: the loops in kinematic_run.cpp and
+/// when everything is kept. That robots have arrived or diverged ends a run too: the loops in robot_run.cpp and
 /// formation_run.cpp ask for that.
 
 #include <chrono>
@@ -26,18 +26,19 @@ inline std::size_t steps_of_run(const Scenario& scenario) {
 
 class RunSchedule {
  public:
-  RunSchedule(const Scenario& scenario, const SimulationOptions& options)
-      : options_(&options), dt_(scenario.time_step), steps_(steps_of_run(scenario)) {
+  /// Ten times a second.
+  static constexpr std::chrono::milliseconds kBeat{100};
+
+  /// `beat`: how much wall time passes between two calls of `options.progress` at least.
+  RunSchedule(const Scenario& scenario, const SimulationOptions& options, std::chrono::milliseconds beat = kBeat)
+      : options_(&options), dt_(scenario.time_step), beat_(beat), steps_(steps_of_run(scenario)) {
     if (options.stop_at) last_decision_ = row_of(*options.stop_at);
   }
 
   double time(std::size_t step) const { return static_cast<double>(step) * dt_; }
 
-  /// Whether `step` is the last row: the time is up, `stop_at` is passed, or the caller wants to stop.
-  bool ends_at(std::size_t step) {
-    const bool passed = last_decision_ && step > *last_decision_;
-    return step == steps_ || passed || is_stopped(time(step));
-  }
+  /// Whether `step` is the last row: the time is up, or `stop_at` is passed.
+  bool ends_at(std::size_t step) const { return step == steps_ || (last_decision_ && step > *last_decision_); }
 
   /// Whether the caller wants to stop. Cheap: to be asked by what takes long within a step.
   bool is_stopped(double time) {
@@ -56,16 +57,16 @@ class RunSchedule {
   /// The last row at or before `time`.
   std::size_t row_of(double time) const { return static_cast<std::size_t>(time / dt_ + kSameRow); }
 
-  /// Calls the caller's progress function about ten times a second of wall time; false when the caller wants to stop.
+  /// Calls the caller's progress function where it is due; false when the caller wants to stop.
   bool beat(double time) {
-    constexpr std::chrono::milliseconds kInterval{100};
-    if (!options_->progress || Clock::now() - last_ < kInterval) return true;
+    if (!options_->progress || Clock::now() - last_ < beat_) return true;
     last_ = Clock::now();
     return options_->progress(time);
   }
 
   const SimulationOptions* options_;
   double dt_;
+  std::chrono::milliseconds beat_;
   std::size_t steps_;
   std::optional<std::size_t> last_decision_;
   bool is_stopped_ = false;

@@ -39,22 +39,17 @@ Scenario circle() {
 }
 
 /// Keeps every row as a recording has it.
-struct AsRecording final : CrowdSink {
-  explicit AsRecording(const Scenario& s) : scenario(s) { run.time_step = s.time_step; }
-  void begin(const Crowd& crowd) override { add_step(crowd, 0); }
-  void add_step(const Crowd& crowd, std::size_t steps) override {
-    std::vector<Vec2> position, velocity;
-    crowd.positions(position);
-    crowd.velocities(velocity);
+struct AsRecording final : RunSink {
+  explicit AsRecording(const Scenario& s) { run.time_step = s.time_step; }
+  void add_state(const RunState& now) override {
     Step& row = run.steps.emplace_back();
-    row.time = static_cast<double>(steps) * scenario.time_step;
-    row.robots.resize(position.size());
-    for (std::size_t i = 0; i < position.size(); ++i) {
-      row.robots[i].position = position[i];
-      row.robots[i].velocity = velocity[i];
+    row.time = now.time;
+    row.robots.resize(now.positions.size());
+    for (std::size_t i = 0; i < now.positions.size(); ++i) {
+      row.robots[i].position = now.positions[i];
+      row.robots[i].velocity = now.velocities[i];
     }
   }
-  const Scenario& scenario;
   Recording run;
 };
 
@@ -92,7 +87,7 @@ TEST(CrowdMetrics, AreThoseOfTheSameRowsInARecording) {
   const Scenario s = circle();
   AsRecording rows(s);
   CrowdEvaluator evaluator(s, &rows);
-  const CrowdRunReport report = run_crowd(s, {}, &evaluator);
+  const RunReport report = run_crowd(s, {}, &evaluator);
   const Metrics found = evaluator.finish(report, {"a warning"}), expected = measure(s, rows.run);
   expect_same(found, expected);
   EXPECT_GT(found.arrived, 0U);
@@ -101,20 +96,20 @@ TEST(CrowdMetrics, AreThoseOfTheSameRowsInARecording) {
   EXPECT_THAT(found.outcome, HasSubstr("COLLISION: R1 overlapped robot 'R2' by 0.3 m at 0 s"));
   EXPECT_EQ(found.warnings, std::vector<std::string>{"a warning"});
   EXPECT_EQ(found.relaxed_steps, report.relaxed);
-  EXPECT_EQ(found.crowd->against_robots, report.half_planes);
+  EXPECT_EQ(found.crowd->against_robots, report.against_robots);
 }
 
 TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
   const Scenario s = circle();
   std::vector<std::string> kept;
-  CrowdRunOptions options;
+  SimulationOptions options;
   options.snapshot_every = 25;
   options.keep_snapshot = [&](const std::string& bytes) { kept.push_back(bytes); };
   CrowdEvaluator whole(s);
   const Metrics expected = whole.finish(run_crowd(s, options, &whole), {});
   ASSERT_GT(kept.size(), 2U);
   for (const std::string& snapshot : kept) {
-    CrowdRunOptions again;
+    SimulationOptions again;
     again.resume_from = snapshot;
     CrowdEvaluator rest(s);
     const Metrics found = rest.finish(run_crowd(s, again, &rest), {});
@@ -128,7 +123,7 @@ TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
   whole.save(saved);
   std::istringstream bytes(saved.str());
   CrowdEvaluator other(fewer);
-  EXPECT_THROW(other.restore(Crowd(), bytes), CrowdError);
+  EXPECT_THROW(other.restore(RunState{0, 0.0, {}, {}}, bytes), CrowdError);
 }
 
 TEST(CrowdMetrics, OfVeryManyRobotsClearancesAreNotMeasuredAndThatIsSaid) {

@@ -34,16 +34,15 @@ Scenario scenario_of(std::vector<Robot> robots) {
 }
 
 /// Positions at the end of a run.
-struct LastRow final : CrowdSink {
+struct LastRow final : RunSink {
   std::vector<Vec2> places;
-  void begin(const Crowd& crowd) override { crowd.positions(places); }
-  void add_step(const Crowd& crowd, std::size_t) override { crowd.positions(places); }
+  void add_state(const RunState& now) override { places = now.positions; }
 };
 
 TEST(CrowdEnds, RobotsStandAsideForGoalsThatAreALittleTooNear) {
   const Scenario s = scenario_of({robot("a", {-5.0, 0.0}, {{0.0, 0.0}}), robot("b", {5.0, 0.0}, {{0.5, 0.0}})});
   LastRow last;
-  const CrowdRunReport r = run_crowd(s, {}, &last);
+  const RunReport r = run_crowd(s, {}, &last);
   EXPECT_EQ(r.arrived, 2U);
   EXPECT_TRUE(r.goal_taken.empty());
   for (std::size_t i = 0; i < 2; ++i)
@@ -53,7 +52,7 @@ TEST(CrowdEnds, RobotsStandAsideForGoalsThatAreALittleTooNear) {
 TEST(CrowdEnds, WhoComesSecondStaysBesideAndDoesNotMoveWhoWasFirst) {
   const Scenario s = scenario_of({robot("a", {-2.0, 0.0}, {{0.0, 0.0}}), robot("b", {9.0, 0.1}, {{0.0, 0.0}})});
   LastRow last;
-  const CrowdRunReport r = run_crowd(s, {}, &last);
+  const RunReport r = run_crowd(s, {}, &last);
   EXPECT_EQ(r.arrived, 1U);
   ASSERT_EQ(r.goal_taken.size(), 1U);
   EXPECT_EQ(r.goal_taken[0].robot, 1U);
@@ -66,7 +65,7 @@ TEST(CrowdEnds, WhoComesSecondStaysBesideAndDoesNotMoveWhoWasFirst) {
 TEST(CrowdEnds, AGoalOnTheWayThatIsTakenIsPassedBesideIt) {
   const Scenario s =
       scenario_of({robot("a", {0.0, 0.0}, {{0.0, 0.0}}), robot("b", {5.0, 0.0}, {{0.0, 0.0}, {0.0, 5.0}})});
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_EQ(r.arrived, 2U);
   EXPECT_LT(r.time, 30.0);
 }
@@ -74,7 +73,7 @@ TEST(CrowdEnds, AGoalOnTheWayThatIsTakenIsPassedBesideIt) {
 TEST(CrowdEnds, WithLivenessOffRobotsPush) {
   Scenario s = scenario_of({robot("a", {-2.0, 0.0}, {{0.0, 0.0}}), robot("b", {9.0, 0.1}, {{0.0, 0.0}})});
   s.liveness = Liveness::off;
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_TRUE(r.goal_taken.empty());
   EXPECT_EQ(r.arrived, 1U) << "a robot that is pushed off its goal is not there";
 }
@@ -105,7 +104,7 @@ TEST(CrowdEnds, RandomCrowdsWithTooFewGoalsComeToAnEnd) {
   std::size_t taken = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const Scenario s = random_scenario(seed);
-    const CrowdRunReport r = run_crowd(s, {});
+    const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.arrived + r.goal_taken.size(), s.robots.size()) << "seed " << seed;
     EXPECT_LT(r.time, s.time_limit) << "seed " << seed;
     taken += r.goal_taken.size();
@@ -143,7 +142,7 @@ TEST(CrowdRoutes, ACarThatParksOnARouteIsGoneRound) {
     car.motion.path = {at(0.0, 0.0), at(0.0, 4.0)};
     car.motion.speed = scale;
     s.moving_obstacles = {car};
-    const CrowdRunReport r = run_crowd(s, {});
+    const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.arrived, 1U) << scale << is_mirrored;
     EXPECT_LT(r.time, 40.0);
     EXPECT_EQ(r.overlapping, 0U);
@@ -163,22 +162,22 @@ TEST(CrowdRoutes, ACarThatParksInTheOnlyDoorIsNamed) {
   car.motion.path = {{0.0, 0.0}, {0.0, 3.4}};
   car.motion.speed = 2.0;
   s.moving_obstacles = {car};
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_EQ(r.arrived, 0U);
   ASSERT_EQ(r.route_cut.size(), 1U);
   EXPECT_EQ(r.route_cut[0].why, "waits: moving obstacle 'car' stands on its route, and none leads round it");
   EXPECT_LT(r.time, 60.0);
   // From every snapshot on the same.
   std::vector<std::string> kept;
-  CrowdRunOptions options;
+  SimulationOptions options;
   options.snapshot_every = 10;
   options.keep_snapshot = [&](const std::string& bytes) { kept.push_back(bytes); };
   run_crowd(s, options);
   ASSERT_GT(kept.size(), 5U);
   for (const std::string& bytes : kept) {
-    CrowdRunOptions again;
+    SimulationOptions again;
     again.resume_from = bytes;
-    const CrowdRunReport resumed = run_crowd(s, again);
+    const RunReport resumed = run_crowd(s, again);
     EXPECT_EQ(resumed.digest, r.digest);
     EXPECT_EQ(resumed.steps, r.steps);
   }
@@ -198,7 +197,7 @@ TEST(CrowdRoutes, ARunDoesNotStandStillWhileARobotStillLooksForAWayRoundACar) {
   car.motion.path = {{0.0, 0.0}, {0.0, 3.4}};
   car.motion.speed = 2.0;
   s.moving_obstacles = {car};
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_FALSE(r.stands_still) << "the robot stays for good, and with that the run ends by itself";
   EXPECT_EQ(r.route_cut.size(), 1U);
   EXPECT_LT(r.time, 60.0);
@@ -214,7 +213,7 @@ TEST(CrowdRoutes, ARobotWaitsBeforeACarThatParksOnItsGoal) {
   car.motion.path = {{0.0, 0.0}, {0.0, 4.5}};
   car.motion.speed = 2.0;
   s.moving_obstacles = {car};
-  const CrowdRunReport r = run_crowd(s, {});
+  const RunReport r = run_crowd(s, {});
   EXPECT_EQ(r.arrived, 0U);
   ASSERT_EQ(r.route_cut.size(), 1U);
   EXPECT_LT(r.path_length, 15.0);

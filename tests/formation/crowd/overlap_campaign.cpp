@@ -82,10 +82,10 @@ int run(const std::string& kind, std::uint64_t count, std::uint64_t seed) {
   std::size_t robots = 0, steps = 0, motions = 0, overlaps = 0, reported = 0, cut_short = 0, arrived = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
     const Scenario scenario = kind == "circle" ? circle_scene(random) : random_scene(random);
-    CrowdRunOptions options;
+    SimulationOptions options;
     options.precision = k % 2 == 0 ? CrowdPrecision::float_lines : CrowdPrecision::double_lines;
     OverlapCheck check(scenario);
-    const CrowdRunReport report = run_crowd(scenario, options, &check);
+    const RunReport report = run_crowd(scenario, options, &check);
     robots += report.robots;
     steps += report.steps * report.robots;
     arrived += report.arrived;

@@ -117,7 +117,7 @@ class MotionOverlaps {
 };
 
 /// Looks at each step of a run of a crowd.
-class OverlapCheck : public CrowdSink {
+class OverlapCheck : public RunSink {
  public:
   explicit OverlapCheck(const Scenario& scenario) {
     for (const Robot& r : scenario.robots) {
@@ -128,12 +128,10 @@ class OverlapCheck : public CrowdSink {
 
   MotionOverlaps found;
 
-  void begin(const Crowd& crowd) override { to_ = lattice_places(crowd, robots_); }
-
-  void add_step(const Crowd& crowd, std::size_t steps) override {
+  void add_state(const RunState& now) override {
     std::vector<LatticePlace> from = std::move(to_);
-    to_ = lattice_places(crowd, robots_);
-    found.look(std::move(from), to_, radius_, crowd.options().position_step, steps);
+    to_ = lattice_places(*now.crowd, robots_);
+    if (now.steps > 0) found.look(std::move(from), to_, radius_, now.crowd->options().position_step, now.steps);
   }
 
  private:

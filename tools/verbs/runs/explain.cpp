@@ -191,12 +191,10 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
 /// How a run without recorded decisions was made.
 struct CrowdMade {
   std::string scenario;  ///< its file
-  formation::CrowdRunOptions options;
-  std::optional<formation::Liveness> liveness;  ///< instead of the scenario's
+  formation::SimulationOptions options;
 };
 
-Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, Scenario scenario) {
-  scenario.liveness = made.liveness.value_or(scenario.liveness);
+Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, const Scenario& scenario) {
   const std::size_t robot = find_robot(scenario, flags.robot);
   const TerminateOnSignal terminate_on_signal;
   const std::string how = method_words(datasets::crowd_run_info(scenario, made.options, {}));
@@ -248,8 +246,8 @@ CrowdMade made_as(const std::filesystem::path& recording) {
                               "audit, convert, draw and view read recordings of crowds");
   made.options.guidance = formation::Guidance::none;
   parse(metrics.value("guidance", "none"), *made.options.guidance);
-  made.liveness = formation::Liveness::off;
-  parse(metrics.value("liveness", "off"), *made.liveness);
+  made.options.liveness = formation::Liveness::off;
+  parse(metrics.value("liveness", "off"), *made.options.liveness);
   parse(precision_in(metrics.value(command, Json())), made.options.precision);
   return made;
 }
@@ -271,9 +269,7 @@ Explained explained_by(const ExplainFlags& flags) {
   const Way way = way_of(flags.decisions, flags.simulation, flags.scenario, scenario, "", false);
   note_unused(flags.simulation, scenario);
   if (!way.is_crowd) return decide(flags, scenario);
-  CrowdMade made{flags.scenario, {}, simulation_options(flags.simulation).liveness};
-  made.options.guidance = simulation_options(flags.simulation).guidance;
-  return decided_in_crowd(flags, made, scenario);
+  return decided_in_crowd(flags, {flags.scenario, simulation_options(flags.simulation)}, scenario);
 }
 
 // --- The route from there ---

@@ -96,12 +96,8 @@ std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulati
   return text;
 }
 
-/// Of the command line, else of the scenario.
-formation::CrowdRunOptions options_of(const CrowdTask& task) {
-  formation::CrowdRunOptions options;
-  if (!task.simulation.guidance.empty())
-    options.guidance =
-        parse_choice<formation::Guidance>("--guidance", task.simulation.guidance, formation::guidance_names());
+formation::SimulationOptions options_of(const CrowdTask& task) {
+  formation::SimulationOptions options = simulation_options(task.simulation);
   if (!parse(task.flags.precision, options.precision))
     throw UsageError("--precision", task.flags.precision, "float or double");
   options.threads = task.flags.threads;
@@ -110,7 +106,7 @@ formation::CrowdRunOptions options_of(const CrowdTask& task) {
 }
 
 /// What is known before the run, where it is found quickly.
-std::vector<std::string> warnings_of(const formation::Scenario& scenario, const formation::CrowdRunOptions& options) {
+std::vector<std::string> warnings_of(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
   if (scenario.robots.size() > formation::kMostClearances) {
     const std::string arrived = formation::arrived_at_start(scenario);
     return arrived.empty() ? std::vector<std::string>{} : std::vector{arrived};
@@ -180,7 +176,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
   const CrowdFlags& flags = task.flags;
   const bool is_first = !task.ranks || task.ranks->rank() == 0;
   const formation::Scenario& scenario = task.read.scenario;
-  formation::CrowdRunOptions options = options_of(task);
+  formation::SimulationOptions options = options_of(task);
   FinishedRun finished;
   finished.file.info = crowd_info(task);
   finished.file.scenario = scenario;
@@ -213,7 +209,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
                      has_snapshots ? datasets::Unfinished::stays : datasets::Unfinished::goes);
   if (has_snapshots && is_first && options.resume_from.empty()) remove_snapshot(task.record);
   formation::CrowdEvaluator evaluator(scenario, recorder ? &*recorder : nullptr);
-  formation::CrowdRunReport report;
+  formation::RunReport report;
   try {
     report = run_crowd(scenario, options, &evaluator);
   } catch (const formation::RanksDiffer& e) {

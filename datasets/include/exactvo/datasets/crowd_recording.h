@@ -21,7 +21,8 @@
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
-#include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/crowd.h"
+#include "exactvo/formation/run_sink.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::datasets {
@@ -67,19 +68,18 @@ struct CrowdRow {
 /// Takes a run whose robots and bodies stay the same; the file appears as a whole at `finish`. With
 /// `Unfinished::stays` what was written outlasts an interrupted run, and one that goes on from a snapshot
 /// (formation/crowd_run.h) goes on writing behind the rows that the snapshot knows of: the file is the same.
-class CrowdRecorder : public formation::CrowdSink {
+class CrowdRecorder : public formation::RunSink {
  public:
   /// The robots of the crowd have the ids of the scenario's, if there are as many and no two are the same; else none.
   /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
   CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every,
                 Unfinished unfinished = Unfinished::goes);
-  void begin(const formation::Crowd& crowd) override;
+  /// Takes the start, then writes a row where one is due. REQUIRES: the state of a crowd.
+  void add_state(const formation::RunState& now) override;
   /// Waits until the rows so far are on the disk.
   void save(std::ostream& to) override;
   /// Throws DataError (E_FORMAT_SYNTAX) where the unfinished file has fewer rows than that, or another head.
-  void restore(const formation::Crowd& crowd, std::istream& from) override;
-  /// Called after every step; writes a row where one is due.
-  void add_step(const formation::Crowd& crowd, std::size_t steps) override;
+  void restore(const formation::RunState& now, std::istream& from) override;
   /// Writes the last row, if it is due, and publishes the file.
   void finish();
   /// How much was written so far.
@@ -88,7 +88,7 @@ class CrowdRecorder : public formation::CrowdSink {
  private:
   std::string head_of(const formation::Crowd& crowd);
   void put(const std::string& bytes);
-  void take(const formation::Crowd& crowd);
+  void take(const formation::RunState& now);
   void write_row();
 
   AtomicFile file_;
@@ -99,7 +99,6 @@ class CrowdRecorder : public formation::CrowdSink {
   CrowdRow row_, last_;      ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
   std::vector<geometry::Vec2> body_start_;
-  std::vector<geometry::Vec2> at_;
   std::vector<std::uint8_t> kept_;
   std::uint64_t bytes_ = 0, rows_ = 0;
   std::uint64_t sum_ = 0;  ///< of all blocks
@@ -132,13 +131,13 @@ inline constexpr std::size_t kMostCrowdFindings = 20;
 /// What an audit found. Everything is exact. To touch is to be nearer than the radii and a rounding error
 /// (formation/crowd.h).
 struct CrowdAuditReport {
-  std::size_t rows = 0;            ///< of the file
-  std::size_t robots = 0;          ///< of the file
-  std::size_t motions = 0;         ///< of robots from row to row that were looked at
-  std::size_t too_fast = 0;        ///< longer than the speed limit allows
-  std::size_t pairs = 0;              ///< that were near enough to meet
-  std::size_t pairs_met = 0;          ///< of these: that overlap on the way (of consecutive steps) or at its end
-  std::size_t pairs_overlapping = 0;  ///< of these: that overlap already at the row before
+  std::size_t rows = 0;                 ///< of the file
+  std::size_t robots = 0;               ///< of the file
+  std::size_t motions = 0;              ///< of robots from row to row that were looked at
+  std::size_t too_fast = 0;             ///< longer than the speed limit allows
+  std::size_t pairs = 0;                ///< that were near enough to meet
+  std::size_t pairs_met = 0;            ///< of these: that overlap on the way (of consecutive steps) or at its end
+  std::size_t pairs_overlapping = 0;    ///< of these: that overlap already at the row before
   std::size_t near_edges = 0;           ///< robots and edges near enough to ask, that did not touch at the row before
   std::size_t edges_met = 0;            ///< of these: that overlap on the way or at its end
   std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer

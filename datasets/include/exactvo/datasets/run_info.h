@@ -29,7 +29,7 @@ struct RunInfo {
 RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                  Provenance provenance);
 /// The same of a run on a crowd.
-RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::CrowdRunOptions& options,
+RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                        Provenance provenance);
 
 }  // namespace exactvo::datasets

@@ -22,20 +22,19 @@ namespace exactvo::formation {
 inline constexpr std::size_t kMostClearances = 2000;
 
 /// Takes the states of a run as it is made, in memory that does not grow with the run.
-class CrowdEvaluator : public CrowdSink {
+class CrowdEvaluator : public RunSink {
  public:
   /// Hands everything on to `next`, if there is one. `scenario` and `next` must outlive it.
-  explicit CrowdEvaluator(const Scenario& scenario, CrowdSink* next = nullptr);
+  explicit CrowdEvaluator(const Scenario& scenario, RunSink* next = nullptr);
   ~CrowdEvaluator() override;
-  void begin(const Crowd& crowd) override;
-  void add_step(const Crowd& crowd, std::size_t steps) override;
+  void add_state(const RunState& now) override;
   void save(std::ostream& to) override;
   /// Throws CrowdError (bad_snapshot).
-  void restore(const Crowd& crowd, std::istream& from) override;
+  void restore(const RunState& now, std::istream& from) override;
 
   /// After the run. Clearances and collisions are certified as those of metrics.h, and null of more than
   /// `kMostClearances` robots.
-  Metrics finish(const CrowdRunReport& report, std::vector<std::string> warnings) const;
+  Metrics finish(const RunReport& report, std::vector<std::string> warnings) const;
 
  private:
   struct Parts;

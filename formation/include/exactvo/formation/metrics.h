@@ -19,6 +19,7 @@
 
 #include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/run_report.h"
 #include "exactvo/formation/stuck.h"
 
 namespace exactvo::formation {
@@ -80,21 +81,6 @@ struct RobotMarginCourse {
   double asked = 0.0;         ///< m, the margin
   std::size_t pair_rows = 0;  ///< pairs, counted once in every row in which they were nearer
   std::size_t robots = 0;     ///< robots of such pairs
-};
-
-/// What is counted over all decisions of a run whose recording has none (crowd_metrics.h), and how it ended.
-struct CrowdMetrics {
-  std::size_t cut_short = 0;       ///< that did not get their wish, since another robot would be met in the step
-  std::size_t reserved = 0;        ///< of robots that drive to a reserved place, or stand there
-  std::size_t stopped = 0;         ///< to stay, for lack of anything else that meets no edge
-  std::size_t overlapping = 0;     ///< of robots that overlapped another: 0 after a legal start
-  std::size_t touching = 0;        ///< of robots that touched another
-  std::size_t widened = 0;         ///< with more than 10 neighbours
-  std::size_t against_robots = 0;  ///< half-planes
-  std::size_t against_edges = 0;   ///< half-planes against edges of obstacles
-  std::size_t against_bodies = 0;  ///< half-planes against bodies: discs at rest and moving obstacles
-  bool stands_still = false;       ///< it ended early: no step changes anything any more (exact)
-  std::uint64_t digest = 0;        ///< Crowd::digest at the end
 };
 
 /// What a run came to.

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "exactvo/formation/controller_options.h"
+#include "exactvo/formation/crowd.h"
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/run_sink.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/names.h"
 
@@ -117,11 +119,25 @@ struct SimulationOptions {
   double facade_minor_to_major = 0.5;                   ///< ivo_edge: b = this * a
   double facade_fixed_minor = 0.0;                      ///< m, ivo_edge: > 0 fixes b
   bool record_all = false;                              ///< keep every half-plane, not only the active ones
-  int threads = 1;  ///< 1 ... 1024, that search for joint plans; 0: as many as there are. The run is the same
+  int threads = 1;  ///< 1 ... 1024, that decide in a crowd, else that search for joint plans; 0: as many as there are.
+                    ///< The run is the same
   /// s, >= 0: stop after the last row at or before this time, keeping every half-plane of its decision.
   std::optional<double> stop_at;
-  /// Called about ten times a second of wall time with the simulated time; returning false stops the run.
+  /// Called with the simulated time, s: about ten times a second of wall time, on a crowd after every step. Returning
+  /// false stops the run, in any rank that of all.
   std::function<bool(double)> progress;
+
+  // Of a run on a crowd (crowd_run.h).
+
+  CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
+  Ranks* ranks = nullptr;                                  ///< as CrowdOptions::ranks
+  std::size_t snapshot_every = 0;  ///< steps, where snapshots are kept; 0: only one, where `progress` stops the run
+  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. None: none is made. Of
+  /// several ranks all have one or none; it is called in rank 0. The number of ranks is not in it.
+  std::function<void(const std::string&)> keep_snapshot;
+  /// A snapshot of a run of the same scenario and options: it goes on from there, with the same bits. Empty: the run
+  /// begins at the beginning. The number of threads, and of ranks, may be another. The same in every rank.
+  std::string resume_from;
 };
 
 /// How robots find their way in a run: none in a formation, whose robots have no goals, and with Method::ivo_edge,
@@ -139,24 +155,6 @@ std::vector<std::string> warnings_before(const Scenario& scenario, const Simulat
 
 /// REQUIRES: a valid scenario (`validate`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
-
-/// Takes a run as it is made, so that a run of any length needs constant memory. An exception that a sink throws ends
-/// the run and is passed on.
-class RunSink {
- public:
-  virtual ~RunSink() = default;
-  /// First of all. `run` has what is known before the first row: warnings, motion, time_step, tracking_gain,
-  /// relative_frame, controller_options, offsets, all_half_planes.
-  virtual void begin(const Recording& /*run*/) {}
-  /// Bodies come in the order of their numbers, each before what names it.
-  virtual void add_body(const vo::Body& /*body*/) {}
-  /// What a robot sees on its way to a goal, before the first row that goes there.
-  virtual void add_goal_bodies(const GoalBodies& /*of_goal*/) {}
-  /// A joint plan, before the row in which it was made.
-  virtual void add_plan(const JointPlan& /*plan*/) {}
-  /// Rows come in the order of time; the last one is the final state.
-  virtual void add_row(Step row) = 0;
-};
 
 /// The same run into a sink; the recording that is returned has all but the rows.
 Recording simulate(const Scenario& scenario, const SimulationOptions& options, RunSink& sink);
