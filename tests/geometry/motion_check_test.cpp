@@ -374,7 +374,8 @@ TEST(MotionCheck, HeldRobotsThatFollowEachOtherByOneRowDoNotMeet) {
 
 TEST(MotionCheck, OnlyTimedPointsCountWhereNothingIsBetween) {
   const geometry::RigidBody disc = geometry::disc_body(0.3);
-  const Trajectory a{{{0, {0, 0}}, {1, {10, 0}}, {2, {10, 5}}}, disc}, b{{{0, {5, -5}}, {1, {5, 5}}, {2, {10, 5}}}, disc};
+  const Trajectory a{{{0, {0, 0}}, {1, {10, 0}}, {2, {10, 5}}}, disc},
+      b{{{0, {5, -5}}, {1, {5, 5}}, {2, {10, 5}}}, disc};
   std::vector<MotionEvent> events;
   check_motions({a, b}, {}, {Between::none}, [&](const MotionEvent& e) { events.push_back(e); });
   ASSERT_EQ(events.size(), 1u);  // at 0.5 s they meet if they go straight
@@ -419,7 +420,8 @@ TEST(MotionStream, EqualsCheckMotionsAndForgetsEndedPieces) {
     geometry::MotionStream stream(kMap, {}, [&](const MotionEvent& e) { streamed.push_back(e); });
     for (const Trajectory& t : all) stream.add_body(t.body);
     for (std::size_t k = 0; k < 400; ++k)
-      for (std::size_t b = 0; b < all.size(); ++b) stream.add(b, StraightMotion{all[b].points[k], all[b].points[k + 1]});
+      for (std::size_t b = 0; b < all.size(); ++b)
+        stream.add(b, StraightMotion{all[b].points[k], all[b].points[k + 1]});
     const MotionCheck check = stream.finish();
     EXPECT_EQ(check.pieces, 4000u);
     EXPECT_LE(check.most_held, 3u * all.size());
@@ -491,6 +493,156 @@ TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
   }
   EXPECT_GE(clear, 200u);
   EXPECT_GE(proven * 100, clear * 80);
+}
+
+// --- Scenes that public reports describe, rebuilt small ---
+
+std::vector<MotionEvent> events_of(const std::vector<Trajectory>& all, const std::vector<Obstacle>& map = {},
+                                   Between between = Between::straight) {
+  std::vector<MotionEvent> events;
+  check_motions(all, map, {between}, [&](const MotionEvent& e) { events.push_back(e); });
+  return events;
+}
+
+const geometry::RigidBody kBox{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 0.0}};
+
+TEST(MotionScenes, BoxesThatChangePlacesCollideOnTheWay) {
+  // A checker advances by a bound of both motions; where it adds signed bounds, opposite motions cancel.
+  const Trajectory a{{{0, {-5, 0}}, {1, {5, 0}}}, kBox}, b{{{0, {5, 0}}, {1, {-5, 0}}}, kBox};
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].encounter, Encounter::overlap);
+  EXPECT_NEAR(events[0].first.low, 0.4, 1e-9);  // 8 m apart, 20 m/s
+  EXPECT_NEAR(events[0].last.high, 0.6, 1e-9);
+}
+
+TEST(MotionScenes, ABoxThatPassesABoxAtRestIsFoundAndContactIsTold) {
+  // Both poses that a planner gives are clear. Conservative advancement misses the box between them with some bounds.
+  const Trajectory rest{{{0, {0, 0}}, {1, {0, 0}}}, kBox};
+  for (const double y : {1.5, 2.0, 2.0000000000000004}) {
+    const Trajectory passing{{{0, {-10, y}}, {1, {10, y}}}, kBox};
+    const auto events = events_of({rest, passing});
+    const Encounter expected = y < 2.0 ? Encounter::overlap : y == 2.0 ? Encounter::contact : Encounter::clear;
+    EXPECT_EQ(events.empty() ? Encounter::clear : events[0].encounter, expected) << y;
+  }
+}
+
+TEST(MotionScenes, ACollisionInTheLastQuarterOfATrajectoryIsFound) {
+  // A check of the first three quarters, which counts on the next plan, sees nothing.
+  const Trajectory a{{{0, {0, 0}}, {4, {8, 0}}}, geometry::disc_body(0.25)};
+  const Trajectory b{{{0, {7, 7}}, {4, {7, -1}}}, a.body};  // both are at (7, 0) at 3.5 s
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_GT(events[0].first.low, 3.0);
+  const Trajectory first_part{{{0, {0, 0}}, {3, {6, 0}}}, a.body}, other_part{{{0, {7, 7}}, {3, {7, 1}}}, a.body};
+  EXPECT_TRUE(events_of({first_part, other_part}).empty());
+}
+
+TEST(MotionScenes, PositionsOfNowSayNothingOfLater) {
+  // A check that compares present positions at every future sample finds 10 m of room, always.
+  const Trajectory a{{{0, {0, 0}}, {5, {10, 0}}}, geometry::disc_body(0.3)};
+  const Trajectory b{{{0, {10, 0.2}}, {5, {0, 0.2}}}, geometry::disc_body(0.3)};
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_NEAR(events[0].nearest_time, 2.5, 1e-9);
+}
+
+TEST(MotionScenes, TheFirstMomentIsABoundThatLeavesTimeToBrake) {
+  // Two drones head-on on cubics; an emergency stop needs 1 s. What is left before the overlap is certified, so that
+  // it can be compared with the time to stop before another plan is tried.
+  const Trajectory a{{{0, {0, 0}}, {2, {4, 0}}}, geometry::disc_body(0.5), {{2, 0}, {2, 0}}};
+  const Trajectory b{{{0, {5, 0}}, {2, {1, 0}}}, geometry::disc_body(0.5), {{-2, 0}, {-2, 0}}};
+  const auto events = events_of({a, b}, {}, Between::cubic);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_LE(events[0].first.low, 1.0);
+  EXPECT_GE(events[0].first.high, 1.0);
+  EXPECT_LT(events[0].first.high - events[0].first.low, 1e-9);
+}
+
+TEST(MotionScenes, ARobotMayDriveUpToAWall) {
+  // A dock: the robot stops where its front touches the wall, and one ulp farther it would be in it.
+  const std::vector<Obstacle> wall{Polyline{{{5, -3}, {5, 3}}}};
+  const auto touching = events_of({{{{0, {0, 0}}, {4, {4, 0}}, {6, {4, 0}}}, kBox}}, wall);
+  ASSERT_EQ(touching.size(), 1u);
+  EXPECT_EQ(touching[0].encounter, Encounter::contact);
+  const auto beyond = events_of({{{{0, {0, 0}}, {4, {std::nextafter(4.0, 5.0), 0}}}, kBox}}, wall);
+  ASSERT_EQ(beyond.size(), 1u);
+  EXPECT_EQ(beyond[0].encounter, Encounter::overlap);
+}
+
+TEST(MotionScenes, AnObstacleInsideAFootprintIsFound) {
+  // A post of 2 cm that no corner and no side of the footprint touches at a pose that is looked at.
+  const std::vector<Obstacle> post{Polygon{{{0.01, 0.01}, {0.03, 0.01}, {0.03, 0.03}, {0.01, 0.03}}, {}}};
+  const auto at_rest = events_of({{{{0, {0, 0}}}, kBox}}, post);
+  ASSERT_EQ(at_rest.size(), 1u);
+  EXPECT_EQ(at_rest[0].encounter, Encounter::overlap);
+  const auto passing = events_of({{{{0, {-4, 0}}, {1, {4, 0}}}, kBox}}, post);
+  ASSERT_EQ(passing.size(), 1u);
+  EXPECT_EQ(passing[0].encounter, Encounter::overlap);
+}
+
+TEST(MotionScenes, ACornerThatCutsAnObstacleBetweenTwoPosesIsFound) {
+  // A long footprint at an angle is carried past a post; both poses are clear of it.
+  const geometry::RigidBody turned =
+      geometry::turned_body({{{{-2, -0.25}, {2, -0.25}, {2, 0.25}, {-2, 0.25}}, 0.0}}, 0.5);
+  const std::vector<Obstacle> post{Polygon{{{0, 1.05}, {0.1, 1.05}, {0.1, 1.15}, {0, 1.15}}, {}}};
+  const Vec2 from{-4, 0}, to{2, 0};
+  for (const Vec2 pose : {from, to}) EXPECT_TRUE(events_of({{{{0, pose}}, turned}}, post).empty());
+  EXPECT_EQ(events_of({{{{0, from}, {1, to}}, turned}}, post).size(), 1u);
+}
+
+TEST(MotionStream, PolynomialPiecesOfEveryBasisAreDecided) {
+  SeededRandom random(seed_of_run(59));
+  std::size_t judged = 0, by_chord = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::vector<std::vector<Motion>> all(6);
+    const auto body = [&](std::size_t b) { return b % 3 == 2 ? random_footprint(random) : geometry::disc_body(0.3); };
+    std::vector<geometry::RigidBody> bodies;
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      bodies.push_back(body(b));
+      double time = random.uniform(0.0, 1.0);
+      for (int k = 0; k < 5; ++k) {
+        geometry::CurvedMotion m{static_cast<geometry::CurveBasis>(random.integer(0, 2)), time, time + 1.0, {}};
+        const int degree = random.integer(0, 5);
+        for (int i = 0; i <= degree; ++i) m.points.push_back(random.in_box(i == 0 ? 6.0 : 3.0));
+        all[b].emplace_back(m);
+        order.emplace_back(time, b);
+        time += 1.0;
+      }
+    }
+    std::stable_sort(order.begin(), order.end());
+    std::map<Key, Encounter> worst;
+    geometry::MotionStream stream(kMap, {}, [&](const MotionEvent& e) {
+      Encounter& w = worst.try_emplace({e.body, e.with_obstacle, e.other}, e.encounter).first->second;
+      w = std::max(w, e.encounter);
+    });
+    for (const auto& each : bodies) stream.add_body(each);
+    std::vector<std::size_t> next(all.size(), 0);
+    for (const auto& [time, b] : order) stream.add(b, all[b][next[b]++]);
+    const MotionCheck check = stream.finish();
+    by_chord += check.pairs + check.edge_pairs - std::min(check.pairs + check.edge_pairs, check.examined);
+    const auto expect = [&](const Key& key, Encounter expected) {
+      const auto found = worst.find(key);
+      ASSERT_EQ(found == worst.end() ? Encounter::clear : found->second, expected) << "round " << round;
+      judged += expected == Encounter::clear ? 0 : 1;
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t k = 0; k < kMap.size(); ++k) {
+        Encounter expected = Encounter::clear;
+        for (const Motion& m : all[i]) expected = std::max(expected, geometry::encounter(m, bodies[i], kMap[k]));
+        expect({i, true, k}, expected);
+      }
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        Encounter expected = Encounter::clear;
+        for (const Motion& m : all[i])
+          for (const Motion& n : all[j]) expected = std::max(expected, geometry::encounter(m, bodies[i], n, bodies[j]));
+        expect({i, false, j}, expected);
+      }
+    }
+  }
+  EXPECT_GE(judged, 300u);
+  EXPECT_GE(by_chord, 100u);
 }
 
 // --- Certificates ---

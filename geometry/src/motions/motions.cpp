@@ -175,6 +175,14 @@ RigidBody polygon_body(const Polygon& outline) {
   return body;
 }
 
+RigidBody turned_body(RigidBody body, double angle) {
+  EXACTVO_REQUIRE(std::isfinite(angle), hex_text(angle));
+  if (angle == 0.0) return body;
+  for (RoundedPolygon& part : body)
+    for (Vec2& corner : part.corners) corner = rotated(corner, angle);
+  return body;
+}
+
 Encounter encounter(const Motion& a, const RigidBody& body_a, const Motion& b, const RigidBody& body_b) {
   const Question q(a, body_a, b, body_b);
   return q.window().from > q.window().to ? Encounter::clear : q.verdict();

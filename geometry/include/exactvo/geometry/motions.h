@@ -102,6 +102,8 @@ using RigidBody = std::vector<RoundedPolygon>;
 RigidBody disc_body(double radius);
 /// A polygon without holes, as its convex pieces. Exact. REQUIRES: valid (validity.h), no holes.
 RigidBody polygon_body(const Polygon& outline);
+/// The body turned counter-clockwise round its reference point, by an angle in rad. Corners are rounded.
+RigidBody turned_body(RigidBody body, double angle);
 
 /// How two bodies in motion fare.
 enum class Encounter : int {
