@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`exactvo.check`: did bodies on trajectories collide?"""
 import json
+import sqlite3
 
 import numpy as np
 import pytest
@@ -88,6 +89,38 @@ def test_maps_footprints_and_radii():
 def test_the_map_of_a_file(tmp_path):
     (tmp_path / "map.wkt").write_text("LINESTRING (5 -1, 5 1)\n")
     assert exactvo.check({"A": EAST}, map=tmp_path / "map.wkt", radius=0.1).overlaps == 1
+
+
+def test_databases_of_jupedsim(tmp_path):
+    path = tmp_path / "what? 50%.sqlite"
+    with sqlite3.connect(path) as database:
+        database.execute("CREATE TABLE trajectory_data (frame INTEGER, id INTEGER, pos_x REAL, pos_y REAL, ori_x REAL, ori_y REAL)")
+        database.execute("CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL)")
+        database.execute("INSERT INTO metadata VALUES ('fps', '25')")
+        rows = [(25 * t, k, x, y, 1, 0) for k, array in ((7, EAST), (9, NORTH)) for t, x, y in array]
+        database.executemany("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?)", [(int(r[0]), *r[1:]) for r in rows])
+    try:
+        answer = exactvo.check(path, radius=0.25)
+    except exactvo.DataError as error:
+        if error.code == "E_FORMAT_UNAVAILABLE":
+            pytest.skip("a build without SQLite")
+        raise
+    (event,) = answer.events
+    assert answer.format == "jupedsim-sqlite" and (event.body, event.other) == ("7", "9")
+    assert event.first[0] <= FIRST <= event.first[1]
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE trajectory_data SET pos_x = 'x' WHERE frame = 25 AND id = 9")
+    with pytest.raises(exactvo.DataError) as caught:
+        exactvo.check(path, radius=0.25)
+    assert (caught.value.code, caught.value.where) == ("E_NUMBER", "row 4")
+    other = tmp_path / "other.sqlite"
+    with sqlite3.connect(other) as database:
+        database.execute("CREATE TABLE nothing (frame INTEGER)")
+    (tmp_path / "cut.sqlite").write_bytes(path.read_bytes()[:5000])
+    for bad in (other, tmp_path / "cut.sqlite"):
+        with pytest.raises(exactvo.DataError) as caught:
+            exactvo.check(bad, radius=0.25)
+        assert caught.value.code == "E_FORMAT_SYNTAX"
 
 
 def test_between_rows():

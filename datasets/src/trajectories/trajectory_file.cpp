@@ -80,6 +80,7 @@ bool looks_like_crowd(std::string_view beginning) {
 const std::vector<TrajectoryFormat>& trajectory_readers() {
   static const std::vector<TrajectoryFormat> kReaders{
       {"crowd-recording", looks_like_crowd, read_crowd_trajectories},
+      {"jupedsim-sqlite", looks_like_sqlite, read_jupedsim_sqlite},
       {"recording", looks_like_recording, read_recorded_trajectories},
       {"trajnet", looks_like_trajnet, read_trajnet},
       {"sumo-fcd", looks_like_sumo_fcd, read_sumo_fcd},

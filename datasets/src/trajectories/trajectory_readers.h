@@ -83,6 +83,10 @@ void read_mapf_yaml(const std::filesystem::path& path, TrajectorySink& out);
 bool looks_like_mapf_paths(std::string_view beginning);
 void read_mapf_paths(const std::filesystem::path& path, TrajectorySink& out);
 
+// trajectory_databases.cpp
+bool looks_like_sqlite(std::string_view beginning);
+void read_jupedsim_sqlite(const std::filesystem::path& path, TrajectorySink& out);
+
 // trajectory_trees.cpp
 bool looks_like_trajnet(std::string_view beginning);
 void read_trajnet(const std::filesystem::path& path, TrajectorySink& out);

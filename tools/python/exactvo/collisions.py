@@ -221,7 +221,7 @@ def check(
         events=tuple(MotionEvent(*e) for e in native["events"]),
         approaches=tuple(Approach(*a) for a in native["approaches"]),
         findings=tuple(Finding(*f) for f in native["findings"]),
-        bodies=tuple(BodySummary(*b[:4], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
+        bodies=tuple(BodySummary(b[0], b[1], b[2], b[3], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
         notes=tuple(native["notes"]),
     )
 
@@ -239,10 +239,10 @@ def _shapes(given: Any, name: str) -> Obstacles:
 
 
 def _radius(radius: Any, ids: list[str] | None) -> Any:
-    if radius is None or np.ndim(radius) == 0 and not isinstance(radius, Mapping):
-        return radius
     if isinstance(radius, Mapping):
-        return {str(key): value for key, value in radius.items()}
+        return {_name(key): value for key, value in radius.items()}
+    if radius is None or (_is_regular(radius) and np.ndim(radius) == 0):
+        return radius
     values = _floats(radius, "radius", 1)
     if ids is None or len(values) != len(ids):
         expected = "a number, or a dict of ids" if ids is None else f"a radius for each of the {len(ids)} robots"

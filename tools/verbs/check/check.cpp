@@ -459,10 +459,11 @@ ExitCode check(const CheckFlags& flags) {
 }
 
 void declare_check(CLI::App& app, CheckFlags& flags) {
-  app.add_option("trajectories", flags.files,
-                 "Files or folders: CSV with the columns t,id,x,y and theta, vx, vy, text of JuPedSim or PedPy, "
-                 "obsmat.txt, frame-id-x-y in four columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or "
-                 "paths of cells, polynomials (all files together), a recording of this program; - for stdin")
+  app.add_option(
+         "trajectories", flags.files,
+         "Files or folders: CSV with the columns t,id,x,y and theta, vx, vy, text or SQLite of JuPedSim, PedPy, "
+         "obsmat.txt, frame-id-x-y in four columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or "
+         "paths of cells, polynomials (all files together), a recording of this program; - for stdin")
       ->required();
   app.add_option("--format", flags.format,
                  fmt::format("Format of the trajectories: {}; by default detected from content",
