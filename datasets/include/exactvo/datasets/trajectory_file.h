@@ -67,9 +67,11 @@ struct TrajectoryColumns {
   std::vector<std::string> names;  ///< ids of the agents
   std::vector<std::size_t> agent;  ///< of each row, its place among `names`
   std::vector<double> time;        ///< s
-  std::vector<double> x, y;        ///< places
+  std::vector<double> x;           ///< of places
+  std::vector<double> y;           ///< of places
   std::vector<double> heading;     ///< rad; empty: not known
-  std::vector<double> vx, vy;      ///< velocities, in the unit of places a second; empty: not known
+  std::vector<double> vx;          ///< of velocities, in the unit of places a second; empty: not known
+  std::vector<double> vy;          ///< as many as `vx`
 };
 
 /// A file of trajectories that can be read several times. What comes through a pipe is kept in a temporary file.

@@ -23,12 +23,14 @@ void for_each_row_in_time(TrajectoryReader& reader, bool is_in_order,
 /// until no other agent can have one that begins earlier.
 class TrajectoryPieces {
  public:
+  /// What lies between rows.
   struct Options {
     /// `cubic` takes the rows' velocities; where a row has none, that of a Catmull-Rom spline, and of the chord at the
     /// first and the last row of a stay.
     geometry::Between between = geometry::Between::straight;
     double longest_gap = std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer is away
   };
+  /// Gets an agent's number and its next piece.
   using Take = std::function<void(std::size_t agent, const geometry::Motion& piece)>;
 
   /// `agents`: of the survey, which knows how many rows each agent has. They must outlive this object.
