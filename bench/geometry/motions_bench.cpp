@@ -110,8 +110,8 @@ Verdicts check(const Scene& scene, geometry::MotionCheck& counts) {
   for (std::size_t a = 0; a < scene.at[0].size(); ++a) stream.add_body(disc);
   for (std::size_t k = 0; k + 1 < scene.at.size(); ++k)
     for (std::size_t a = 0; a < scene.at[k].size(); ++a)
-      stream.add(a, {{kStep * static_cast<double>(k), scene.at[k][a]},
-                     {kStep * static_cast<double>(k + 1), scene.at[k + 1][a]}});
+      stream.add(a, geometry::StraightMotion{{kStep * static_cast<double>(k), scene.at[k][a]},
+                                             {kStep * static_cast<double>(k + 1), scene.at[k + 1][a]}});
   counts = stream.finish();
   return found;
 }
@@ -267,7 +267,8 @@ int run(int agents, int steps, int rounds) {
   }
   const double own = median(ours), boxed = median(same), gridded = median(each);
   std::printf(
-      "check: %.3f s; ten samples: %.3f s with the same boxes (%.2f times), %.3f s with a grid per sample (%.2f times)\n",
+      "check: %.3f s; ten samples: %.3f s with the same boxes (%.2f times), %.3f s with a grid per sample (%.2f "
+      "times)\n",
       own, boxed, boxed / own, gridded, gridded / own);
   return 0;
 }

@@ -19,6 +19,7 @@ namespace {
 using geometry::Between;
 using geometry::check_motions;
 using geometry::Encounter;
+using geometry::Motion;
 using geometry::MotionCertificate;
 using geometry::MotionCheck;
 using geometry::MotionEvent;
@@ -33,13 +34,32 @@ using geometry::Vec2;
 
 using Key = std::tuple<std::size_t, bool, std::size_t>;
 
-std::vector<StraightMotion> pieces_of(const Trajectory& t, Between between) {
-  std::vector<StraightMotion> pieces;
-  for (std::size_t i = 0; i + 1 < t.points.size(); ++i)
-    pieces.push_back(between == Between::hold ? geometry::held(t.points[i], t.points[i + 1].time)
-                                              : StraightMotion{t.points[i], t.points[i + 1]});
-  if (between == Between::hold || pieces.empty()) pieces.push_back({t.points.back(), t.points.back()});
+std::vector<Motion> pieces_of(const Trajectory& t, Between between) {
+  std::vector<Motion> pieces;
+  const std::size_t last = t.points.size() - 1;
+  const auto velocity = [&](std::size_t i) {
+    if (!t.velocities.empty()) return t.velocities[i];
+    const TimedPoint &before = t.points[i == 0 ? 0 : i - 1], &after = t.points[std::min(i + 1, last)];
+    return before.time < after.time ? geometry::catmull_rom_velocity(before, after) : Vec2{};
+  };
+  for (std::size_t i = 0; i < last; ++i) {
+    const TimedPoint &from = t.points[i], &to = t.points[i + 1];
+    if (between == Between::straight) pieces.push_back(StraightMotion{from, to});
+    if (between == Between::hold) pieces.push_back(geometry::held(from, to.time));
+    if (between == Between::cubic) pieces.push_back(geometry::hermite_cubic(from, velocity(i), to, velocity(i + 1)));
+    if (between == Between::none) pieces.push_back(StraightMotion{from, from});
+  }
+  if (between == Between::hold || between == Between::none || pieces.empty())
+    pieces.push_back(StraightMotion{t.points.back(), t.points.back()});
   return pieces;
+}
+
+/// Whether one of two held pieces ends as the other begins, at which moment it has gone on.
+bool has_gone_on(const Motion& a, const Motion& b) {
+  const auto ends_before = [](const Motion& m, const Motion& n) {
+    return end_of(m) == start_of(n) && start_of(m) < end_of(m);
+  };
+  return ends_before(a, b) || ends_before(b, a);
 }
 
 /// Every piece against every other and every obstacle; what may be one event is joined.
@@ -52,12 +72,13 @@ std::vector<MotionEvent> all_against_all(const std::vector<Trajectory>& trajecto
         {v.encounter, body, with_obstacle, other, v.first, v.last, v.clearance, v.nearest_time, v.place, {}, {}});
   };
   for (std::size_t i = 0; i < trajectories.size(); ++i)
-    for (const StraightMotion& m : pieces_of(trajectories[i], between)) {
+    for (const Motion& m : pieces_of(trajectories[i], between)) {
       const auto body = trajectories[i].body;
       for (std::size_t k = 0; k < map.size(); ++k) add(examine(m, body, map[k]), i, true, k);
       for (std::size_t j = i + 1; j < trajectories.size(); ++j)
-        for (const StraightMotion& n : pieces_of(trajectories[j], between))
-          add(examine(m, body, n, trajectories[j].body), i, false, j);
+        for (const Motion& n : pieces_of(trajectories[j], between))
+          if (between != Between::hold || !has_gone_on(m, n))
+            add(examine(m, body, n, trajectories[j].body), i, false, j);
     }
   std::vector<MotionEvent> events;
   for (auto& [key, all] : by_pair) {
@@ -125,7 +146,7 @@ TEST(MotionCheck, FindsWhatAllAgainstAllFinds) {
   std::size_t judged = 0, overlaps = 0, contacts = 0;
   for (int round = 0; round < 60; ++round) {
     const auto trajectories = random_trajectories(random, 8, round % 2 == 0);
-    const Between between = round % 3 == 0 ? Between::hold : Between::straight;
+    const auto between = static_cast<Between>(round % 4);
     std::vector<MotionEvent> found;
     const MotionCheck check =
         check_motions(trajectories, kMap, {between, 0.0}, [&](const MotionEvent& e) { found.push_back(e); });
@@ -173,8 +194,8 @@ TEST(MotionCheck, ListsAllPairsThatComeNear) {
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j) {
         geometry::Bounds least{INFINITY, INFINITY};
-        for (const StraightMotion& m : pieces_of(all[i], Between::straight))
-          for (const StraightMotion& n : pieces_of(all[j], Between::straight)) {
+        for (const Motion& m : pieces_of(all[i], Between::straight))
+          for (const Motion& n : pieces_of(all[j], Between::straight)) {
             const auto v = examine(m, all[i].body, n, all[j].body);
             least = {std::min(least.low, v.clearance.low), std::min(least.high, v.clearance.high)};
           }
@@ -214,6 +235,8 @@ TEST(MotionCheck, MistakesAreNamed) {
   EXPECT_THROW(check({{{0, {0, 0}}}, {{{{0, 0}}, -0.5}}}), std::logic_error);
   EXPECT_THROW(check({{{0, {0, 0}}}, {}}), std::logic_error);
   EXPECT_THROW(check({{{0, {NAN, 0}}}, disc}), std::logic_error);
+  EXPECT_THROW(check({{{0, {0, 0}}}, disc, {{1, 0}, {1, 0}}}), std::logic_error);
+  EXPECT_THROW(check({{{0, {0, 0}}}, disc, {{NAN, 0}}}), std::logic_error);
 }
 
 TEST(MotionCheck, ObstaclesThatComeNearAreListed) {
@@ -226,7 +249,7 @@ TEST(MotionCheck, ObstaclesThatComeNearAreListed) {
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = 0; k < kMap.size(); ++k) {
         geometry::Bounds least{INFINITY, INFINITY};
-        for (const StraightMotion& m : pieces_of(all[i], Between::straight)) {
+        for (const Motion& m : pieces_of(all[i], Between::straight)) {
           const MotionVerdict v = examine(m, all[i].body, kMap[k]);
           least = {std::min(least.low, v.clearance.low), std::min(least.high, v.clearance.high)};
         }
@@ -307,8 +330,8 @@ TEST(MotionCheck, DiscsOfTheMapAreBodiesAtRest) {
         const geometry::Disc& disc = *options.discs[k];
         Encounter expected = Encounter::clear;
         double least = INFINITY;
-        for (const StraightMotion& m : pieces_of(all[i], Between::straight)) {
-          const MotionVerdict v = examine(m, all[i].body, geometry::held({m.from.time, disc.center}, m.to.time),
+        for (const Motion& m : pieces_of(all[i], Between::straight)) {
+          const MotionVerdict v = examine(m, all[i].body, geometry::held({start_of(m), disc.center}, end_of(m)),
                                           geometry::disc_body(disc.radius));
           expected = std::max(expected, v.encounter);
           least = std::min(least, v.clearance.low);
@@ -325,6 +348,57 @@ TEST(MotionCheck, DiscsOfTheMapAreBodiesAtRest) {
   }
   EXPECT_GE(touched, 100u);
   EXPECT_GE(near, 100u);
+}
+
+TEST(MotionCheck, HeldRobotsThatFollowEachOtherByOneRowDoNotMeet) {
+  // Robot b enters a cell as a leaves it, and a third robot waits in the last one.
+  const geometry::RigidBody disc = geometry::disc_body(0.3);
+  const auto row = [](std::initializer_list<double> x) {
+    std::vector<TimedPoint> points;
+    for (const double each : x) points.push_back({static_cast<double>(points.size()), {each, 0}});
+    return points;
+  };
+  const Trajectory a{row({1, 2, 3, 4}), disc}, b{row({0, 1, 2, 3}), disc}, c{{{3, {4, 0}}, {5, {4, 0}}}, disc};
+  const auto count = [&](const std::vector<Trajectory>& all) {
+    std::vector<MotionEvent> events;
+    check_motions(all, {}, {Between::hold}, [&](const MotionEvent& e) { events.push_back(e); });
+    return events;
+  };
+  EXPECT_TRUE(count({a, b}).empty());
+  // At its last row a robot is there, though for no time.
+  const auto events = count({a, b, c});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(std::tie(events[0].body, events[0].other, events[0].first.low, events[0].last.high),
+            std::make_tuple(std::size_t{0}, std::size_t{2}, 3.0, 3.0));
+}
+
+TEST(MotionCheck, OnlyTimedPointsCountWhereNothingIsBetween) {
+  const geometry::RigidBody disc = geometry::disc_body(0.3);
+  const Trajectory a{{{0, {0, 0}}, {1, {10, 0}}, {2, {10, 5}}}, disc},
+      b{{{0, {5, -5}}, {1, {5, 5}}, {2, {10, 5}}}, disc};
+  std::vector<MotionEvent> events;
+  check_motions({a, b}, {}, {Between::none}, [&](const MotionEvent& e) { events.push_back(e); });
+  ASSERT_EQ(events.size(), 1u);  // at 0.5 s they meet if they go straight
+  EXPECT_EQ(events[0].first.low, 2.0);
+}
+
+TEST(MotionCheck, CubicsGoOutsideOfTheirChords) {
+  // Along a bow whose highest point is 0.75 m above its chord; a wall is 0.7 m above it.
+  const std::vector<Obstacle> map{Polyline{{{-1, 0.7}, {5, 0.7}}}};
+  Trajectory t{{{0, {0, 0}}, {1, {4, 0}}}, geometry::disc_body(0.0), {{4, 3}, {4, -3}}};
+  std::vector<MotionEvent> events;
+  const auto check = [&](Between between) {
+    events.clear();
+    check_motions({t}, map, {between}, [&](const MotionEvent& e) { events.push_back(e); });
+    return events.size();
+  };
+  EXPECT_EQ(check(Between::straight), 0u);
+  ASSERT_EQ(check(Between::cubic), 1u);
+  // y = 3 s (1 - s), which is 0.7 at s = (1 -+ sqrt(1 - 2.8 / 3)) / 2.
+  EXPECT_NEAR(events[0].first.low, 0.5 - 0.5 * std::sqrt(1.0 - 2.8 / 3.0), 1e-9);
+  EXPECT_NEAR(events[0].last.high, 0.5 + 0.5 * std::sqrt(1.0 - 2.8 / 3.0), 1e-9);
+  t.velocities.clear();  // with two points a Catmull-Rom spline is the chord
+  EXPECT_EQ(check(Between::cubic), 0u);
 }
 
 TEST(MotionStream, EqualsCheckMotionsAndForgetsEndedPieces) {
@@ -346,7 +420,8 @@ TEST(MotionStream, EqualsCheckMotionsAndForgetsEndedPieces) {
     geometry::MotionStream stream(kMap, {}, [&](const MotionEvent& e) { streamed.push_back(e); });
     for (const Trajectory& t : all) stream.add_body(t.body);
     for (std::size_t k = 0; k < 400; ++k)
-      for (std::size_t b = 0; b < all.size(); ++b) stream.add(b, {all[b].points[k], all[b].points[k + 1]});
+      for (std::size_t b = 0; b < all.size(); ++b)
+        stream.add(b, StraightMotion{all[b].points[k], all[b].points[k + 1]});
     const MotionCheck check = stream.finish();
     EXPECT_EQ(check.pieces, 4000u);
     EXPECT_LE(check.most_held, 3u * all.size());
@@ -376,9 +451,10 @@ TEST(MotionStream, PiecesOutOfOrderAreAMistake) {
   geometry::MotionStream stream(kMap, {}, [](const MotionEvent&) {});
   const std::size_t body = stream.add_body(geometry::disc_body(0.1));
   EXPECT_THROW(stream.add(body + 1, StraightMotion{}), std::logic_error);
-  stream.add(body, {{1, {20, 0}}, {2, {21, 0}}});
-  EXPECT_THROW(stream.add(body, {{1.5, {20, 0}}, {3, {21, 0}}}), std::logic_error);
-  EXPECT_THROW(stream.add(stream.add_body(geometry::disc_body(0.1)), {{0, {20, 0}}, {3, {21, 0}}}), std::logic_error);
+  stream.add(body, StraightMotion{{1, {20, 0}}, {2, {21, 0}}});
+  EXPECT_THROW(stream.add(body, StraightMotion{{1.5, {20, 0}}, {3, {21, 0}}}), std::logic_error);
+  const std::size_t other = stream.add_body(geometry::disc_body(0.1));
+  EXPECT_THROW(stream.add(other, StraightMotion{{0, {20, 0}}, {3, {21, 0}}}), std::logic_error);
 }
 
 TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
@@ -388,6 +464,7 @@ TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
     const auto all = random_trajectories(random, 8, round % 2 == 0);
     std::vector<geometry::MetPair> met;
     geometry::MotionCheckOptions options;
+    options.between = static_cast<Between>(round % 4);
     options.met = [&](const geometry::MetPair& pair) { met.push_back(pair); };
     const MotionCheck check = check_motions(all, kMap, options, [](const MotionEvent&) {});
     EXPECT_GE(met.size(), check.pairs);
@@ -404,10 +481,10 @@ TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
     }
     // Whatever is not among them is clear.
     for (std::size_t i = 0; i < all.size(); ++i)
-      for (const StraightMotion& m : pieces_of(all[i], Between::straight))
+      for (const Motion& m : pieces_of(all[i], options.between))
         for (std::size_t k = 0; k < kMap.size(); ++k) {
           const bool named = std::any_of(met.begin(), met.end(), [&](const geometry::MetPair& p) {
-            return p.with_obstacle && p.body == i && p.other == k && p.motion.from.time == m.from.time;
+            return p.with_obstacle && p.body == i && p.other == k && start_of(p.motion) == start_of(m);
           });
           if (!named) {
             ASSERT_EQ(geometry::encounter(m, all[i].body, kMap[k]), Encounter::clear);
@@ -416,6 +493,156 @@ TEST(MotionCheck, ReportsEveryPairThatMayMeet) {
   }
   EXPECT_GE(clear, 200u);
   EXPECT_GE(proven * 100, clear * 80);
+}
+
+// --- Scenes that public reports describe, rebuilt small ---
+
+std::vector<MotionEvent> events_of(const std::vector<Trajectory>& all, const std::vector<Obstacle>& map = {},
+                                   Between between = Between::straight) {
+  std::vector<MotionEvent> events;
+  check_motions(all, map, {between}, [&](const MotionEvent& e) { events.push_back(e); });
+  return events;
+}
+
+const geometry::RigidBody kBox{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 0.0}};
+
+TEST(MotionScenes, BoxesThatChangePlacesCollideOnTheWay) {
+  // A checker advances by a bound of both motions; where it adds signed bounds, opposite motions cancel.
+  const Trajectory a{{{0, {-5, 0}}, {1, {5, 0}}}, kBox}, b{{{0, {5, 0}}, {1, {-5, 0}}}, kBox};
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].encounter, Encounter::overlap);
+  EXPECT_NEAR(events[0].first.low, 0.4, 1e-9);  // 8 m apart, 20 m/s
+  EXPECT_NEAR(events[0].last.high, 0.6, 1e-9);
+}
+
+TEST(MotionScenes, ABoxThatPassesABoxAtRestIsFoundAndContactIsTold) {
+  // Both poses that a planner gives are clear. Conservative advancement misses the box between them with some bounds.
+  const Trajectory rest{{{0, {0, 0}}, {1, {0, 0}}}, kBox};
+  for (const double y : {1.5, 2.0, 2.0000000000000004}) {
+    const Trajectory passing{{{0, {-10, y}}, {1, {10, y}}}, kBox};
+    const auto events = events_of({rest, passing});
+    const Encounter expected = y < 2.0 ? Encounter::overlap : y == 2.0 ? Encounter::contact : Encounter::clear;
+    EXPECT_EQ(events.empty() ? Encounter::clear : events[0].encounter, expected) << y;
+  }
+}
+
+TEST(MotionScenes, ACollisionInTheLastQuarterOfATrajectoryIsFound) {
+  // A check of the first three quarters, which counts on the next plan, sees nothing.
+  const Trajectory a{{{0, {0, 0}}, {4, {8, 0}}}, geometry::disc_body(0.25)};
+  const Trajectory b{{{0, {7, 7}}, {4, {7, -1}}}, a.body};  // both are at (7, 0) at 3.5 s
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_GT(events[0].first.low, 3.0);
+  const Trajectory first_part{{{0, {0, 0}}, {3, {6, 0}}}, a.body}, other_part{{{0, {7, 7}}, {3, {7, 1}}}, a.body};
+  EXPECT_TRUE(events_of({first_part, other_part}).empty());
+}
+
+TEST(MotionScenes, PositionsOfNowSayNothingOfLater) {
+  // A check that compares present positions at every future sample finds 10 m of room, always.
+  const Trajectory a{{{0, {0, 0}}, {5, {10, 0}}}, geometry::disc_body(0.3)};
+  const Trajectory b{{{0, {10, 0.2}}, {5, {0, 0.2}}}, geometry::disc_body(0.3)};
+  const auto events = events_of({a, b});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_NEAR(events[0].nearest_time, 2.5, 1e-9);
+}
+
+TEST(MotionScenes, TheFirstMomentIsABoundThatLeavesTimeToBrake) {
+  // Two drones head-on on cubics; an emergency stop needs 1 s. What is left before the overlap is certified, so that
+  // it can be compared with the time to stop before another plan is tried.
+  const Trajectory a{{{0, {0, 0}}, {2, {4, 0}}}, geometry::disc_body(0.5), {{2, 0}, {2, 0}}};
+  const Trajectory b{{{0, {5, 0}}, {2, {1, 0}}}, geometry::disc_body(0.5), {{-2, 0}, {-2, 0}}};
+  const auto events = events_of({a, b}, {}, Between::cubic);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_LE(events[0].first.low, 1.0);
+  EXPECT_GE(events[0].first.high, 1.0);
+  EXPECT_LT(events[0].first.high - events[0].first.low, 1e-9);
+}
+
+TEST(MotionScenes, ARobotMayDriveUpToAWall) {
+  // A dock: the robot stops where its front touches the wall, and one ulp farther it would be in it.
+  const std::vector<Obstacle> wall{Polyline{{{5, -3}, {5, 3}}}};
+  const auto touching = events_of({{{{0, {0, 0}}, {4, {4, 0}}, {6, {4, 0}}}, kBox}}, wall);
+  ASSERT_EQ(touching.size(), 1u);
+  EXPECT_EQ(touching[0].encounter, Encounter::contact);
+  const auto beyond = events_of({{{{0, {0, 0}}, {4, {std::nextafter(4.0, 5.0), 0}}}, kBox}}, wall);
+  ASSERT_EQ(beyond.size(), 1u);
+  EXPECT_EQ(beyond[0].encounter, Encounter::overlap);
+}
+
+TEST(MotionScenes, AnObstacleInsideAFootprintIsFound) {
+  // A post of 2 cm that no corner and no side of the footprint touches at a pose that is looked at.
+  const std::vector<Obstacle> post{Polygon{{{0.01, 0.01}, {0.03, 0.01}, {0.03, 0.03}, {0.01, 0.03}}, {}}};
+  const auto at_rest = events_of({{{{0, {0, 0}}}, kBox}}, post);
+  ASSERT_EQ(at_rest.size(), 1u);
+  EXPECT_EQ(at_rest[0].encounter, Encounter::overlap);
+  const auto passing = events_of({{{{0, {-4, 0}}, {1, {4, 0}}}, kBox}}, post);
+  ASSERT_EQ(passing.size(), 1u);
+  EXPECT_EQ(passing[0].encounter, Encounter::overlap);
+}
+
+TEST(MotionScenes, ACornerThatCutsAnObstacleBetweenTwoPosesIsFound) {
+  // A long footprint at an angle is carried past a post; both poses are clear of it.
+  const geometry::RigidBody turned =
+      geometry::turned_body({{{{-2, -0.25}, {2, -0.25}, {2, 0.25}, {-2, 0.25}}, 0.0}}, 0.5);
+  const std::vector<Obstacle> post{Polygon{{{0, 1.05}, {0.1, 1.05}, {0.1, 1.15}, {0, 1.15}}, {}}};
+  const Vec2 from{-4, 0}, to{2, 0};
+  for (const Vec2 pose : {from, to}) EXPECT_TRUE(events_of({{{{0, pose}}, turned}}, post).empty());
+  EXPECT_EQ(events_of({{{{0, from}, {1, to}}, turned}}, post).size(), 1u);
+}
+
+TEST(MotionStream, PolynomialPiecesOfEveryBasisAreDecided) {
+  SeededRandom random(seed_of_run(59));
+  std::size_t judged = 0, by_chord = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::vector<std::vector<Motion>> all(6);
+    const auto body = [&](std::size_t b) { return b % 3 == 2 ? random_footprint(random) : geometry::disc_body(0.3); };
+    std::vector<geometry::RigidBody> bodies;
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      bodies.push_back(body(b));
+      double time = random.uniform(0.0, 1.0);
+      for (int k = 0; k < 5; ++k) {
+        geometry::CurvedMotion m{static_cast<geometry::CurveBasis>(random.integer(0, 2)), time, time + 1.0, {}};
+        const int degree = random.integer(0, 5);
+        for (int i = 0; i <= degree; ++i) m.points.push_back(random.in_box(i == 0 ? 6.0 : 3.0));
+        all[b].emplace_back(m);
+        order.emplace_back(time, b);
+        time += 1.0;
+      }
+    }
+    std::stable_sort(order.begin(), order.end());
+    std::map<Key, Encounter> worst;
+    geometry::MotionStream stream(kMap, {}, [&](const MotionEvent& e) {
+      Encounter& w = worst.try_emplace({e.body, e.with_obstacle, e.other}, e.encounter).first->second;
+      w = std::max(w, e.encounter);
+    });
+    for (const auto& each : bodies) stream.add_body(each);
+    std::vector<std::size_t> next(all.size(), 0);
+    for (const auto& [time, b] : order) stream.add(b, all[b][next[b]++]);
+    const MotionCheck check = stream.finish();
+    by_chord += check.pairs + check.edge_pairs - std::min(check.pairs + check.edge_pairs, check.examined);
+    const auto expect = [&](const Key& key, Encounter expected) {
+      const auto found = worst.find(key);
+      ASSERT_EQ(found == worst.end() ? Encounter::clear : found->second, expected) << "round " << round;
+      judged += expected == Encounter::clear ? 0 : 1;
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t k = 0; k < kMap.size(); ++k) {
+        Encounter expected = Encounter::clear;
+        for (const Motion& m : all[i]) expected = std::max(expected, geometry::encounter(m, bodies[i], kMap[k]));
+        expect({i, true, k}, expected);
+      }
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        Encounter expected = Encounter::clear;
+        for (const Motion& m : all[i])
+          for (const Motion& n : all[j]) expected = std::max(expected, geometry::encounter(m, bodies[i], n, bodies[j]));
+        expect({i, false, j}, expected);
+      }
+    }
+  }
+  EXPECT_GE(judged, 300u);
+  EXPECT_GE(by_chord, 100u);
 }
 
 // --- Certificates ---

@@ -5,7 +5,7 @@ A call is (name, function, arguments by name); the function of a method makes it
 import numpy as np
 
 import exactvo
-from exactvo import datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
+from exactvo import collisions, datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
 
 ONE = {"name": "one", "time_limit": 1, "robots": [{"id": "R1", "position": [0, 0], "goal": [1, 0]}]}
 SQUARE = "POLYGON((10 0, 12 0, 12 2, 10 2, 10 0))\n"
@@ -104,6 +104,8 @@ def good_calls(folder):
         ("routes.Route.check", plan.route(**ends).check, {}),
         ("routes.Certificate.check", plan.route(**ends).certificate.check, {}),
         ("routes.Unreachable.check", exactvo.RouteMap(RING).plan(0.2).route((0, 0), (5, 0)).check, {}),
+        ("collisions.check", collisions.check, dict(trajectories={"A": [(0, 0, 0), (1, 4, 0)]}, map=DOOR, radius=0.2, footprint=[(-1, -1), (1, -1), (0, 1)], time=None, between="straight", near=0.5, max_speed=9.0, max_gap=9.0, format=None, frame_rate=None, scale=1.0)),
+        ("collisions.trajectory_formats", collisions.trajectory_formats, {}),
         ("crowd.Crowd", exactvo.Crowd, dict(time_step=0.25, precision="float", position_step=2.0**-18, certified=True, threads=1)),
         ("crowd.RobotKind", exactvo.RobotKind, numbers),
         ("crowd.Crowd.add_robot", on_crowd("add_robot"), dict(numbers, position=(9, 9), kind=None)),
@@ -191,6 +193,7 @@ def good_calls(folder):
             ("simulation.Recording.plot", run.plot, dict(ax=None)),
             ("simulation.Recording.animate", run.animate, dict(speed=1.0, frames_per_second=20.0)),
             ("simulation.Recording.to_dataframe", run.to_dataframe, {}),
+            ("collisions.CheckResult.to_dataframe", collisions.check({"A": [(0, 0, 0)]}, radius=0.2).to_dataframe, {}),
         ]
     return calls
 

@@ -9,7 +9,7 @@ import numpy as np
 from good_calls import DOOR, ONE, PLAN, SQUARE, WALL, good_calls, two_robots
 
 import exactvo
-from exactvo import _exactvo, datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
+from exactvo import _exactvo, collisions, datasets, explorer, lp, routes, rvo2, shapes, simulation, sweeps, vo
 
 
 def overlapping():
@@ -113,6 +113,9 @@ def raising_calls(folder):
         ("navigator.Navigator.of_scenario", "ArgumentError", wrong("navigator.Navigator.of_scenario", robot=9)),
         ("navigator.Navigator.set_goals", "ArgumentError", wrong("navigator.Navigator.set_goals", goals=[])),
         ("navigator.Navigator.decide", "ArgumentError", wrong("navigator.Navigator.decide", positions=[(0, 0)])),
+        ("collisions.check", "ArgumentError", lambda: collisions.check({"A": [(0, 0, 0)]}, radius=-1)),
+        ("collisions.check", "DataError", lambda: collisions.check({"A": [(0, 0, 0), (0, 1, 0)]}, radius=1)),
+        ("collisions.check", "MissingFileError", lambda: collisions.check(missing, radius=1)),
         ("crowd.RobotKind", "ArgumentError", lambda: exactvo.RobotKind(radius="x")),
         ("crowd.Crowd", "ArgumentError", lambda: exactvo.Crowd(precision="x")),
         ("crowd.Crowd", "CrowdError", lambda: exactvo.Crowd(time_step=-1)),

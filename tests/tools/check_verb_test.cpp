@@ -50,6 +50,108 @@ TEST(CheckVerb, FindsWhatHappensBetweenTwoRows) {
   EXPECT_THAT(held.out, AllOf(HasSubstr("rests at a row until its next row"), HasSubstr("0 overlaps")));
 }
 
+TEST(CheckVerb, CubicsBulgeBeyondTheirRowsAndSamplesAloneSeeNothing) {
+  // B waits beside A's way; A's velocities turn A towards it and back.
+  const std::string rows =
+      "t,id,x,y,vx,vy\n0,A,0,0,4,3\n0,B,2,0.9,0,0\n1,A,4,0,4,-3\n1,B,2,0.9,0,0\n2,A,8,0,4,0\n2,B,2,0.9,0,0\n";
+  EXPECT_EQ(checked(rows, "--radius 0.2").status, 0);
+  const Outcome cubic = checked(rows, "--radius 0.2 --between cubic");
+  EXPECT_EQ(cubic.status, 1);
+  EXPECT_THAT(cubic.out, AllOf(HasSubstr("along a cubic from each row to the next, with the file's velocities"),
+                               HasSubstr("deep at 0.5 s, at (2, ")));
+  EXPECT_THAT(checked(rows, "--radius 0.2 --between cubic --json").out, HasSubstr("\"between\":\"cubic\""));
+  const Outcome none = checked(kCrossing, "--radius 0.25 --between none");
+  EXPECT_EQ(none.status, 0);
+  EXPECT_THAT(none.out, HasSubstr("only the rows count"));
+}
+
+TEST(CheckVerb, CatmullRomTakesTheRowsBeforeAndAfter) {
+  // Round a corner a spline goes outside of the rows: A overlaps a wall that its chords do not reach.
+  const Workplace here;
+  here.write("t.csv", "t,id,x,y\n0,A,0,0\n1,A,4,0\n2,A,4,4\n3,A,0,4\n");
+  here.write("map.wkt", "LINESTRING (4.6 0, 4.6 4)\n");
+  EXPECT_EQ(here.run("check t.csv --radius 0.2 --map map.wkt").status, 0);
+  // Between (4, 0) and (4, 4), with velocities (2, 2) and (-2, 2): x = 4 + 2 s (1 - s), at most 4.5.
+  const Outcome outcome = here.run("check t.csv --radius 0.2 --map map.wkt --between cubic");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("velocities of a Catmull-Rom spline"), HasSubstr("0.1 m deep at 1.5 s")));
+  EXPECT_EQ(here.run("check t.csv --radius 0.05 --map map.wkt --between cubic").status, 0);
+}
+
+TEST(CheckVerb, RobotsThatFollowEachOtherByOneRowDoNotMeetWhereTheyAreHeld) {
+  std::string text = "t,id,x,y\n";
+  for (int k = 0; k < 6; ++k)
+    for (int a = 0; a < 3; ++a)
+      text += std::to_string(k) + "," + std::to_string(a) + "," + std::to_string(k - a) + ",0\n";
+  const Outcome outcome = checked(text, "--radius 0.3 --between hold");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("0 overlaps, 0 contacts"));
+}
+
+TEST(CheckVerb, PolynomialsOfSeveralFilesAreOneFleet) {
+  const Workplace here;
+  // one: (4 t, 3 t - 3 t^2), then on along x; other: against it, 0.7 m higher.
+  here.write("fleet/one.csv", "duration,x^0,x^1,x^2,y^0,y^1,y^2\n1,0,4,0,0,3,-3\n1,4,4,0,0,0,0\n");
+  here.write("fleet/other.csv", "# duration,x^0,x^1,x^2,y^0,y^1,y^2\n2,8,-4,0,0.7,0,0\n");
+  const Outcome clear = here.run("check fleet --radius 0.3 --certificates proofs.jsonl");
+  EXPECT_EQ(clear.status, 0) << clear.err;
+  EXPECT_THAT(clear.out, AllOf(HasSubstr("of 2 agents, from 0 s to 2 s"), HasSubstr("along the file's polynomials")));
+  const Outcome audit = here.run("audit --certificate proofs.jsonl --json");
+  EXPECT_EQ(audit.status, 0) << audit.err;
+  EXPECT_GE(json::parse(audit.out)["valid"], 2);
+  std::string proof = here.read("proofs.jsonl");
+  const std::size_t basis = proof.find("\"basis\":\"powers\"");
+  ASSERT_NE(basis, std::string::npos);
+  here.write("wrong.jsonl", proof.replace(basis, 16, "\"basis\":\"cubics\""));
+  EXPECT_EQ(here.run("audit --certificate wrong.jsonl").status, 1);
+  const Outcome wide = here.run("check fleet/one.csv fleet/other.csv --radius 0.4");
+  EXPECT_EQ(wide.status, 1);
+  EXPECT_THAT(wide.out, HasSubstr("overlap: one and other"));
+  EXPECT_EQ(here.run("check fleet --radius 0.4 --between hold").status, 2);
+  for (const char* bad : {"0,1,2,3,4,5,6\n", "1,2\n", "1,0,4,0,0,3,x\n", ""}) {
+    here.write("bad.csv", std::string("duration,x^0,x^1,x^2,y^0,y^1,y^2\n") + bad);
+    const Outcome outcome = here.run("check bad.csv --radius 1");
+    EXPECT_EQ(outcome.status, 2) << bad;
+    EXPECT_THAT(outcome.err, HasSubstr("bad.csv: line ")) << bad;
+  }
+}
+
+TEST(CheckVerb, SeveralFilesAndFoldersAreCheckedOneAfterTheOther) {
+  const Workplace here;
+  here.write("all/a.csv", kCrossing);
+  here.write("all/b.csv", "t,id,x,y\n0,A,0,0\n1,A,1,0\n");
+  here.write("all/readme.txt", "Nothing that is recognised.\n");
+  const Outcome folder = here.run("check all --radius 0.25");
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_THAT(folder.out, AllOf(HasSubstr("a.csv: csv, 8 rows"), HasSubstr("b.csv: csv, 2 rows")));
+  const Outcome bad = here.run("check all/b.csv missing.csv all/a.csv --radius 0.25");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("missing.csv"), HasSubstr("E_FILE_MISSING")));
+  EXPECT_THAT(bad.out, AllOf(HasSubstr("b.csv: csv"), HasSubstr("overlap: A and B")));
+  EXPECT_EQ(here.run("check all --radius 0.25 --figure x.png").status, 2);
+  EXPECT_EQ(here.run("check all --radius 0.25 --certificates x.jsonl").status, 2);
+  here.write("none/readme.txt", "Nothing that is recognised.\n");
+  const Outcome none = here.run("check none --radius 0.25");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("no file of trajectories"));
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out run --no-figures").status, 0);
+  EXPECT_THAT(here.run("check run --json").out, HasSubstr("\"format\":\"recording\""));
+}
+
+TEST(CheckVerb, UnknownCellsOfAMapAreFreeOrBlocked) {
+  const Workplace here;
+  here.write("t.csv", "t,id,x,y\n0,A,0.5,0.5\n1,A,2.5,0.5\n");
+  // Three cells of 1 m: free, unknown, free.
+  here.write("map.pgm", std::string("P5\n3 1\n255\n\xfe\xcd\xfe"));
+  here.write("map.yaml",
+             "image: map.pgm\nresolution: 1.0\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
+             "free_thresh: 0.196\n");
+  const Outcome free = here.run("check t.csv --radius 0.2 --map map.yaml");
+  EXPECT_EQ(free.status, 0) << free.err;
+  const Outcome blocked = here.run("check t.csv --radius 0.2 --map map.yaml --unknown blocked");
+  EXPECT_EQ(blocked.status, 1) << blocked.err;
+}
+
 TEST(CheckVerb, CountsWhatSamplesMiss) {
   // The overlap lasts from 0.4646 s to 0.5354 s of a move of 1 s.
   EXPECT_THAT(checked(kCrossing, "--radius 0.25 --samples 1").out,
@@ -149,6 +251,25 @@ TEST(CheckVerb, JumpsAndGapsAreFindings) {
                                  HasSubstr("gap: A, line 42: no row from 39 s to 41 s\n"), HasSubstr("1 jump (faster"),
                                  HasSubstr("1 gap\n")));
   EXPECT_THAT(checked(text, "--radius 0.2 --max-speed 100").out, HasSubstr("0 jumps (faster than 100 m/s), 1 gap\n"));
+}
+
+TEST(CheckVerb, AJumpWhereAPlanIsSwitchedIsAFinding) {
+  // A planner starts its new plan where the robot was when planning began: it jumps by 1.093 m within 2.547 ms, to
+  // another robot.
+  std::string text = "t,id,x,y\n";
+  const auto row = [&](double t, const char* id, double x, double y) {
+    text += std::to_string(t) + "," + id + "," + std::to_string(x) + "," + std::to_string(y) + "\n";
+  };
+  for (int k = 0; k <= 40; ++k) {
+    row(0.1 * k, "1", 0.1 * k, 0.0);
+    row(0.1 * k, "3", 5.3, 0.1);
+  }
+  row(4.002547, "1", 5.093, 0.0);
+  row(4.1, "1", 5.2, 0.0);
+  const Outcome outcome = checked(text, "--radius 0.2");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("jump: 1, line 84: 1.093 m in 0.002547 s, 429.132 m/s"),
+                                 HasSubstr("overlap: 1 and 3"), HasSubstr("1 jump ")));
 }
 
 TEST(CheckVerb, AnAgentIsAwayInAGapWhereAsked) {
@@ -301,7 +422,8 @@ TEST(CheckVerb, BadInputIsNamed) {
       {kCrossing, "", "--radius or --footprint"},
       {kCrossing, "--radius -1", "--radius"},
       {kCrossing, "--radius nan", "--radius"},
-      {kCrossing, "--radius 0.2 --between cubic", "one of straight hold"},
+      {kCrossing, "--radius 0.2 --between quintic", "one of straight hold cubic none"},
+      {kCrossing, "--radius 0.2 --unknown open", "--unknown"},
       {kCrossing, "--radius 0.2 --scale 0", "--scale"},
       {kCrossing, "--radius 0.2 --max-gap -1", "--max-gap"},
       {kCrossing, "--radius 0.2 --format obsmatt", "did you mean 'obsmat'?"},
@@ -311,6 +433,13 @@ TEST(CheckVerb, BadInputIsNamed) {
       {"t,id,x,y\n0,A,1,2\n1,A,nan,2\n", "--radius 1", "line 3"},
       {"t,id,x,y\n1,A,1,2\n0,A,1,2\n", "--radius 1", "line 3"},
       {"t,id,x,y\n0,A,1,2\n0,A,1,3\n", "--radius 1", "line 3"},
+      {"t,id,x,y\n0,A,1,2\n1,A,inf,2\n", "--radius 1", "line 3"},
+      {"t,id,x,y\nnan,A,1,2\n", "--radius 1", "E_NOT_FINITE"},
+      {"t,id,x,y\n0,A,1e300,2\n", "--radius 1", "2^100"},
+      {"t,id,x,y\n0,A,1\n", "--radius 1", "E_COUNT"},
+      {"t,id,x,y\n0,,1,2\n", "--radius 1", "an empty id"},
+      {"t,id,x,y,vx,vy\n0,A,1,2,nan,0\n", "--radius 1 --between cubic", "line 2"},
+      {"t,id,x,y\n", "--radius 1", "no row"},
   };
   std::size_t judged = 0;
   for (const Bad& bad : all) {
@@ -320,6 +449,43 @@ TEST(CheckVerb, BadInputIsNamed) {
     ++judged;
   }
   EXPECT_EQ(judged, std::size(all));
+}
+
+TEST(CheckVerb, MixedFrameRatesAreDecidedExactly) {
+  // A has 10 rows a second, B three, C one; B crosses A's way as A passes, between rows of both.
+  std::string text = "t,id,x,y\n";
+  const auto rows = [&](const char* id, int count, double over, auto at) {
+    for (int k = 0; k <= count; ++k) {
+      const double t = over * k / count;
+      const auto [x, y] = at(t);
+      text += std::to_string(t) + "," + id + "," + std::to_string(x) + "," + std::to_string(y) + "\n";
+    }
+  };
+  rows("A", 40, 4.0, [](double t) { return std::pair(t, 0.0); });
+  rows("B", 12, 4.0, [](double t) { return std::pair(1.9, t - 1.9); });
+  rows("C", 4, 4.0, [](double t) { return std::pair(t, 1.0); });
+  const Outcome outcome = checked(text, "--radius 0.1 --near 0");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("overlap: A and B"), HasSubstr("0.2 m deep at 1.9 s"), HasSubstr("0 gaps")));
+  EXPECT_THAT(outcome.out, HasSubstr("overlap: B and C"));
+}
+
+TEST(CheckVerb, ARowThatComesTwiceIsLeftOutAndSaid) {
+  const Outcome outcome = checked("t,id,x,y\n0,A,1,2\n0,A,1,2\n1,A,1,2\n", "--radius 1");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("1 row that repeat"));
+}
+
+TEST(CheckVerb, MillionsOfRowsOfOneAgentNeedLittleMemory) {
+  const Workplace here;
+  here.write("rows.awk",
+             "BEGIN { print \"t,id,x,y\"; for (k = 0; k < 4000000; ++k) printf \"%d,A,%d,0\\n\", k, k % 1000 }\n");
+  // The rows would take 256 MB as rows alone.
+  const Outcome outcome = here.run("check - --radius 0.3 --json; }", "awk -f rows.awk | { ulimit -v 400000;");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const json whole = json_lines(outcome.out).back()["summary"];
+  EXPECT_EQ(whole["rows"], 4000000);
+  EXPECT_LE(whole["most_held"], 300);
 }
 
 TEST(CheckVerb, OnePointIsAnAnswer) {

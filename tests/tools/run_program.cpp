@@ -25,6 +25,7 @@ Workplace::~Workplace() {
 }
 
 void Workplace::write(const std::string& name, const std::string& text) const {
+  std::filesystem::create_directories((path_ / name).parent_path());
   std::ofstream(path_ / name, std::ios::binary) << text;
 }
 

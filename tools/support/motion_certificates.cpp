@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "support/certificate_json.h"
 
 namespace exactvo::tools {
 
+using geometry::CurvedMotion;
+using geometry::Motion;
 using geometry::MotionCertificate;
 using geometry::RigidBody;
 using geometry::RoundedPolygon;
@@ -19,6 +23,8 @@ using geometry::TimedPoint;
 namespace {
 
 constexpr const char* kKind = "clear";
+/// In the order of geometry::CurveBasis.
+constexpr const char* kBases[] = {"powers", "bezier", "b-spline"};
 
 OrderedJson timed_json(const TimedPoint& p) {
   return OrderedJson::array({p.time, p.at.x, p.at.y});
@@ -28,7 +34,14 @@ OrderedJson moving_json(const BodyInMotion& moving) {
   OrderedJson parts = OrderedJson::array();
   for (const RoundedPolygon& part : *moving.body)
     parts.push_back({{"corners", points_json(part.corners)}, {"radius", part.radius}});
-  return {{"from", timed_json(moving.motion.from)}, {"to", timed_json(moving.motion.to)}, {"body", parts}};
+  if (const auto* straight = std::get_if<StraightMotion>(&moving.motion))
+    return {{"from", timed_json(straight->from)}, {"to", timed_json(straight->to)}, {"body", parts}};
+  const auto& curve = std::get<CurvedMotion>(moving.motion);
+  return {{"basis", kBases[static_cast<std::size_t>(curve.basis)]},
+          {"start", curve.start},
+          {"end", curve.end},
+          {"points", points_json(curve.points)},
+          {"body", parts}};
 }
 
 OrderedJson json_with(const MotionCertificate& certificate, const BodyInMotion& a, const char* key, OrderedJson other) {
@@ -59,12 +72,20 @@ RoundedPolygon part_in(const OrderedJson& json) {
 }
 
 struct Moving {
-  StraightMotion motion;
+  Motion motion;
   RigidBody body;
 };
 
+Motion motion_in(const OrderedJson& json) {
+  if (!json.contains("basis")) return StraightMotion{timed_in(json.at("from")), timed_in(json.at("to"))};
+  const auto basis = std::find(std::begin(kBases), std::end(kBases), json["basis"].get<std::string>());
+  require_readable(basis != std::end(kBases));
+  return CurvedMotion{static_cast<geometry::CurveBasis>(basis - std::begin(kBases)), json.at("start").get<double>(),
+                      json.at("end").get<double>(), list_in(json.at("points"), 1, pair_in)};
+}
+
 Moving moving_in(const OrderedJson& json) {
-  return {{timed_in(json.at("from")), timed_in(json.at("to"))}, list_in(json.at("body"), 1, part_in)};
+  return {motion_in(json), list_in(json.at("body"), 1, part_in)};
 }
 
 Separation separation_in(const OrderedJson& json) {
@@ -88,9 +109,8 @@ Read certificate_in(const OrderedJson& json) {
 }
 
 bool proves(const Read& read) {
-  const geometry::Motion a = read.a.motion;
-  if (read.obstacle) return proves_clear(read.certificate, a, read.a.body, *read.obstacle);
-  return proves_clear(read.certificate, a, read.a.body, geometry::Motion(read.b->motion), read.b->body);
+  if (read.obstacle) return proves_clear(read.certificate, read.a.motion, read.a.body, *read.obstacle);
+  return proves_clear(read.certificate, read.a.motion, read.a.body, read.b->motion, read.b->body);
 }
 
 }  // namespace
@@ -112,11 +132,13 @@ bool is_motion_certificate(const OrderedJson& certificate) {
 CheckedCertificate check_motion_certificate(const OrderedJson& certificate) {
   const auto read = read_or_nothing([&] { return certificate_in(certificate); });
   if (!read) return {"not a certificate", "", false};
-  const StraightMotion& m = read->a.motion;
-  const std::string claim = fmt::format(
-      "clear of {}, from ({:.6g}, {:.6g}) at {:.6g} s to ({:.6g}, {:.6g}) at {:.6g} s",
-      read->b ? "another body" : "an obstacle", m.from.at.x, m.from.at.y, m.from.time, m.to.at.x, m.to.at.y, m.to.time);
+  const Motion& m = read->a.motion;
+  std::string claim = read->b ? "clear of another body" : "clear of an obstacle";
   try {
+    const double start = start_of(m), end = end_of(m);
+    const geometry::Vec2 from = position_at(m, start), to = position_at(m, end);
+    claim += fmt::format(", from ({:.6g}, {:.6g}) at {:.6g} s to ({:.6g}, {:.6g}) at {:.6g} s", from.x, from.y, start,
+                         to.x, to.y, end);
     return proves(*read) ? CheckedCertificate{"valid", claim, true} : CheckedCertificate{"not proven", claim, false};
   } catch (const std::logic_error&) {
     return {"not a certificate", claim, false};  // times that fall, a radius below 0

@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Certificates that moving bodies stay clear, as JSON: two bodies with their motions, or one and an obstacle, and the
+/// Certificates that moving bodies stay clear, as JSON: two bodies with their motions (straight: "from" and "to"; else
+/// "basis", "start", "end" and "points" of a geometry::CurvedMotion), or one and an obstacle, and the
 /// separations that prove it (geometry/motion_certificate.h). docs/guide/check.md has the format.
 ///
 /// See also: certificates.h checks whole files.
@@ -16,9 +17,9 @@
 
 namespace exactvo::tools {
 
-/// One straight motion of a body.
+/// One motion of a body.
 struct BodyInMotion {
-  geometry::StraightMotion motion;
+  geometry::Motion motion;
   const geometry::RigidBody* body = nullptr;
 };
 

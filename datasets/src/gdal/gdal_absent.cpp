@@ -33,6 +33,12 @@ GreyImage read_gdal_image(const std::filesystem::path& path) {
                   "a build with EXACTVO_WITH_GDAL=ON, or PGM");
 }
 
+void read_jupedsim_sqlite_file(const std::filesystem::path& path, const SqliteTrajectories&) {
+  throw DataError(DataCode::format_unavailable, path.string(), "",
+                  "an SQLite file, and this build is without SQLite, which comes with GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or JuPedSim's text");
+}
+
 std::unique_ptr<batch::GeoPackage> batch::make_geopackage(const std::filesystem::path& path, const std::string&) {
   throw DataError(DataCode::format_unavailable, path.string(), "", "a GeoPackage to write",
                   "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");

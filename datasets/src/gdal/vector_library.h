@@ -14,6 +14,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/local_plane.h"
 #include "readers/readers.h"
+#include "trajectories/jupedsim_sqlite.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
@@ -31,6 +32,7 @@ struct VectorLibrary {
   decltype(&datasets::read_gdal_image) read_gdal_image;
   decltype(&batch::make_geopackage) make_geopackage;
   decltype(&datasets::make_plane_transform) make_plane_transform;
+  decltype(&datasets::read_jupedsim_sqlite_file) read_jupedsim_sqlite_file;
   decltype(&datasets::set_wait_hook) set_wait_hook;  ///< of the module's own copy of text_file.cpp
 };
 

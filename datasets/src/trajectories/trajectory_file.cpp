@@ -80,11 +80,13 @@ bool looks_like_crowd(std::string_view beginning) {
 const std::vector<TrajectoryFormat>& trajectory_readers() {
   static const std::vector<TrajectoryFormat> kReaders{
       {"crowd-recording", looks_like_crowd, read_crowd_trajectories},
+      {"jupedsim-sqlite", looks_like_sqlite, read_jupedsim_sqlite},
       {"recording", looks_like_recording, read_recorded_trajectories},
       {"trajnet", looks_like_trajnet, read_trajnet},
       {"sumo-fcd", looks_like_sumo_fcd, read_sumo_fcd},
       {"mapf-paths", looks_like_mapf_paths, read_mapf_paths},
       {"mapf-yaml", looks_like_mapf_yaml, read_mapf_yaml},
+      {"polynomials", looks_like_polynomials, read_polynomials},
       {"jupedsim-txt", looks_like_jupedsim_text, read_jupedsim_text},
       {"csv", looks_like_trajectory_csv, read_trajectory_csv},
       {"obsmat", looks_like_obsmat, read_obsmat},
@@ -111,7 +113,8 @@ std::size_t TrajectorySink::agent(std::string_view id) {
   return at->second;
 }
 
-void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line, double heading) {
+void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line, double heading,
+                         geometry::Vec2 velocity) {
   EXACTVO_REQUIRE(agent < last_.size(), std::to_string(agent) + " of " + std::to_string(last_.size()));
   const geometry::Vec2 metres = options_.scale * at;
   if (!std::isfinite(time)) refuse(DataCode::not_finite, line, number_text(time), "a finite time");
@@ -134,7 +137,7 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
     return;
   }
   last = {time, metres, line};
-  take_({agent, time, metres, heading, line});
+  take_({agent, time, metres, heading, options_.scale * velocity, line});
 }
 
 double TrajectorySink::time_of_frame(double frame, double of_file) {
@@ -164,29 +167,85 @@ double TrajectorySink::number(std::string_view field, const char* what, std::uin
 
 // --- The reader ---
 
+namespace {
+
+void require_options(const TrajectoryOptions& options) {
+  EXACTVO_REQUIRE(options.scale > 0.0 && std::isfinite(options.scale), number_text(options.scale));
+  EXACTVO_REQUIRE(options.frame_rate >= 0.0 && std::isfinite(options.frame_rate), number_text(options.frame_rate));
+}
+
+}  // namespace
+
+std::string recognised_trajectory_format(const std::string& file) {
+  if (file == "-" || is_pipe(file)) return "";
+  const std::string beginning = read_beginning(file, kProbe);
+  for (const TrajectoryFormat& format : trajectory_readers())
+    if (!beginning.empty() && format.matches(beginning)) return format.name;
+  return "";
+}
+
 struct TrajectoryReader::State {
   TrajectoryOptions options;
   std::optional<SpooledInput> spooled;
-  std::filesystem::path path;
+  std::vector<std::filesystem::path> paths;  ///< none: the columns
+  TrajectoryColumns columns;
   const TrajectoryFormat* format = nullptr;
   TrajectoryFile file;
+
+  void read_columns(TrajectorySink& sink) const {
+    for (const std::string& name : columns.names) sink.agent(name);
+    for (std::size_t k = 0; k < columns.time.size(); ++k) {
+      TrajectoryRow row;
+      if (!columns.heading.empty()) row.heading = columns.heading[k];
+      if (!columns.vx.empty()) row.velocity = {columns.vx[k], columns.vy[k]};
+      sink.row(columns.agent[k], columns.time[k], {columns.x[k], columns.y[k]}, k + 1, row.heading, row.velocity);
+    }
+  }
 };
 
 TrajectoryReader::TrajectoryReader(const std::string& file, TrajectoryOptions options)
+    : TrajectoryReader(std::vector<std::string>{file}, std::move(options)) {}
+
+TrajectoryReader::TrajectoryReader(const std::vector<std::string>& files, TrajectoryOptions options)
     : state_(std::make_unique<State>()) {
-  EXACTVO_REQUIRE(options.scale > 0.0 && std::isfinite(options.scale), number_text(options.scale));
-  EXACTVO_REQUIRE(options.frame_rate >= 0.0 && std::isfinite(options.frame_rate), number_text(options.frame_rate));
+  EXACTVO_REQUIRE(!files.empty(), std::string("no files"));
+  require_options(options);
   State& s = *state_;
   s.options = std::move(options);
-  s.file.file = name_of_input(file);
-  if (file == "-" || is_pipe(file)) s.spooled.emplace(file);
-  s.path = s.spooled ? s.spooled->path() : std::filesystem::path(file);
-  const std::string beginning = read_beginning(s.path, kProbe);
-  if (beginning.empty())
-    throw DataError(DataCode::format_unknown, s.file.file, "", "an empty file", "a file of trajectories");
-  s.format =
-      s.options.format.empty() ? &format_for(beginning, s.file.file) : &format_named(s.options.format, s.file.file);
+  for (const std::string& file : files) {
+    const std::string name = name_of_input(file);
+    const bool is_stream = file == "-" || is_pipe(file);
+    if (is_stream && files.size() > 1)
+      throw DataError(DataCode::not_an_option, name, "", "a stream among several files", "files, or one stream");
+    if (is_stream) s.spooled.emplace(file);
+    s.paths.push_back(s.spooled ? s.spooled->path() : std::filesystem::path(file));
+    const std::string beginning = read_beginning(s.paths.back(), kProbe);
+    if (beginning.empty())
+      throw DataError(DataCode::format_unknown, name, "", "an empty file", "a file of trajectories");
+    s.format = s.options.format.empty() ? &format_for(beginning, name) : &format_named(s.options.format, name);
+    if (files.size() > 1 && s.format->read != &read_polynomials)
+      throw DataError(DataCode::not_an_option, name, "", std::string("the format ") + s.format->name,
+                      "polynomials, since several files that are read together have one agent each");
+  }
+  s.file.file = name_of_input(files.front());
+  if (files.size() > 1) s.file.file += " and " + std::to_string(files.size() - 1) + " more";
   s.file.format = s.format->name;
+}
+
+TrajectoryReader::TrajectoryReader(TrajectoryColumns columns, const std::string& name, TrajectoryOptions options)
+    : state_(std::make_unique<State>()) {
+  require_options(options);
+  const std::size_t rows = columns.time.size();
+  const auto fits = [&](const std::vector<double>& array, bool may_lack) {
+    return array.size() == rows || (may_lack && array.empty());
+  };
+  EXACTVO_REQUIRE(columns.agent.size() == rows && fits(columns.x, false) && fits(columns.y, false) &&
+                      fits(columns.heading, true) && fits(columns.vx, true) && columns.vx.size() == columns.vy.size(),
+                  std::to_string(rows) + " rows");
+  state_->options = std::move(options);
+  state_->columns = std::move(columns);
+  state_->file.file = name;
+  state_->file.format = "columns";
 }
 
 TrajectoryReader::~TrajectoryReader() = default;
@@ -198,11 +257,18 @@ const TrajectoryFile& TrajectoryReader::read(const std::function<void(const Traj
   fresh.format = s.file.format;
   s.file = std::move(fresh);
   TrajectorySink sink(s.options, take, s.file);
-  try {
-    s.format->read(s.path, sink);
-  } catch (const DataError& error) {
-    if (error.file() == s.file.file) throw;
-    throw DataError(error.code(), s.file.file, error.place(), error.found(), error.expected());
+  if (s.paths.empty()) {
+    s.file.row_word = "row";
+    s.read_columns(sink);
+  }
+  for (const std::filesystem::path& path : s.paths) {
+    const std::string name = s.paths.size() > 1 ? path.string() : s.file.file;
+    try {
+      s.format->read(path, sink);
+    } catch (const DataError& error) {
+      if (error.file() == name) throw;
+      throw DataError(error.code(), name, error.place(), error.found(), error.expected());
+    }
   }
   if (s.file.agents.empty())
     throw DataError(DataCode::format_syntax, s.file.file, "", "no row", "at least one row of a trajectory");

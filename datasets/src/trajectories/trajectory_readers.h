@@ -29,7 +29,9 @@ class TrajectorySink {
   std::size_t agent(std::string_view id);
   /// `at` in the file's unit of length; `time` in s. REQUIRES: a number of `agent`.
   void row(std::size_t agent, double time, geometry::Vec2 at, std::uint64_t line,
-           double heading = std::numeric_limits<double>::quiet_NaN());
+           double heading = std::numeric_limits<double>::quiet_NaN(),
+           geometry::Vec2 velocity = TrajectoryRow().velocity);
+  double scale() const { return options_.scale; }  ///< m
   /// s, of a frame. Notes once where no frame rate is known. `of_file`: frames a second as the file says, 0 if not.
   double time_of_frame(double frame, double of_file);
   [[noreturn]] void refuse(DataCode code, std::uint64_t line, const std::string& found,
@@ -71,11 +73,19 @@ void read_obsmat(const std::filesystem::path& path, TrajectorySink& out);
 bool looks_like_four_columns(std::string_view beginning);
 void read_four_columns(const std::filesystem::path& path, TrajectorySink& out);
 
+// trajectory_polynomials.cpp
+bool looks_like_polynomials(std::string_view beginning);
+void read_polynomials(const std::filesystem::path& path, TrajectorySink& out);
+
 // trajectory_plans.cpp
 bool looks_like_mapf_yaml(std::string_view beginning);
 void read_mapf_yaml(const std::filesystem::path& path, TrajectorySink& out);
 bool looks_like_mapf_paths(std::string_view beginning);
 void read_mapf_paths(const std::filesystem::path& path, TrajectorySink& out);
+
+// trajectory_databases.cpp
+bool looks_like_sqlite(std::string_view beginning);
+void read_jupedsim_sqlite(const std::filesystem::path& path, TrajectorySink& out);
 
 // trajectory_trees.cpp
 bool looks_like_trajnet(std::string_view beginning);

@@ -63,6 +63,7 @@ void TrajectorySurvey::add(const TrajectoryRow& row) {
   first_ = std::min(first_, row.time);
   last_ = std::max(last_, row.time);
   extent_.add(row.at);
+  has_velocities_ = has_velocities_ || is_finite(row.velocity);
   if (!std::isnan(row.heading)) {
     has_headings_ = true;
     if (std::isnan(agent.heading)) agent.heading = row.heading;

@@ -88,7 +88,17 @@ std::string_view plain_id(std::string_view field, std::string& memory) {
 
 // --- Columns ---
 
-enum Column : std::size_t { kTimeColumn, kFrameColumn, kIdColumn, kXColumn, kYColumn, kHeadingColumn, kColumnKinds };
+enum Column : std::size_t {
+  kTimeColumn,
+  kFrameColumn,
+  kIdColumn,
+  kXColumn,
+  kYColumn,
+  kHeadingColumn,
+  kVxColumn,
+  kVyColumn,
+  kColumnKinds
+};
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 using Columns = std::array<std::size_t, kColumnKinds>;
 
@@ -99,7 +109,9 @@ const std::array<std::vector<std::string>, kColumnKinds> kColumnNames{
      {"id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"},
      {"x", "x_m", "x/m", "pos_x", "position_x", "x/cm"},
      {"y", "y_m", "y/m", "pos_y", "position_y", "y/cm"},
-     {"theta", "heading", "yaw", "theta_rad", "heading_rad", "yaw_rad", "psi_rad"}}};
+     {"theta", "heading", "yaw", "theta_rad", "heading_rad", "yaw_rad", "psi_rad"},
+     {"vx", "v_x", "vx_m_s", "vel_x", "velocity_x"},
+     {"vy", "v_y", "vy_m_s", "vel_y", "velocity_y"}}};
 
 /// Where each column stands; a name of `kColumnNames` that comes twice counts the first time.
 Columns columns_in(const std::vector<std::string_view>& header) {
@@ -153,7 +165,11 @@ class TableRows {
     std::string_view id = columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : fields[columns_[kIdColumn]];
     if (ids_ == Ids::numbers) id = plain_id(id, memory_);
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
-    out_.row(out_.agent(id), time, {unit * number(kXColumn, "x"), unit * number(kYColumn, "y")}, line, heading);
+    geometry::Vec2 velocity = TrajectoryRow().velocity;
+    if (columns_[kVxColumn] != kNoColumn && columns_[kVyColumn] != kNoColumn)
+      velocity = {unit * number(kVxColumn, "a velocity"), unit * number(kVyColumn, "a velocity")};
+    out_.row(out_.agent(id), time, {unit * number(kXColumn, "x"), unit * number(kYColumn, "y")}, line, heading,
+             velocity);
   }
 
  private:
@@ -264,6 +280,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     if (!has_place_and_time(named) || named[kIdColumn] == kNoColumn) continue;
     columns = named;
     columns[kHeadingColumn] = kNoColumn;  // JuPedSim's ANGLE is that of an ellipse of its model
+    columns[kVxColumn] = columns[kVyColumn] = kNoColumn;
     count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
                           named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
     if (lower_case(fields[named[kXColumn]]) == "x/cm") unit = kMetresOfCentimetre;

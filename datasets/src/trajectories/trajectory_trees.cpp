@@ -268,7 +268,8 @@ void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySin
         file.notes.emplace_back(
             "robots of this formation moved on curves between rows, which exactvo audit judges; here they go straight");
     }
-    for (std::size_t i = 0; i < row.robots.size(); ++i) out.row(i, row.time, row.robots[i].position, number);
+    for (std::size_t i = 0; i < row.robots.size(); ++i)
+      out.row(i, row.time, row.robots[i].position, number, TrajectoryRow().heading, row.robots[i].velocity);
   });
 }
 

@@ -12,6 +12,8 @@
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/motion_check.h"
 #include "exactvo/geometry/require.h"
+#include "motions/path.h"
+#include "motions/question.h"
 #include "motions/straight.h"
 
 namespace exactvo::geometry {
@@ -25,16 +27,40 @@ void require_trajectory(const Trajectory& t) {
     EXACTVO_REQUIRE(is_finite(p.at) && std::isfinite(p.time), hex_text(p.time) + " " + excerpt({p.at}));
     EXACTVO_REQUIRE(i == 0 || t.points[i - 1].time <= p.time, hex_text(t.points[i - 1].time) + " " + hex_text(p.time));
   }
+  EXACTVO_REQUIRE(t.velocities.empty() || t.velocities.size() == t.points.size(),
+                  std::to_string(t.velocities.size()) + " velocities");
+  EXACTVO_REQUIRE(std::all_of(t.velocities.begin(), t.velocities.end(), is_finite), excerpt(t.velocities));
 }
 
 std::size_t pieces_of(const Trajectory& t, Between between) {
-  return between == Between::hold ? t.points.size() : std::max<std::size_t>(1, t.points.size() - 1);
+  const bool has_one_a_point = between == Between::hold || between == Between::none;
+  return has_one_a_point ? t.points.size() : std::max<std::size_t>(1, t.points.size() - 1);
 }
 
-StraightMotion motion_of(const Trajectory& t, Between between, std::size_t number) {
+/// At one of its points. REQUIRES: not the only one.
+Vec2 velocity_at(const Trajectory& t, std::size_t number) {
+  if (!t.velocities.empty()) return t.velocities[number];
+  const TimedPoint& before = t.points[number == 0 ? 0 : number - 1];
+  const TimedPoint& after = t.points[std::min(number + 1, t.points.size() - 1)];
+  return before.time < after.time ? catmull_rom_velocity(before, after) : Vec2{};
+}
+
+Motion motion_of(const Trajectory& t, Between between, std::size_t number) {
   const TimedPoint& from = t.points[number];
-  const TimedPoint& to = t.points[std::min(number + 1, t.points.size() - 1)];
-  return between == Between::hold ? held(from, to.time) : StraightMotion{from, to};
+  const std::size_t next = std::min(number + 1, t.points.size() - 1);
+  const TimedPoint& to = t.points[next];
+  switch (between) {
+    case Between::straight:
+      break;
+    case Between::hold:
+      return held(from, to.time);
+    case Between::cubic:
+      if (number == next) break;
+      return hermite_cubic(from, velocity_at(t, number), to, velocity_at(t, next));
+    case Between::none:
+      return StraightMotion{from, from};
+  }
+  return StraightMotion{from, to};
 }
 
 /// A body, and what the sweep wants to know of it.
@@ -44,6 +70,7 @@ struct SweptBody {
   bool is_disc = false;             ///< round the reference point
   bool outside = false;             ///< of all polygons, at `last`
   TimedPoint last{-kInfinity, {}};  ///< where its last piece ended
+  bool ends_exactly = true;         ///< whether `last` is rounded
   std::uint64_t serial = 0;         ///< of its last piece
   std::uint64_t continued = 0;      ///< the piece that its last one continues
 };
@@ -62,16 +89,63 @@ SweptBody swept_body(RigidBody shape) {
   return body;
 }
 
+/// A motion beside its chord, on which it ends.
+struct Chorded {
+  StraightMotion chord;                       ///< of a straight motion, itself
+  std::shared_ptr<const CurvedMotion> curve;  ///< null: straight
+  /// m: at every moment the curve is no farther than this from the uniform motion along the chord.
+  double stray = 0.0;
+  bool is_exact_at_start = true, is_exact_at_end = true;  ///< whether the curve's ends are the chord's
+};
+
+Chorded chorded(const Motion& motion) {
+  if (const auto* straight = std::get_if<StraightMotion>(&motion)) return {*straight, nullptr};
+  const auto& curve = std::get<CurvedMotion>(motion);
+  Chorded m;
+  m.curve = std::make_shared<const CurvedMotion>(curve);
+  m.is_exact_at_start = curve.basis != CurveBasis::b_spline;
+  m.is_exact_at_end = curve.basis == CurveBasis::bezier;
+  Path<RunningError> path = path_of<RunningError>(curve, {curve.start, curve.end});
+  to_control_points(path);
+  // A Bezier curve stays as near to the uniform motion along its chord as its control points to those of the chord.
+  // Over its whole time a path's scale is a factorial, which is exact. Places are taken from the origin: what the sum
+  // with it rounds is less than 2^-52 of the sizes. 2^-40 stands for all that is rounded besides.
+  constexpr double kOutward = 1.0 + 0x1p-40, kOfSizes = 0x1p-50;
+  const Vec2 origin = origin_of(motion);
+  const double scale = path.scale.value;
+  std::vector<Vec2> points;
+  double error = 0.0, size = std::max(std::fabs(origin.x), std::fabs(origin.y));
+  for (const Vector<RunningError>& p : path.c) {
+    points.push_back({p.x.value / scale, p.y.value / scale});
+    error = std::max({error, p.x.error / scale, p.y.error / scale});
+    size = std::max({size, std::fabs(points.back().x), std::fabs(points.back().y)});
+  }
+  const auto last = static_cast<double>(points.size() - 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double share = last > 0.0 ? static_cast<double>(i) / last : 0.0;
+    m.stray = std::max(m.stray, norm(points[i] - (points.front() + share * (points.back() - points.front()))));
+  }
+  m.stray = kOutward * (m.stray + 8.0 * error + kOfSizes * size);
+  m.chord = {{curve.start, origin + points.front()}, {curve.end, origin + points.back()}};
+  if (m.is_exact_at_start) m.chord.from.at = curve.points.front();
+  if (m.is_exact_at_end) m.chord.to.at = curve.points.back();
+  return m;
+}
+
 /// One motion of one body that is under way.
 struct Piece {
   Box box;  ///< holds the body all the time
-  StraightMotion motion;
+  StraightMotion motion;                       ///< the chord of a curve
+  std::shared_ptr<const CurvedMotion> curve;   ///< null: straight
+  double stray = 0.0;                          ///< m, of the curve from the chord
   std::uint64_t serial = 0;  ///< from 1, rising as pieces come
   std::uint32_t body = 0;
   bool continues = false;  ///< begins when and where the body's piece before it ends
   /// Continues, and lasts: what is met at its first moment is met by the piece before it, too. (A way that is gone in
   /// no time meets others as a whole.)
   bool follows = false;
+
+  Motion whole() const { return curve ? Motion(*curve) : Motion(motion); }
 };
 
 /// Holds the body and half of what counts as near; rounded outward: three roundings of 2^-53 are less than 2^-50.
@@ -526,22 +600,30 @@ class Sweep {
     return bodies_.size() - 1;
   }
 
-  void add(std::size_t number, const StraightMotion& motion) {
+  void add(std::size_t number, const Motion& given) {
     EXACTVO_REQUIRE(number < bodies_.size(), std::to_string(number));
     SweptBody& body = bodies_[number];
-    EXACTVO_REQUIRE(
-        now_ <= motion.from.time && body.last.time <= motion.from.time && motion.from.time <= motion.to.time &&
-            std::isfinite(motion.from.time) && std::isfinite(motion.to.time) && is_finite(motion.from.at) &&
-            is_finite(motion.to.at),
-        hex_text(motion.from.time) + " " + hex_text(motion.to.time) + " " + excerpt({motion.from.at, motion.to.at}));
+    require_motion(given);
+    Chorded chord = chorded(given);
+    const StraightMotion& motion = chord.chord;
+    EXACTVO_REQUIRE(now_ <= motion.from.time && body.last.time <= motion.from.time,
+                    hex_text(motion.from.time) + " after " + hex_text(std::max(now_, body.last.time)));
+    EXACTVO_REQUIRE(std::isfinite(chord.stray), excerpt({motion.from.at, motion.to.at}));
     if (now_ < motion.from.time) {
       meet_at_ends();
       now_ = motion.from.time;
       events_.advance(now_);
     }
-    const bool continues = body.last.time == motion.from.time && body.last.at == motion.from.at;
-    const Piece piece{swept_box(motion, body.reach, near_), motion,    ++check_.pieces,
-                      static_cast<std::uint32_t>(number),   continues, continues && motion.from.time < motion.to.time};
+    const bool continues = chord.is_exact_at_start && body.ends_exactly && body.last.time == motion.from.time &&
+                           body.last.at == motion.from.at;
+    const Piece piece{swept_box(motion, body.reach + chord.stray, near_),
+                      motion,
+                      std::move(chord.curve),
+                      chord.stray,
+                      ++check_.pieces,
+                      static_cast<std::uint32_t>(number),
+                      continues,
+                      continues && motion.from.time < motion.to.time};
     if (piece.follows) {
       body.continued = body.serial;
     } else {
@@ -550,9 +632,11 @@ class Sweep {
     meet_map(piece, body);
     meet_discs(piece, body);
     body.last = motion.to;
+    body.ends_exactly = chord.is_exact_at_end;
     body.serial = piece.serial;
     grid_.meet_and_add(piece, [&](const Piece& other) {
       const bool has_ended = other.motion.to.time == now_ && other.motion.from.time < now_;
+      if (has_ended && options_.between == Between::hold) return;
       // Where the other goes on, its next piece is met at this moment too.
       if (has_ended && bodies_[other.body].serial == other.serial) {
         at_ends_.push_back({piece, other});
@@ -595,10 +679,10 @@ class Sweep {
     const bool stays_outside = body.outside && piece.continues;
     suspects_.clear();
     met_.clear();
-    map_.for_each_edge(swept_box(m, body.reach, 2.0 * near_), [&](const Segment& edge, std::size_t k) {
+    map_.for_each_edge(swept_box(m, body.reach + piece.stray, 2.0 * near_), [&](const Segment& edge, std::size_t k) {
       ++check_.edge_pairs;
       if (options_.met) met_.push_back(k);
-      if (surely_clear_of(m, body.reach, edge, 0.0)) {
+      if (surely_clear_of(m, body.reach, edge, piece.stray)) {
         if (near_ > 0.0) approach_edge(piece, body, edge, k);
       } else {
         suspects_.push_back(k);
@@ -612,43 +696,48 @@ class Sweep {
     keep_each_once(suspects_);
     if (options_.met) {
       keep_each_once(met_);
-      for (const std::size_t k : met_) options_.met({piece.body, m, true, k, {}});
+      for (const std::size_t k : met_) options_.met({piece.body, piece.whole(), true, k, {}});
     }
     body.outside = true;
+    if (suspects_.empty()) return;
+    const Motion whole = piece.whole();
     for (const std::size_t k : suspects_) {
       ++check_.examined;
-      if (near_ == 0.0 && encounter(m, body.shape, map_[k]) == Encounter::clear) continue;
-      const MotionVerdict verdict = examine(m, body.shape, map_[k]);
+      if (near_ == 0.0 && encounter(whole, body.shape, map_[k]) == Encounter::clear) continue;
+      const MotionVerdict verdict = examine(whole, body.shape, map_[k]);
       approaches_.add(verdict, piece.body, true, k);
       if (verdict.encounter == Encounter::clear) continue;
       body.outside = false;
-      events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
+      events_.add(verdict, piece.body, true, k, position_at(whole, verdict.nearest_time), {});
     }
   }
 
   /// A disc of the map is a body at rest: radii are added as exactly as those of two bodies.
   void meet_discs(const Piece& piece, const SweptBody& body) {
     const StraightMotion& m = piece.motion;
-    map_.for_each_disc(swept_box(m, body.reach, 2.0 * near_), [&](const Disc& disc, std::size_t k) {
+    map_.for_each_disc(swept_box(m, body.reach + piece.stray, 2.0 * near_), [&](const Disc& disc, std::size_t k) {
       ++check_.edge_pairs;
       const StraightMotion rest = held({m.from.time, disc.center}, m.to.time);
-      if (options_.met) options_.met({piece.body, m, true, k, rest});
-      if (surely_clear(m, body.reach, rest, disc.radius, approaches_.limit(piece.body, true, k))) return;
+      if (options_.met) options_.met({piece.body, piece.whole(), true, k, rest});
+      const double more = strayed(approaches_.limit(piece.body, true, k), piece.stray);
+      if (surely_clear(m, body.reach, rest, disc.radius, more)) return;
       ++check_.examined;
       const RigidBody round = disc_body(disc.radius);
-      if (near_ == 0.0 && encounter(m, body.shape, rest, round) == Encounter::clear) return;
-      const MotionVerdict verdict = examine(m, body.shape, rest, round);
+      const Motion whole = piece.whole();
+      if (near_ == 0.0 && encounter(whole, body.shape, rest, round) == Encounter::clear) return;
+      const MotionVerdict verdict = examine(whole, body.shape, rest, round);
       approaches_.add(verdict, piece.body, true, k);
       if (verdict.encounter == Encounter::clear) return;
-      events_.add(verdict, piece.body, true, k, position_at(m, verdict.nearest_time), {});
+      events_.add(verdict, piece.body, true, k, position_at(whole, verdict.nearest_time), {});
     });
   }
 
   /// An edge that is not touched, but may be near.
   void approach_edge(const Piece& piece, const SweptBody& body, const Segment& edge, std::size_t k) {
-    if (surely_clear_of(piece.motion, body.reach, edge, approaches_.limit(piece.body, true, k))) return;
+    const double more = strayed(approaches_.limit(piece.body, true, k), piece.stray);
+    if (surely_clear_of(piece.motion, body.reach, edge, more)) return;
     ++check_.examined;
-    approaches_.add(examine(piece.motion, body.shape, Polyline{{edge.a, edge.b}}), piece.body, true, k);
+    approaches_.add(examine(piece.whole(), body.shape, Polyline{{edge.a, edge.b}}), piece.body, true, k);
   }
 
   void meet_body(const Piece& one, const Piece& another) {
@@ -656,16 +745,21 @@ class Sweep {
     const bool in_order = one.body < another.body;
     const Piece &a = in_order ? one : another, &b = in_order ? another : one;
     const SweptBody &body = bodies_[a.body], &other = bodies_[b.body];
-    if (options_.met) options_.met({a.body, a.motion, false, b.body, b.motion});
-    if (surely_clear(a.motion, body.reach, b.motion, other.reach, approaches_.limit(a.body, false, b.body))) return;
+    if (options_.met) options_.met({a.body, a.whole(), false, b.body, b.whole()});
+    const double more = strayed(approaches_.limit(a.body, false, b.body), a.stray + b.stray);
+    if (surely_clear(a.motion, body.reach, b.motion, other.reach, more)) return;
     ++check_.examined;
-    if (near_ == 0.0 && encounter(a.motion, body.shape, b.motion, other.shape) == Encounter::clear) return;
-    const MotionVerdict verdict = examine(a.motion, body.shape, b.motion, other.shape);
+    const Motion motion = a.whole(), other_motion = b.whole();
+    if (near_ == 0.0 && encounter(motion, body.shape, other_motion, other.shape) == Encounter::clear) return;
+    const MotionVerdict verdict = examine(motion, body.shape, other_motion, other.shape);
     approaches_.add(verdict, a.body, false, b.body);
     if (verdict.encounter == Encounter::clear) return;
     const double t = verdict.nearest_time;
-    events_.add(verdict, a.body, false, b.body, position_at(a.motion, t), position_at(b.motion, t));
+    events_.add(verdict, a.body, false, b.body, position_at(motion, t), position_at(other_motion, t));
   }
+
+  /// m: how far apart chords must be for curves to be apart by `more`; rounded up.
+  static double strayed(double more, double stray) { return stray == 0.0 ? more : (1.0 + 0x1p-50) * (more + stray); }
 
   static void keep_each_once(std::vector<std::size_t>& list) {
     std::sort(list.begin(), list.end());
@@ -702,7 +796,7 @@ std::size_t MotionStream::add_body(RigidBody body) {
   return state_->sweep.add_body(std::move(body));
 }
 
-void MotionStream::add(std::size_t body, const StraightMotion& piece) {
+void MotionStream::add(std::size_t body, const Motion& piece) {
   state_->sweep.add(body, piece);
 }
 

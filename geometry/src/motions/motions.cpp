@@ -116,6 +116,20 @@ StraightMotion held(TimedPoint from, double until) {
   return {from, {until, from.at}};
 }
 
+CurvedMotion hermite_cubic(const TimedPoint& from, Vec2 velocity, const TimedPoint& to, Vec2 end_velocity) {
+  EXACTVO_REQUIRE(is_finite(velocity) && is_finite(end_velocity), excerpt({velocity, end_velocity}));
+  const double third = (to.time - from.time) / 3.0;
+  return {CurveBasis::bezier,
+          from.time,
+          to.time,
+          {from.at, from.at + third * velocity, to.at - third * end_velocity, to.at}};
+}
+
+Vec2 catmull_rom_velocity(const TimedPoint& before, const TimedPoint& after) {
+  EXACTVO_REQUIRE(before.time < after.time, hex_text(before.time) + " " + hex_text(after.time));
+  return (after.at - before.at) / (after.time - before.time);
+}
+
 std::vector<CurvedMotion> b_spline_pieces(const std::vector<Vec2>& control_points, std::size_t degree, double start,
                                           double interval) {
   EXACTVO_REQUIRE(degree <= kMostDegree, std::to_string(degree));
@@ -158,6 +172,14 @@ RigidBody polygon_body(const Polygon& outline) {
   EXACTVO_REQUIRE(outline.holes.empty(), std::to_string(outline.holes.size()) + " holes");
   RigidBody body;
   for (const ConvexShape& piece : convex_cover(outline)) body.push_back({corners_of(piece), 0.0});
+  return body;
+}
+
+RigidBody turned_body(RigidBody body, double angle) {
+  EXACTVO_REQUIRE(std::isfinite(angle), hex_text(angle));
+  if (angle == 0.0) return body;
+  for (RoundedPolygon& part : body)
+    for (Vec2& corner : part.corners) corner = rotated(corner, angle);
   return body;
 }
 

@@ -44,19 +44,6 @@ std::vector<Vec2> hull_corners(const std::vector<Vec2>& corners) {
   return hull;
 }
 
-void require_motion(const Motion& motion) {
-  const double start = start_of(motion), end = end_of(motion);
-  EXACTVO_REQUIRE(std::isfinite(start) && std::isfinite(end) && start <= end, hex_text(start) + " " + hex_text(end));
-  if (const auto* straight = std::get_if<StraightMotion>(&motion)) {
-    EXACTVO_REQUIRE(is_finite(straight->from.at) && is_finite(straight->to.at),
-                    excerpt({straight->from.at, straight->to.at}));
-    return;
-  }
-  const std::vector<Vec2>& points = std::get<CurvedMotion>(motion).points;
-  EXACTVO_REQUIRE(!points.empty() && points.size() <= kMostDegree + 1, std::to_string(points.size()) + " points");
-  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_finite), excerpt(points));
-}
-
 void require_body(const RigidBody& body) {
   EXACTVO_REQUIRE(!body.empty(), "no parts");
   for (const RoundedPolygon& part : body) {
@@ -156,6 +143,19 @@ bool is_on(const Segment& edge, const Anchor& anchor, const RationalPoint& at, c
 }
 
 }  // namespace
+
+void require_motion(const Motion& motion) {
+  const double start = start_of(motion), end = end_of(motion);
+  EXACTVO_REQUIRE(std::isfinite(start) && std::isfinite(end) && start <= end, hex_text(start) + " " + hex_text(end));
+  if (const auto* straight = std::get_if<StraightMotion>(&motion)) {
+    EXACTVO_REQUIRE(is_finite(straight->from.at) && is_finite(straight->to.at),
+                    excerpt({straight->from.at, straight->to.at}));
+    return;
+  }
+  const std::vector<Vec2>& points = std::get<CurvedMotion>(motion).points;
+  EXACTVO_REQUIRE(!points.empty() && points.size() <= kMostDegree + 1, std::to_string(points.size()) + " points");
+  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_finite), excerpt(points));
+}
 
 std::vector<Corner> hull_of_differences(const std::vector<Vec2>& plus, const std::vector<Vec2>& minus) {
   std::vector<Corner> all;

@@ -14,6 +14,9 @@
 
 namespace exactvo::geometry::motions {
 
+/// Throws std::logic_error where a motion is not as `encounter` requires it.
+void require_motion(const Motion& motion);
+
 /// A corner of the hull that the difference of two reference points must not enter: exactly plus - minus.
 struct Corner {
   Vec2 plus;   ///< of the other body, from its reference point, or of the obstacle

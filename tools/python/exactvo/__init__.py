@@ -6,7 +6,7 @@
 >>> run.plot()                                                 # doctest: +SKIP
 
 `exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
-`exactvo.Crowd` many robots, `exactvo.Navigator` one robot in a control loop, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files.
+`exactvo.Crowd` many robots, `exactvo.Navigator` one robot in a control loop, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files, `exactvo.check` whether recorded or planned bodies collided.
 SI units: metres, seconds, radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and
 ``where``. The guide: docs/guide/python.md.
 """
@@ -23,6 +23,7 @@ except ModuleNotFoundError as _error:
 
     raise _extension_missing() from None
 from . import datasets, lp, routes, shapes, vo
+from .collisions import CheckResult, MotionEvent, check
 from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError, ScenarioWarning
 from .explorer import ExplorerPage, view
@@ -36,6 +37,7 @@ from .vo import VelocityObstacle, free_velocities, velocity_obstacles
 __all__ = [
     "METHODS",
     "ArgumentError",
+    "CheckResult",
     "Crowd",
     "CrowdError",
     "DataError",
@@ -44,6 +46,7 @@ __all__ = [
     "ExactVOError",
     "ExplorerPage",
     "MissingFileError",
+    "MotionEvent",
     "Navigator",
     "NavigatorDecision",
     "Obstacles",
@@ -62,6 +65,7 @@ __all__ = [
     "VelocityObstacle",
     "Wall",
     "__version__",
+    "check",
     "datasets",
     "free_velocities",
     "hull",

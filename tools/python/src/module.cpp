@@ -16,4 +16,5 @@ PYBIND11_MODULE(_exactvo, module) {
   bind_navigator(module);
   bind_obstacle_files(module);
   bind_rvo2(module);
+  bind_check(module);
 }

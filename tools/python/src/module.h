@@ -23,5 +23,6 @@ void bind_simulate(py::module_& module);
 void bind_navigator(py::module_& module);
 void bind_obstacle_files(py::module_& module);
 void bind_rvo2(py::module_& module);
+void bind_check(py::module_& module);
 
 }  // namespace exactvo::python

@@ -48,8 +48,22 @@ const char* word_of(Encounter encounter) {
   return encounter == Encounter::overlap ? "overlap" : "contact";
 }
 
-const char* word_of(geometry::Between between) {
-  return between == geometry::Between::hold ? "hold" : "straight";
+/// How bodies move between rows, in words.
+std::string assumption_of(const CheckedFile& asked) {
+  if (asked.has_curves) return "along the file's polynomials";
+  switch (asked.between) {
+    case geometry::Between::straight:
+      break;
+    case geometry::Between::hold:
+      return "each agent rests at a row until its next row";
+    case geometry::Between::cubic:
+      return asked.survey.has_velocities()
+                 ? "along a cubic from each row to the next, with the file's velocities"
+                 : "along a cubic from each row to the next, with the velocities of a Catmull-Rom spline";
+    case geometry::Between::none:
+      return "only the rows count, and nothing between them";
+  }
+  return "straight and uniform from each row to the next";
 }
 
 /// Infinite bounds are left out.
@@ -71,15 +85,20 @@ std::string line_of(const OrderedJson& json) {
 
 }  // namespace
 
-void SampledMoves::add(std::size_t agent, const geometry::StraightMotion& piece) {
-  last_[agent] = {piece, last_[agent][0]};
+const std::vector<std::string>& between_names() {
+  static const std::vector<std::string> kNames{"straight", "hold", "cubic", "none"};
+  return kNames;
+}
+
+void SampledMoves::add(std::size_t agent, const geometry::Motion& piece) {
+  last_[agent] = {Span{start_of(piece), end_of(piece)}, last_[agent][0]};
 }
 
 bool SampledMoves::finds(const MotionEvent& event) const {
   // An event is reported when the first piece begins behind its end, so it ends in one of the body's last two pieces.
-  const std::array<geometry::StraightMotion, 2>& last = last_[event.body];
-  const geometry::StraightMotion& piece = last[0].from.time <= event.last.high ? last[0] : last[1];
-  const double begin = piece.from.time, step = (piece.to.time - begin) / static_cast<double>(samples_);
+  const std::array<Span, 2>& last = last_[event.body];
+  const Span& piece = last[0].from <= event.last.high ? last[0] : last[1];
+  const double begin = piece.from, step = (piece.to - begin) / static_cast<double>(samples_);
   if (event.first.low <= begin) return true;
   if (!(step > 0.0)) return true;
   const double next = begin + step * std::ceil((event.first.high - begin) / step);
@@ -118,9 +137,7 @@ void CheckAnswer::begin() {
   std::string text =
       fmt::format("{}: {}, {} of {}, from {} s to {} s\n", asked_.file.file, asked_.file.format,
                   counted(s.rows(), "row"), counted(s.agents().size(), "agent"), seconds(s.first()), seconds(s.last()));
-  text += fmt::format("assumed: {}; {}{}\n", asked_.bodies,
-                      asked_.between == geometry::Between::hold ? "each agent rests at a row until its next row"
-                                                                : "straight and uniform from each row to the next",
+  text += fmt::format("assumed: {}; {}{}\n", asked_.bodies, assumption_of(asked_),
                       std::isfinite(asked_.longest_gap)
                           ? fmt::format("; away where it has no row for more than {:.6g} s", asked_.longest_gap)
                           : "");
@@ -231,27 +248,28 @@ void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t misse
     }
     OrderedJson notes = OrderedJson::array();
     for (const std::string& note : asked_.file.notes) notes.push_back(note);
-    OrderedJson whole{{"file", asked_.file.file},
-                      {"format", asked_.file.format},
-                      {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
-                      {"between", word_of(asked_.between)},
-                      {"footprint", asked_.bodies},
-                      {"rows", s.rows()},
-                      {"repeated_rows", asked_.file.repeated},
-                      {"overlaps", check.overlaps},
-                      {"contacts", check.contacts},
-                      {"jumps", jumps_},
-                      {"jump_speed", number_or_null(asked_.jump_speed)},
-                      {"gaps", gaps_},
-                      {"near", asked_.near},
-                      {"approaches", check.approaches.size()},
-                      {"pieces", check.pieces},
-                      {"pairs", check.pairs},
-                      {"edge_pairs", check.edge_pairs},
-                      {"examined", check.examined},
-                      {"most_held", check.most_held},
-                      {"bodies", bodies},
-                      {"notes", notes}};
+    OrderedJson whole{
+        {"file", asked_.file.file},
+        {"format", asked_.file.format},
+        {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
+        {"between", asked_.has_curves ? "polynomials" : between_names()[static_cast<std::size_t>(asked_.between)]},
+        {"footprint", asked_.bodies},
+        {"rows", s.rows()},
+        {"repeated_rows", asked_.file.repeated},
+        {"overlaps", check.overlaps},
+        {"contacts", check.contacts},
+        {"jumps", jumps_},
+        {"jump_speed", number_or_null(asked_.jump_speed)},
+        {"gaps", gaps_},
+        {"near", asked_.near},
+        {"approaches", check.approaches.size()},
+        {"pieces", check.pieces},
+        {"pairs", check.pairs},
+        {"edge_pairs", check.edge_pairs},
+        {"examined", check.examined},
+        {"most_held", check.most_held},
+        {"bodies", bodies},
+        {"notes", notes}};
     if (asked_.samples > 0) {
       whole["samples"] = asked_.samples;
       whole["missed"] = missed;

@@ -16,6 +16,9 @@
 
 namespace exactvo::tools {
 
+/// What --between takes, in the order of geometry::Between.
+const std::vector<std::string>& between_names();
+
 /// What was asked, for the words of the answer.
 struct CheckedFile {
   const datasets::TrajectoryFile& file;
@@ -23,6 +26,7 @@ struct CheckedFile {
   std::string map;                                         ///< its file; empty without one
   const std::vector<formation::SceneObstacle>& obstacles;  ///< of the map
   geometry::Between between = geometry::Between::straight;
+  bool has_curves = false;   ///< the file says how agents move between rows
   std::string bodies;        ///< in words: "discs of radius 0.3 m"
   double near = 0.0;         ///< m
   double jump_speed = 0.0;   ///< m/s, may be infinite
@@ -36,13 +40,16 @@ class SampledMoves {
   SampledMoves(std::size_t samples, std::size_t agents) : samples_(samples), last_(agents) {}
 
   /// Pieces in the order in which the stream takes them, each before the stream does.
-  void add(std::size_t agent, const geometry::StraightMotion& piece);
+  void add(std::size_t agent, const geometry::Motion& piece);
   /// Whether a sample falls into the event, which was just reported.
   bool finds(const geometry::MotionEvent& event) const;
 
  private:
   std::size_t samples_;
-  std::vector<std::array<geometry::StraightMotion, 2>> last_;  ///< of each agent, the later one first
+  struct Span {
+    double from = 0.0, to = 0.0;  ///< s
+  };
+  std::vector<std::array<Span, 2>> last_;  ///< of each agent, the later piece first
 };
 
 class CheckAnswer {

@@ -9,25 +9,27 @@
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/moving_ai.h"
-#include "exactvo/datasets/trajectory_survey.h"
+#include "exactvo/datasets/trajectory_pieces.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/motion_certificate.h"
 #include "figures/figure.h"
 #include "support/motion_certificates.h"
 #include "support/parse_errors.h"
+#include "support/run.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
 #include "verbs/check/answer.h"
 #include "verbs/check/figure.h"
-#include "verbs/check/piece_feed.h"
 #include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
 
 using datasets::DataCode;
+using datasets::DataError;
 using datasets::TrajectoryFile;
 using datasets::TrajectoryReader;
 using datasets::TrajectoryRow;
@@ -40,7 +42,8 @@ using geometry::Vec2;
 namespace {
 
 struct CheckFlags {
-  std::string file, format, map, footprint, certificates, figure;
+  std::vector<std::string> files;
+  std::string format, map, footprint, certificates, figure;
   std::string between = "straight";
   ReadingFlags reading;  ///< of the map
   std::optional<double> radius, near, max_speed, max_gap;
@@ -55,7 +58,7 @@ void require_positive(const std::string& option, double value, const std::string
 
 void check_flags(const CheckFlags& flags) {
   check_format("--format", flags.format, datasets::trajectory_formats());
-  require_known("--between", flags.between, {"straight", "hold"});
+  require_known("--between", flags.between, between_names());
   require_positive("--scale", flags.scale, "metres of one unit of length, above 0");
   require(flags.frame_rate >= 0.0 && std::isfinite(flags.frame_rate), "--frame-rate",
           fmt::format("{}", flags.frame_rate), "frames a second, above 0");
@@ -63,13 +66,14 @@ void check_flags(const CheckFlags& flags) {
   if (flags.near) require_length("--near", *flags.near);
   if (flags.max_speed) require_positive("--max-speed", *flags.max_speed, "a speed in m/s, above 0");
   if (flags.max_gap) require_positive("--max-gap", *flags.max_gap, "a time in s, above 0");
-  std::vector<std::filesystem::path> others{flags.file};
-  if (!flags.map.empty()) others = all_read_with({flags.map}, flags.reading.format, flags.file);
+  std::vector<std::filesystem::path> others;
+  if (!flags.map.empty()) others = all_read_with({flags.map}, flags.reading.format);
+  others.insert(others.end(), flags.files.begin(), flags.files.end());
   for (const std::string& file : {flags.certificates, flags.footprint})
     if (!file.empty()) others.emplace_back(file);
   check_figure_name("--figure", flags.figure, others);
   if (flags.certificates.empty()) return;
-  refuse_input_as_output(flags.file, "", "--certificates", flags.certificates);
+  for (const std::string& file : flags.files) refuse_input_as_output(file, "", "--certificates", flags.certificates);
   if (!flags.map.empty()) refuse_input_as_output(flags.map, flags.reading.format, "--certificates", flags.certificates);
 }
 
@@ -101,13 +105,6 @@ RigidBody grown_body(const geometry::Obstacle& shape, double radius) {
     throw UsageError("--footprint", geometry::counted(polygon.holes.size(), "hole"), "a polygon without holes");
   RigidBody body = geometry::polygon_body(polygon);
   for (geometry::RoundedPolygon& part : body) part.radius = radius;
-  return body;
-}
-
-RigidBody turned(RigidBody body, double heading) {
-  if (heading == 0.0) return body;
-  for (geometry::RoundedPolygon& part : body)
-    for (Vec2& corner : part.corners) corner = geometry::rotated(corner, heading);
   return body;
 }
 
@@ -147,7 +144,7 @@ Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const
       reader.refuse(DataCode::out_of_range, agent.turns_at,
                     fmt::format("agent {} at another heading than before", reader.file().agents[k]),
                     "one heading of an agent: a footprint that turns is not decided; --radius takes a disc round it");
-    bodies.of_agent.push_back(turned(footprint, std::isnan(agent.heading) ? 0.0 : agent.heading));
+    bodies.of_agent.push_back(turned_body(footprint, std::isnan(agent.heading) ? 0.0 : agent.heading));
   }
   bodies.words += survey.has_headings() ? ", which no agent changes (corners rounded)"
                                         : " as given, since the file has no headings";
@@ -221,7 +218,7 @@ class CertificateFile {
 
   void add(const MetPair& pair) {
     const BodyInMotion a{pair.motion, &bodies_.of_agent[pair.body]};
-    const geometry::Motion motion = pair.motion, other = pair.other_motion;
+    const geometry::Motion &motion = pair.motion, &other = pair.other_motion;
     if (pair.with_obstacle && !map_.discs[pair.other]) {
       const formation::SceneObstacle& obstacle = map_.obstacles[pair.other];
       const auto proof = geometry::certify(motion, *a.body, obstacle.shape);
@@ -249,7 +246,7 @@ class CertificateFile {
     ++without_;
     put({{"certificate", nullptr},
          {"from",
-          pair.with_obstacle ? pair.motion.from.time : std::max(pair.motion.from.time, pair.other_motion.from.time)},
+          pair.with_obstacle ? start_of(pair.motion) : std::max(start_of(pair.motion), start_of(pair.other_motion))},
          {"body", file_.agents[pair.body]},
          {pair.with_obstacle ? "obstacle" : "other",
           pair.with_obstacle ? map_.obstacles[pair.other].id : file_.agents[pair.other]}});
@@ -278,29 +275,35 @@ TrajectorySurvey survey_of(TrajectoryReader& reader, ProgressLine& progress) {
   return survey;
 }
 
-/// All rows by time: as they stand, or sorted in memory.
-void for_each_row(TrajectoryReader& reader, bool is_in_order, const Placing& placing,
-                  const std::function<void(const TrajectoryRow&)>& take) {
-  if (is_in_order) {
-    reader.read([&](TrajectoryRow row) {
-      placing.place(row);
-      take(row);
-    });
-    return;
+/// The curves of a file of polynomials, by the time at which they begin.
+class CurveFeed {
+ public:
+  using Take = datasets::TrajectoryPieces::Take;
+  CurveFeed(const std::vector<std::vector<geometry::CurvedMotion>>& curves, Take take) : take_(std::move(take)) {
+    for (std::size_t agent = 0; agent < curves.size(); ++agent)
+      for (const geometry::CurvedMotion& curve : curves[agent]) waiting_.push_back({agent, &curve});
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.curve->start < b.curve->start; });
   }
-  std::vector<TrajectoryRow> rows;
-  reader.read([&](TrajectoryRow row) {
-    placing.place(row);
-    rows.push_back(row);
-  });
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.time < b.time; });
-  for (const TrajectoryRow& row : rows) take(row);
-}
+  /// Hands on what begins before this time.
+  void advance(double time) {
+    for (; next_ < waiting_.size() && waiting_[next_].curve->start < time; ++next_)
+      take_(waiting_[next_].agent, *waiting_[next_].curve);
+  }
 
-ExitCode check(const CheckFlags& flags) {
-  check_flags(flags);
-  TrajectoryReader reader(flags.file, {flags.format, flags.frame_rate, flags.scale});
+ private:
+  struct Waiting {
+    std::size_t agent;
+    const geometry::CurvedMotion* curve;
+  };
+  Take take_;
+  std::vector<Waiting> waiting_;
+  std::size_t next_ = 0;
+};
+
+/// One file, or several files of polynomials together.
+ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
+  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale});
   TrajectorySurvey survey;
   {
     ProgressLine progress(0.0, "rows");
@@ -316,12 +319,17 @@ ExitCode check(const CheckFlags& flags) {
   const Bodies bodies = flags.footprint.empty() ? discs(flags, file, survey) : footprints(flags, reader, survey);
   const CheckMap map = map_of(flags, file);
   const Placing placing(file, map, flags.scale);
-  const Between between = flags.between == "hold" ? Between::hold : Between::straight;
+  const bool has_curves = !file.curves.empty();
+  const auto names = between_names();
+  auto between = static_cast<Between>(std::find(names.begin(), names.end(), flags.between) - names.begin());
+  if (has_curves && between != Between::straight)
+    throw UsageError("--between", flags.between, "no such option for polynomials, which say how agents move");
   const CheckedFile asked{file,
                           survey,
                           map.name,
                           map.obstacles,
                           between,
+                          has_curves,
                           bodies.words,
                           flags.near.value_or(bodies.reach),
                           flags.max_speed.value_or(survey.jump_speed()),
@@ -344,26 +352,28 @@ ExitCode check(const CheckFlags& flags) {
     if (picture) picture->add(event);
   });
   for (const RigidBody& body : bodies.of_agent) stream.add_body(body);
-  PieceFeed feed(survey.agents(), {between, asked.longest_gap},
-                 [&](std::size_t agent, const geometry::StraightMotion& piece) {
-                   if (flags.samples > 0) sampled.add(agent, piece);
-                   stream.add(agent, piece);
-                 });
+  const auto take = [&](std::size_t agent, const geometry::Motion& piece) {
+    if (flags.samples > 0) sampled.add(agent, piece);
+    stream.add(agent, piece);
+  };
+  datasets::TrajectoryPieces feed(survey.agents(), {between, asked.longest_gap}, take);
+  CurveFeed curves(file.curves, take);
   datasets::Moves moves;
   std::uint64_t done = 0;
   {
     ProgressLine progress(static_cast<double>(survey.rows()), "rows");
     answer.set_progress(&progress);
-    for_each_row(reader, survey.is_in_order(), placing, [&](const TrajectoryRow& row) {
+    for_each_row_in_time(reader, survey.is_in_order(), [&](TrajectoryRow row) {
+      placing.place(row);
       datasets::Move move;
       if (moves.next(row, move)) answer.look_at(move);
       if (picture) picture->add(row);
-      feed.add(row);
+      has_curves ? curves.advance(row.time) : feed.add(row);
       if ((++done & 0xff) != 0) return;
       if (interrupted()) throw Interrupted();
       if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
     });
-    feed.finish();
+    has_curves ? curves.advance(std::numeric_limits<double>::infinity()) : feed.finish();
     answer.set_progress(nullptr);
   }
   const geometry::MotionCheck result = stream.finish();
@@ -373,11 +383,87 @@ ExitCode check(const CheckFlags& flags) {
   return result.overlaps > 0 ? ExitCode::negative : ExitCode::success;
 }
 
+// --- Which files ---
+
+/// The recording of a folder, or the files in it that are recognised, in the order of their names.
+std::vector<std::string> files_in(const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  const std::optional<std::filesystem::path> recording = recording_at(folder);
+  std::error_code error;
+  if (recording && std::filesystem::is_regular_file(*recording, error)) return {recording->string()};
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.is_regular_file(error) && !datasets::recognised_trajectory_format(entry.path().string()).empty())
+      files.push_back(entry.path().string());
+  if (files.empty())
+    throw DataError(DataCode::format_unknown, folder.string(), "", "no file of trajectories",
+                    "a folder with files of trajectories, or the folder of a run");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> listed_files(const std::vector<std::string>& arguments) {
+  std::vector<std::string> files;
+  for (const std::string& argument : arguments) {
+    std::error_code error;
+    if (argument == "-" || !std::filesystem::is_directory(argument, error)) {
+      files.push_back(argument);
+      continue;
+    }
+    for (std::string& file : files_in(argument)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+/// What is checked together: all files of polynomials, which are one fleet; every other file alone.
+std::vector<std::vector<std::string>> checks_of(const CheckFlags& flags, const std::vector<std::string>& files) {
+  constexpr const char* kPolynomials = "polynomials";
+  const auto has_polynomials = [&](const std::string& file) {
+    try {
+      return (flags.format.empty() ? datasets::recognised_trajectory_format(file) : flags.format) == kPolynomials;
+    } catch (const DataError&) {
+      return false;  // for its own check to say
+    }
+  };
+  std::vector<std::vector<std::string>> checks;
+  std::optional<std::size_t> fleet;
+  for (const std::string& file : files) {
+    if (files.size() > 1 && has_polynomials(file)) {
+      if (fleet) {
+        checks[*fleet].push_back(file);
+        continue;
+      }
+      fleet = checks.size();
+    }
+    checks.push_back({file});
+  }
+  return checks;
+}
+
+ExitCode check(const CheckFlags& flags) {
+  check_flags(flags);
+  const std::vector<std::vector<std::string>> checks = checks_of(flags, listed_files(flags.files));
+  if (checks.size() == 1) return check_together(flags, checks.front());
+  refuse_both(!flags.figure.empty(), "--figure", "several files", "a figure shows one check");
+  refuse_both(!flags.certificates.empty(), "--certificates", "several files", "a file of proofs is about one check");
+  ExitCode worst = ExitCode::success;
+  for (const std::vector<std::string>& files : checks) {
+    ExitCode status = ExitCode::bad_input;
+    try {
+      status = check_together(flags, files);
+    } catch (const DataError& error) {
+      error_message(error.what());
+    }
+    worst = std::max(worst, status);
+  }
+  return worst;
+}
+
 void declare_check(CLI::App& app, CheckFlags& flags) {
-  app.add_option("trajectories", flags.file,
-                 "CSV with the columns t,id,x,y and theta, text of JuPedSim or PedPy, obsmat.txt, frame-id-x-y in four "
-                 "columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or paths of cells, a recording of "
-                 "this program; - for stdin")
+  app.add_option(
+         "trajectories", flags.files,
+         "Files or folders: CSV with the columns t,id,x,y and theta, vx, vy, text or SQLite of JuPedSim, PedPy, "
+         "obsmat.txt, frame-id-x-y in four columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or "
+         "paths of cells, polynomials (all files together), a recording of this program; - for stdin")
       ->required();
   app.add_option("--format", flags.format,
                  fmt::format("Format of the trajectories: {}; by default detected from content",
@@ -392,9 +478,11 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
       "--map-format", flags.reading.format,
       fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
   app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
+  app.add_option("--unknown", flags.reading.unknown, "What unknown cells of a ROS map are: free or blocked");
   app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
   app.add_option("--between", flags.between,
-                 "How bodies move between two rows: straight (and uniform), or hold (at rest until the next row)")
+                 "How bodies move between two rows: straight (and uniform), hold (at rest until the next row), cubic "
+                 "(with the file's velocities, else Catmull-Rom), none (only the rows count)")
       ->capture_default_str();
   app.add_option("--scale", flags.scale, "Metres of one unit of length in the trajectories")->capture_default_str();
   app.add_option("--frame-rate", flags.frame_rate,

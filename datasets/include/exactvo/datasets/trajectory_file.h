@@ -10,7 +10,11 @@
 /// Of one agent times rise in the order of the file. A row that repeats the one before it is left out and counted. A
 /// time that goes back, a second place at one time, and a number that is not finite are refused with file and line.
 ///
-/// See also: trajectory_survey.h (speeds, gaps and jumps of what was read), obstacle_file.h (maps).
+/// Files of polynomials say how an agent moves at all times: their rows are samples, and `TrajectoryFile::curves` has
+/// the motion itself.
+///
+/// See also: trajectory_survey.h (speeds, gaps and jumps of what was read), trajectory_pieces.h (motions between rows),
+/// obstacle_file.h (maps).
 
 #include <cstdint>
 #include <filesystem>
@@ -22,7 +26,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/vec2.h"
+#include "exactvo/geometry/motions.h"
 
 namespace exactvo::datasets {
 
@@ -32,7 +36,8 @@ struct TrajectoryRow {
   double time = 0.0;      ///< s
   geometry::Vec2 at;      ///< m
   double heading = std::numeric_limits<double>::quiet_NaN();  ///< rad, counter-clockwise from x; NaN: not in the file
-  std::uint64_t line = 0;                                     ///< in the file, from 1; of recordings the row, from 1
+  geometry::Vec2 velocity = {std::numeric_limits<double>::quiet_NaN(), 0.0};  ///< m/s; NaN: not in the file
+  std::uint64_t line = 0;  ///< in the file, from 1; of recordings the row, from 1
 };
 
 /// How a file is read.
@@ -44,15 +49,29 @@ struct TrajectoryOptions {
 
 /// What a file says besides its rows.
 struct TrajectoryFile {
-  std::string file;                                 ///< as the caller named it
-  std::string format;                               ///< the one that was used
-  std::string row_word = "line";                    ///< what `TrajectoryRow::line` counts
-  std::vector<std::string> agents;                  ///< their ids, by number
-  std::vector<double> radii;                        ///< m, of the agents; empty where the file has none
-  std::vector<formation::SceneObstacle> obstacles;  ///< that stand in the file; of recordings only
+  std::string file;                                         ///< as the caller named it
+  std::string format;                                       ///< the one that was used
+  std::string row_word = "line";                            ///< what `TrajectoryRow::line` counts
+  std::vector<std::string> agents;                          ///< their ids, by number
+  std::vector<double> radii;                                ///< m, of the agents; empty where the file has none
+  std::vector<formation::SceneObstacle> obstacles;          ///< that stand in the file; of recordings only
+  std::vector<std::vector<geometry::CurvedMotion>> curves;  ///< of each agent, in time; only of files of polynomials
   bool in_cells = false;           ///< x counts columns and y rows of a grid, from the top; `scale` is a cell's side
   std::uint64_t repeated = 0;      ///< rows that repeat the one before, left out
   std::vector<std::string> notes;  ///< what a reader should know, in words
+};
+
+/// Rows in memory, one after the other; arrays of one length. Places are in the unit that `TrajectoryOptions::scale`
+/// gives.
+struct TrajectoryColumns {
+  std::vector<std::string> names;  ///< ids of the agents
+  std::vector<std::size_t> agent;  ///< of each row, its place among `names`
+  std::vector<double> time;        ///< s
+  std::vector<double> x;           ///< of places
+  std::vector<double> y;           ///< of places
+  std::vector<double> heading;     ///< rad; empty: not known
+  std::vector<double> vx;          ///< of velocities, in the unit of places a second; empty: not known
+  std::vector<double> vy;          ///< as many as `vx`
 };
 
 /// A file of trajectories that can be read several times. What comes through a pipe is kept in a temporary file.
@@ -60,6 +79,12 @@ class TrajectoryReader {
  public:
   /// "-" is standard input. Throws DataError: E_FILE_MISSING, E_FORMAT_UNKNOWN, E_OPTION, ...
   explicit TrajectoryReader(const std::string& file, TrajectoryOptions options = {});
+  /// Several files of polynomials, each of which is one agent with the name of its file; or one file of any format.
+  /// Throws DataError, for several files of another format E_OPTION. REQUIRES: at least one file.
+  explicit TrajectoryReader(const std::vector<std::string>& files, TrajectoryOptions options = {});
+  /// Rows that are in memory already; `name` stands for the file in messages. REQUIRES: arrays of one length, agents
+  /// below the number of names.
+  TrajectoryReader(TrajectoryColumns columns, const std::string& name, TrajectoryOptions options = {});
   ~TrajectoryReader();
   TrajectoryReader(const TrajectoryReader&) = delete;
   TrajectoryReader& operator=(const TrajectoryReader&) = delete;
@@ -79,5 +104,9 @@ class TrajectoryReader {
 
 /// The names that `TrajectoryOptions::format` takes.
 std::vector<std::string> trajectory_formats();
+
+/// The name of the format by which a file would be read; empty where none is recognised, or the file can't be read
+/// twice. Throws DataError: E_FILE_MISSING.
+std::string recognised_trajectory_format(const std::string& file);
 
 }  // namespace exactvo::datasets

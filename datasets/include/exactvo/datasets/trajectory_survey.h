@@ -90,6 +90,8 @@ class TrajectorySurvey {
   bool is_in_order() const { return in_order_; }  ///< rows come by time
   /// Whether any row has a heading.
   bool has_headings() const { return has_headings_; }
+  /// Whether any row has a velocity.
+  bool has_velocities() const { return has_velocities_; }
   double usual_interval() const;  ///< s, the median; 0 where no agent has two rows
 
   /// m/s: a faster move is a jump. Three times the speed that 95 of 100 moves do not exceed, those of speed 0 left out;
@@ -114,7 +116,7 @@ class TrajectorySurvey {
   double first_ = std::numeric_limits<double>::infinity(), last_ = -std::numeric_limits<double>::infinity();
   double latest_ = -std::numeric_limits<double>::infinity();
   geometry::Box extent_;
-  bool in_order_ = true, has_headings_ = false;
+  bool in_order_ = true, has_headings_ = false, has_velocities_ = false;
 };
 
 }  // namespace exactvo::datasets

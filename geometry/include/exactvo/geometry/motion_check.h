@@ -8,7 +8,7 @@
 /// as n log n for n pieces, with what is near; memory with the pieces that are under way at a time. Every verdict is
 /// exact (motions.h).
 ///
-/// See also: motions.h (one pair, curves).
+/// See also: motions.h (one pair).
 
 #include <cstddef>
 #include <functional>
@@ -24,26 +24,30 @@ namespace exactvo::geometry {
 struct Trajectory {
   std::vector<TimedPoint> points;   ///< at least one; times do not fall
   RigidBody body = disc_body(0.0);  ///< as motions.h requires it
+  /// m/s, at each point, for `Between::cubic`; empty: those of a Catmull-Rom spline, and of the chord at both ends.
+  std::vector<Vec2> velocities{};
 };
 
 /// Where a body is between two timed points.
 enum class Between : int {
   straight = 0,  ///< uniform and straight from one to the next
-  hold = 1       ///< at the first, until the time of the next
+  hold = 1,      ///< at the first, until the time of the next, when it is at the next one only
+  cubic = 2,     ///< `hermite_cubic` from one to the next
+  none = 3       ///< nowhere: only the timed points count
 };
 
 /// Two pieces of motion, or one and an obstacle, whose boxes meet at the same time.
 struct MetPair {
-  std::size_t body = 0;         ///< its number; of two bodies the lower
-  StraightMotion motion;        ///< of `body`
-  bool with_obstacle = false;   ///< whether `other` is an obstacle
-  std::size_t other = 0;        ///< number of the other body, or of the obstacle
-  StraightMotion other_motion;  ///< of the other body; of an obstacle that is a disc, at rest
+  std::size_t body = 0;        ///< its number; of two bodies the lower
+  Motion motion;               ///< of `body`
+  bool with_obstacle = false;  ///< whether `other` is an obstacle
+  std::size_t other = 0;       ///< number of the other body, or of the obstacle
+  Motion other_motion;         ///< of the other body; of an obstacle that is a disc, at rest
 };
 
 /// What is asked.
 struct MotionCheckOptions {
-  Between between = Between::straight;  ///< timed points
+  Between between = Between::straight;  ///< timed points; with `hold` no piece that lasts has its last moment
   double near = 0.0;                    ///< m, >= 0: approaches nearer than this are listed
   /// Called for each pair whose boxes, each grown by half of `near`, meet: what a proof has to speak of. An obstacle is
   /// named once for each piece. May be empty.
@@ -93,7 +97,7 @@ struct MotionCheck {
 /// Takes pieces of motion one after the other, by the time at which they begin. Keeps those that are under way.
 class MotionStream {
  public:
-  /// `options.between` does not matter: pieces are given. `map` must outlive the stream.
+  /// Of `options.between` only `hold` matters, since pieces are given. `map` must outlive the stream.
   MotionStream(const std::vector<Obstacle>& map, MotionCheckOptions options,
                std::function<void(const MotionEvent&)> report);
   ~MotionStream();
@@ -104,7 +108,7 @@ class MotionStream {
   std::size_t add_body(RigidBody body);
   /// REQUIRES: a number of `add_body`; finite numbers; a duration >= 0; no piece before began later; of one body, no
   /// piece begins before the one before it ends.
-  void add(std::size_t body, const StraightMotion& piece);
+  void add(std::size_t body, const Motion& piece);
   /// Reports what is still open. REQUIRES: called once, last.
   MotionCheck finish();
 
@@ -115,7 +119,7 @@ class MotionStream {
 
 /// Reports every contact and overlap, in the order in which they end (ties by bodies). Two events of a pair whose
 /// moments may be the same are one. Exact. REQUIRES: finite numbers, times that do not fall, at least one point a
-/// trajectory, bodies as in motions.h, valid obstacles, near >= 0;
+/// trajectory, no velocity or one a point, bodies as in motions.h, valid obstacles, near >= 0;
 /// of discs none or one entry an obstacle, finite, with a radius >= 0.
 MotionCheck check_motions(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& map,
                           const MotionCheckOptions& options, const std::function<void(const MotionEvent&)>& report);

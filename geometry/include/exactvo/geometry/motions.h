@@ -70,6 +70,15 @@ struct CurvedMotion {
 std::vector<CurvedMotion> b_spline_pieces(const std::vector<Vec2>& control_points, std::size_t degree, double start,
                                           double interval);
 
+/// The cubic with these places and velocities at its ends (Hermite's), as a Bezier curve. Its ends are exact, its two
+/// inner control points are rounded: to.time - from.time is multiplied by a third of a velocity, m/s.
+/// REQUIRES: finite numbers, to.time >= from.time.
+CurvedMotion hermite_cubic(const TimedPoint& from, Vec2 velocity, const TimedPoint& to, Vec2 end_velocity);
+
+/// The velocity (m/s) that a Catmull-Rom spline over timed points has at the one between these two: the way from one to
+/// the other over the time. Rounded. REQUIRES: after.time > before.time.
+Vec2 catmull_rom_velocity(const TimedPoint& before, const TimedPoint& after);
+
 /// A motion of a body's reference point.
 using Motion = std::variant<StraightMotion, CurvedMotion>;
 
@@ -93,6 +102,8 @@ using RigidBody = std::vector<RoundedPolygon>;
 RigidBody disc_body(double radius);
 /// A polygon without holes, as its convex pieces. Exact. REQUIRES: valid (validity.h), no holes.
 RigidBody polygon_body(const Polygon& outline);
+/// The body turned counter-clockwise round its reference point, by an angle in rad. Corners are rounded.
+RigidBody turned_body(RigidBody body, double angle);
 
 /// How two bodies in motion fare.
 enum class Encounter : int {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polynomials of quadrotors as the programs for Crazyflies and uav_trajectories exchange them: CSV with the header
+// duration,x^0,...,x^7,y^0,...,z^0,...,yaw^0,...; each line is a piece, in powers of the time since its beginning. A
+// file is one agent. Only x and y count.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "exactvo/datasets/input_text.h"
+#include "files/text_file.h"
+#include "readers/line_reader.h"
+#include "trajectories/trajectory_readers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Rows of one piece, which only show where it goes.
+constexpr int kSamples = 16;
+
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields;
+  for (;;) {
+    const std::size_t end = line.find(',');
+    fields.emplace_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// Where the powers of a coordinate stand.
+std::vector<std::size_t> powers_of(char coordinate, const std::vector<std::string>& header) {
+  std::vector<std::size_t> columns;
+  for (;;) {
+    const std::string name = std::string(1, coordinate) + "^" + std::to_string(columns.size());
+    const auto at = std::find(header.begin(), header.end(), name);
+    if (at == header.end()) return columns;
+    columns.push_back(static_cast<std::size_t>(at - header.begin()));
+  }
+}
+
+struct Header {
+  std::size_t count = 0, duration = 0;
+  std::vector<std::size_t> x, y;  ///< columns of the powers
+};
+
+std::string_view without_comment_mark(std::string_view line) {
+  line = trimmed(line);
+  return line.substr(0, 1) == "#" ? trimmed(line.substr(1)) : line;
+}
+
+std::optional<Header> header_in(std::string_view line) {
+  const std::vector<std::string> names = fields_of(without_comment_mark(line));
+  const auto is_duration = [](const std::string& name) { return name == "duration" || name == "Duration"; };
+  const auto at = std::find_if(names.begin(), names.end(), is_duration);
+  if (at == names.end()) return std::nullopt;
+  Header header{names.size(), static_cast<std::size_t>(at - names.begin()), powers_of('x', names),
+                powers_of('y', names)};
+  if (header.x.empty() || header.x.size() != header.y.size()) return std::nullopt;
+  return header;
+}
+
+geometry::Vec2 value_of(const std::vector<geometry::Vec2>& powers, double t) {
+  geometry::Vec2 p;
+  for (std::size_t k = powers.size(); k-- > 0;) p = t * p + powers[k];
+  return p;
+}
+
+std::vector<geometry::Vec2> derivative_of(const std::vector<geometry::Vec2>& powers) {
+  std::vector<geometry::Vec2> derivative;
+  for (std::size_t k = 1; k < powers.size(); ++k) derivative.push_back(static_cast<double>(k) * powers[k]);
+  return derivative;
+}
+
+}  // namespace
+
+bool looks_like_polynomials(std::string_view beginning) {
+  return header_in(beginning.substr(0, beginning.find('\n'))).has_value();
+}
+
+void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
+  TextLines lines(path.string(), kLongestRow);
+  std::string_view line;
+  std::optional<Header> header;
+  if (lines.next(line)) header = header_in(line);
+  if (!header)
+    out.refuse(DataCode::format_syntax, 1, excerpt(line, 0, 40), "a header duration,x^0,x^1,...,y^0,y^1,...");
+  if (header->x.size() > geometry::kMostDegree + 1)
+    out.refuse(DataCode::out_of_range, 1, "x^" + std::to_string(header->x.size() - 1),
+               "powers up to " + std::to_string(geometry::kMostDegree));
+  const std::size_t agent = out.agent(path.stem().string());
+  std::vector<geometry::CurvedMotion> curves;
+  double begin = 0.0;
+  while (lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    const std::vector<std::string> fields = fields_of(line);
+    if (fields.size() < header->count)
+      out.refuse(DataCode::wrong_count, lines.number(), std::to_string(fields.size()) + " fields",
+                 std::to_string(header->count) + " fields, as the header has");
+    const double duration = out.number(fields[header->duration], "a duration", lines.number());
+    if (!(duration > 0.0) || !(begin + duration > begin))
+      out.refuse(DataCode::out_of_range, lines.number(), fields[header->duration], "a duration above 0 s");
+    geometry::CurvedMotion curve{geometry::CurveBasis::powers, begin, begin + duration, {}};
+    for (std::size_t k = 0; k < header->x.size(); ++k)
+      curve.points.push_back(out.scale() *
+                             geometry::Vec2{out.number(fields[header->x[k]], "a coefficient", lines.number()),
+                                            out.number(fields[header->y[k]], "a coefficient", lines.number())});
+    const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
+    const bool is_first = curves.empty();
+    for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {
+      const double share = static_cast<double>(s) / kSamples, t = share * duration;
+      const double time = s == kSamples ? curve.end : begin + t;
+      out.row(agent, time, value_of(curve.points, t) / out.scale(), lines.number(), TrajectoryRow().heading,
+              value_of(velocity, t) / out.scale());
+    }
+    curves.push_back(std::move(curve));
+    begin += duration;
+  }
+  if (curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no piece", "a line for each piece");
+  if (out.file().curves.empty())
+    out.file().notes.emplace_back(
+        "rows are " + std::to_string(kSamples) +
+        " samples of each piece; overlaps are those of the polynomials themselves; z does not count");
+  out.file().curves.resize(agent);
+  out.file().curves.push_back(std::move(curves));
+}
+
+}  // namespace exactvo::datasets

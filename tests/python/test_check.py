@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`exactvo.check`: did bodies on trajectories collide?"""
+import json
+import sqlite3
+
+import numpy as np
+import pytest
+
+import exactvo
+
+EAST = np.array([(0, 0, 0), (1, 10, 0)], dtype=float)
+NORTH = np.array([(0, 5, -5), (1, 5, 5)], dtype=float)
+FIRST = 0.5 - 0.5**0.5 / 20  # discs of radius 0.25 m
+
+
+def kinds_of_input(folder):
+    """The same two trajectories, by all ways in which they can be given."""
+    rows = [(t, name, x, y) for name, array in (("A", EAST), ("B", NORTH)) for t, x, y in array]
+    path = folder / "t.csv"
+    path.write_text("t,id,x,y\n" + "".join(f"{t},{name},{x},{y}\n" for t, name, x, y in sorted(rows)))
+    columns = {"t": [r[0] for r in rows], "id": [r[1] for r in rows], "x": [r[2] for r in rows], "y": [r[3] for r in rows]}
+    yield "dict of arrays", {"A": EAST, "B": NORTH}, {}
+    yield "dict of lists", {"A": EAST.tolist(), "B": NORTH.tolist()}, {}
+    yield "dict of columns", columns, {}
+    yield "path", path, {}
+    yield "text of a path", str(path), {}
+    yield "array", np.array([(t, "AB".index(name), x, y) for t, name, x, y in rows]), {}
+    positions = np.stack([EAST[:, 1:], NORTH[:, 1:]], axis=1)
+    yield "positions", positions, {"time": [0, 1]}
+
+
+def test_all_kinds_of_input_say_the_same(tmp_path):
+    judged = 0
+    for kind, trajectories, more in kinds_of_input(tmp_path):
+        answer = exactvo.check(trajectories, radius=0.25, **more)
+        assert not answer.clear and answer.overlaps == 1 and answer.contacts == 0, kind
+        (event,) = answer.events
+        assert event.kind == "overlap" and {event.body, event.other} in ({"A", "B"}, {"0", "1"}), kind
+        assert event.first[0] <= FIRST <= event.first[1] and event.first[1] - event.first[0] < 1e-9, kind
+        assert event.clearance[0] <= -0.5 <= event.clearance[1] and event.depth >= 0.5, kind
+        assert event.place == pytest.approx((5, 0)) and not event.with_obstacle, kind
+        assert set(answer.speeds.values()) == {10.0} and answer.rows == 4, kind
+        judged += 1
+    assert judged == 7
+
+
+def test_tables_of_pandas(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"time": [0, 1, 0, 1], "agent_id": [7, 7, 9, 9], "x": [0, 10, 5, 5], "y": [0, 0, -5, 5]})
+    answer = exactvo.check(table, radius=0.25)
+    assert [(e.body, e.other) for e in answer.events] == [("7", "9")]
+    events = answer.to_dataframe()
+    assert list(events["kind"]) == ["overlap"] and events["first_low"][0] <= FIRST <= events["first_high"][0]
+    assert len(exactvo.check(table, radius=0.01, between="none").to_dataframe()) == 0
+
+
+def test_the_program_says_the_same(tmp_path, program):
+    paths = {kind: given for kind, given, _ in kinds_of_input(tmp_path)}
+    lines = [json.loads(line) for line in program("check", paths["path"], "--radius", 0.25, "--json").splitlines()]
+    (event,) = exactvo.check(paths["dict of arrays"], radius=0.25).events
+    assert (event.first, event.last, event.clearance) == tuple(tuple(lines[0][k]) for k in ("first", "last", "clearance"))
+
+
+def test_contact_is_clear_and_near_pairs_are_listed():
+    answer = exactvo.check({"A": [(0, 0, 0), (1, 4, 0)], "B": [(0, 2, 1), (1, 2, 1)]}, radius=0.5)
+    assert answer.clear and answer.contacts == 1 and answer.events[0].depth == 0
+    apart = exactvo.check({"A": [(0, 0, 0), (1, 4, 0)], "B": [(0, 2, 1), (1, 2, 1)]}, radius=0.4, near=0.5)
+    assert apart.clear and apart.events == ()
+    (approach,) = apart.approaches
+    assert approach.clearance[0] <= 0.2 <= approach.clearance[1] + 1e-12 and approach.other == "B"
+
+
+def test_maps_footprints_and_radii():
+    walls = [exactvo.Wall([(5, -1), (5, 1)])]
+    assert exactvo.check({"A": EAST}, map=walls, radius=0.2).events[0].other == 0
+    assert exactvo.check({"A": EAST}, map=[[(3, 1), (4, 1), (4, 2)]], radius=0.9).clear
+    box = [(-1, -0.4), (1, -0.4), (1, 0.4), (-1, 0.4)]
+    beside = [exactvo.Wall([(0, 0.5), (10, 0.5)])]
+    assert exactvo.check({"A": EAST}, map=beside, footprint=box).clear
+    assert not exactvo.check({"A": EAST}, map=beside, footprint=box, radius=0.2).clear
+    turned = np.array([(0, 0, 0, np.pi / 2), (1, 10, 0, np.pi / 2)])
+    assert not exactvo.check({"A": turned}, map=beside, footprint=box).clear
+    two = {"A": EAST, "B": [(0, 0, 0.6), (1, 10, 0.6)]}
+    assert exactvo.check(two, radius={"A": 0.1, "B": 0.45}).clear
+    positions = np.array([[(0, 0), (0, 0.6)], [(10, 0), (10, 0.6)]])
+    assert not exactvo.check(positions, time=[0, 1], radius=[0.2, 0.45]).clear
+
+
+def test_the_map_of_a_file(tmp_path):
+    (tmp_path / "map.wkt").write_text("LINESTRING (5 -1, 5 1)\n")
+    assert exactvo.check({"A": EAST}, map=tmp_path / "map.wkt", radius=0.1).overlaps == 1
+
+
+def test_databases_of_jupedsim(tmp_path):
+    path = tmp_path / "what? 50%.sqlite"
+    with sqlite3.connect(path) as database:
+        database.execute("CREATE TABLE trajectory_data (frame INTEGER, id INTEGER, pos_x REAL, pos_y REAL, ori_x REAL, ori_y REAL)")
+        database.execute("CREATE TABLE metadata (key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL)")
+        database.execute("INSERT INTO metadata VALUES ('fps', '25')")
+        rows = [(25 * t, k, x, y, 1, 0) for k, array in ((7, EAST), (9, NORTH)) for t, x, y in array]
+        database.executemany("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, ?, ?)", [(int(r[0]), *r[1:]) for r in rows])
+    try:
+        answer = exactvo.check(path, radius=0.25)
+    except exactvo.DataError as error:
+        if error.code == "E_FORMAT_UNAVAILABLE":
+            pytest.skip("a build without SQLite")
+        raise
+    (event,) = answer.events
+    assert answer.format == "jupedsim-sqlite" and (event.body, event.other) == ("7", "9")
+    assert event.first[0] <= FIRST <= event.first[1]
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE trajectory_data SET pos_x = 'x' WHERE frame = 25 AND id = 9")
+    with pytest.raises(exactvo.DataError) as caught:
+        exactvo.check(path, radius=0.25)
+    assert (caught.value.code, caught.value.where) == ("E_NUMBER", "row 4")
+    other = tmp_path / "other.sqlite"
+    with sqlite3.connect(other) as database:
+        database.execute("CREATE TABLE nothing (frame INTEGER)")
+    (tmp_path / "cut.sqlite").write_bytes(path.read_bytes()[:5000])
+    for bad in (other, tmp_path / "cut.sqlite"):
+        with pytest.raises(exactvo.DataError) as caught:
+            exactvo.check(bad, radius=0.25)
+        assert caught.value.code == "E_FORMAT_SYNTAX"
+
+
+def test_between_rows():
+    rows = {"t": [0, 1, 0, 1], "id": list("AABB"), "x": [0, 4, 2, 2], "y": [0, 0, 0.9, 0.9], "vx": [4, 4, 0, 0], "vy": [3, -3, 0, 0]}
+    clear = {between: exactvo.check(rows, radius=0.2, between=between).clear for between in ("straight", "hold", "cubic", "none")}
+    assert clear == {"straight": True, "hold": True, "cubic": False, "none": True}
+
+
+def test_recordings_and_absent_robots():
+    run = exactvo.simulate({"name": "one", "time_limit": 5, "robots": [
+        {"id": "a", "position": [0, 0], "goal": [4, 0]}, {"id": "b", "position": [4, 0.1], "goal": [0, 0.1]}]})
+    radius = run.scenario.robots[0].radius
+    assert exactvo.check(run, radius=radius).clear
+    positions = np.array(run.position)
+    positions[:, 1] = np.nan
+    alone = exactvo.check(positions, time=run.time, radius=100.0)
+    assert alone.clear and [body.rows for body in alone.bodies] == [len(run.time)]
+
+
+def test_findings():
+    t = np.arange(60.0)
+    x = np.where(t >= 20, t + 50, t)
+    there = t != 40
+    answer = exactvo.check({"A": np.stack([t, x, 0 * t], axis=1)[there]}, radius=0.2)
+    (jump,), (gap,) = answer.jumps, answer.gaps
+    assert (jump.row, jump.length, jump.speed) == (21, 51.0, 51.0)
+    assert (gap.row, gap.start, gap.end) == (41, 39.0, 41.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "options", "where"),
+    [
+        ({"A": EAST}, {}, "radius"),
+        ({"A": EAST}, {"radius": -1}, "radius"),
+        ({"A": EAST}, {"radius": {"B": 1}}, "radius"),
+        ({"A": EAST}, {"radius": [1, 2]}, "radius"),
+        ({"A": EAST[:, :2]}, {"radius": 1}, "trajectories['A']"),
+        ({}, {"radius": 1}, "trajectories"),
+        ({"x": [1], "y": [2]}, {"radius": 1}, "trajectories"),
+        ({"t": [0], "x": [1, 2], "y": [2]}, {"radius": 1}, "x"),
+        (np.zeros((2, 3)), {"radius": 1}, "trajectories"),
+        (np.zeros((2, 3, 2)), {"radius": 1}, "trajectories"),
+        (np.zeros((2, 3, 2)), {"radius": 1, "time": [0]}, "time"),
+        ({"A": EAST}, {"radius": 1, "time": [0, 1]}, "time"),
+        ({"A": EAST}, {"radius": 1, "between": "quintic"}, "between"),
+        ({"A": EAST}, {"radius": 1, "map": 3}, "map"),
+        ({"A": EAST}, {"footprint": [[(0, 0), (1, 0), (0, 1)], [(0, 0), (1, 0), (0, 1)]]}, "footprint"),
+    ],
+)
+def test_wrong_arguments_are_named(given, options, where):
+    with pytest.raises(exactvo.ArgumentError) as caught:
+        exactvo.check(given, **options)
+    assert caught.value.where == where
+
+
+def test_bad_rows_are_named(tmp_path):
+    for rows, code in (([(0, 0, 0), (1, np.nan, 0)], "E_NOT_FINITE"), ([(1, 0, 0), (0, 1, 0)], "E_RANGE"), ([(0, 0, 0), (0, 1, 0)], "E_RANGE")):
+        with pytest.raises(exactvo.DataError) as caught:
+            exactvo.check({"A": rows}, radius=1)
+        assert (caught.value.code, caught.value.where) == (code, "row 2")
+    with pytest.raises(exactvo.MissingFileError):
+        exactvo.check(tmp_path / "missing.csv", radius=1)
+    assert "csv" in exactvo.collisions.trajectory_formats()
