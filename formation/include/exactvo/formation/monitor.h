@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A monitor for a control loop: how much of a command is proven clear, if the robot keeps it until the next command
+/// takes effect and then brakes to rest.
+///
+///     Monitor monitor(setup);
+///     for (;;) drive(monitor.judge(pose, command).share * command);
+///
+/// The way. A command (a constant twist) that is scaled by a share s is held for `period + latency`: so long it takes
+/// until another one takes effect. Then speed and turn rate fall together and evenly to 0, within the braking limits,
+/// so that the robot stops on the arc on which it was. A trajectory is followed for a share of its duration and for
+/// `latency`, then the robot brakes along the rest of it. The pose is where the robot is as the command takes effect.
+///
+/// What the way is checked against: the obstacles, which stand still, and movers, which may go anywhere at no more than
+/// their greatest speed from within their position error. Against movers the promise is passive safety (Macek et al.
+/// 2009; Mitsch et al. 2017): no collision while the robot moves. Nothing is promised to a robot that stands.
+///
+/// Leaving a contact. Where the footprint touches or overlaps an obstacle at the start, what is proven is that it does
+/// not go deeper, by more than kMonitorSlack: depth is the length of the shortest shift that parts a convex part of the
+/// footprint and a convex piece of the obstacle. A mover that may already touch is taken as standing where it was seen.
+///
+/// Certified: `share` (continuous time, no sampling; all roundings are bounded, geometry/turning.h). Certified too:
+/// `not_above`. Against obstacles and the share of a command the two enclose the largest clear share. With movers a
+/// larger share may be clear, since a faster robot can be past a place before a mover is there: the search is
+/// heuristic. Rounded: the witness. Assumed: that the drive follows the command at once, up to `margin`.
+///
+/// See also: navigator.h makes decisions, geometry/turning.h, docs/guide/monitor.md.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/motions.h"
+#include "exactvo/geometry/turning.h"
+#include "exactvo/geometry/twist.h"
+
+namespace exactvo::formation {
+
+/// m: the footprint is grown by this much and may go this much deeper where it is in contact.
+inline constexpr double kMonitorSlack = 1e-9;
+
+/// The robot and what stands still.
+struct MonitorSetup {
+  /// In the body's axes (x ahead, y left), from the point that `Pose::at` means. Parts are convex hulls with a radius.
+  geometry::RigidBody footprint = geometry::disc_body(0.3);
+  double max_deceleration = 1.0;         ///< m/s^2, > 0: by which the robot can certainly brake
+  double max_turn_deceleration = 2.0;    ///< rad/s^2, > 0: by which it can certainly stop turning
+  double latency = 0.1;                  ///< s, >= 0: from a decision to its effect
+  double period = 0.1;                   ///< s, >= 0: from a decision to the next
+  double margin = 0.0;                   ///< m, >= 0: localisation, map and drive are off by no more than this together
+  std::vector<SceneObstacle> obstacles;  ///< what stands still
+};
+
+/// Something that moves: the convex hull of its corners, grown by its radius.
+struct Mover {
+  geometry::RoundedPolygon shape;  ///< m, in the world, where it was seen
+  double max_speed = 0.0;          ///< m/s, >= 0
+  double position_error = 0.0;     ///< m, >= 0: it is no farther than this from where it was seen
+};
+
+/// A constant twist in the body's axes, or a velocity in the world's with a heading that stays.
+struct Command {
+  geometry::Twist twist;       ///< m/s, rad/s
+  bool in_world_axes = false;  ///< of the velocity; then turn must be 0
+};
+
+/// A piece of a trajectory.
+struct TimedPose {
+  double time = 0.0;    ///< s, from now, rising
+  geometry::Pose pose;  ///< between two of them the twist is constant (geometry::twist_between)
+};
+
+/// What ends the clear share.
+struct MonitorWitness {
+  bool is_mover = false;  ///< a mover, not an obstacle
+  std::size_t index = 0;  ///< of the obstacle in the setup, or of the mover in the list
+  double time =
+      0.0;  ///< s, from the effect of the command: when it gets too near, at full share; by a mover at the share tried
+  geometry::Vec2 place;  ///< m, rounded: where
+};
+
+/// The answer.
+struct MonitorVerdict {
+  double share = 0.0;       ///< [0, 1], certified, if `proven`: clear up to rest; 0: brake now
+  double not_above = 1.0;   ///< [share, 1], certified for obstacles alone: a larger share is not clear; 1 if unknown
+  bool proven = true;       ///< false only where not even braking along a trajectory at once is proven clear
+  bool in_contact = false;  ///< at the start something touches or overlaps, or may do so
+  std::optional<MonitorWitness> witness;  ///< where share < 1
+};
+
+/// What is wrong with an argument.
+enum class MonitorProblem {
+  not_finite,    ///< a number is NaN or infinite
+  out_of_range,  ///< a number is outside the range that its field states, or a shape is not valid
+  no_trajectory  ///< fewer than two poses, or times that do not rise
+};
+
+/// "not-finite", "out-of-range", "no-trajectory".
+const char* name(MonitorProblem problem);
+
+/// A caller's mistake; the monitor is as it was before the call.
+class MonitorError : public std::invalid_argument {
+ public:
+  /// `words` is what `what()` returns.
+  MonitorError(MonitorProblem problem, const std::string& words) : std::invalid_argument(words), problem_(problem) {}
+  /// What is wrong.
+  MonitorProblem problem() const { return problem_; }
+
+ private:
+  MonitorProblem problem_;
+};
+
+/// Judges one command after the other. Deterministic. Not to be called from two threads at once; several monitors share
+/// nothing. Memory is that of the setup; once the lists have been as long as they get, `judge` allocates none.
+class Monitor {
+ public:
+  /// Throws MonitorError.
+  explicit Monitor(const MonitorSetup& setup);
+
+  /// The largest share of a command that is found to be clear. Throws MonitorError.
+  MonitorVerdict judge(const geometry::Pose& pose, const Command& command, const std::vector<Mover>& movers = {});
+
+  /// The same of a trajectory: its first pose is where the robot is. Throws MonitorError.
+  MonitorVerdict judge(const std::vector<TimedPose>& trajectory, const std::vector<Mover>& movers = {});
+
+ private:
+  /// A convex piece of an obstacle.
+  struct Piece {
+    std::uint32_t first = 0, size = 0;  ///< in `corners_`
+    std::uint32_t obstacle = 0;
+    double radius = 0.0;  ///< m
+  };
+  /// A part of the footprint, in the body's axes.
+  struct Part {
+    std::uint32_t first = 0, size = 0;  ///< in `part_corners_` and `turned_`
+    double radius = 0.0;                ///< m
+  };
+  /// A part of the way at full share: a twist, for a time.
+  struct Stretch {
+    geometry::Pose start;
+    geometry::Twist twist;  ///< in the world's axes as it begins
+    double duration = 0.0;  ///< s of the way
+  };
+  /// How the way is gone: evenly with `pace` for `held` s of the way, then slower and slower, `braked` s of the way.
+  struct Pace {
+    double pace = 1.0, held = 0.0, braked = 0.0;
+    double length() const { return held + braked; }
+    double moment(double way) const;
+  };
+  /// Where the search for something too near ended.
+  struct Clear {
+    double until = 0.0;    ///< s of the way
+    double lost_by = 0.0;  ///< s of the way; infinite if not known
+    std::optional<MonitorWitness> witness;
+  };
+
+  void require_movers(const std::vector<Mover>& movers) const;
+  void brake_from(const geometry::Twist& twist);
+  void turn_footprint(double heading);
+  void turn_footprint(const Stretch& stretch, double time);
+  geometry::ConvexOnTwist part_on(const Part& part, const Stretch& stretch, double time) const;
+  double gap_at_start(const Part& part, const geometry::ConvexOnTwist& other, double reach);
+  MonitorVerdict judged(bool is_trajectory, const std::vector<Mover>& movers);
+  Pace pace_at(double share, bool is_trajectory) const;
+  double share_within(double length, bool is_trajectory) const;
+  Clear clear_of_obstacles(double length, bool& in_contact);
+  bool clear_of_mover(const Mover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact);
+
+  MonitorSetup setup_;
+  std::vector<geometry::Vec2> corners_;  ///< of pieces
+  std::vector<Piece> pieces_;
+  geometry::BoxGrid grid_;  ///< of pieces
+  std::vector<geometry::Vec2> part_corners_, turned_;
+  std::vector<Part> parts_;
+  double body_reach_ = 0.0;  ///< m: a disc about the reference point that holds the footprint
+  double held_ = 0.0;        ///< s, at share 1
+  double brake_time_ = 0.0;  ///< s, at share 1
+  std::vector<Stretch> way_;
+  geometry::GapKeeper keeper_;
+};
+
+}  // namespace exactvo::formation
