@@ -12,9 +12,14 @@ Extract Constant Pos.mul => "Whole.mul".
 Extract Constant Pos.eqb => "Whole.equal".
 Extract Constant Z.add => "Whole.add".
 Extract Constant Z.mul => "Whole.mul".
+Extract Constant Z.sub => "Whole.sub".
 Extract Constant Z.opp => "Whole.neg".
+Extract Constant Z.div => "Whole.fdiv".
+Extract Constant Z.eqb => "Whole.equal".
 Extract Constant Z.leb => "Whole.leq".
 Extract Constant Z.div2 => "(fun z -> Whole.shift_right z 1)".
+Extract Inlined Constant fst => "fst".
+Extract Inlined Constant snd => "snd".
 Extraction Inline negb.
 
 Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted

@@ -174,7 +174,7 @@ Qed.
 Definition parted_by (rr : Q) (a b : edge) (n : point) : bool :=
   let a1 := pdot n (fst a) in let a2 := pdot n (snd a) in let b1 := pdot n (fst b) in let b2 := pdot n (snd b) in
   let m := qmax (qsub (qmin a1 a2) (qmax b1 b2)) (qsub (qmin b1 b2) (qmax a1 a2)) in
-  let nn := pdot n n in qlt 0 nn && qle 0 m && qle (qmul rr nn) (qmul m m).
+  qle 0 m && (let nn := pdot n n in qlt 0 nn && qle (qmul rr nn) (qmul m m)).
 
 (* Their boxes are apart: mostly this decides. *)
 Definition beside (r a1 a2 b1 b2 : Q) : bool :=
@@ -183,15 +183,59 @@ Definition boxes_apart (r : Q) (a b : edge) : bool :=
   beside r (fst (fst a)) (fst (snd a)) (fst (fst b)) (fst (snd b)) || beside r (snd (fst a)) (snd (snd a)) (snd (fst b)) (snd (snd b)).
 
 (* Of two segments that are r apart some direction of these is a witness: that of their shortest connection. *)
-Definition segments_apart (r : Q) (a b : edge) : bool :=
+Definition fractions_apart (r : Q) (a b : edge) : bool :=
   qle 0 r && (boxes_apart r a b ||
     let by_ := parted_by (qmul r r) a b in
     by_ (pturn (psub (snd a) (fst a))) || by_ (pturn (psub (snd b) (fst b)))
     || by_ (psub (fst a) (fst b)) || by_ (psub (snd a) (snd b)) || by_ (psub (fst a) (snd b)) || by_ (psub (snd a) (fst b))).
 
+(* The same in whole numbers, seen from the first end of a: where all denominators agree, nothing depends on them. *)
+Definition zmin (a b : Z) : Z := if Z.leb a b then a else b.
+Definition zmax (a b : Z) : Z := if Z.leb a b then b else a.
+Definition whole_parted_by (rr ux uy cx cy dx dy nx ny : Z) : bool :=
+  let a := (nx * ux + ny * uy)%Z in let b := (nx * cx + ny * cy)%Z in let c := (nx * dx + ny * dy)%Z in
+  let m := zmax (zmin 0 a - zmax b c) (zmin b c - zmax 0 a) in
+  Z.leb 0 m && (let nn := (nx * nx + ny * ny)%Z in negb (Z.leb nn 0) && Z.leb (rr * nn) (m * m)).
+Definition whole_beside (r a b c : Z) : bool := Z.leb (zmax 0 a + r) (zmin b c) || Z.leb (zmax b c + r) (zmin 0 a).
+Definition whole_apart (r ux uy cx cy dx dy : Z) : bool :=
+  Z.leb 0 r && (whole_beside r ux cx dx || whole_beside r uy cy dy ||
+    let rr := (r * r)%Z in
+    whole_parted_by rr ux uy cx cy dx dy (- uy) ux || whole_parted_by rr ux uy cx cy dx dy (- (dy - cy)) (dx - cx)
+    || whole_parted_by rr ux uy cx cy dx dy (- cx) (- cy) || whole_parted_by rr ux uy cx cy dx dy (ux - dx) (uy - dy)
+    || whole_parted_by rr ux uy cx cy dx dy (- dx) (- dy) || whole_parted_by rr ux uy cx cy dx dy (ux - cx) (uy - cy)).
+
+Definition in_units (d : positive) (p : point) : bool := Pos.eqb (Qden (fst p)) d && Pos.eqb (Qden (snd p)) d.
+Definition units_apart (r : Q) (a b : edge) : bool :=
+  let d := Qden r in
+  if in_units d (fst a) && in_units d (snd a) && in_units d (fst b) && in_units d (snd b)
+  then let x := Qnum (fst (fst a)) in let y := Qnum (snd (fst a)) in whole_apart (Qnum r) (Qnum (fst (snd a)) - x) (Qnum (snd (snd a)) - y)
+    (Qnum (fst (fst b)) - x) (Qnum (snd (fst b)) - y) (Qnum (fst (snd b)) - x) (Qnum (snd (snd b)) - y)
+  else fractions_apart r a b.
+
+(* Numbers whose denominators divide the largest get that one. *)
+Definition lift (d : positive) (a : Q) : Q :=
+  if Pos.eqb (Qden a) d then a
+  else let k := Z.div (Zpos d) (Zpos (Qden a)) in if Z.eqb (k * Zpos (Qden a)) (Zpos d) then Qmake (Qnum a * k) d else a.
+Definition plift (d : positive) (p : point) : point := (lift d (fst p), lift d (snd p)).
+Definition finer (a b : positive) : positive := if Pos.eqb a b then a else if Z.leb (Zpos a) (Zpos b) then b else a.
+Definition finest (a : edge) : positive := finer (finer (Qden (fst (fst a))) (Qden (snd (fst a)))) (finer (Qden (fst (snd a))) (Qden (snd (snd a)))).
+Definition segments_apart (r : Q) (a b : edge) : bool :=
+  let d := finer (Qden r) (finer (finest a) (finest b)) in
+  units_apart (lift d r) (plift d (fst a), plift d (snd a)) (plift d (fst b), plift d (snd b)).
+
+(* Boxes in whole numbers of 1/d, rounded outward: of most pairs of a route's pieces and edges they decide. *)
+Record outer := { low_x : Z; high_x : Z; low_y : Z; high_y : Z }.
+Definition down (d : positive) (a : Q) : Z := if Pos.eqb (Qden a) d then Qnum a else Z.div (Qnum a * Zpos d) (Zpos (Qden a)).
+Definition up (d : positive) (a : Q) : Z := (- down d (qopp a))%Z.
+Definition outer_of (d : positive) (e : edge) : outer :=
+  {| low_x := zmin (down d (fst (fst e))) (down d (fst (snd e))); high_x := zmax (up d (fst (fst e))) (up d (fst (snd e)));
+     low_y := zmin (down d (snd (fst e))) (down d (snd (snd e))); high_y := zmax (up d (snd (fst e))) (up d (snd (snd e))) |}.
+Definition outers_apart (r : Z) (a b : outer) : bool :=
+  Z.leb (high_x a + r) (low_x b) || Z.leb (high_x b + r) (low_x a) || Z.leb (high_y a + r) (low_y b) || Z.leb (high_y b + r) (low_y a).
+
 Lemma parted_by_ok r a b n : parted_by (qmul r r) a b n = true -> forall x y, on a x -> on b y -> apart (Q2R r) x y.
 Proof.
-  unfold parted_by. intros h x y hx hy. apply andb_true_iff in h; destruct h as [h h3]. apply andb_true_iff in h; destruct h as [h1 h2].
+  unfold parted_by. intros h x y hx hy. apply andb_true_iff in h; destruct h as [h2 h]. apply andb_true_iff in h; destruct h as [h1 h3].
   set (a1 := pdot n (fst a)) in *. set (a2 := pdot n (snd a)) in *. set (b1 := pdot n (fst b)) in *. set (b2 := pdot n (snd b)) in *.
   assert (xa : Q2R (qmin a1 a2) <= dot (real n) x <= Q2R (qmax a1 a2)).
   { rewrite Q2R_min, Q2R_max. unfold a1, a2. rewrite !Q2R_dot. split.
@@ -231,11 +275,132 @@ Proof.
     unfold apart, dot, sub; simpl. rewrite Rplus_comm. apply leg; [assumption|]. destruct k; [right|left]; lra.
 Qed.
 
-Theorem segments_apart_ok r a b : segments_apart r a b = true ->
+Lemma fractions_apart_ok r a b : fractions_apart r a b = true ->
   0 <= Q2R r /\ forall x y, on a x -> on b y -> apart (Q2R r) x y.
 Proof.
-  unfold segments_apart. intro h. apply andb_true_iff in h. destruct h as [r0 h]. apply qle_R in r0. rewrite Q2R_0 in r0.
+  unfold fractions_apart. intro h. apply andb_true_iff in h. destruct h as [r0 h]. apply qle_R in r0. rewrite Q2R_0 in r0.
   split; [assumption|]. intros x y hx hy. rewrite !orb_true_iff in h.
   destruct h as [h|[[[[[h|h]|h]|h]|h]|h]]; [now apply boxes_apart_ok with a b| | | | | |];
   eapply parted_by_ok; eauto.
+Qed.
+
+(* Whole numbers are fractions over 1, and a plane in another unit has the same segments apart. *)
+Definition units (a : Q) : Q := Qmake (Qnum a) 1.
+Definition seen (o p : point) : point := (Qmake (Qnum (fst p) - Qnum (fst o)) 1, Qmake (Qnum (snd p) - Qnum (snd o)) 1).
+
+Lemma qmin_whole a b : qmin (Qmake a 1) (Qmake b 1) = Qmake (zmin a b) 1.
+Proof. unfold qmin, qle, zmin; simpl. now destruct (Z.leb a b). Qed.
+Lemma qmax_whole a b : qmax (Qmake a 1) (Qmake b 1) = Qmake (zmax a b) 1.
+Proof. unfold qmax, qle, zmax; simpl. now destruct (Z.leb a b). Qed.
+Lemma parted_by_whole rr ux uy cx cy dx dy nx ny :
+  whole_parted_by rr ux uy cx cy dx dy nx ny =
+  parted_by (Qmake rr 1) ((Qmake 0 1, Qmake 0 1), (Qmake ux 1, Qmake uy 1)) ((Qmake cx 1, Qmake cy 1), (Qmake dx 1, Qmake dy 1)) (Qmake nx 1, Qmake ny 1).
+Proof.
+  unfold parted_by, whole_parted_by, pdot, qmul, qadd; cbn [fst snd Qnum Qden Pos.eqb Pos.mul]. cbv zeta.
+  rewrite !qmin_whole, !qmax_whole. unfold qsub, qopp, qadd; cbn [Qnum Qden Pos.eqb]. rewrite !qmax_whole.
+  unfold qlt, qle; cbn [Qnum Qden Pos.eqb Pos.mul]. now rewrite !Z.mul_0_r.
+Qed.
+Lemma beside_whole r a b c : whole_beside r a b c = beside (Qmake r 1) (Qmake 0 1) (Qmake a 1) (Qmake b 1) (Qmake c 1).
+Proof. unfold beside, whole_beside. rewrite !qmin_whole, !qmax_whole. reflexivity. Qed.
+Lemma apart_whole r ux uy cx cy dx dy :
+  whole_apart r ux uy cx cy dx dy =
+  fractions_apart (Qmake r 1) ((Qmake 0 1, Qmake 0 1), (Qmake ux 1, Qmake uy 1)) ((Qmake cx 1, Qmake cy 1), (Qmake dx 1, Qmake dy 1)).
+Proof.
+  unfold whole_apart, fractions_apart, boxes_apart. rewrite !beside_whole, !parted_by_whole.
+  unfold pturn, psub, qsub, qopp, qadd; cbn [fst snd Qnum Qden Pos.eqb Z.opp]. now rewrite !Z.add_0_r, !Z.add_0_l.
+Qed.
+
+Lemma Q2R_units a : Q2R (units a) = IZR (Zpos (Qden a)) * Q2R a.
+Proof. destruct a as [n d]. unfold units, Q2R; simpl. field. apply IZR_neq. discriminate. Qed.
+Lemma real_seen d o p : in_units d o = true -> in_units d p = true -> real (seen o p) = scale (IZR (Zpos d)) (sub (real p) (real o)).
+Proof.
+  unfold in_units. intros h k. apply andb_true_iff in h, k. destruct h as [h1 h2], k as [k1 k2]. apply Pos.eqb_eq in h1, h2, k1, k2.
+  assert (e : forall a b, Qden a = d -> Qden b = d -> Q2R (Qmake (Qnum a - Qnum b) 1) = IZR (Zpos d) * (Q2R a - Q2R b)).
+  { intros a b ea eb. change (Qmake (Qnum a - Qnum b) 1) with (qsub (units a) (units b)). rewrite Q2R_sub, !Q2R_units, ea, eb. ring. }
+  unfold real, seen, scale, sub; simpl. now rewrite !e.
+Qed.
+Lemma on_seen d o a b x : in_units d o = true -> in_units d a = true -> in_units d b = true -> on (a, b) x ->
+  on (seen o a, seen o b) (scale (IZR (Zpos d)) (sub x (real o))).
+Proof.
+  intros ho ha hb h. apply on_mix in h. destruct h as [s [hs e]]. apply on_mix. exists s. split; [assumption|]. subst.
+  rewrite (real_seen d o a ho ha), (real_seen d o b ho hb). unfold mix, add, sub, scale; simpl. f_equal; ring.
+Qed.
+
+Lemma units_apart_ok r a b : units_apart r a b = true ->
+  0 <= Q2R r /\ forall x y, on a x -> on b y -> apart (Q2R r) x y.
+Proof.
+  unfold units_apart. destruct (in_units (Qden r) (fst a) && in_units (Qden r) (snd a) && in_units (Qden r) (fst b) && in_units (Qden r) (snd b)) eqn:o;
+  [|apply fractions_apart_ok].
+  apply andb_true_iff in o; destruct o as [o o4]. apply andb_true_iff in o; destruct o as [o o3]. apply andb_true_iff in o; destruct o as [o1 o2].
+  cbv zeta. rewrite apart_whole. intro h. rewrite <- (Z.sub_diag (Qnum (fst (fst a)))) in h at 1. rewrite <- (Z.sub_diag (Qnum (snd (fst a)))) in h at 1.
+  change (fractions_apart (units r) (seen (fst a) (fst a), seen (fst a) (snd a)) (seen (fst a) (fst b), seen (fst a) (snd b)) = true) in h.
+  apply fractions_apart_ok in h. destruct h as [r0 h]. rewrite Q2R_units in r0, h. set (d := IZR (Zpos (Qden r))) in *.
+  assert (d0 : 0 < d) by (apply IZR_lt; reflexivity). split; [nra|]. intros x y hx hy. destruct a as [a1 a2], b as [b1 b2]; cbn [fst snd] in *.
+  specialize (h _ _ (on_seen _ _ _ _ _ o1 o1 o2 hx) (on_seen _ _ _ _ _ o1 o3 o4 hy)). fold d in h.
+  unfold apart, dot, sub, scale in *; simpl in *. apply Rmult_le_reg_l with (d * d); nra.
+Qed.
+
+Lemma Q2R_lift d a : Q2R (lift d a) = Q2R a.
+Proof.
+  unfold lift. destruct (Pos.eqb (Qden a) d); [reflexivity|]. set (k := Z.div (Zpos d) (Zpos (Qden a))).
+  destruct (Z.eqb_spec (k * Zpos (Qden a)) (Zpos d)) as [h|_]; [|reflexivity]. apply Qeq_eqR. unfold Qeq; simpl. rewrite <- h. ring.
+Qed.
+Lemma real_lift d p : real (plift d p) = real p.
+Proof. unfold real, plift; simpl. now rewrite !Q2R_lift. Qed.
+Lemma on_lift d a b x : on (a, b) x -> on (plift d a, plift d b) x.
+Proof. intro h. apply on_mix in h. apply on_mix. now rewrite !real_lift. Qed.
+
+Theorem segments_apart_ok r a b : segments_apart r a b = true ->
+  0 <= Q2R r /\ forall x y, on a x -> on b y -> apart (Q2R r) x y.
+Proof.
+  unfold segments_apart. set (d := finer (Qden r) (finer (finest a) (finest b))). intro h. apply units_apart_ok in h.
+  rewrite Q2R_lift in h. destruct h as [r0 h], a as [a1 a2], b as [b1 b2]. split; [assumption|]. intros x y hx hy. apply h; now apply on_lift.
+Qed.
+
+Lemma down_ok d a : IZR (down d a) <= IZR (Zpos d) * Q2R a.
+Proof.
+  assert (k : (down d a * Zpos (Qden a) <= Zpos d * Qnum a)%Z).
+  { unfold down. destruct (Pos.eqb_spec (Qden a) d) as [e|_]; [rewrite e; apply Z.eq_le_incl; ring|].
+    rewrite Z.mul_comm, (Z.mul_comm (Zpos d)). apply Z.mul_div_le. reflexivity. }
+  apply IZR_le in k. rewrite !mult_IZR in k. destruct a as [n q]; cbn [Qnum Qden] in k. unfold Q2R; cbn [Qnum Qden].
+  assert (q0 : 0 < IZR (Zpos q)) by (apply IZR_lt; reflexivity). apply Rmult_le_reg_r with (IZR (Zpos q)); [assumption|].
+  replace (IZR (Zpos d) * (IZR n * / IZR (Zpos q)) * IZR (Zpos q)) with (IZR (Zpos d) * IZR n) by (field; lra). assumption.
+Qed.
+Lemma up_ok d a : IZR (Zpos d) * Q2R a <= IZR (up d a).
+Proof. unfold up. rewrite opp_IZR. pose proof (down_ok d (qopp a)) as h. rewrite Q2R_neg in h. lra. Qed.
+Lemma zmin_le a b : IZR (zmin a b) <= IZR a /\ IZR (zmin a b) <= IZR b.
+Proof. unfold zmin. destruct (Z.leb_spec a b); split; apply IZR_le; auto with zarith. Qed.
+Lemma zmax_le a b : IZR a <= IZR (zmax a b) /\ IZR b <= IZR (zmax a b).
+Proof. unfold zmax. destruct (Z.leb_spec a b); split; apply IZR_le; auto with zarith. Qed.
+
+Definition fits (d : positive) (b : outer) (x : vec) :=
+  IZR (low_x b) <= IZR (Zpos d) * fst x <= IZR (high_x b) /\ IZR (low_y b) <= IZR (Zpos d) * snd x <= IZR (high_y b).
+Lemma outer_of_ok d e x : on e x -> fits d (outer_of d e) x.
+Proof.
+  destruct e as [a b]. intro h. apply on_mix in h. destruct h as [s [hs ex]]. subst. unfold fits, outer_of, mix, add, scale, real; simpl.
+  pose proof (down_ok d (fst a)). pose proof (down_ok d (fst b)). pose proof (down_ok d (snd a)). pose proof (down_ok d (snd b)).
+  pose proof (up_ok d (fst a)). pose proof (up_ok d (fst b)). pose proof (up_ok d (snd a)). pose proof (up_ok d (snd b)).
+  destruct (zmin_le (down d (fst a)) (down d (fst b))), (zmin_le (down d (snd a)) (down d (snd b))),
+    (zmax_le (up d (fst a)) (up d (fst b))), (zmax_le (up d (snd a)) (up d (snd b))).
+  assert (k : forall l u v w, l <= u -> l <= v -> w = (1 - s) * u + s * v -> l <= w).
+  { intros l u v w lu lv e. rewrite e. assert ((1 - s) * l <= (1 - s) * u) by (apply Rmult_le_compat_l; lra).
+    assert (s * l <= s * v) by (apply Rmult_le_compat_l; lra). lra. }
+  repeat split.
+  - apply k with (IZR (Zpos d) * Q2R (fst a)) (IZR (Zpos d) * Q2R (fst b)); [lra|lra|ring].
+  - apply Ropp_le_cancel. apply k with (- (IZR (Zpos d) * Q2R (fst a))) (- (IZR (Zpos d) * Q2R (fst b))); [lra|lra|ring].
+  - apply k with (IZR (Zpos d) * Q2R (snd a)) (IZR (Zpos d) * Q2R (snd b)); [lra|lra|ring].
+  - apply Ropp_le_cancel. apply k with (- (IZR (Zpos d) * Q2R (snd a))) (- (IZR (Zpos d) * Q2R (snd b))); [lra|lra|ring].
+Qed.
+Lemma outers_apart_ok r a b x y : 0 <= Q2R r -> outers_apart (Qnum r) a b = true -> fits (Qden r) a x -> fits (Qden r) b y -> apart (Q2R r) x y.
+Proof.
+  intros r0 h [ax ay] [bx by_]. set (d := IZR (Zpos (Qden r))) in *. assert (d0 : 0 < d) by (apply IZR_lt; reflexivity).
+  assert (er : IZR (Qnum r) = d * Q2R r) by (unfold d, Q2R; field; apply IZR_neq; discriminate).
+  assert (k : forall u v, IZR (Qnum r) <= d * u - d * v -> Q2R r <= u - v) by (intros u v h0; rewrite er in h0; nra).
+  unfold outers_apart in h. rewrite !orb_true_iff in h. unfold apart, dot, sub; simpl.
+  destruct h as [[[h|h]|h]|h]; apply Z.leb_le, IZR_le in h; rewrite plus_IZR in h;
+  [| | rewrite (Rplus_comm ((fst x - fst y) * _)) | rewrite (Rplus_comm ((fst x - fst y) * _))]; (apply leg; [assumption|]).
+  - right. assert (Q2R r <= fst y - fst x) by (apply k; lra). lra.
+  - left. apply k. lra.
+  - right. assert (Q2R r <= snd y - snd x) by (apply k; lra). lra.
+  - left. apply k. lra.
 Qed.

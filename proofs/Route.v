@@ -10,9 +10,10 @@ Definition is_outside (o : obstacle) (es : list edge) (x : point) : bool :=
   match o with Wall _ => true | Solid _ => negb (qodd es x) end.
 Definition route (os : list obstacle) (r : Q) (ps : list point) : bool :=
   match ps with
-  | a :: _ :: _ => let pieces := sides ps in
+  | a :: _ :: _ => let boxed := fun e => (outer_of (Qden r) e, e) in let pieces := map boxed (sides ps) in
       qlt 0 r && forallb (fun o => let es := edges_of o in
-        is_outside o es a && forallb (fun e => forallb (fun piece => segments_apart r piece e) pieces) es) os
+        is_outside o es a && forallb (fun e => let b := outer_of (Qden r) e in
+          forallb (fun piece => outers_apart (Qnum r) (fst piece) b || segments_apart r (snd piece) e) pieces) es) os
   | _ => false
   end.
 
@@ -49,7 +50,10 @@ Proof.
   intros piece x hp hx.
   assert (k : forall o, In o os -> forall piece, In piece (sides ps) -> clear (Q2R r) (edges_of o) piece).
   { intros o ho q hq e u v he hu hv. specialize (h o ho). apply andb_true_iff in h; destruct h as [_ h]. rewrite forallb_forall in h.
-    specialize (h e he). rewrite forallb_forall in h. specialize (h q hq). apply segments_apart_ok in h. destruct h as [_ h]. now apply h. }
+    specialize (h e he). cbv zeta in h. rewrite forallb_forall in h.
+    specialize (h _ (in_map (fun e => (outer_of (Qden r) e, e)) _ _ hq)). apply orb_true_iff in h. cbn [fst snd] in h. destruct h as [h|h].
+    - apply (outers_apart_ok r _ _ u v) in h; [assumption|lra|now apply outer_of_ok|now apply outer_of_ok].
+    - apply segments_apart_ok in h. destruct h as [_ h]. now apply h. }
   split; [|intros o e y ho he hy; now apply (k o ho piece hp e)].
   intros o ho. specialize (h o ho). apply andb_true_iff in h; destruct h as [out _]. apply is_outside_ok in out. destruct o as [l|rs]; [exact I|].
   apply (pieces_even (Q2R r) _ (b :: t) (rings_closed rs) r0 a (k _ ho) out piece); assumption.

@@ -88,17 +88,30 @@ let line text =
 let rec floats acc = function
   | Json.Num x -> x :: acc | Json.Arr l -> List.fold_left floats acc l | Json.Obj m -> List.fold_left (fun a (_, v) -> floats a v) acc m
   | _ -> acc
-let bits_needed v = List.fold_left (fun m x -> max m (bits_of x)) 0 (floats [] v)
+let rec bits_needed_or most = function
+  | Json.Num x -> let b = bits_of x in if b > most then b else most
+  | Json.Arr l -> List.fold_left bits_needed_or most l
+  | Json.Obj m -> List.fold_left (fun most (_, v) -> bits_needed_or most v) most m
+  | _ -> most
+let bits_needed = bits_needed_or 0
 
 (* A fraction must lie strictly between the doubles next to the one beside it. *)
 let coordinate q x text =
-  if text = "" then q x else
-    let digit i c = (c >= '0' && c <= '9') || (c = '-' && i = 0) || (c = '/' && i > 0) in
-    let ok = ref true in
-    String.iteri (fun i c -> ok := !ok && digit i c) text;
-    let v = try if !ok then Q.of_string text else raise Json.Bad with Invalid_argument _ | Division_by_zero -> raise Json.Bad in
-    let beyond y ok = not (Float.is_finite y) || ok (Q.compare v (to_q (rational y))) in
-    if Whole.sign (Q.den v) > 0 && beyond (Float.pred x) (fun c -> c > 0) && beyond (Float.succ x) (fun c -> c < 0) then of_q v else raise Json.Bad
+  if text = "" then q x else begin
+    let whole from upto =
+      let digit i c = (c >= '0' && c <= '9') || (c = '-' && i = 0 && from = 0) in
+      let t = String.sub text from (upto - from) in
+      String.iteri (fun i c -> if not (digit i c) then raise Json.Bad) t;
+      try Whole.of_string t with Invalid_argument _ -> raise Json.Bad in
+    let n = String.length text in
+    let num, den = match String.index_opt text '/' with
+      | Some k -> (whole 0 k, whole (k + 1) n) | None -> (whole 0 n, Whole.one) in
+    (* num / den against y *)
+    let against y = let y = rational y in Whole.compare (Whole.mul num y.qden) (Whole.mul y.qnum den) in
+    let beyond y ok = not (Float.is_finite y) || ok (against y) in
+    if Whole.sign den > 0 && beyond (Float.pred x) (fun c -> c > 0) && beyond (Float.succ x) (fun c -> c < 0) then { qnum = num; qden = den }
+    else raise Json.Bad
+  end
 let point q = function
   | Json.Arr [Json.Num x; Json.Num y] -> (q x, q y)
   | Json.Arr [Json.Num x; Json.Num y; Json.Str a; Json.Str b] -> (coordinate q x a, coordinate q y b)
@@ -124,11 +137,12 @@ let is_route c = match Json.find "kind" c with Some (Json.Str k) -> List.mem k [
 let lengths_agree c ps =
   let rec sum acc = function
     | (a : point) :: ((b :: _) as t) ->
-      let d f = Q.to_float (Q.sub (to_q (f b)) (to_q (f a))) in sum (acc +. Float.hypot (d fst) (d snd)) t
+      sum (acc +. Float.hypot (difference (fst b) (fst a)) (difference (snd b) (snd a))) t
     | _ -> acc in
   let l = sum 0. ps and low = Json.(num (get "lower_bound" c)) in
   Float.abs (Json.(num (get "length" c)) -. l) <= Float.ldexp l (-40) && low >= 0. && low <= l *. (1. +. Float.ldexp 1. (-30))
-let same (a : point) (b : point) = Q.equal (to_q (fst a)) (to_q (fst b)) && Q.equal (to_q (snd a)) (to_q (snd b))
+let same (a : point) (b : point) =
+  let equal (a : q) (b : q) = Whole.equal (Whole.mul a.qnum b.qden) (Whole.mul b.qnum a.qden) in equal (fst a) (fst b) && equal (snd a) (snd b)
 
 let route c =
   try

@@ -55,34 +55,60 @@ let pairs d radii robots =
             Checked.pair_holds claim (at (anchor robots.(j))) (q radii.(j)) (q (number "offset" e)))))
     (constraints a)) robots
 
-(* The gap up to which the multipliers of a recording prove a choice: 2^-40 (V + |preferred|)^2, as for `audit`. *)
+(* A choice as recordings and the page of `view` state it: a line is (normal, offset, hard, its multiplier), a part of the
+   speed bound (its name, its multiplier). *)
+type chosen = { lines : ((float * float) * float * bool * float) list; disc : float option; box : (float * float) option;
+  preferred : float * float; velocity : float * float; status : string; parts : (string * float) list }
+
+let sides = [("box-right", (-1., 0.)); ("box-left", (1., 0.)); ("box-top", (0., -1.)); ("box-bottom", (0., 1.))]
+let largest_speed c = Float.min (Option.value c.disc ~default:infinity) (match c.box with Some (x, y) -> Float.hypot x y | None -> infinity)
+
+(* Multipliers in doubles prove a choice up to a gap of 2^-40 of its unit, as for `audit`: for an optimum (V + |preferred|)^2,
+   for a least violation the larger of itself and V times the length of the longest normal that gives. *)
+let is_best c =
+  let infeasible = c.status = "infeasible" and optimal = c.status = "optimal" in
+  let gives hard = if infeasible then hard else (not optimal && not hard) in
+  let kept = if infeasible then List.filter (fun (_, _, hard, _) -> hard) c.lines else c.lines in
+  let pulls (_, _, _, m) = m > 0. in
+  let used = List.length (List.filter pulls c.lines) + List.length (List.filter (fun (n, m) -> m > 0. && (optimal || n <> "disc")) c.parts) in
+  let exists = function "disc" -> c.disc <> None | n -> c.box <> None && List.mem_assoc n sides in
+  let wrong = used > 3 || List.length (List.filter pulls kept) < List.length (List.filter pulls c.lines)
+    || List.exists (fun (n, m) -> not (m >= 0.) || not (exists n)) c.parts || List.exists (fun (_, _, _, m) -> not (m >= 0.)) c.lines in
+  let size (x, y) = Float.hypot x y in
+  let given ((x, y), o, _, _) = let f = Q.of_float in
+    Q.sub (f o) (Q.add (Q.mul (f x) (f (fst c.velocity))) (Q.mul (f y) (f (snd c.velocity)))) in
+  let giving = List.filter (fun (_, _, hard, _) -> gives hard) kept in
+  let most = List.fold_left (fun m l -> Q.max m (given l)) Q.zero giving in
+  let length = List.fold_left (fun m ((n, _, _, _) as l) -> if pulls l then Float.max m (size n) else m) 0. giving in
+  let unit = if optimal then (largest_speed c +. size c.preferred) ** 2. else Float.max (Q.to_float most) (largest_speed c *. length) in
+  let gap = Float.ldexp unit (-40) in
+  let both (x, y) = [x; y] in
+  let q = fractions (gap :: List.concat_map (fun ((x, y), o, _, m) -> [x; y; o; m]) kept @ List.map snd c.parts
+    @ Option.to_list c.disc @ List.concat_map both (Option.to_list c.box @ [c.preferred; c.velocity])) in
+  let at (x, y) = (q x, q y) in
+  let multiplier n = q (List.fold_left (fun m (name, x) -> if name = n then m +. x else m) 0. c.parts) in
+  let side (n, (x, y)) = Option.map (fun (bx, by) -> ({ row_normal = at (x, y); row_offset = q (-. (if x <> 0. then bx else by)); soft = false }, multiplier n)) c.box in
+  let bounds = List.filter_map side sides in
+  let program = { rows = List.map (fun (n, o, hard, _) -> { row_normal = at n; row_offset = q o; soft = gives hard }) kept @ List.map fst bounds;
+    disc = Option.map q c.disc; box_x = Option.map (fun b -> q (fst b)) c.box; box_y = Option.map (fun b -> q (snd b)) c.box; wish = at c.preferred } in
+  let pull = List.map (fun (_, _, _, m) -> q m) kept @ List.map snd bounds in
+  let answer = { velocity = at c.velocity; gap = q gap; violation = of_q most; pull; mu = (if optimal then multiplier "disc" else q 0.); against = pull } in
+  not wrong && if optimal then Checked.nearest program answer else Checked.least program answer
+
 let choice robot speed is_disc cs =
-  let px, py = pair (Json.get "preferred" robot) in
-  let v = if is_disc then speed else Float.hypot speed speed in
-  let gap = Float.ldexp ((v +. Float.hypot px py) ** 2.) (-40) in
   let multiplier c = match Json.find "multiplier" c with Some m -> Json.num m | None -> 0. in
-  let bound = match Json.find "bound" robot with Some b -> List.map (fun p -> (Json.(str (get "part" p)), multiplier p)) (Json.arr b) | None -> [] in
-  let q = fractions (speed :: gap :: List.map snd bound @ Certificates.floats [] (Json.Arr (Json.get "preferred" robot :: Json.get "chosen" robot
-    :: List.concat_map (fun c -> [Json.get "normal" c; Json.get "offset" c; Json.Num (multiplier c)]) cs))) in
-  let at v = let x, y = pair v in (q x, q y) in
-  let row c = { row_normal = at (Json.get "normal" c); row_offset = q (number "offset" c); soft = not (is "hard" c) } in
-  let side x y = { row_normal = (q x, q y); row_offset = q (-. speed); soft = false } in
-  let sides = if is_disc then [] else ["box-right", side (-1.) 0.; "box-left", side 1. 0.; "box-top", side 0. (-1.); "box-bottom", side 0. 1.] in
-  let of_part name = q (List.fold_left (fun m (n, x) -> if n = name then m +. x else m) 0. bound) in
-  let limit = Some (q speed) in
-  Checked.nearest
-    { rows = List.map row cs @ List.map snd sides; disc = (if is_disc then limit else None);
-      box_x = (if is_disc then None else limit); box_y = (if is_disc then None else limit); wish = at (Json.get "preferred" robot) }
-    { velocity = at (Json.get "chosen" robot); gap = q gap; violation = q 0.;
-      pull = List.map (fun c -> q (multiplier c)) cs @ List.map (fun (n, _) -> of_part n) sides;
-      mu = (if is_disc then of_part "disc" else q 0.); against = [] }
+  let line c = (pair (Json.get "normal" c), number "offset" c, is "hard" c, multiplier c) in
+  let bound = match Json.find "bound" robot with Some b -> Json.arr b | None -> [] in
+  is_best { lines = List.map line cs; disc = (if is_disc then Some speed else None); box = (if is_disc then None else Some (speed, speed));
+    preferred = pair (Json.get "preferred" robot); velocity = pair (Json.get "chosen" robot); status = Json.(str (get "status" robot));
+    parts = List.map (fun p -> (Json.(str (get "part" p)), multiplier p)) bound }
 
 let robot d scenario described r =
   let radius = number "radius" described and cs = constraints r in
   List.iter (fun c -> match shape_of d c with
     | Some s when is "certified" c -> ask d.half_planes (half_plane r radius c s)
     | _ -> d.moving <- d.moving + 1) cs;
-  if Json.find "status" r = Some (Json.Str "optimal") && Json.find "multipliers" r = None then
+  if Json.find "status" r <> Some (Json.Str "no-interior") && Json.find "status" r <> None && Json.find "multipliers" r = None then
     ask d.choices (choice r (number "max_speed" described) (Json.find "speed_bound" scenario <> Some (Json.Str "box")) cs)
   else d.inexact <- d.inexact + 1
 
@@ -96,5 +122,5 @@ let report d =
   Printf.printf "half-planes that are certified against bodies at rest: %d asked, %d proven%s\n" d.half_planes.asked d.half_planes.proven
     (other (d.moving - 2 * d.pairs.asked));
   Printf.printf "pairs of robots with opposite half-planes: %d asked, %d proven not to collide until the horizon\n" d.pairs.asked d.pairs.proven;
-  Printf.printf "optimal choices with multipliers: %d asked, %d proven to be the best%s\n" d.choices.asked d.choices.proven (other d.inexact);
+  Printf.printf "choices with multipliers: %d asked, %d proven to be the best%s\n" d.choices.asked d.choices.proven (other d.inexact);
   d.half_planes.proven = d.half_planes.asked && d.pairs.proven = d.pairs.asked && d.choices.proven = d.choices.asked

@@ -6,13 +6,14 @@ exception Bad
 
 let deepest = 100
 
-let parse s =
-  let n = String.length s and i = ref 0 in
+(* What stands in s between two places. *)
+let parse_part s (first, n) =
+  let i = ref first in
   let peek () = if !i < n then s.[!i] else raise Bad in
   let rec blanks () = if !i < n && (match s.[!i] with ' ' | '\t' | '\r' | '\n' -> true | _ -> false) then (incr i; blanks ()) in
   let expect c = if peek () = c then incr i else raise Bad in
   let word w v = String.iter expect w; v in
-  let hex () = let v = int_of_string ("0x" ^ String.sub s !i 4) in i := !i + 4; v in
+  let hex () = if !i + 4 > n then raise Bad; let v = int_of_string ("0x" ^ String.sub s !i 4) in i := !i + 4; v in
   let text () =
     expect '"';
     let rec plain k = if k >= n || s.[k] < ' ' then raise Bad else if s.[k] = '"' || s.[k] = '\\' then k else plain (k + 1) in
@@ -36,7 +37,8 @@ let parse s =
     if s.[k] = '"' then (let t = String.sub s !i (k - !i) in i := k + 1; t) else (go (); Buffer.contents b) in
   let number () =
     let k = !i in
-    let digits () = let a = !i in while !i < n && s.[!i] >= '0' && s.[!i] <= '9' do incr i done; if !i = a then raise Bad in
+    let rec beyond a = if a < n && s.[a] >= '0' && s.[a] <= '9' then beyond (a + 1) else a in
+    let digits () = let a = beyond !i in if !i = a then raise Bad else i := a in
     if peek () = '-' then incr i;
     if peek () = '0' then incr i else digits ();
     if !i < n && s.[!i] = '.' then (incr i; digits ());
@@ -58,14 +60,18 @@ let parse s =
       let rec more acc = let acc = item () :: acc in blanks (); if peek () = ',' then (incr i; more acc) else (expect close; List.rev acc) in
       more []
   and once members =
-    let names = List.sort compare (List.map fst members) in
-    let rec twice = function a :: (b :: _ as t) -> a = b || twice t | _ -> false in
+    let names = List.sort String.compare (List.map fst members) in
+    let rec twice = function a :: (b :: _ as t) -> String.equal a b || twice t | _ -> false in
     if twice names then raise Bad else members in
   match value 0 with
   | v -> if !i = n then v else raise Bad
   | exception (Invalid_argument _ | Failure _) -> raise Bad
 
-let find k = function Obj m -> List.assoc_opt k m | _ -> None
+let parse s = parse_part s (0, String.length s)
+
+let find k =
+  let rec among = function (name, v) :: t -> if String.equal name k then Some v else among t | [] -> None in
+  function Obj m -> among m | _ -> None
 let get k v = match find k v with Some x -> x | None -> raise Bad
 let num = function Num x -> x | _ -> raise Bad
 let str = function Str x -> x | _ -> raise Bad

@@ -9,7 +9,8 @@ let refuse file place found expected code = raise (Refused (file, place, found, 
 
 let read file =
   let all channel =
-    let b = Buffer.create 65536 and part = Bytes.create 65536 in
+    let size = try in_channel_length channel with Sys_error _ -> 0 in  (* a pipe has none *)
+    let b = Buffer.create (size + 65536) and part = Bytes.create 65536 in
     let rec go () = let n = input channel part 0 65536 in if n > 0 then (Buffer.add_subbytes b part 0 n; go ()) in
     go ();
     Buffer.contents b in
@@ -19,7 +20,17 @@ let read file =
     if Sys.file_exists file then refuse file "" "a file that cannot be read" "a certificate or a recording" "E_FILE_UNREADABLE"
     else refuse file "" "no such file" "a file that can be read" "E_FILE_MISSING"
 
-let lines text = List.filter (fun l -> String.trim l <> "") (String.split_on_char '\n' text)
+(* Where the lines that are not blank begin and end. *)
+let spans text =
+  let n = String.length text in
+  let blank c = c = ' ' || c = '\t' || c = '\r' in
+  let rec is_blank k stop = k = stop || (blank text.[k] && is_blank (k + 1) stop) in
+  let rec from start found =
+    let stop = match String.index_from_opt text start '\n' with Some k -> k | None -> n in
+    let found = if is_blank start stop then found else (start, stop) :: found in
+    if stop = n then List.rev found else from (stop + 1) found in
+  from 0 []
+let lines text = List.map (fun (start, stop) -> String.sub text start (stop - start)) (spans text)
 let counted n one = Printf.sprintf "%d %s%s" n one (if n = 1 then "" else "s")
 
 (* --- Certificates: every `certificate` of JSON, or one a line --- *)
@@ -39,13 +50,16 @@ let rec in_json found none v =
 let certificates file text =
   let verdicts = ref [] and none = ref 0 in
   let found v = verdicts := v :: !verdicts in
-  let json t = match Json.parse t with v -> in_json found (fun () -> incr none) v | exception Json.Bad -> found "unreadable JSON" in
-  let is_json = match String.trim text with "" -> false | t -> t.[0] = '{' || t.[0] = '[' in
-  let ls = lines text in
+  let json span = match Json.parse_part text span with v -> in_json found (fun () -> incr none) v | exception Json.Bad -> found "unreadable JSON" in
+  let is_json = let rec first k = k < String.length text && (match text.[k] with ' ' | '\t' | '\r' | '\n' -> first (k + 1) | c -> c = '{' || c = '[') in first 0 in
+  let ls = spans text in
   if is_json then (match Json.parse text with
     | v -> in_json found (fun () -> incr none) v
     | exception Json.Bad -> if List.length ls > 1 then List.iter json ls else found "unreadable JSON")
-  else if List.exists Certificates.begins ls then List.iter (fun l -> found (Certificates.line l)) ls;
+  else begin
+    let ls = lines text in
+    if List.exists Certificates.begins ls then List.iter (fun l -> found (Certificates.line l)) ls
+  end;
   if !verdicts = [] && !none = 0 then refuse file "" "no certificate" "a certificate a line" "E_FORMAT_UNKNOWN";
   let all = List.rev !verdicts in
   List.iteri (fun i v -> Printf.printf "%d: %s\n" (i + 1) v) all;
@@ -171,7 +185,7 @@ let recording file text =
     robots := List.length Json.(arr (get "robots" !scenario));
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
-      "choices that are not optimal or have exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
+      "choices without room or with exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
     prepare (Certificates.bits_needed !scenario) in
   let row r =
     let ps = List.map (fun x -> pair_of (Json.get "position" x)) Json.(arr (get "robots" r)) in
@@ -288,6 +302,7 @@ Exit status:\n\
 \032 2    the file or an option is wrong\n"
 
 let main () =
+
   let outcome = match List.tl (Array.to_list Sys.argv) with
     | ["-h"] | ["--help"] -> print_string usage; Ok true
     | ([file] | [file; "--problems"; _]) as args when file = "-" || (file <> "" && file.[0] <> '-') -> (try

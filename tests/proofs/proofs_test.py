@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The proven checkers (docs/guide/proofs.md). As ctest runs it:
 
-    proofs_test.py PART --program exactvo --cases proof_cases --build BUILD --source SOURCE [--count 10000] [--seed 1]
+    proofs_test.py PART --program exactvo --cases proof_cases --claims certificate_cases --build BUILD --source SOURCE [--count 10000] [--seed 1]
 
 axioms        the theorems of Theorems.v rest on the axioms that the guide lists, and on no others
 coqchk        Coq's own checker accepts every compiled theory
 certificates  what the program writes is verified; each number of it changed is refused
 recordings    of runs and crowds likewise; of random crowds the verdict on pairs of robots is that of `audit`
+page          COUNT claims, half of them forged: one verdict from C++, the checker of `view`'s page and the proven one
 differential  COUNT certificates, half of them forged: one verdict from the checkers in C++ and the proven one,
               and of 400 routes from the one in Python. A campaign of 10^5 is
               `--count 100000 --seed S`
@@ -17,6 +18,7 @@ import json
 import math
 import random
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -397,10 +399,41 @@ def differential(tools):
         print(f"{name}: {len(expected)} certificates, {sum(expected)} valid, one verdict; seed {tools.flags.seed}")
 
 
+def page(tools):
+    node, claims = shutil.which("node") or shutil.which("nodejs"), tools.theories / "claims"
+    if not node or not claims.exists():
+        print("skipped: no node" if not node else "skipped: the target exactvo_claims is not built")
+        sys.exit(SKIPPED)
+    modules = tools.folder / "page"
+    modules.mkdir()
+    (modules / "package.json").write_text('{"type": "module"}')
+    for name in ("exact.js", "proof.js"):
+        shutil.copy(tools.source / "tools/explorer/page" / name, modules)
+    text = run(tools.flags.claims, tools.flags.count, tools.flags.seed).stdout
+    lines = text.splitlines()
+    require(len(lines) == tools.flags.count, len(lines), "claims")
+    verdicts = {}
+    for name, command in (("proven", [claims]), ("page", [node, tools.source / "tests/proofs/page_claims.mjs", modules])):
+        done = run(*command, input=text)
+        verdicts[name] = [line == "1" for line in done.stdout.split()]
+        require(done.returncode == 0 and len(verdicts[name]) == len(lines), name, len(verdicts[name]), done.stderr)
+    tally = {}
+    for line, proven, shown in zip(lines, verdicts["proven"], verdicts["page"]):
+        case = json.loads(line)
+        require(case["holds"] == proven == shown, "seed", tools.flags.seed, "C++:", case["holds"], "proven:", proven, "page:", shown, line)
+        kind = ("half-plane" if "claim" in case else case["answer"]["status"], proven)
+        tally[kind] = tally.get(kind, 0) + 1
+    for kind in ("half-plane", "optimal", "relaxed", "infeasible"):
+        for proven in (True, False):
+            require(tally.get((kind, proven), 0) * 400 > len(lines), kind, proven, "hardly occurs:", tally)
+    print("one verdict of C++, the page and the proven checkers:", *(f"{kind} {'true' if proven else 'false'} {n}" for (kind, proven), n in sorted(tally.items())),
+          "seed", tools.flags.seed)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "recordings", "differential"])
-    for name in ("program", "cases", "build", "source"):
+    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "recordings", "page", "differential"])
+    for name in ("program", "cases", "claims", "build", "source"):
         parser.add_argument("--" + name, required=True)
     parser.add_argument("--count", type=int, default=10000)
     parser.add_argument("--seed", type=int, default=1)
