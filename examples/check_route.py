@@ -145,7 +145,7 @@ def check(c, obstacles):
         require_clear(p, q, radius, obstacles, may or k == 0, may or k + 1 == len(pieces))
 
 def agrees(beside, c, obstacles):
-    """Whether what stands beside a certificate is what it says (docs/guide/routes.md lists what nobody compares)."""
+    """Whether the members next to a certificate agree with it (docs/guide/routes.md lists those that are not compared)."""
     # Where an end of a point lies on an edge no disc has a route.
     is_point = c["radius"] == 0 and "widest_radius" in beside and any(square_to(point(c[end]), e) == 0 for end in ("start", "goal") for o in obstacles for e in o.edges)
     route, end, gaps = c["kind"] == "route", beside.get("blocked"), [q for q in c.get("chain", []) if q["gap"]]

@@ -330,6 +330,7 @@ TEST(Motions, Property3_ALargerRadiusIsNeverClearer) {
 
 TEST(Motions, Property4_TheWholeIsAsBadAsItsWorstPart) {
   SeededRandom random(seed_of_run(37));
+  int overlaps = 0, clear = 0;
   for (int i = 0; i < 1500; ++i) {
     MotionCase c = random_motion_case(random, i % 2 == 0 ? MotionKind::discs : MotionKind::disc_and_edges);
     auto& whole = std::get<StraightMotion>(c.a);
@@ -346,7 +347,11 @@ TEST(Motions, Property4_TheWholeIsAsBadAsItsWorstPart) {
     ASSERT_EQ(std::max(static_cast<int>(encounter(first)), static_cast<int>(encounter(second))),
               static_cast<int>(expected))
         << corpus_line(c);
+    overlaps += expected == Encounter::overlap;
+    clear += expected == Encounter::clear;
   }
+  EXPECT_GT(overlaps, 100);
+  EXPECT_GT(clear, 100);
 }
 
 // --- Mistakes ---

@@ -217,6 +217,7 @@ TEST(SegmentMeets, PolygonsDiscsAndSegmentsAgreeWithRationalDistances) {
 
 TEST(SegmentMeets, GrazingRaysTouchFromTheFirstMomentOn) {
   SeededRandom random(seed_of_run(27));
+  int judged = 0;
   for (int i = 0; i < 10000; ++i) {
     TangentCase t = random_tangent_ellipse(random);
     // The robot stands on the tangent, `steps` of the direction before the touching point.
@@ -230,11 +231,14 @@ TEST(SegmentMeets, GrazingRaysTouchFromTheFirstMomentOn) {
     ASSERT_FALSE(segment_meets(t.s, v, std::nextafter(steps, 0.0)));
     t.s.origin = t.s.origin + unit * t.normal;
     ASSERT_FALSE(segment_meets(t.s, v, 2.0 * steps)) << "off the tangent by " << unit;
+    ++judged;
   }
+  EXPECT_GT(judged, 5000);
 }
 
 TEST(SegmentMeets, Property5_GrowsWithTimeAndHoldsAtItsEnds) {
   SeededRandom random(seed_of_run(28));
+  int met = 0, ends = 0;
   for (int i = 0; i < 4000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 4]);
     const Vec2 v = support_point(scene.s, random.direction());
@@ -242,12 +246,16 @@ TEST(SegmentMeets, Property5_GrowsWithTimeAndHoldsAtItsEnds) {
     if (segment_meets(scene.s, v, t)) {
       ASSERT_TRUE(segment_meets(scene.s, v, std::nextafter(t, 2.0)));
       ASSERT_TRUE(segment_meets(scene.s, v, 10.0 * t));
+      ++met;
     }
     const Vec2 q = 2.0 * v;
     if (locate(scene.s, q) != Place::outside) {
       ASSERT_TRUE(segment_meets(scene.s, v, 2.0));
+      ++ends;
     }
   }
+  EXPECT_GT(met, 1000);
+  EXPECT_GT(ends, 100);
 }
 
 TEST(SegmentMeets, DegenerateEllipsesAndRestingRobots) {
@@ -301,6 +309,7 @@ TEST(Place, NotANumberIsTheCallersMistake) {
 
 TEST(EllipseContains, TangentAndRandomPoints) {
   SeededRandom random(seed_of_run(29));
+  int inside = 0, outside = 0;
   for (int i = 0; i < 10000; ++i) {
     TangentCase t = random_tangent_ellipse(random);
     const Ellipse e = std::get<Ellipse>(t.s.shape);
@@ -315,8 +324,11 @@ TEST(EllipseContains, TangentAndRandomPoints) {
     const Q v = Q(e.l22) * u.x, w = Q(e.l11) * u.y - Q(e.l21) * u.x, det = Q(e.l11) * Q(e.l22);
     if (sgn(det) != 0) {
       ASSERT_EQ(contains(e, x), v * v + w * w <= det * det);
+      ++(contains(e, x) ? inside : outside);
     }
   }
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(outside, 1000);
 }
 
 }  // namespace

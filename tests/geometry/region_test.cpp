@@ -72,6 +72,7 @@ TEST(Region, PlacesAreExactToAnUlp) {
 
 TEST(Region, WhatHoldsOfPlacesHoldsOfOperations) {
   SeededRandom random(test::seed_of_run(811));
+  int in_both = 0, in_one = 0, in_none = 0;
   for (int i = 0; i < 60; ++i) {
     const Region a = random_hull(random), b = random_hull(random);
     const Region either = union_of(a, b), both = a.intersection(b), rest = a.difference(b);
@@ -83,8 +84,12 @@ TEST(Region, WhatHoldsOfPlacesHoldsOfOperations) {
       EXPECT_EQ(either.locate(x) == Place::inside, of_a || of_b);
       EXPECT_EQ(both.locate(x) == Place::inside, of_a && of_b);
       EXPECT_EQ(rest.locate(x) == Place::inside, of_a && !of_b);
+      ++(of_a && of_b ? in_both : of_a || of_b ? in_one : in_none);
     }
   }
+  EXPECT_GT(in_both, 50);
+  EXPECT_GT(in_one, 50);
+  EXPECT_GT(in_none, 50);
 }
 
 TEST(Region, AreasAddUp) {

@@ -244,6 +244,7 @@ Ring rotated_start(Ring ring, int by) {
 // Properties 1 to 3 of `normalize`.
 TEST(Normalize, Properties1To3) {
   SeededRandom random(test::seed_of_run(54));
+  int valid = 0, with_hole = 0;
   for (int i = 0; i < 20000; ++i) {
     std::vector<Ring> rings = {test::grid_points(random, random.integer(3, 7), 5)};
     if (random.integer(0, 1) == 1) rings.push_back(test::grid_points(random, random.integer(3, 5), 5));
@@ -262,7 +263,11 @@ TEST(Normalize, Properties1To3) {
     ASSERT_TRUE(second.problems.empty()) << codes(second.problems);
     ASSERT_EQ(second.polygon.outer, result.polygon.outer);
     ASSERT_EQ(second.polygon.holes, result.polygon.holes);
+    ++valid;
+    with_hole += !result.polygon.holes.empty();
   }
+  EXPECT_GT(valid, 1000);
+  EXPECT_GT(with_hole, 0);
 }
 
 Ring gear(int n, Vec2 center, double radius) {

@@ -97,13 +97,16 @@ TEST(Certificate, Property3_AnyNumberAnUlpOffIsRejected) {
 }
 
 TEST(Certificate, AHalfPlaneMovedInwardFailsByItsMarginAlone) {
-  SeededRandom random(seed_of_run(63));
+    SeededRandom random(seed_of_run(63));
+  int judged = 0;
   for (int i = 0; i < 5000; ++i) {
     Certificate c = *certify(random_claim(random, kKinds[i % 4]));
     if (c.claim.half_plane.offset == 0.0) continue;  // a leg: its margin is that of h_S <= 0
-    c.claim.half_plane.offset = std::nextafter(c.claim.half_plane.offset, -kInfinity);
+        c.claim.half_plane.offset = std::nextafter(c.claim.half_plane.offset, -kInfinity);
     ASSERT_EQ(check(c), Verdict::wrong_margin);
+    ++judged;
   }
+  EXPECT_GT(judged, 1000);
 }
 
 TEST(Certificate, CorruptedTextIsRejected) {

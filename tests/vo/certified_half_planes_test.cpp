@@ -121,7 +121,8 @@ TEST(Reciprocal, Property1And2_NormalsMirrorAndHalvesAddUp) {
 }
 
 TEST(Reciprocal, Property3_ExchangingTheRobotsExchangesTheHalves) {
-  SeededRandom random(seed_of_run(45));
+    SeededRandom random(seed_of_run(45));
+  int apart = 0;
   for (int i = 0; i < 10000; ++i) {
     const vo::MovingDisc a{random.in_box(3.0), moved(random), random.uniform(0.0, 0.8)};
     const vo::MovingDisc b{i % 10 == 0 ? a.position : random.in_box(3.0), moved(random), random.uniform(0.0, 0.8)};
@@ -134,8 +135,10 @@ TEST(Reciprocal, Property3_ExchangingTheRobotsExchangesTheHalves) {
     ASSERT_EQ(one.a.normal, other.b.normal);
     ASSERT_EQ(one.a.offset, other.b.offset);
     ASSERT_EQ(one.b.normal, other.a.normal);
-    ASSERT_EQ(one.b.offset, other.a.offset);
+        ASSERT_EQ(one.b.offset, other.a.offset);
+    ++apart;
   }
+  EXPECT_GE(apart, 9000);
 }
 
 TEST(Orca, EdgesOfPolygonsAndWallsAreSafe) {

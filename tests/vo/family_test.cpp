@@ -74,7 +74,8 @@ TEST(Family, Property2_And_3_RvoIsTheVoOfTheMeanExactly) {
 }
 
 TEST(Family, Property4_HrvoTakesTheLegOfItsOwnSideFromRvo) {
-  SeededRandom random(seed_of_run(603));
+    SeededRandom random(seed_of_run(603));
+  int sides = 0;
   for (int i = 0; i < 2000; ++i) {
     const Encounter e = random_encounter(random, kKinds[i % 4]);
     const Member hrvo = family_member(Variant::hrvo, e);
@@ -90,10 +91,12 @@ TEST(Family, Property4_HrvoTakesTheLegOfItsOwnSideFromRvo) {
     EXPECT_LT(std::min(left, right), 1e-12);
     // Untruncated, it forbids what RVO forbids on the robot's own side and at least as much on the other.
     const double side = cross(legs->left.direction + legs->right.direction, e.velocity - e.obstacle_velocity);
-    if (std::fabs(side) > 1e-9) {
+        if (std::fabs(side) > 1e-9) {
       EXPECT_EQ(left<right, side> 0.0);
+      ++sides;
     }
   }
+  EXPECT_GT(sides, 1500);
 }
 
 TEST(Family, Property5_OrcaIsAffineInTheResponsibility) {
@@ -141,7 +144,8 @@ TEST(Family, OrcaOfTwoDiscsIsTheReciprocalPair) {
 }
 
 TEST(Family, Property6_MovesWithTheFrame) {
-  SeededRandom random(seed_of_run(606));
+    SeededRandom random(seed_of_run(606));
+  int half_planes = 0;
   for (int i = 0; i < 2000; ++i) {
     const Encounter e = random_encounter(random, kKinds[i % 4]);
     Encounter moved = e;
@@ -160,14 +164,17 @@ TEST(Family, Property6_MovesWithTheFrame) {
       const auto a = family_member(variant, still).half_plane, b = family_member(variant, moved).half_plane;
       ASSERT_EQ(a.has_value(), b.has_value());
       if (a) {
-        EXPECT_NEAR(a->offset + dot(a->normal, w), b->offset, 1e-12);
+                EXPECT_NEAR(a->offset + dot(a->normal, w), b->offset, 1e-12);
+        ++half_planes;
       }
     }
   }
+  EXPECT_GT(half_planes, 2000);
 }
 
 TEST(Family, FullHalfPlanesAreProvenAgainstMovingObstacles) {
-  SeededRandom random(seed_of_run(607));
+    SeededRandom random(seed_of_run(607));
+  int of_ivo = 0;
   for (int i = 0; i < 3000; ++i) {
     Encounter e = random_encounter(random, kKinds[i % 4]);
     e.responsibility = 1.0;
@@ -175,11 +182,13 @@ TEST(Family, FullHalfPlanesAreProvenAgainstMovingObstacles) {
     ASSERT_TRUE(orca.half_plane);
     EXPECT_TRUE(vo::is_true({e.obstacle, e.position, e.radius, e.time_horizon, e.obstacle_velocity, *orca.half_plane}));
     const Member ivo = family_member(Variant::ivo, e);
-    if (ivo.half_plane) {
+        if (ivo.half_plane) {
       EXPECT_TRUE(
           vo::is_true({e.obstacle, e.position, e.radius, e.time_horizon, e.obstacle_velocity, *ivo.half_plane}));
+      ++of_ivo;
     }
   }
+  EXPECT_GT(of_ivo, 500);
 }
 
 TEST(Family, HorizonsOfThePaperAndClamped) {
@@ -257,7 +266,8 @@ ConvexPolygon regular(int sides, double radius) {
 }
 
 TEST(PolygonRobot, ManySidesTendToTheDisc) {
-  SeededRandom random(seed_of_run(621));
+    SeededRandom random(seed_of_run(621));
+  int inside = 0;
   for (int i = 0; i < 400; ++i) {
     const Encounter e = random_encounter(random, kKinds[i % 4]);
     const VelocityObstacle disc = cone_of(e);
@@ -274,11 +284,13 @@ TEST(PolygonRobot, ManySidesTendToTheDisc) {
       EXPECT_LE(gap, before + polygon.grown_error() + 1e-12);
       before = std::max(gap, 1e-15);
       // Inscribed: what hits with the polygon hits with the disc.
-      if (polygon.contains(v)) {
+            if (polygon.contains(v)) {
         EXPECT_TRUE(disc.contains(v));
+        ++inside;
       }
     }
   }
+  EXPECT_GT(inside, 50);
 }
 
 using Q = mpq_class;
@@ -365,7 +377,8 @@ TEST(PolygonRobot, AgainstDiscsAndEllipsesTheOuterShapeDecidesButForItsError) {
 }
 
 TEST(PolygonRobot, HalfPlanesKeepEveryCornerClear) {
-  SeededRandom random(seed_of_run(624));
+    SeededRandom random(seed_of_run(624));
+  int judged = 0;
   for (int i = 0; i < 1500; ++i) {
     Encounter e = random_encounter(random, kKinds[i % 4]);
     e.robot = random_convex_polygon(random, {}, e.radius, 5);
@@ -376,9 +389,11 @@ TEST(PolygonRobot, HalfPlanesKeepEveryCornerClear) {
     // On the boundary of the half-plane and beyond: free, exactly.
     const Vec2 n = h->normal;
     const Vec2 foot = (h->offset / squared_norm(n)) * n + random.uniform(-2.0, 2.0) * perp(n);
-    const Vec2 v = foot + 1e-9 * n;
+        const Vec2 v = foot + 1e-9 * n;
     EXPECT_FALSE(obstacle.contains(v));
+    ++judged;
   }
+  EXPECT_GT(judged, 750);
 }
 
 TEST(PolygonRobot, DegenerateRobotsAndObstacles) {

@@ -33,21 +33,24 @@ using vo::VelocityObstacle;
 using geometry::kInfinity;
 
 TEST(VelocityObstacle, Property1_StaticHalfPlanesAdmitRest) {
-  SeededRandom random(seed_of_run(51));
+    SeededRandom random(seed_of_run(51));
+  int judged = 0;
   for (int i = 0; i < 20000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 4]);
     const double tau = random.uniform(0.1, 10.0);
     const VelocityObstacle obstacle = velocity_obstacle(scene.s, tau);
     if (obstacle.overlaps()) continue;
     const auto h = obstacle.half_plane(random_velocity(random, scene.s, tau));
-    if (h) {
-      ASSERT_LE(h->offset, 0.0);
-    }
+    if (!h) continue;
+    ASSERT_LE(h->offset, 0.0);
+    ++judged;
   }
+  EXPECT_GT(judged, 10000);
 }
 
 TEST(VelocityObstacle, Property2_SafeForLargerIsSafeForSmaller) {
-  SeededRandom random(seed_of_run(52));
+    SeededRandom random(seed_of_run(52));
+  int judged = 0;
   for (int i = 0; i < 8000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 4]);
     const double tau = random.uniform(0.1, 10.0);
@@ -57,8 +60,10 @@ TEST(VelocityObstacle, Property2_SafeForLargerIsSafeForSmaller) {
     if (!h) continue;
     GrownShape smaller = scene.s;
     smaller.radius *= random.uniform(0.0, 1.0);
-    ASSERT_TRUE(is_safe(smaller, tau * random.uniform(0.01, 1.0), *h));
+        ASSERT_TRUE(is_safe(smaller, tau * random.uniform(0.01, 1.0), *h));
+    ++judged;
   }
+  EXPECT_GT(judged, 4000);
 }
 
 TEST(VelocityObstacle, Property3_ContainsGrowsWithRadiusAndHorizon) {
@@ -101,7 +106,8 @@ GrownShape mapped(const GrownShape& s, Map map, bool reverse) {
 }
 
 TEST(VelocityObstacle, Property4_MirrorsAndQuarterTurnsOfDiscsSegmentsAndPolygonsCarryOver) {
-  SeededRandom random(seed_of_run(54));
+    SeededRandom random(seed_of_run(54));
+  int turns = 0, mirrors = 0;
   for (int i = 0; i < 6000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 3]);
     const double tau = random.uniform(0.1, 10.0);
@@ -113,11 +119,15 @@ TEST(VelocityObstacle, Property4_MirrorsAndQuarterTurnsOfDiscsSegmentsAndPolygon
     const auto flipped = velocity_obstacle(mapped(scene.s, mirrored, true), tau).half_plane(mirrored(v));
     ASSERT_TRUE(turned && flipped);
     ASSERT_EQ(turned->normal, quarter(h->normal)) << text_of(scene.s, tau, v);
-    ASSERT_EQ(turned->offset, h->offset);
+        ASSERT_EQ(turned->offset, h->offset);
+    ++turns;
     if (i % 3 == 2) continue;  // a mirrored polygon lists its vertices in another order
     ASSERT_EQ(flipped->normal, mirrored(h->normal)) << text_of(scene.s, tau, v);
-    ASSERT_EQ(flipped->offset, h->offset);
+        ASSERT_EQ(flipped->offset, h->offset);
+    ++mirrors;
   }
+  EXPECT_GT(turns, 3000);
+  EXPECT_GT(mirrors, 2000);
 }
 
 TEST(VelocityObstacle, Property5_WhatSatisfiesTheHalfPlaneIsNotInside) {
@@ -141,7 +151,8 @@ TEST(VelocityObstacle, Property5_WhatSatisfiesTheHalfPlaneIsNotInside) {
 }
 
 TEST(VelocityObstacle, LegsBracketTheTangentsInRationals) {
-  SeededRandom random(seed_of_run(56));
+    SeededRandom random(seed_of_run(56));
+  int judged = 0;
   for (int i = 0; i < 8000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 4]);
     const VelocityObstacle obstacle = velocity_obstacle(scene.s, 1.0);
@@ -155,8 +166,10 @@ TEST(VelocityObstacle, LegsBracketTheTangentsInRationals) {
     }
     ASSERT_GT(cross(legs->right.direction, legs->left.direction), -1e-12) << text_of(scene.s, 1.0, {});
     ASSERT_LE(dot(legs->left.normal, legs->right.direction), 1e-7);
-    ASSERT_LE(dot(legs->right.normal, legs->left.direction), 1e-7);
+        ASSERT_LE(dot(legs->right.normal, legs->left.direction), 1e-7);
+    ++judged;
   }
+  EXPECT_GT(judged, 4000);
 }
 
 TEST(VelocityObstacle, LegsOfADiscInClosedForm) {
@@ -324,7 +337,8 @@ TEST(VelocityObstacle, CallersMistakesAreLogicErrors) {
 }
 
 TEST(VelocityObstacle, ExtremeNumbersGiveSafeHalfPlanesOrNone) {
-  const double sizes[] = {1e-300, 1e-150, 1e-9, 1.0, 1e9, 1e150, 1e300};
+    const double sizes[] = {1e-300, 1e-150, 1e-9, 1.0, 1e9, 1e150, 1e300};
+  int judged = 0;
   for (const double size : sizes) {
     for (const double away : sizes) {
       for (const ConvexShape& shape :
@@ -336,12 +350,14 @@ TEST(VelocityObstacle, ExtremeNumbersGiveSafeHalfPlanesOrNone) {
         if (obstacle.overlaps()) continue;
         for (const Vec2 v : {Vec2{0, 0}, Vec2{away, away}, Vec2{1, -1}}) {
           if (const auto h = obstacle.half_plane(v)) {
-            EXPECT_TRUE(is_safe(s, 2.0, *h)) << text_of(s, 2.0, v);
+                        EXPECT_TRUE(is_safe(s, 2.0, *h)) << text_of(s, 2.0, v);
+            ++judged;
           }
         }
       }
     }
   }
+  EXPECT_GT(judged, 100);
 }
 
 }  // namespace
