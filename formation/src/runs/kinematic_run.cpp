@@ -45,7 +45,7 @@ class KinematicRun {
         joint_(
             rules_, scenario.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
-    if (liveness_ != Liveness::off && scenario.robots.size() > 1)
+    if ((liveness_ != Liveness::off && scenario.robots.size() > 1) || rules_.has_brakes())
       groups_.emplace(scenario, rules_, scenario.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
     for (const Robot& robot : scenario.robots) {
@@ -168,6 +168,8 @@ class KinematicRun {
     const Robot& spec = scenario_.robots[i];
     Viewpoint here{positions_[i], velocities_[i], spec.radius, spec.max_speed};
     here.turns_after = journeys_.turns_after(i);
+    here.robot = i;
+    here.body = scene_.robot(i);
     return here;
   }
 
@@ -175,7 +177,7 @@ class KinematicRun {
   void look(std::size_t i) {
     StaticField& field = *ways_[i].field;
     if (const std::optional<double> margin = journeys_.take_margin(i)) field.set_margin(*margin);
-    own_.look(field, viewpoint(i));
+    own_.look(field, joint_.brakes(i) ? joint_.braked(viewpoint(i)) : viewpoint(i));
   }
 
   /// REQUIRES: it has looked, and nobody after it.

@@ -185,7 +185,7 @@ TEST(PlacesInRows, KnowsTheLastOfTheRowsThatHavePassed) {
   run.recording.time_step = 0.5;
   run.scenario.robots.resize(2);
   run.recording.goal_bodies = {{1.0, 0, 0, {}}, {1.25, 0, 0, {}}};  // of row 2, and of none
-  PlacesInRows places(run, 6);                                   // three rows of two robots
+  PlacesInRows places(run, 6);                                      // three rows of two robots
   const auto plan = [&](std::size_t from_row) { run.recording.plans.push_back({5, from_row, {0, 1}, {}, {}}); };
   for (std::size_t k = 0; k < 8; ++k) {
     if (k == 5)
