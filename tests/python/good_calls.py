@@ -135,7 +135,7 @@ def good_calls(folder):
         ("explorer.view", explorer.view, dict(height=720)),
         ("explorer.ExplorerPage", explorer.ExplorerPage, dict(html="<p>", title="t", height=720)),
         ("explorer.ExplorerPage.write", run.view().write, dict(path=str(folder / "page.html"))),
-        ("navigator.Navigator", exactvo.Navigator, dict(goals=[(6, 0)], obstacles=DOOR, radius=0.3, max_speed=1.5, cooperates=True, id=0, method="ivo", speed_bound="disc", horizons={"robots": 2.0}, margins={"robot": 0.04}, time_step=0.05, arrival_tolerance=0.1, neighbour_distance=15.0)),
+        ("navigator.Navigator", exactvo.Navigator, dict(goals=[(6, 0)], obstacles=DOOR, radius=0.3, max_speed=1.5, cooperates=True, id=0, method="ivo", speed_bound="disc", horizons={"robots": 2.0}, margins={"robot": 0.04}, time_step=0.05, arrival_tolerance=0.1, neighbour_distance=15.0, acceleration=1.0, braking_time=1.7)),
         ("navigator.Navigator.of_scenario", exactvo.Navigator.of_scenario, dict(scenario=exactvo.Scenario(ONE), robot=0, method="ivo")),
         ("navigator.Navigator.set_goals", exactvo.Navigator([(6, 0)]).set_goals, dict(goals=[(6, 0)])),
         ("navigator.Navigator.decide", exactvo.Navigator([(6, 0)]).decide, dict(time=0.0, position=(0, 0), velocity=(0, 0), positions=[(3, 3)], velocities=[(0, 0)], radii=0.5, max_speeds=3.0, cooperate=True, ids=[1], bodies=[])),

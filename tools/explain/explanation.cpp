@@ -119,8 +119,15 @@ bool takes_preferred(const Decision& d) {
   return norm(d.step.chosen - d.step.preferred) < kNotSeen;
 }
 
+/// Its own limit.
+std::string limit_words(const Decision& d) {
+  return fmt::format("at most {:g} m/s^2, {:.3g} m/s in a time step", d.scenario.acceleration->max,
+                     d.scenario.acceleration->max * d.scenario.time_step);
+}
+
 std::string contact_words(const Decision& d, std::size_t i) {
   const DecisionConstraint& c = d.step.constraints[i];
+  if (formation::is_own_limit(c)) return limit_words(d);
   const Vec2 preferred = d.step.preferred;
   const geometry::GrownShape s = grown_shape(d.seen[i]);
   const double distance = distance_to(s);
@@ -138,6 +145,7 @@ std::string contact_words(const Decision& d, std::size_t i) {
 
 std::string proof_words(const DecisionConstraint& c) {
   if (!c.certified) return "not certified";
+  if (formation::is_own_limit(c)) return "a side of the polygon within what its acceleration allows";
   return c.source == formation::ConstraintSource::robot ? "proven safe together with the other robot's half"
                                                         : "proven to exclude the velocity obstacle";
 }
@@ -288,6 +296,12 @@ std::string fallen_words(const Decision& d) {
   const auto fallen = std::find(d.fell_back.begin(), d.fell_back.end(), 1);
   if (fallen == d.fell_back.end()) return "";
   const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
+  if (d.scenario.acceleration)
+    return fmt::format(
+        "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots that "
+        "brake,\n"
+        "     looking {:g} s ahead, which braking satisfies.\n",
+        d.step.constraints[first].time_horizon);
   return fmt::format(
       "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at "
       "rest,\n"

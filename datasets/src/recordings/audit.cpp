@@ -181,7 +181,7 @@ class RunAudit {
     check_header(file_, first, meant_, tally_);
     of_header_ = tally_.report.findings.size();
     run_.emplace(file_, tally_);
-    for (const auto& audit_point : {audit_decisions, audit_sequence, audit_motions})
+    for (const auto& audit_point : {audit_decisions, audit_sequence, audit_motions, audit_braking})
       points_.push_back(audit_point(*run_));
   }
 
@@ -292,8 +292,8 @@ AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
 }
 
 const char* name(AuditPoint point) {
-  constexpr const char* kNames[] = {"scenario", "bodies",   "completeness", "half_planes",
-                                    "choices",  "sequence", "motions",      "plans"};
+  constexpr const char* kNames[] = {"scenario", "bodies",  "completeness", "half_planes", "choices",
+                                    "sequence", "motions", "plans",        "braking"};
   return kNames[static_cast<std::size_t>(point)];
 }
 

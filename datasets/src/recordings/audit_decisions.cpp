@@ -43,7 +43,7 @@ bool has_numbers(const geometry::HalfPlane& h) {
 /// The robot's half against the other; nothing where the row has none.
 const DecisionConstraint* half_against(const RobotStep& robot, std::size_t other) {
   for (const DecisionConstraint& c : robot.constraints)
-    if (c.source == BodyKind::robot && c.index == other && has_numbers(c.half_plane)) return &c;
+    if (c.source == BodyKind::robot && !c.hard && c.index == other && has_numbers(c.half_plane)) return &c;
   return nullptr;
 }
 
@@ -303,6 +303,11 @@ class DecisionAudit : public RowAudit {
     const std::vector<vo::Body>& bodies = run_.file.recording.bodies;
     if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
       return " names no body that stands for something";
+    if (formation::is_own_limit(c)) {
+      const bool is_its_own =
+          run_.scenario.acceleration && c.index == s.robot && bodies[c.body].owners.front() == s.robot;
+      return is_its_own && c.piece == 0 ? "" : " has the priority of another kind";
+    }
     if (c.hard != is_static(c)) return " has the priority of another kind";
     const vo::Body& body = bodies[c.body];
     if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
@@ -339,11 +344,24 @@ class DecisionAudit : public RowAudit {
       return !geometry::is_valid(shape) || geometry::locate({shape, at, radius}, Vec2{}) == geometry::Place::outside;
     };
     if (c.source == BodyKind::moving_obstacle) return is_outside(moved_[c.index]);
+    if (formation::is_own_limit(c)) return true;
     if (c.source != BodyKind::robot) return is_outside(run_.file.recording.bodies[c.body].shape);
     return is_outside(geometry::Disc{s.step->robots[c.index].anchor, run_.scenario.robots[c.index].radius});
   }
 
+  /// It leaves the velocity its change in every direction, but for what the sides of a polygon of 24 sides cut off:
+  /// else a choice could be made the best by a limit. (Whether the change is kept is asked of the choice.)
+  bool leaves_its_change(const Seen& s, const DecisionConstraint& c) const {
+    constexpr double kInside = 0.99144;  // less than cos(pi / 24)
+    if (!has_numbers(c.half_plane)) return false;
+    const Point n = exactly(c.half_plane.normal);
+    const Rational left = exact::dot(n, exactly(s.state->velocity)) - Rational(c.half_plane.offset);
+    const Rational change = Rational(kInside) * Rational(run_.scenario.acceleration->max) * run_.duration;
+    return left > 0 && left * left >= change * change * exact::dot(n, n);
+  }
+
   bool holds(const Seen& s, const DecisionConstraint& c) const {
+    if (formation::is_own_limit(c)) return leaves_its_change(s, c);
     const double radius = run_.scenario.robots[s.robot].radius;
     const Vec2 at = s.state->anchor;
     if (c.source == BodyKind::moving_obstacle)

@@ -62,6 +62,13 @@ void members(Codec& json, For<Codec, formation::Margins>& margins) {
   json.optional("obstacle", margins.obstacle).optional("robot", margins.robot);
 }
 
+template <>
+inline constexpr bool kOnOneLine<formation::Acceleration> = true;
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Acceleration>& acceleration) {
+  json.member("max", acceleration.max);
+}
+
 /// Its numbers: horizons, margins, times, distances.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Scenario>& scenario) {
@@ -69,6 +76,7 @@ void members(Codec& json, For<Codec, formation::Scenario>& scenario) {
   json.optional("time_step", scenario.time_step).optional("time_limit", scenario.time_limit);
   json.optional("arrival_tolerance", scenario.arrival_tolerance);
   json.optional("neighbour_distance", scenario.neighbour_distance);
+  json.optional("acceleration", scenario.acceleration).optional("braking_time", scenario.braking_time);
 }
 
 }  // namespace exactvo::datasets

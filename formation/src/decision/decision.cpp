@@ -6,6 +6,7 @@
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "scene/braking.h"
 #include "scene/near_pairs.h"
 #include "scene/step_limits.h"
 
@@ -70,6 +71,14 @@ PairConstraints at_rest(const RobotsAt& now, std::size_t i, std::size_t j, doubl
   return pair;
 }
 
+/// The half-planes that braking satisfies.
+PairConstraints braking(const RobotsAt& now, std::size_t i, std::size_t j) {
+  const double tau = now.rules.braking_time;
+  const Party a = party(now, i, now.rules.braked(now.anchors[i].velocity));
+  const Party b = party(now, j, now.rules.braked(now.anchors[j].velocity));
+  return braking_pair(a, b, tau);
+}
+
 /// Both go by a plan.
 PairConstraints with_plans(const RobotsAt& now, std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
   vo::ReciprocalOptions options;
@@ -102,6 +111,12 @@ PairConstraints against_each_other(const Party& a, const Party& b, vo::Reciproca
   const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a.disc, b.disc, rule);
   return {against_robot(pair.a, pair.certified, a, b, rule.time_horizon),
           against_robot(pair.b, pair.certified, b, a, rule.time_horizon)};
+}
+
+PairConstraints braking_pair(const Party& a, const Party& b, double braking_time) {
+  const vo::ReciprocalHalfPlanes pair = braking_half_planes(a.disc, b.disc, braking_time);
+  return {against_robot(pair.a, pair.certified, a, b, braking_time),
+          against_robot(pair.b, pair.certified, b, a, braking_time)};
 }
 
 void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
@@ -164,7 +179,9 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
   Constraint* mine = against(j, now.scene, constraints[i]);
   Constraint* theirs = against(i, now.scene, constraints[j]);
   if (!mine || !theirs) return;
-  const PairConstraints pair = at_rest(now, i, j, contact_time(now.rules.time_step, now.rules.horizons), gap);
+  const PairConstraints pair = now.rules.has_brakes()
+                                   ? braking(now, i, j)
+                                   : at_rest(now, i, j, contact_time(now.rules.time_step, now.rules.horizons), gap);
   *mine = pair.of_a;
   *theirs = pair.of_b;
 }
@@ -242,10 +259,28 @@ DecisionConstraint Decider::named(const Kept& kept) const {
 }
 
 void Decider::reserve(std::size_t constraints) {
+  if (rules_->has_brakes()) {
+    constraints += kSidesOfLimit;
+    limit_.reserve(kSidesOfLimit);
+    limits_.reserve(kSidesOfLimit);
+  }
   problem_.constraints.reserve(constraints);
   pricing_.at.reserve(constraints);  // a search of more rounds than there are lines was never seen
   memory_.reserve(constraints);
   kept_.reserve(constraints);
+}
+
+void Decider::limit_change(const Viewpoint& from) {
+  acceleration_limits(*rules_, from.velocity, limit_);
+  limits_.clear();
+  for (const geometry::HalfPlane& h : limit_) {
+    Constraint& c = limits_.emplace_back();
+    c.half_plane = h;
+    c.body = from.body;
+    c.index = from.robot;
+    c.proof = vo::Proof::alone;
+    c.time_horizon = rules_->time_step;
+  }
 }
 
 void Decider::state_problem(const DecisionInput& in) {
@@ -254,6 +289,7 @@ void Decider::state_problem(const DecisionInput& in) {
   problem_.constraints.clear();
   for (const std::vector<Constraint>* some : {in.statics, in.others})
     for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
+  for (const Constraint& c : limits_) problem_.constraints.push_back({c.half_plane, c.priority});
 }
 
 lp::Solution Decider::rounded_solution(const DecisionInput& in) {
@@ -285,6 +321,7 @@ Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
 }
 
 void Decider::decide(const DecisionInput& in, Decision& decision) {
+  if (rules_->has_brakes()) limit_change(in.from);
   const lp::Proven proven = proven_solution(in);
   const Proof proof = proof_of(proven);
   solution_ = proven.solution;
@@ -309,6 +346,10 @@ void Decider::decide(const DecisionInput& in, Decision& decision) {
       const bool gave = solution_.status != lp::Status::optimal && violates(c.half_plane, solution_.velocity);
       if (keep_all || active || gave || c.clearance <= reach_of(c, in.from)) kept_.emplace_back(&c, active);
     }
+  }
+  for (const Constraint& c : limits_) {
+    const lp::ActiveConstraint* active = active_at(solution_, number++);
+    if (keep_all || active) kept_.emplace_back(&c, active);
   }
 }
 

@@ -43,6 +43,9 @@ vo::ReciprocalOptions pair_rule(const DecisionRules& rules);
 /// Soft. Each half is the same bits whoever is `a`.
 PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule);
 
+/// Both halves as braking has them: each party's `disc` has its velocity after a step of braking (braking.h).
+PairConstraints braking_pair(const Party& a, const Party& b, double braking_time);
+
 /// Sorts half-planes against robots by the distance of the robots; of robots equally near, by their numbers. Keeps its
 /// memory from one time to the next.
 class NearestFirst {
@@ -80,7 +83,8 @@ bool is_of_robot(const Scene& scene, const Constraint& c);
 
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
 /// as `contact_time` and leaving `gap` (m) between their rims: v = 0 satisfies them as long as the robots do not
-/// overlap, and they are as certain (liveness, rule R0).
+/// overlap, and they are as certain (liveness, rule R0). With an acceleration to those that they have braking
+/// (braking.h), which braking satisfies.
 void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<std::vector<Constraint>>& constraints,
                double gap = kContactSkin);
 
@@ -118,7 +122,8 @@ class Decider {
   void reserve(std::size_t constraints);
 
   /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound` and `uncertified`; the other
-  /// fields are the caller's. Keeps the constraints that bind or are violated, and those against what can be met within
+  /// fields are the caller's. With an acceleration the change from `from.velocity` is limited by half-planes that name
+  /// the robot itself. Keeps the constraints that bind or are violated, and those against what can be met within
   /// a step: with these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
   void decide(const DecisionInput& in, Decision& decision);
   /// What the last decision kept. REQUIRES: what it was made from is still there.
@@ -139,6 +144,7 @@ class Decider {
     whole_problem       ///< solving the problem again: there is no room, or only a wide gap can be proven
   };
   Proof proof_of(const lp::Proven& proven) const;
+  void limit_change(const Viewpoint& from);
   void state_problem(const DecisionInput& in);
   lp::Solution rounded_solution(const DecisionInput& in);
   lp::Proven proven_solution(const DecisionInput& in);
@@ -147,6 +153,8 @@ class Decider {
 
   const DecisionRules* rules_;
   const vo::BodyTable* bodies_;
+  std::vector<geometry::HalfPlane> limit_;
+  std::vector<Constraint> limits_;  ///< of the robot's acceleration, as half-planes of its own
   lp::Problem problem_;
   lp::Pricing pricing_;
   lp::SolveMemory memory_;

@@ -31,7 +31,7 @@ void NeededConstraints::look(const StaticField& field, const Viewpoint& from, do
   has_all_ = false;
   lines_.clear();
   meetings_.clear();
-  if (!field.bounds_room() || field.is_empty())
+  if (!field.bounds_room() || field.is_empty() || from.brakes)
     need_all();
   else
     need_within(reach);

@@ -35,7 +35,7 @@ double near_enough(const Scenario& scenario, std::size_t robot) {
 
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
 bool holds(const DecisionConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
-  return c.source == ConstraintSource::robot && c.clearance < near_enough(scenario, robot) &&
+  return c.source == ConstraintSource::robot && !is_own_limit(c) && c.clearance < near_enough(scenario, robot) &&
          (c.active || c.clearance <= detail::reach_of_pair(scenario.time_step, scenario.robots[robot].max_speed,
                                                            scenario.robots[c.index].max_speed)) &&
          (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);
@@ -172,7 +172,10 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
 
 bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const DecisionConstraint& constraint) {
   const double at_rest = detail::contact_time(scenario.time_step, scenario.horizons);
-  if (constraint.source != ConstraintSource::robot || constraint.time_horizon != at_rest) return false;
+  if (constraint.source != ConstraintSource::robot || is_own_limit(constraint)) return false;
+  if (const double tau = braking_time_of(scenario); tau > 0.0)
+    return constraint.time_horizon == tau && tau != scenario.horizons.robots;
+  if (constraint.time_horizon != at_rest) return false;
   const auto has_plan = [&](std::size_t i) {
     return row.robots[i].mode == Mode::by_plan || row.robots[i].mode == Mode::going_back;
   };

@@ -468,6 +468,7 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
     require(fastest(s.moving_obstacles[k]) <= kFastestBody, "/moving_obstacles/" + std::to_string(k),
             geometry::lossless(fastest(s.moving_obstacles[k])) + " m/s",
             "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
+  require(!s.acceleration, "/acceleration", "an acceleration", "none, for a crowd, whose velocities jump");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   const double step = position_step_for(s);
   const auto [tolerance, least] = geometry::told_apart(s.arrival_tolerance, step, 6);

@@ -12,6 +12,7 @@ namespace exactvo::formation::detail {
 
 void JointDecisions::begin_step() {
   anchors.clear();
+  std::fill(brakes_.begin(), brakes_.end(), 0);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const Viewpoint here = viewpoint_(i);
     anchors.push_back({here.position, here.velocity});
@@ -60,7 +61,8 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 /// Repair instead of relaxing (liveness, rule R0): as long as there are robots whose half-planes, as they decided last,
 /// contradict each other, all pairs of these fall back to those that they would have at rest, and decide again. In each
 /// round some pair does so for good, so that it ends. They keep what is left of their margin: resting satisfies that
-/// too. Half-planes of moving obstacles and of robots that do not yield may still be relaxed.
+/// too. Half-planes of moving obstacles and of robots that do not yield may still be relaxed. With an acceleration such
+/// a robot keeps to what braking satisfies, against static obstacles too (braking.h).
 void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
     return row.robots[i].status != lp::Status::optimal || (groups.is_member(i) && held_by_all_[i]);
@@ -73,6 +75,10 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
   while (!contradicted.empty()) {
     std::set<std::size_t> changed;
     for (const std::size_t i : contradicted) {
+      if (rules_.has_brakes() && !brakes(i)) {
+        brakes_[i] = 1;
+        changed.insert(i);
+      }
       for (const Constraint& c : others[i]) {
         const std::size_t j = c.index;
         const bool both_yield = is_of_robot(scene_, c) && robots_[i].cooperates && robots_[j].cooperates;
@@ -89,10 +95,13 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
       if (is_contradicted(i)) contradicted.insert(i);
     }
   }
-  // Held from all sides, with less room than there is between doubles: it stands still, which they all allow.
+  // Held from all sides, with less room than there is between doubles: it stands still, or brakes, which they all
+  // allow.
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
-    if (row.robots[i].status != lp::Status::no_interior || groups.is_member(i)) continue;
-    row.robots[i].preferred = {};
+    const lp::Status status = row.robots[i].status;
+    const bool is_held = rules_.has_brakes() ? status != lp::Status::optimal : status == lp::Status::no_interior;
+    if (!is_held || groups.is_member(i)) continue;
+    row.robots[i].preferred = rules_.has_brakes() ? rules_.braked(anchors[i].velocity) : Vec2{};
     choose_again_(i, row.robots[i]);
   }
   record_both_halves(fallen, row);

@@ -33,7 +33,8 @@ class JointDecisions {
         decider_(decider),
         viewpoint_(std::move(viewpoint)),
         choose_again_(std::move(choose_again)),
-        held_by_all_(robots.size(), 0) {}
+        held_by_all_(robots.size(), 0),
+        brakes_(robots.size(), 0) {}
 
   // Of each robot, in their order.
 
@@ -43,6 +44,12 @@ class JointDecisions {
 
   /// Takes the robots as they are.
   void begin_step();
+
+  /// Whether it keeps to what braking satisfies, as its other half-planes contradicted each other in this step: then it
+  /// looks at static obstacles from `braked`.
+  bool brakes(std::size_t i) const { return brakes_[i] != 0; }
+  /// The place from which half-planes are made that braking satisfies.
+  Viewpoint braked(Viewpoint here) const { return after_braking(rules_, here); }
 
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
@@ -68,6 +75,7 @@ class JointDecisions {
   ViewpointOf viewpoint_;
   ChooseAgain choose_again_;
   std::vector<char> held_by_all_;  ///< of those who go by plan: no share of what they want is allowed
+  std::vector<char> brakes_;       ///< of robots with an acceleration
   PairMemory pairs_;
   std::vector<Constraint> statics_;  ///< of one who goes by plan; memory that is kept
 };

@@ -27,11 +27,7 @@ constexpr double kForGood = 2.0;          // moments, before an obstacle that re
 
 Journeys::Journeys(const Scenario& scenario, Guide* guide, Liveness liveness, const std::vector<Vec2>& at,
                    const RoomAtEnds& room, double horizon, TakenOnTheWay taken)
-    : scenario_(scenario),
-      guide_(guide),
-      taken_(taken),
-      at_(at),
-      journeys_(scenario.robots.size()) {
+    : scenario_(scenario), guide_(guide), taken_(taken), at_(at), journeys_(scenario.robots.size()) {
   if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
   for (const MovingObstacle& o : scenario.moving_obstacles)
     moving_until_ = std::max(moving_until_, rests_from(o.motion));
@@ -148,7 +144,8 @@ bool Journeys::stays(std::size_t i) const {
 }
 
 Vec2 Journeys::preferred(std::size_t i) const {
-  return straight_for(at_[i], scenario_.robots[i].max_speed, journeys_[i].heading, scenario_.time_step);
+  return straight_for(at_[i], scenario_.robots[i].max_speed, journeys_[i].heading, scenario_.time_step,
+                      acceleration_of(scenario_));
 }
 
 Vec2 Journeys::kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience,

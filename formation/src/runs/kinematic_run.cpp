@@ -47,7 +47,7 @@ class KinematicSteps final : public Stepper {
             rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
         recording_(recording) {
-    if (liveness_ != Liveness::off && robots.size() > 1)
+    if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes())
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
     for (const Robot& robot : scenario_.robots) {
@@ -197,6 +197,8 @@ class KinematicSteps final : public Stepper {
     const Robot& spec = scenario_.robots[i];
     Viewpoint here{positions_[i], velocities_[i], spec.radius, spec.max_speed};
     here.turns_after = journeys_.turns_after(i);
+    here.robot = i;
+    here.body = scene_.robot(i);
     return here;
   }
 
@@ -204,7 +206,7 @@ class KinematicSteps final : public Stepper {
   void look(std::size_t i) {
     StaticField& field = *ways_[i].field;
     if (const std::optional<double> margin = journeys_.take_margin(i)) field.set_margin(*margin);
-    own_.look(field, viewpoint(i));
+    own_.look(field, joint_.brakes(i) ? joint_.braked(viewpoint(i)) : viewpoint(i));
   }
 
   /// REQUIRES: it has looked, and nobody after it.

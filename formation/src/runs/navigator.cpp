@@ -72,8 +72,13 @@ void require_goals(const std::vector<Vec2>& goals) {
 }
 
 DecisionRules rules_of(const NavigatorSetup& setup) {
-  return {setup.method,  Guidance::none,  setup.speed_bound,       setup.horizons,
-          setup.margins, setup.time_step, setup.neighbour_distance};
+  DecisionRules rules{setup.method,  Guidance::none,  setup.speed_bound,       setup.horizons,
+                      setup.margins, setup.time_step, setup.neighbour_distance};
+  if (!setup.acceleration) return rules;
+  rules.acceleration = *setup.acceleration;
+  const double speed = fastest(setup.speed_bound, setup.max_speed);
+  rules.braking_time = setup.braking_time.value_or(usual_braking_time(speed, rules.acceleration, rules.time_step));
+  return rules;
 }
 
 Robot robot_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
@@ -108,6 +113,15 @@ const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec
     for (const Vec2 v : geometry::vertices_of(setup.obstacles[k].shape)) require_vector(v, "obstacle", k, "vertex");
   require_none(field_problems(setup.radius, setup.max_speed));
   require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
+  if (setup.acceleration) require_positive(*setup.acceleration, nullptr, 0, "acceleration");
+  if (setup.braking_time) require_positive(*setup.braking_time, nullptr, 0, "braking_time");
+  if (setup.braking_time && !setup.acceleration)
+    refuse(Problem::out_of_range, "braking_time", number(*setup.braking_time), "none without an acceleration");
+  if (setup.acceleration && !setup.cooperates)
+    refuse(Problem::out_of_range, "cooperates", "false", "true with an acceleration");
+  if (setup.acceleration)
+    require_none(
+        braking_problems(rules_of(setup), fastest(setup.speed_bound, setup.max_speed), setup.braking_time.has_value()));
   return setup;
 }
 
@@ -137,6 +151,10 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
   setup.time_step = scenario.time_step;
   setup.arrival_tolerance = scenario.arrival_tolerance;
   setup.neighbour_distance = scenario.neighbour_distance;
+  if (scenario.acceleration) {
+    setup.acceleration = scenario.acceleration->max;
+    setup.braking_time = braking_time_of(scenario);  // of all robots
+  }
   return setup;
 }
 
@@ -199,6 +217,7 @@ class Navigator::Core {
     own_.look(*way_.field, here());
     const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived()}, decision_);
     own_.choose(preferred, here(), others_, decision_, kept_);
+    if (rules_.has_brakes()) keep_braking_possible(neighbours);
     return decision_;
   }
 
@@ -220,7 +239,34 @@ class Navigator::Core {
 
  private:
   Vec2 goal() const { return robot_.goals[goal_]; }
-  Viewpoint here() const { return {now_.position, now_.velocity, robot_.radius, robot_.max_speed}; }
+  Viewpoint here() const {
+    Viewpoint here{now_.position, now_.velocity, robot_.radius, robot_.max_speed};
+    here.robot = id_;
+    here.body = scene_.robot(0);
+    return here;
+  }
+  /// What was chosen is the wish.
+  void keep_braking_possible(const std::vector<Neighbour>& neighbours) {
+    const Viewpoint braked = after_braking(rules_, here());
+    own_.look(*way_.field, braked);
+    others_.clear();
+    const Party self{id_, 0, {now_.position, braked.velocity, robot_.radius}, robot_.max_speed, true};
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+      const Neighbour& n = neighbours[k];
+      if (!is_in_sight(n)) continue;
+      const Party other{n.id, robots_[k], {n.position, rules_.braked(n.velocity), n.radius}, n.max_speed, true};
+      others_.push_back(braking_pair(self, other, rules_.braking_time).of_a);
+    }
+    nearest_first_.sort(scene_.bodies(), now_.position, others_);
+    const Vec2 wish = decision_.chosen;
+    own_.choose(wish, here(), others_, decision_, kept_);
+    // Within less room than there is between doubles: braking satisfies all of them.
+    if (decision_.status != lp::Status::optimal) own_.choose(braked.velocity, here(), others_, decision_, kept_);
+  }
+  bool is_in_sight(const Neighbour& n) const {
+    return norm(n.position - now_.position) <=
+           sight_of(rules_, robot_.radius + n.radius, robot_.max_speed + n.max_speed);
+  }
   bool is_last_goal() const { return goal_ + 1 == robot_.goals.size(); }
   bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(robot_, goal_, arrival_tolerance_); }
 
@@ -249,20 +295,24 @@ class Navigator::Core {
     return nullptr;
   }
 
-  static void require_neighbours(const NavigatorState& now, const std::vector<Neighbour>& neighbours) {
+  void require_neighbours(const NavigatorState& now, const std::vector<Neighbour>& neighbours) const {
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
       const Neighbour& n = neighbours[k];
       require_vector(n.position, "neighbour", k, "position");
       require_vector(n.velocity, "neighbour", k, "velocity");
       require_positive(n.radius, "neighbour", k, "radius");
       require_positive(n.max_speed, "neighbour", k, "max_speed");
+      if (rules_.has_brakes() && !n.cooperates)
+        refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", "true with an acceleration");
       if (n.position == now.position)
         refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
                "another place than the robot's own");
     }
   }
 
-  static void require_moving(const std::vector<MovingBody>& moving) {
+  void require_moving(const std::vector<MovingBody>& moving) const {
+    if (rules_.has_brakes() && !moving.empty())
+      refuse(Problem::out_of_range, "moving bodies", std::to_string(moving.size()), "none with an acceleration");
     for (std::size_t k = 0; k < moving.size(); ++k) {
       require_vector(moving[k].velocity, "moving body", k, "velocity");
       if (!geometry::is_valid(moving[k].shape))
@@ -282,9 +332,7 @@ class Navigator::Core {
     const Party self{id_, 0, {now_.position, now_.velocity, robot_.radius}, robot_.max_speed, robot_.cooperates};
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
       const Neighbour& n = neighbours[k];
-      if (!self.yields ||
-          norm(n.position - now_.position) > sight_of(rules_, robot_.radius + n.radius, robot_.max_speed + n.max_speed))
-        continue;
+      if (!self.yields || !is_in_sight(n)) continue;
       const vo::BodyTable::Number body = slot(robots_, k, vo::BodyKind::robot);
       scene_.bodies().move(body, geometry::Disc{n.position, n.radius}, n.velocity);
       const Party other{n.id, body, {n.position, n.velocity, n.radius}, n.max_speed, n.cooperates};

@@ -64,7 +64,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
-  return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
+  const bool can_plan = is_guided && !scenario.acceleration;
+  return wanted == Liveness::plan && !can_plan ? Liveness::bias : wanted;
 }
 
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {

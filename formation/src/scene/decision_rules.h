@@ -5,8 +5,11 @@
 /// What a decision needs of a scenario and its options, and nothing else: numbers, without robots and obstacles. A run
 /// makes them once.
 
+#include <algorithm>
+
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/infinity.h"
 
 namespace exactvo::formation::detail {
 
@@ -19,11 +22,25 @@ struct DecisionRules {
   Margins margins;                                    ///< beside radii and facades
   double time_step = 0.05;                            ///< s, > 0
   double neighbour_distance = 15.0;                   ///< m, > 0
+  double acceleration = geometry::kInfinity;          ///< m/s^2, of each robot
+  double braking_time = 0.0;                          ///< s, tau of braking; 0: velocities jump
+
+  bool has_brakes() const { return braking_time > 0.0; }
+  /// The velocity after a step of braking, of this one: what is allowed whatever else is (`braking.h`).
+  Vec2 braked(Vec2 velocity) const { return (1.0 - time_step / braking_time) * velocity; }
+  /// s: within this time nothing may be met that a robot did not look at.
+  double least_look() const { return std::max(time_step, braking_time); }
+  /// s: horizons against static obstacles are not shorter.
+  double least_horizon() const { return std::max({horizons.least, 2.0 * time_step, braking_time}); }
 };
 
 inline DecisionRules rules_of(const Scenario& scenario, const SimulationOptions& options) {
-  return {options.method,     guidance_of(scenario, options), scenario.speed_bound, scenario.horizons, scenario.margins,
-          scenario.time_step, scenario.neighbour_distance};
+  DecisionRules rules{
+      options.method,     guidance_of(scenario, options), scenario.speed_bound, scenario.horizons, scenario.margins,
+      scenario.time_step, scenario.neighbour_distance};
+  if (scenario.acceleration) rules.acceleration = scenario.acceleration->max;
+  rules.braking_time = braking_time_of(scenario);
+  return rules;
 }
 
 }  // namespace exactvo::formation::detail

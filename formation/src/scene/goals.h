@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/infinity.h"
 #include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
@@ -30,10 +32,26 @@ inline double reach_of(const Robot& robot, std::size_t goal, double tolerance) {
   return goal + 1 == robot.goals.size() ? tolerance : std::max(tolerance, robot.radius);
 }
 
-/// m/s: straight for a place, to be there after a step or as soon as the speed allows.
-inline Vec2 straight_for(Vec2 here, double max_speed, Vec2 place, double time_step) {
+/// m/s^2, of a robot's velocity; infinite where that may jump.
+inline double acceleration_of(const Scenario& scenario) {
+  return scenario.acceleration ? scenario.acceleration->max : geometry::kInfinity;
+}
+
+/// m/s: from which a robot comes to rest after `way` (m) where its speed falls by `acceleration * time_step` a step.
+inline double speed_to_stop_within(double way, double time_step, double acceleration) {
+  // A speed u that ends in k steps goes T (k u - A T k (k - 1) / 2) in them.
+  const double change = acceleration * time_step;
+  const double steps = std::max(1.0, std::ceil(0.5 * (std::sqrt(1.0 + 8.0 * way / (change * time_step)) - 1.0)));
+  return way / (steps * time_step) + 0.5 * change * (steps - 1.0);
+}
+
+/// m/s: straight for a place, to be there after a step or as soon as the speed allows, and at rest there where the
+/// acceleration (m/s^2) is bounded.
+inline Vec2 straight_for(Vec2 here, double max_speed, Vec2 place, double time_step, double acceleration) {
   const Vec2 way = place - here;
-  return std::min(max_speed, norm(way) / time_step) * geometry::normalized(way);
+  const double most = acceleration < geometry::kInfinity ? speed_to_stop_within(norm(way), time_step, acceleration)
+                                                         : norm(way) / time_step;
+  return std::min(max_speed, most) * geometry::normalized(way);
 }
 
 /// Whether two robots cannot both be at their last goals: they would overlap. `tolerance`: m, of arrival.

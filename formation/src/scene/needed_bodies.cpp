@@ -164,7 +164,7 @@ double StaticField::room_of(BodyTable::Number body, const Viewpoint& from, doubl
 double StaticField::distance_of_room(const Viewpoint& from, double room) const {
   const Horizons& h = rules_->horizons;
   const double kept = margin_ + kContactSkin;
-  const double least = std::max(h.least, 2.0 * rules_->time_step);
+  const double least = rules_->least_horizon();
   const double pace = std::max(norm(from.velocity), h.speed_floor * from.max_speed);  // tau = distance / pace between
   if (const double d = kept + least * room; d <= pace * least) return d;
   if (const double d = kept * pace / (pace - room); room < pace && d <= pace * h.most) return std::max(d, pace * least);
@@ -308,7 +308,7 @@ void StaticField::candidates(const std::vector<NearBody>& near, double moved, co
                     kRounding * distance_within(from, reach),
                     norm(from.position) + from.radius,
                     1.0 / std::max(norm(from.velocity), h.speed_floor * from.max_speed),
-                    std::max(h.least, 2.0 * rules_->time_step),
+                    rules_->least_horizon(),
                     h.most};
   const auto see_if_near = [&](const NearBody& b) {
     if (!see(b, sight, out.emplace_back())) out.pop_back();

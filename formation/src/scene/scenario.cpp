@@ -15,6 +15,7 @@
 #include "exactvo/geometry/round_polygon.h"
 #include "exactvo/geometry/told_apart.h"
 #include "scene/field_problems.h"
+#include "scene/free_space.h"
 #include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
 
@@ -208,6 +209,77 @@ void check_times(const detail::DecisionRules& s, double arrival_tolerance, std::
   c.not_negative(s.margins.robot, "/margins/robot", "m");
 }
 
+/// What the proof of braking needs of the numbers of a decision (braking.h). `fastest`: m/s, of all robots. `is_given`:
+/// the braking time is not the usual one.
+void check_brakes(const detail::DecisionRules& rules, double fastest, bool is_given, Checker& c) {
+  constexpr double kRounding = 1.0 + 1e-9;
+  const double tau = rules.braking_time, stops = fastest / rules.acceleration;
+  c.require(
+      tau >= kRounding * stops, "/braking_time", show(tau),
+      "more than the fastest robot needs to stop, its speed divided by its acceleration: " + show(stops) + " (s)");
+  c.require(tau >= rules.time_step, "/braking_time", show(tau),
+            "at least /time_step, " + show(rules.time_step) + " (s)");
+  const std::string what = is_given ? "/braking_time, " : "1.1 times what the fastest robot needs to stop, ";
+  const auto holds_while_braking = [&](double horizon, const char* pointer) {
+    c.require(horizon >= tau, pointer, show(horizon), "at least " + what + show(tau) + " (s)");
+  };
+  holds_while_braking(rules.horizons.most, "/horizons/most");
+  holds_while_braking(rules.horizons.orca, "/horizons/orca");
+  holds_while_braking(rules.horizons.robots, "/horizons/robots");
+}
+
+/// Robots with an acceleration.
+void check_acceleration(const Scenario& s, Checker& c) {
+  const std::string at = "/acceleration", with_it = " with /acceleration";
+  if (!s.acceleration) {
+    if (s.braking_time)
+      c.require(false, "/braking_time", show(*s.braking_time), "no braking time without /acceleration");
+    return;
+  }
+  const double most = s.acceleration->max;
+  c.positive(most, at + "/max", "m/s^2");
+  if (s.braking_time) c.positive(*s.braking_time, "/braking_time", "s");
+  c.require(!s.formation, at, "an acceleration of robots of a formation",
+            "robots with goals; a formation has /formation/controller_options/acceleration_bound");
+  c.require(s.moving_obstacles.empty(), "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
+            "none" + with_it + ": no braking is proven to evade what moves by itself");
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const std::string robot = "/robots/" + std::to_string(i);
+    c.require(s.robots[i].cooperates, robot + "/cooperates", "false", "true" + with_it);
+    c.require(norm(s.robots[i].velocity) <= s.robots[i].max_speed, robot + "/velocity", show(s.robots[i].velocity),
+              "at most its max_speed, " + show(s.robots[i].max_speed) + " m/s," + with_it);
+  }
+  if (!c.problems.empty()) return;  // tau is made of these numbers
+  double speed = 0.0;
+  for (const Robot& r : s.robots) speed = std::max(speed, fastest(s.speed_bound, r.max_speed));
+  check_brakes(detail::rules_of(s, {}), speed, s.braking_time.has_value(), c);
+}
+
+/// Every robot must be able to brake from its start.
+void check_braking(const Scenario& s, Checker& c) {
+  if (!s.acceleration) return;
+  const double left = braking_time_of(s) - s.time_step;
+  const detail::ObstacleSpace space(s.obstacles);
+  const auto require_way = [&](bool holds, std::size_t i, const std::string& meets) {
+    if (holds) return;
+    c.require(false, "/robots/" + std::to_string(i) + "/velocity",
+              show(s.robots[i].velocity) + ", at which it meets " + meets + " before it has braked",
+              "a velocity from which it can brake, which takes " + show(left) + " s times the velocity of way");
+  };
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const Robot& r = s.robots[i];
+    if (r.velocity == Vec2{}) continue;
+    require_way(space.is_clear(r.position, r.position + left * r.velocity, r.radius), i, "an obstacle");
+    for (std::size_t j = 0; j < s.robots.size(); ++j) {
+      const Robot& other = s.robots[j];
+      if (j == i || (j < i && other.velocity != Vec2{})) continue;
+      const Vec2 apart = other.position - r.position;
+      const geometry::Segment way{{}, left * (r.velocity - other.velocity)};
+      require_way(geometry::distance(way, apart) >= r.radius + other.radius, i, "robot '" + other.id + "'");
+    }
+  }
+}
+
 /// Every robot must hear, over edges of positive weight, somebody who hears the leader.
 bool reaches_leader(const Topology& t) {
   const std::size_t n = t.pinning.size();
@@ -274,6 +346,7 @@ std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
     check_disc(scenario.obstacles[k], "/obstacles/" + std::to_string(k), c);
   check_moving(scenario, c);
   check_times(rules_of(scenario, {}), scenario.arrival_tolerance, scenario.time_limit, c);
+  check_acceleration(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
   return std::move(c.problems);
 }
@@ -281,6 +354,12 @@ std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
 std::vector<ScenarioProblem> detail::field_problems(const DecisionRules& rules, double arrival_tolerance) {
   Checker c;
   check_times(rules, arrival_tolerance, std::nullopt, c);
+  return std::move(c.problems);
+}
+
+std::vector<ScenarioProblem> detail::braking_problems(const DecisionRules& rules, double fastest, bool is_given) {
+  Checker c;
+  check_brakes(rules, fastest, is_given, c);
   return std::move(c.problems);
 }
 
@@ -294,6 +373,7 @@ std::vector<ScenarioProblem> detail::field_problems(double radius, double max_sp
 std::vector<ScenarioProblem> validate(const Scenario& scenario) {
   Checker c{detail::field_problems(scenario)};
   if (c.problems.empty()) check_starts(scenario, c);
+  if (c.problems.empty()) check_braking(scenario, c);
   return std::move(c.problems);
 }
 

@@ -10,6 +10,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "scene/braking.h"
 #include "scene/moment.h"
 #include "scene/step_limits.h"
 
@@ -113,7 +114,7 @@ double StaticField::horizon(double distance, const Viewpoint& from) const {
   if (rule_ == HorizonRule::literal)
     return speed > 0.0 && distance > 0.0 ? std::min(distance / speed, kLiteralHorizonAtRest) : kLiteralHorizonAtRest;
   const double tau = distance / std::max(speed, h.speed_floor * from.max_speed);
-  return std::clamp(std::min(tau, from.turns_after), std::max(h.least, 2.0 * rules_->time_step), h.most);
+  return std::clamp(std::min(tau, from.turns_after), rules_->least_horizon(), h.most);
 }
 
 /// m, from the centre: what is farther is beyond reach at the longest horizon, whatever the rounding of its distance.
@@ -134,7 +135,11 @@ double StaticField::distance_within(const Viewpoint& from, double reach) const {
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
   const double within = distance_within(from, reach);
-  if (rules_->method == Method::orca) return add_edges(from, within, out);
+  if (rules_->method == Method::orca && !from.brakes) return add_edges(from, within, out);
+  if (rules_->method == Method::orca)
+    scene_->edges_by_place().for_each_within(from.position, within, [&](std::size_t edge) {
+      build({scene_->edge(edge), edge, EnclosureGrade::tight, 0}, from, out);
+    });
   for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
   std::sort(out.begin(), out.end(), comes_before);
 }
@@ -147,7 +152,8 @@ bool StaticField::gives_way(const Shape& shape, const Viewpoint& from, double di
 
 void StaticField::add_shape(const Shape& shape, const Viewpoint& from, double reach,
                             std::vector<Constraint>& out) const {
-  if (!gives_way(shape, from, distance_to_box(shape, from))) return build(shape, from, out);
+  const bool is_piece = shape.grade == EnclosureGrade::tight;
+  if (from.brakes ? is_piece : !gives_way(shape, from, distance_to_box(shape, from))) return build(shape, from, out);
   for_each_piece_of(shape, [&](const Shape& piece) {
     if (distance_to_box(piece, from) <= reach) build(piece, from, out);
   });
@@ -163,7 +169,8 @@ void StaticField::build(const Shape& shape, const Viewpoint& from, std::vector<C
   policy.room = shape.grade == EnclosureGrade::tight ? margin_ + kContactSkin : kContactSkin;
   policy.push_out_time = kPushOutTime * moment(rules_->horizons);
   policy.push_out_speed = kPushOutShare * from.max_speed;
-  const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);
+  const vo::ProvenHalfPlane found = from.brakes ? braking_half_plane(seen, nearest, from.velocity, policy.time_horizon)
+                                                : vo::half_plane_against(seen, nearest, from.velocity, policy);
   Constraint& c = out.emplace_back();
   c.half_plane = found.half_plane;
   c.proof = found.proof;
@@ -224,12 +231,13 @@ void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, co
 }
 
 /// The baseline's rule leaves an edge to its neighbours where it is seen along one of them, and nearly collinear
-/// neighbours leave it to each other. An edge that can be met within a step gets a half-plane of its own where none of
-/// what can be met within a step, of which rows keep all, excludes it.
+/// neighbours leave it to each other. An edge that can be met within a step, or while braking, gets a half-plane of its
+/// own where none of what can be met within that time excludes it. (Of a step rows keep all.)
 void StaticField::add_unguarded(const std::vector<std::size_t>& near, const Viewpoint& from,
                                 std::vector<Constraint>& out) const {
   const double tau = from.horizon > 0.0 ? from.horizon : rules_->horizons.orca;
-  const double reach = reach_of_step(rules_->time_step, from.max_speed);
+  const double least = rules_->least_look();
+  const double reach = reach_of_step(least, from.max_speed);
   for (const std::size_t number : near) {
     const BodyTable::Number body = scene_->edge(number);
     const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);
@@ -237,7 +245,7 @@ void StaticField::add_unguarded(const std::vector<std::size_t>& near, const View
     if (geometry::orientation(edge.a, edge.b, from.position) == geometry::Sign::positive) continue;  // faces away
     geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
     const auto excludes = [&](const Constraint& c) {
-      return c.clearance <= reach && geometry::half_plane_is_safe(seen, rules_->time_step, c.half_plane);
+      return c.clearance <= reach && geometry::half_plane_is_safe(seen, least, c.half_plane);
     };
     if (std::any_of(out.begin(), out.end(), excludes)) continue;
     const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);

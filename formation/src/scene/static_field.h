@@ -36,10 +36,25 @@ struct Viewpoint {
   double radius = 0.0;   ///< m
   double max_speed = 0;  ///< m/s
   double horizon = 0.0;  ///< s: instead of what the rules say; 0: none
+  /// `velocity` is the one after a step of braking, and half-planes are those that it satisfies (braking.h): against
+  /// pieces alone, as enclosures are fitted anew for each goal and may hold the way of a robot that brakes. There are
+  /// only `StaticField::constraints` of these.
+  bool brakes = false;
+  // Which its own limits are named after:
+  std::size_t robot = 0;           ///< its number
+  vo::BodyTable::Number body = 0;  ///< that stands for it
   /// s: the robot goes straight on so long, along a way that is clear, and turns then: horizons are not longer, unless
   /// the least one is.
   double turns_after = std::numeric_limits<double>::infinity();
 };
+
+/// Where a robot makes half-planes that braking satisfies. REQUIRES: rules with an acceleration.
+inline Viewpoint after_braking(const DecisionRules& rules, Viewpoint here) {
+  here.velocity = rules.braked(here.velocity);
+  here.horizon = rules.braking_time;
+  here.brakes = true;
+  return here;
+}
 
 /// Which static shapes a decision needs: those within reach, and those whose half-plane may leave the robot's velocity
 /// less room than asked.

@@ -37,12 +37,12 @@ inline double contact_time(double time_step, const Horizons& horizons) {
   return std::max(time_step, vo::ReciprocalOptions{}.contact_time * moment(horizons));
 }
 
-/// m: `neighbour_distance`, or, if that is more, the distance of centres within which two can meet in a time step whose
-/// radii and greatest speeds add up to these (m, m/s).
+/// m: `neighbour_distance`, or, if that is more, the distance of centres within which two can meet in a time step, or
+/// while they brake, whose radii and greatest speeds add up to these (m, m/s).
 inline double sight_of(const DecisionRules& rules, double radii, double speeds) {
   constexpr double kOfABox = 1.4143;  // the diagonal of a bound on each coordinate
   constexpr double kSpare = 1.001;    // roundings, and what is kept at contact
-  return std::max(rules.neighbour_distance, kSpare * (radii + kOfABox * speeds * rules.time_step));
+  return std::max(rules.neighbour_distance, kSpare * (radii + kOfABox * speeds * rules.least_look()));
 }
 
 }  // namespace exactvo::formation::detail

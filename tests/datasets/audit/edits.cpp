@@ -78,6 +78,18 @@ Scenario crossing() {
   return s;
 }
 
+/// The same at speed: both have to brake, beside a post.
+Scenario braking() {
+  Scenario s = kinematic("braking");
+  s.robots = {robot("a", {0.0, 0.1}, {8.0, 0.0}), robot("b", {3.4, -0.1}, {-4.0, 0.0})};
+  for (Robot& r : s.robots) r.max_speed = 1.5;
+  s.robots[0].velocity = {1.2, 0.0};
+  s.robots[1].velocity = {-0.8, 0.1};
+  s.obstacles = {{"post", box({1.4, 0.8}, {1.6, 1.2})}};
+  s.acceleration = formation::Acceleration{2.0};
+  return s;
+}
+
 /// Past the corner of a block, with two goals.
 Scenario corner() {
   Scenario s = kinematic("corner");
@@ -183,6 +195,8 @@ std::vector<ShortRun> short_runs() {
   const Case cases[] = {
       {crossing(), Method::ivo, false},
       {crossing(), Method::orca, true},
+      {braking(), Method::ivo, false},
+      {braking(), Method::orca, true},
       {corner(), Method::ivo, true},
       {corner(), Method::orca, false},
       {corner(), Method::ivo_edge, false},

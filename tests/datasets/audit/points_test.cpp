@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The eight points of an audit, each by the forgery that it is there for.
+// The points of an audit, each by the forgery that it is there for. Braking: tests/formation/acceleration_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>

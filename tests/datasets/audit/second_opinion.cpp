@@ -348,6 +348,11 @@ class Opinion {
       speed_.push_back(r.value("max_speed", 3.0));
       cooperates_.push_back(r.value("cooperates", true));
     }
+    if (scenario_.contains("acceleration")) {
+      most_change_ = number(scenario_["acceleration"].at("max")) * dt_;
+      const double fastest = *std::max_element(speed_.begin(), speed_.end());
+      tau_ = scenario_.value("braking_time", 1.1 * fastest / number(scenario_["acceleration"]["max"]));
+    }
     for (const json& line : lines) read(line);
   }
 
@@ -357,6 +362,7 @@ class Opinion {
       if (k + 1 < rows_.size() && why_.empty()) {
         step(k);
         motion(k);
+        if (tau_ > 0.0) braking(k);
         for (std::size_t i = 0; i < rows_[k].robots.size(); ++i) decision(k, i);
       }
     }
@@ -515,6 +521,29 @@ class Opinion {
     }
   }
 
+  /// Changes of velocity, and ways to brake, alone and together.
+  void braking(std::size_t k) {
+    constexpr int kSamples = 64;
+    const std::vector<State>& robots = rows_[k].robots;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const mpq_class x = mpq_class(robots[i].chosen.x) - mpq_class(robots[i].velocity.x),
+                      y = mpq_class(robots[i].chosen.y) - mpq_class(robots[i].velocity.y);
+      const double most = most_change_ * (1.0 + 1e-15);
+      if (x * x + y * y > mpq_class(most) * mpq_class(most)) wrong(k, i, "changes its velocity by too much");
+      if (robots[i].status != "optimal") wrong(k, i, "relaxes");
+    }
+    for (int m = 0; m <= kSamples; ++m) {
+      std::vector<Vec2> at;
+      for (const State& r : robots) at.push_back(r.position + (tau_ * m / kSamples) * r.chosen);
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        for (const Outline& o : obstacles_)
+          if (distance(o, at[i]) < radius_[i] - kClose) wrong(k, i, "cannot brake before an obstacle");
+        for (std::size_t j = 0; j < i; ++j)
+          if (norm(at[i] - at[j]) < radius_[i] + radius_[j] - kClose) wrong(k, i, "cannot brake beside a robot");
+      }
+    }
+  }
+
   bool within_bound(std::size_t i, Vec2 v) const {
     if (scenario_.value("speed_bound", "disc") == "disc") {
       const mpq_class x(v.x), y(v.y), most(speed_[i]);
@@ -538,7 +567,8 @@ class Opinion {
       const auto body = bodies_.find(line.body);
       const bool stands =
           body != bodies_.end() && (body->second.kind == "enclosure" || body->second.kind == "obstacle-edge");
-      if (line.hard != stands) wrong(k, i, "a priority");
+      const bool is_own = tau_ > 0.0 && line.hard && body != bodies_.end() && body->second.kind == "robot";
+      if (line.hard != stands && !is_own) wrong(k, i, "a priority");
     }
     if (s.status != "no-interior" && std::fabs(worst - s.violation) > kClose) wrong(k, i, "the violation");
     optimum(k, i, worst);
@@ -616,7 +646,8 @@ class Opinion {
   double offset_of_other(const Row& row, std::size_t i, std::size_t j, const Line& line) const {
     for (const Line& theirs : row.robots[j].lines) {
       const auto body = bodies_.find(theirs.body);
-      if (body == bodies_.end() || body->second.kind != "robot" || body->second.owners.at(0) != i) continue;
+      if (body == bodies_.end() || body->second.kind != "robot" || theirs.hard) continue;
+      if (body->second.owners.at(0) != i) continue;
       if (theirs.normal == -line.normal) return theirs.offset;
     }
     return -std::numeric_limits<double>::infinity();
@@ -634,6 +665,13 @@ class Opinion {
     Vec2 u{};
     double share = 1.0;  // a robot's half: of the relative velocity
     double away = 0.0;   // m, of the body from the anchor
+    if (body.kind == "robot" && line.hard) {
+      // Its own limit: a side of the polygon in the disc of its changes.
+      const double left = dot(line.normal, s.velocity) - line.offset;
+      if (body.owners.at(0) != i || line.index != i || left < (0.99144 * most_change_ - kClose) * norm(line.normal))
+        wrong(k, i, "a limit that leaves too little");
+      return;
+    }
     if (body.kind == "robot") {
       const std::size_t j = body.owners.at(0);
       all = {row.robots[j].anchor};
@@ -770,7 +808,8 @@ class Opinion {
 
   json header_, scenario_;
   double dt_ = 0.0;
-  bool is_baseline_ = false;  ///< has edges and no enclosures
+  double most_change_ = 0.0, tau_ = 0.0;  ///< m/s and s, of robots with an acceleration; else 0
+  bool is_baseline_ = false;              ///< has edges and no enclosures
   std::vector<Outline> obstacles_, moving_;
   std::vector<Mover> movers_;
   Mover leader_;

@@ -58,6 +58,8 @@ class Navigator:
     time_step           s: the longest time from a decision to the next
     arrival_tolerance   m: within this of the last goal it has arrived
     neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
+    acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
+    braking_time        s, with an acceleration, the same of all: None: 1.1 max_speed / acceleration
 
     Raises `ArgumentError`.
     """
@@ -80,6 +82,8 @@ class Navigator:
         time_step: float = 0.05,
         arrival_tolerance: float = 0.1,
         neighbour_distance: float = 15.0,
+        acceleration: float | None = None,
+        braking_time: float | None = None,
     ) -> None:
         self._native = _exactvo.navigator(
             goals,
@@ -95,6 +99,8 @@ class Navigator:
             time_step,
             arrival_tolerance,
             neighbour_distance,
+            acceleration,
+            braking_time,
         )
 
     @staticmethod

@@ -108,7 +108,8 @@ std::unique_ptr<PythonNavigator> navigator(py::handle goals, const Obstacles& ob
                                            py::handle max_speed, bool cooperates, std::size_t id,
                                            const std::string& method, const std::string& speed_bound,
                                            const py::dict& horizons, const py::dict& margins, py::handle time_step,
-                                           py::handle arrival_tolerance, py::handle neighbour_distance) {
+                                           py::handle arrival_tolerance, py::handle neighbour_distance,
+                                           py::handle acceleration, py::handle braking_time) {
   NavigatorSetup setup;
   setup.radius = positive(radius, "radius");
   setup.max_speed = positive(max_speed, "max_speed");
@@ -131,6 +132,8 @@ std::unique_ptr<PythonNavigator> navigator(py::handle goals, const Obstacles& ob
   setup.time_step = positive(time_step, "time_step");
   setup.arrival_tolerance = positive(arrival_tolerance, "arrival_tolerance");
   setup.neighbour_distance = positive(neighbour_distance, "neighbour_distance");
+  if (!acceleration.is_none()) setup.acceleration = positive(acceleration, "acceleration");
+  if (!braking_time.is_none()) setup.braking_time = positive(braking_time, "braking_time");
   return std::make_unique<PythonNavigator>(setup, points(goals, "goals"));
 }
 

@@ -3,7 +3,7 @@
 
 /// \file
 /// Verifies a recording in exact rational arithmetic (GMP), with none of the filters that made it and sharing no code
-/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Eight points:
+/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Nine points:
 ///
 ///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
 ///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
@@ -23,6 +23,11 @@
 ///                    where they are meanwhile, and of the other robots;
 ///  (8) plans         every joint plan begins where its robots were, and no move of it comes nearer to an obstacle or
 ///                    to another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded).
+///  (9) braking       where the scenario has an acceleration: no velocity changes by more than A dt, the braking time
+///  is
+///                    long enough to stop, nothing is relaxed, and in every row every robot could have braked from its
+///                    choice on without touching anything: its way [x, x + tau v] keeps clear of obstacles, and so do
+///                    the ways of two robots that brake alike, of each other.
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
@@ -44,7 +49,7 @@
 
 namespace exactvo::datasets {
 
-/// The eight points, numbered in the head of this file.
+/// The nine points, numbered in the head of this file.
 enum class AuditPoint {
   scenario,      ///< (1)
   bodies,        ///< (2)
@@ -53,10 +58,11 @@ enum class AuditPoint {
   choices,       ///< (5)
   sequence,      ///< (6)
   motions,       ///< (7)
-  plans          ///< (8)
+  plans,         ///< (8)
+  braking        ///< (9)
 };
 /// How many points there are.
-inline constexpr std::size_t kAuditPoints = 8;
+inline constexpr std::size_t kAuditPoints = 9;
 
 /// "scenario", "bodies" and so on, as in JSON.
 const char* name(AuditPoint point);

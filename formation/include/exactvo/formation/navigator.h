@@ -17,11 +17,16 @@
 /// robot), and the choice among them, by its multipliers. Heuristic: the preferred velocity. What is certified holds
 /// until the time step has passed, for neighbours that keep their half of a pair and bodies that keep their velocity.
 ///
+/// With an acceleration there are two decisions. The first is the one above; its choice is the wish, and `preferred` of
+/// the second, which takes the velocity nearest to it that leaves every robot its way to brake (guide, accelerations).
+/// That one is never relaxed while all robots decide so; where data were wrong it may be.
+///
 /// See also: simulation.h runs scenarios, crowd.h is for very many robots, vo/constraint.h is one half-plane by
 /// itself.
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,7 +52,11 @@ struct NavigatorSetup {
   double time_step = 0.05;                            ///< s, > 0: the longest time from a decision to the next
   double arrival_tolerance = 0.1;                     ///< m: within this of the last goal it has arrived
   double neighbour_distance = 15.0;  ///< m: who is farther away, and cannot be met within a time step, is ignored
-  std::size_t neighbours = 32;       ///< memory is there from the beginning for so many neighbours and moving bodies
+  /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
+  /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
+  std::optional<double> acceleration = {};
+  std::optional<double> braking_time = {};  ///< s, with an acceleration: as of a Scenario; else the usual one
+  std::size_t neighbours = 32;  ///< memory is there from the beginning for so many neighbours and moving bodies
 };
 
 /// The setup of one robot of a scenario with goals. What moves in the scenario and the other robots are not in it: they

@@ -23,11 +23,11 @@ struct DecisionConstraint {
   geometry::HalfPlane half_plane;                         ///< of velocities, in the frame of `chosen`
   ConstraintSource source = ConstraintSource::enclosure;  ///< what it keeps clear of
   /// Of the enclosure (of those for the robot's present goal), the obstacle edge (counted over the scene), the other
-  /// robot or the moving obstacle.
+  /// robot or the moving obstacle; of the robot itself where it is its own limit.
   std::size_t index = 0;
   std::size_t piece = 0;      ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
   bool certified = false;     ///< proven to exclude the velocity obstacle's interior
-  bool hard = true;           ///< false: of a robot, and may give where half-planes contradict each other
+  bool hard = true;           ///< false: against a robot, and may give where half-planes contradict each other
   bool active = false;        ///< binds the chosen velocity
   double time_horizon = 0.0;  ///< s
   std::size_t body = 0;       ///< of `Recording::bodies`
@@ -35,6 +35,12 @@ struct DecisionConstraint {
   /// KKT multiplier: the weight of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 if inactive. Rounded.
   double multiplier = 0.0;
 };
+
+/// Whether it is none against others, but a limit of the robot's own: of its acceleration. It names the robot itself as
+/// its source, and is hard, as half-planes of robots against robots never are.
+inline bool is_own_limit(const DecisionConstraint& c) {
+  return c.source == ConstraintSource::robot && c.hard;
+}
 
 /// How the preferred velocity was formed.
 enum class Mode {

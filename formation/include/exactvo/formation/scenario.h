@@ -8,6 +8,8 @@
 ///
 /// See also: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -85,6 +87,11 @@ struct Margins {
   double robot = 0.04;     ///< m, added to the radius sum of a pair
 };
 
+/// How fast the velocity of a robot with goals may change.
+struct Acceleration {
+  double max = 1.0;  ///< m/s^2, > 0: |v' - v| <= max * time_step
+};
+
 /// A speed at a time. Between knots the speed is linear; before the first and after the last it is held; two knots at
 /// the same time are a jump.
 struct SpeedKnot {
@@ -159,6 +166,33 @@ struct Scenario {
   double neighbour_distance = 15.0;                   ///< m, > 0: robots farther apart ignore each other, but never
                                                       ///< those that could meet within a time step
   std::vector<MovingObstacle> moving_obstacles;       ///< carried along their paths
+  std::optional<Acceleration> acceleration;           ///< of robots with goals; none: velocities jump
+  /// s, with `acceleration`: how long the way of a robot that brakes is kept clear, `braking_time_of`. Not used
+  /// without.
+  std::optional<double> braking_time;
 };
+
+/// m/s, no less than the length of any velocity within the bound.
+inline double fastest(SpeedBoundKind bound, double max_speed) {
+  constexpr double kDiagonal = 1.4142135623731;  // above sqrt 2 by more than the product's rounding
+  return bound == SpeedBoundKind::disc ? max_speed : kDiagonal * max_speed;
+}
+
+/// s: tau of braking where none is given, of robots that are no faster than this (m/s): 1.1 times what the fastest
+/// needs to stop, and at least a step.
+inline double usual_braking_time(double fastest, double acceleration, double time_step) {
+  constexpr double kSpare = 1.1;
+  return std::max(kSpare * (fastest / acceleration), time_step);
+}
+
+/// s: tau of braking, one for all robots. A robot that brakes keeps the share 1 - time_step / tau of its velocity in
+/// each step, and drives on for tau times its velocity at most. `braking_time`, or the usual one; 0 without
+/// `acceleration`.
+inline double braking_time_of(const Scenario& scenario) {
+  if (!scenario.acceleration) return 0.0;
+  double speed = 0.0;
+  for (const Robot& robot : scenario.robots) speed = std::max(speed, fastest(scenario.speed_bound, robot.max_speed));
+  return scenario.braking_time.value_or(usual_braking_time(speed, scenario.acceleration->max, scenario.time_step));
+}
 
 }  // namespace exactvo::formation

@@ -144,7 +144,8 @@ struct SimulationOptions {
 /// whose ellipses would close what a route passes.
 Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
 
-/// What is done against waiting in a run. Robots with goals have no plans without guidance among obstacles. Those of a
+/// What is done against waiting in a run. Robots with goals have no plans without guidance among obstacles, and none
+/// where their acceleration is bounded. Those of a
 /// formation have plans or nothing: plans where the controller moves brake points exactly as chosen, the method keeps
 /// margins, and there are no moving obstacles.
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);

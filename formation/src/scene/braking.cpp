@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/braking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/rounding.h"
+#include "scene/static_field.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::HalfPlane;
+
+/// Share of a limit that is left to roundings.
+constexpr double kAimedAt = 1.0 - 1e-12;
+/// Of the skin: 2^-30 m of it are lost at most where it is used up.
+constexpr int kHalvings = 30;
+
+/// Beyond the rounding of the product.
+bool surely_satisfies(const HalfPlane& h, Vec2 v) {
+  constexpr double kRoundings = 4 * 0x1p-53;
+  return dot(h.normal, v) - h.offset >= kRoundings * (geometry::dot_magnitude(h.normal, v) + std::fabs(h.offset));
+}
+
+/// What `make` makes of the largest room up to the skin for which it `holds`; without room where none does.
+template <class Make, class Holds>
+auto with_room_left(const Make& make, const Holds& holds) {
+  auto made = make(kContactSkin);
+  if (holds(made)) return made;
+  made = make(0.0);
+  double most = kContactSkin, least = 0.0;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (least + most);
+    auto better = make(middle);
+    if (!holds(better)) {
+      most = middle;
+      continue;
+    }
+    made = better;
+    least = middle;
+  }
+  return made;
+}
+
+}  // namespace
+
+void acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<HalfPlane>& out) {
+  out.clear();
+  if (!rules.has_brakes()) return;
+  constexpr double kSide = 2.0 * geometry::kPi / kSidesOfLimit;
+  const double reach = kAimedAt * rules.acceleration * rules.time_step * std::cos(0.5 * kSide);
+  const double braking = velocity == Vec2{} ? 0.0 : std::atan2(-velocity.y, -velocity.x);
+  for (int k = 0; k < kSidesOfLimit; ++k) {
+    const double angle = braking + (k + 0.5) * kSide;
+    const Vec2 inward{-std::cos(angle), -std::sin(angle)};
+    out.push_back({inward, dot(inward, velocity) - reach});
+  }
+}
+
+vo::ProvenHalfPlane braking_half_plane(geometry::GrownShape& seen, const vo::VelocityObstacle::Nearest& nearest,
+                                       Vec2 braked, double braking_time) {
+  vo::ClearancePolicy policy;
+  policy.time_horizon = braking_time;
+  return with_room_left(
+      [&](double room) {
+        policy.room = room;
+        return vo::half_plane_against(seen, nearest, braked, policy);
+      },
+      [&](const vo::ProvenHalfPlane& made) {
+        return made.proof != vo::Proof::none && surely_satisfies(made.half_plane, braked);
+      });
+}
+
+vo::ReciprocalHalfPlanes braking_half_planes(const vo::MovingDisc& a, const vo::MovingDisc& b, double braking_time) {
+  vo::ReciprocalOptions options;
+  options.time_horizon = options.contact_time = braking_time;
+  return with_room_left(
+      [&](double room) {
+        options.margin = room;
+        return vo::reciprocal_half_planes(a, b, options);
+      },
+      [&](const vo::ReciprocalHalfPlanes& made) {
+        return made.certified && surely_satisfies(made.a, a.velocity) && surely_satisfies(made.b, b.velocity);
+      });
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Half-planes for robots whose velocity changes by A dt at most (A: `DecisionRules::acceleration`).
+///
+/// tau: braking time. A robot that brakes keeps the share lambda = 1 - T / tau of its velocity in each step of T, so
+/// that its way from x on is [x, x + tau v]. Lemma: if the ways of two robots, which shrink alike, keep clear of each
+/// other, so do those from x + T v on at lambda v, since x + T v + [0, tau] lambda v = x + [T, tau] v. Half-planes with
+/// horizon tau that are made at lambda v, of both robots, therefore hold for lambda v, whatever else there is, and any
+/// velocities that satisfy them have such ways again. With tau >= V / A the change |lambda v - v| is within A T.
+///
+/// Half-planes are built with `kContactSkin` of room and certified without. Roundings use the skin up; then as much
+/// room is asked for as lambda v leaves, so that it satisfies the half-plane.
+
+#include <vector>
+
+#include "exactvo/vo/constraint.h"
+#include "exactvo/vo/reciprocal.h"
+#include "scene/decision_rules.h"
+
+namespace exactvo::formation::detail {
+
+/// Sides of the polygon that stands for the disc |u - v| <= A T.
+inline constexpr int kSidesOfLimit = 24;
+
+/// The polygon inside the disc |u - velocity| <= A T as half-planes, with a corner where braking leads. Whatever
+/// satisfies them is within the disc.
+void acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<geometry::HalfPlane>& out);
+
+/// The half-plane against what stands still, made at `braked` with horizon `braking_time`. `seen`: the body grown by
+/// the bare robot, and so again afterwards; `nearest` its `clearance_of`.
+vo::ProvenHalfPlane braking_half_plane(geometry::GrownShape& seen, const vo::VelocityObstacle::Nearest& nearest,
+                                       Vec2 braked, double braking_time);
+
+/// Both halves of a pair, made at their braked velocities: half of the slack for each.
+vo::ReciprocalHalfPlanes braking_half_planes(const vo::MovingDisc& a, const vo::MovingDisc& b, double braking_time);
+
+}  // namespace exactvo::formation::detail
