@@ -41,7 +41,8 @@ class Lockstep {
         leftover_(leftover),
         rare_(memory, in.lines),
         stage_(memory + Pool<D>::numbers(in.lines)),
-        packs_(packs_under_way<D>(in.lines)) {}
+        packs_(packs_under_way<D>(in.lines)),
+        asks_beyond_(3 * in.lines * kLanes * sizeof(T) >= kFarBytes && in.block < in.count) {}
 
   BatchCounts run(std::size_t first, std::size_t last) {
     std::size_t at = first;
@@ -73,7 +74,7 @@ class Lockstep {
     M gone;       ///< handed over: their answers come from elsewhere
     M answered;   ///< those whose answers have come
     int rounds;
-    const T* ahead[3];  ///< x, y and c of a pack to come, one for each of the first rounds
+    Ahead<T> ahead[3];  ///< x, y and c of packs to come, one for each of the first rounds
 
     HWY_INLINE void begin(M which) {
       lanes = searching = which;
@@ -109,8 +110,9 @@ class Lockstep {
 
   /// Two rounds, with no line and with one in the working set, then as many as it takes.
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
-    for_all(states, packs, [](PackState& w) {
+    for_all(states, packs, [this](PackState& w) {
       w.pack.derive();
+      if (kHard) w.pack.expect_hard(out_.active);
       w.pack.start();
     });
     for_all(states, packs, [this](PackState& w) { turn_away(w); });
@@ -148,9 +150,11 @@ class Lockstep {
   template <int kAsked = kNothing>
   HWY_INLINE void price_all(PackState& state) {
     if constexpr (kAsked == kNothing)
-      price<kHard, kIndex, false>(state.rows, state.pack);
+      price<kHard, kIndex, Ask::nothing>(state.rows, state.pack);
+    else if (asks_beyond_)
+      price<kHard, kIndex, Ask::both>(state.rows, state.pack, state.ahead[kAsked]);
     else
-      price<kHard, kIndex, true>(state.rows, state.pack, state.ahead[kAsked]);
+      price<kHard, kIndex, Ask::next>(state.rows, state.pack, state.ahead[kAsked]);
     state.searching = hn::And(state.searching, state.pack.violated);
     state.relaxing = hn::And(state.relaxing, state.pack.violated);
     if (++state.rounds < kMostLockstepRounds) return;
@@ -202,17 +206,26 @@ class Lockstep {
     p.id = numbers_from(at);
     state.begin(hn::FirstN(d, kLanes));
     ask_for(std::min(at + packs_ * kLanes, (in_.count - 1) / kLanes * kLanes), state);
+    if (asks_beyond_) ask_beyond(at, state);
   }
 
   /// What the pack at `at` will need: its lines little by little, since a burst of them stops the processor.
   HWY_INLINE void ask_for(std::size_t at, PackState& state) const {
     const std::size_t start = first_line_of(in_, at);
-    state.ahead[0] = in_.normal_x + start;
-    state.ahead[1] = in_.normal_y + start;
-    state.ahead[2] = in_.offset + start;
+    const T* arrays[3] = {in_.normal_x, in_.normal_y, in_.offset};
+    for (std::size_t k = 0; k < 3; ++k) state.ahead[k] = {arrays[k] + start, nullptr, in_.block, 0};
     for (const T* numbers : {in_.preferred_x, in_.preferred_y, in_.disc}) hwy::Prefetch(numbers + at);
     for (const T* numbers : {out_.velocity_x, out_.velocity_y, out_.violation}) hwy::Prefetch(numbers + at);
     hwy::Prefetch(out_.status + at);
+  }
+
+  /// What the blocks beyond the next group will need. The packs of a block ask for a block, each for a part of it.
+  HWY_INLINE void ask_beyond(std::size_t at, PackState& state) const {
+    const std::size_t blocks = kBlocksBeyond + (packs_ * kLanes + in_.block - 1) / in_.block;
+    const std::size_t block = std::min(at / in_.block + blocks, (in_.count - 1) / in_.block);
+    const std::size_t part = block * in_.block * in_.lines + at % in_.block * in_.lines;
+    const T* arrays[3] = {in_.normal_x, in_.normal_y, in_.offset};
+    for (std::size_t k = 0; k < 3; ++k) state.ahead[k].beyond = arrays[k] + part, state.ahead[k].beyond_step = kLanes;
   }
 
   /// `Iota` from what is not a constant is stored lane by lane.
@@ -254,7 +267,7 @@ class Lockstep {
     p.id = numbers_from(at);
     states[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
     states[0].begin(hn::FirstN(d, count));
-    std::fill_n(states[0].ahead, 3, stage_);
+    std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_, 0, 0});
     solve(states, 1);
     finish_some(p, hn::AndNot(states[0].gone, states[0].lanes));
     flush_deferred();
@@ -269,6 +282,7 @@ class Lockstep {
       const M lanes = hn::FirstN(d, std::min(kLanes, size - from));
       Pack<D> p;
       rare_.load(from, p);
+      if (kHard) p.expect_hard(out_.active);
       Descent<D> descent(p);
       descent.template run<kHard, kIndex>(rare_.rows(from), lanes);
       finish_some(p, hn::AndNot(descent.unsettled, lanes));
@@ -370,6 +384,7 @@ class Lockstep {
   Pool<D> rare_;
   T* stage_;
   std::size_t packs_;
+  bool asks_beyond_;
   BatchCounts counts_;
 };
 

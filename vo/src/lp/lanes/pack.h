@@ -15,6 +15,11 @@ namespace exactvo::lp::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Asks for the line of the cache at `place`, for the second cache: what is not needed soon would displace what is.
+HWY_INLINE void for_second_cache(const void* place) {
+  __builtin_prefetch(place, 0, 2);
+}
+
 /// The lines of a pack: line k of its first lane stands at x[k * stride], y[...], c[...].
 template <class T>
 struct Rows {
@@ -81,6 +86,8 @@ struct Pack {
   LineV<D> entering;              ///< the line violated most
   M violated;                     ///< lanes that have one
   M relaxing;                     ///< lanes on the relaxation phase
+  std::size_t most_hard;          ///< hard lines of the lane that has most of them
+  bool numbers;                   ///< whether numbers of lines are asked for, and not only which lines are hard
 
   HWY_INLINE void derive() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
@@ -88,6 +95,12 @@ struct Pack {
     noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
     disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
     disc_squared = hn::Mul(disc, disc);
+  }
+
+  /// Before lines are priced among which some may be hard.
+  HWY_INLINE void expect_hard(bool wants_numbers) {
+    most_hard = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, hard_count)));
+    numbers = wants_numbers;
   }
 
   HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
@@ -126,108 +139,96 @@ struct Pack {
   }
 };
 
-/// How the line violated most is remembered while lines are priced: as three numbers, which masked moves choose, or as
-/// its place in the order, by which it is fetched afterwards. A masked move is one operation of AVX-512; of AVX2 it is
-/// three on Intel's processors, and fetching four or eight lanes is cheaper.
-template <class D>
-inline constexpr bool kFetchByNumber = hn::MaxLanes(D()) > 1 && hn::MaxLanes(D()) * sizeof(hn::TFromD<D>) <= 32;
-
 /// What is asked of a line: violated by more than `allowed` after `soft` or, where it is hard, `hard` has been added.
 template <class D>
 struct Asked {
   hn::Vec<D> allowed, hard, soft;
 };
 
-/// The line violated most a lane, found with the loop below. Where no lane relaxes nothing is added (kExtra false).
-template <bool kExtra, bool kIndex, bool kAsk, class D, class T>
-HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const T* ahead,
-                          hn::Vec<D>& most, LineV<D>& line) {
+/// What is asked for while lines are priced, one line of the cache with each: of the pack that comes next, for the
+/// first cache, and of a block some way beyond it, for the second.
+template <class T>
+struct Ahead {
+  const T* next = nullptr;
+  const T* beyond = nullptr;
+  std::size_t next_step = 0, beyond_step = 0;
+};
+
+/// Which of these.
+enum class Ask { nothing, next, both };
+
+/// The lines from `from` up to `to`: by how much the line violated most is violated, and which it is. Three masked
+/// moves a line cost less than its number and a look at the line afterwards: they are one operation each with AVX-512,
+/// and with AVX2 on AMD's processors. kHard: some of the lines may be hard; kExtra: something is added to violations.
+template <bool kHard, bool kExtra, bool kNumber, Ask kAsk, class D, class T>
+HWY_INLINE void price_lines(const Rows<T>& rows, std::size_t from, std::size_t to, const Pack<D>& p,
+                            const Asked<D>& asked, const Ahead<T>& ahead, hn::Vec<D>& most_of_all, LineV<D>& line) {
   const D d;
   using V = hn::Vec<D>;
-  constexpr bool kNumber = kIndex || kFetchByNumber<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
-  V number = zero, ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine));
-  most = asked.allowed;
-  const T *nx = rows.x, *ny = rows.y, *c = rows.c;
+  const V one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
+  V most = most_of_all, ex = line.x, ey = line.y, ec = line.c, index = line.index;
+  V number = hn::Set(d, static_cast<T>(from));
+  const T *nx = rows.x + from * rows.stride, *ny = rows.y + from * rows.stride, *c = rows.c + from * rows.stride;
 #pragma GCC unroll 5
-  for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
-    if (kAsk) hwy::Prefetch(ahead + k * rows.stride);
+  for (std::size_t k = from; k < to; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
+    if (kAsk != Ask::nothing) hwy::Prefetch(ahead.next + k * ahead.next_step);
+    if (kAsk == Ask::both) for_second_cache(ahead.beyond + k * ahead.beyond_step);
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
-    if (kExtra) by = hn::Add(by, pick(hn::Lt(number, hard_count), asked.hard, asked.soft));
+    if (kExtra) by = hn::Add(by, kHard ? pick(hn::Lt(number, hard_count), asked.hard, asked.soft) : asked.soft);
     const auto more = hn::Gt(by, most);
     most = hn::Max(most, by);
-    if (!kFetchByNumber<D>) {
-      ex = pick(more, x, ex);
-      ey = pick(more, y, ey);
-      ec = pick(more, offset, ec);
-    }
-    if (kNumber) {
-      index = pick(more, number, index);
-      number = hn::Add(number, one);
-    }
+    ex = pick(more, x, ex);
+    ey = pick(more, y, ey);
+    ec = pick(more, offset, ec);
+    if (kNumber) index = pick(more, number, index);
+    if (kNumber || kHard) number = hn::Add(number, one);
   }
+  most_of_all = most;
   line = {ex, ey, ec, index};
 }
 
-/// Copies the lines of line.index, lane by lane; `slack` is added to their offsets. No gather, which many processors
-/// execute slowly. Part by part is how it is stored: a load of the whole has to wait until that has left for the cache,
-/// and meanwhile other packs are priced.
-template <class D, class T>
-HWY_INLINE void fetch(const Rows<T>& rows, hn::Vec<D> slack, LineV<D>& line) {
+/// The line violated most a lane. Where no lane relaxes nothing is added (kExtra false). Beyond the last hard line of
+/// any lane none is hard, and no number is needed to tell: if none is asked for, `index` is there that of the first of
+/// these.
+template <bool kHard, bool kExtra, bool kIndex, Ask kAsk, class D, class T>
+HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const Ahead<T>& ahead,
+                          hn::Vec<D>& most, LineV<D>& line) {
   const D d;
-  constexpr std::size_t kLanes = hn::MaxLanes(D());
-  const hn::Rebind<std::int32_t, D> words;
-  HWY_ALIGN std::int32_t numbers[kLanes];
-  HWY_ALIGN T added[kLanes];
-  const hn::Vec<D> some = hn::Max(line.index, hn::Zero(d));  // where none is violated, any line
-  if constexpr (sizeof(T) == 8)
-    hn::Store(hn::DemoteTo(words, some), words, numbers);
-  else
-    hn::Store(hn::ConvertTo(words, some), words, numbers);
-  hn::Store(slack, d, added);
-  char *x = reinterpret_cast<char*>(&line.x), *y = reinterpret_cast<char*>(&line.y);
-  char* c = reinterpret_cast<char*>(&line.c);
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const std::size_t at = static_cast<std::size_t>(numbers[lane]) * rows.stride + lane;
-    const T offset = rows.c[at] + added[lane];
-    std::memcpy(x + lane * sizeof(T), rows.x + at, sizeof(T));
-    std::memcpy(y + lane * sizeof(T), rows.y + at, sizeof(T));
-    std::memcpy(c + lane * sizeof(T), &offset, sizeof(T));
-  }
+  if (!kHard) return price_lines<false, kExtra, kIndex, kAsk>(rows, 0, rows.count, p, asked, ahead, most, line);
+  const std::size_t hard = std::min(p.most_hard, rows.count);
+  price_lines<true, kExtra, true, kAsk>(rows, 0, hard, p, asked, ahead, most, line);
+  if (p.numbers) return price_lines<false, kExtra, true, kAsk>(rows, hard, rows.count, p, asked, ahead, most, line);
+  const hn::Vec<D> before = most;
+  price_lines<false, kExtra, false, kAsk>(rows, hard, rows.count, p, asked, ahead, most, line);
+  line.index = pick(hn::Gt(most, before), hn::Set(d, static_cast<T>(hard)), line.index);
 }
 
 /// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
 /// second only the hard ones do, and soft ones count from `level` on. The level is taken off the soft ones rather than
 /// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. Without kIndex
-/// the number of the line stays what it was: who asks for none is spared the cost. With kAsk each line goes with one of
-/// `ahead`, which a later pack will read.
-template <bool kHard, bool kIndex, bool kAsk, class D, class T>
-HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr) {
+/// the number of the line stays what it was: who asks for none is spared the cost.
+template <bool kHard, bool kIndex, Ask kAsk, class D, class T>
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const Ahead<T>& ahead = {}) {
   const D d;
   using V = hn::Vec<D>;
+  const V zero = hn::Zero(d);
   const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
   const Asked<D> asked = {pick(p.relaxing, enough, hn::Sub(p.noise, p.slack)), hn::IfThenElseZero(p.relaxing, p.slack),
                           hn::IfThenElseZero(p.relaxing, hn::Neg(p.level))};
-  V most;
-  LineV<D> line;
+  V most = asked.allowed;
+  LineV<D> line = {zero, zero, zero, hn::Set(d, T(kNoLine))};
   if (kHard && !hn::AllFalse(d, p.relaxing))
-    find_most<true, kIndex, kAsk>(rows, p, asked, ahead, most, line);
+    find_most<kHard, true, kIndex, kAsk>(rows, p, asked, ahead, most, line);
   else
-    find_most<false, kIndex, kAsk>(rows, p, asked, ahead, most, line);
+    find_most<kHard, false, kIndex, kAsk>(rows, p, asked, ahead, most, line);
   p.violated = hn::Gt(most, asked.allowed);
   auto with_slack = hn::Not(p.relaxing);
   if (kHard) with_slack = hn::Or(with_slack, hn::Lt(line.index, p.hard_count));
-  const V index = kIndex ? line.index : p.entering.index, slack = hn::IfThenElseZero(with_slack, p.slack);
-  if (kFetchByNumber<D>) {
-    p.entering.index = line.index;
-    if (rows.count > 0) fetch<D>(rows, slack, p.entering);
-  } else {
-    p.entering.x = line.x;
-    p.entering.y = line.y;
-    p.entering.c = hn::Add(line.c, slack);
-  }
-  p.entering.index = index;
+  p.entering.x = line.x;
+  p.entering.y = line.y;
+  p.entering.c = hn::Add(line.c, hn::IfThenElseZero(with_slack, p.slack));
+  if (kIndex) p.entering.index = line.index;
 }
 
 /// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a

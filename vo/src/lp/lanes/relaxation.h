@@ -152,7 +152,7 @@ class Descent {
         lowest_on_plane(moving);
       }
       const M priced = hn::AndNot(unsettled, moving);
-      price<kHard, kIndex, false>(rows, p_);
+      price<kHard, kIndex, Ask::nothing>(rows, p_);
       moving = hn::And(priced, p_.violated);
     }
     unsettled = hn::Or(unsettled, moving);

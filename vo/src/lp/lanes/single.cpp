@@ -120,6 +120,7 @@ HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
   pack.py = hn::Set(d, problem.preferred.y);
   pack.speed = hn::Set(d, problem.disc);
   pack.hard_count = hn::Set(d, static_cast<double>(problem.hard));
+  pack.expect_hard(true);
   pack.derive();
 }
 
@@ -171,7 +172,7 @@ class LoneSearch {
   /// Pricing: the line that enters; false where none is violated.
   HWY_INLINE bool price_next() {
     if (kHard && relaxing_) {
-      price<kHard, true, false>(rows_of(p_), pack_);
+      price<kHard, true, Ask::nothing>(rows_of(p_), pack_);
       return any(pack_.violated);
     }
     const double noise = hn::GetLane(pack_.noise), slack = hn::GetLane(pack_.slack);
