@@ -187,37 +187,61 @@ double Monitor::gap_at_start(const Part& part, const geometry::ConvexOnTwist& ot
 }
 
 Monitor::Clear Monitor::clear_of_obstacles(double length, bool& in_contact) {
-  Clear clear{length, kInfinity, {}};
+  Clear clear;
+  clear.until = length;
+  clear.lost_by = kInfinity;
   double offset = 0.0;
   for (const Stretch& stretch : way_) {
     const auto left = [&] { return std::min(stretch.duration, clear.until - offset); };
     if (offset > 0.0 && left() <= 0.0) break;
     turn_footprint(stretch, 0.0);
-    const double reach = body_reach_ + norm(stretch.twist.velocity) * left();
-    grid_.for_each_within(stretch.start.at, reach * kUp, [&](std::size_t number) {
+    const double speed = norm(stretch.twist.velocity);
+    const auto reach = [&] { return (body_reach_ + speed * left()) * kUp; };
+    grid_.for_each_within(stretch.start.at, reach(), [&](std::size_t number) {
       const Piece& piece = pieces_[number];
+      // The way that is left may have become shorter.
+      if (geometry::distance_below(grid_.box(number), stretch.start.at) > reach()) return;
       const geometry::ConvexOnTwist other{{}, {}, {corners_.data() + piece.first, piece.size}};
       for (const Part& part : parts_) {
         const double both = part.radius + piece.radius + setup_.margin + kMonitorSlack;
         GapToKeep question{part_on(part, stretch, 0.0), other, left(), both, 0.0, -kMonitorSlack};
         KeptGap kept = keeper_.keep(question);
         if (kept.whole) continue;
-        const double at_start = gap_at_start(part, other, both);
-        turn_footprint(stretch, 0.0);
-        if (at_start < 0.0) {
-          in_contact = true;
-          question.required = at_start - kMonitorSlack;
-          kept = keeper_.keep(question);
-          if (kept.whole) continue;
+        if (offset > 0.0 || kept.kept_until == 0.0) {
+          const double at_start = gap_at_start(part, other, both);
+          turn_footprint(stretch, 0.0);
+          if (at_start < 0.0) {
+            in_contact = true;
+            question.required = at_start - kMonitorSlack;
+            kept = keeper_.keep(question);
+            if (kept.whole) continue;
+          }
         }
         clear.until = offset + kept.kept_until;
-        clear.lost_by = offset + kept.lost_by;
-        clear.witness = MonitorWitness{false, piece.obstacle, 0.0, kept.place};
+        clear.lost = question;
+        clear.kept = kept;
+        clear.offset = offset;
+        clear.witness = MonitorWitness{false, piece.obstacle, 0.0, {}};
       }
     });
+    if (clear.witness && clear.offset == offset) {
+      const geometry::LostGap lost = keeper_.lose(clear.lost, clear.kept);
+      clear.lost_by = offset + lost.lost_by;
+      clear.witness->place = lost.place;
+    }
     offset += stretch.duration;
   }
   return clear;
+}
+
+bool Monitor::is_far_from(const Mover& mover, const Pace& pace) const {
+  const std::vector<Vec2>& corners = mover.shape.corners;
+  double extent = mover.shape.radius + mover.position_error, way = 0.0;
+  for (const Vec2 corner : corners)
+    extent = std::max(extent, norm(corner - corners.front()) + mover.shape.radius + mover.position_error);
+  for (const Stretch& stretch : way_) way += norm(stretch.twist.velocity) * stretch.duration;
+  const double near = body_reach_ + extent + way + mover.max_speed * pace.moment(pace.length());
+  return norm(corners.front() - way_.front().start.at) > near * kUp;
 }
 
 bool Monitor::clear_of_mover(const Mover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact) {
@@ -248,7 +272,7 @@ bool Monitor::clear_of_mover(const Mover& mover, std::size_t index, const Pace& 
         const KeptGap kept = keeper_.keep(question);
         if (kept.whole) continue;
         clear.until = from + kept.kept_until;
-        clear.witness = MonitorWitness{true, index, pace.moment(clear.until), kept.place};
+        clear.witness = MonitorWitness{true, index, pace.moment(clear.until), keeper_.lose(question, kept).place};
         return false;
       }
       offset += stretch.duration;
@@ -279,6 +303,7 @@ MonitorVerdict Monitor::judged(bool is_trajectory, const std::vector<Mover>& mov
     const Pace pace = pace_at(share, is_trajectory);
     for (std::size_t k = 0; k < movers.size(); ++k) {
       const std::size_t index = (first + k) % movers.size();
+      if (is_far_from(movers[index], pace)) continue;
       Clear met;
       if (clear_of_mover(movers[index], index, pace, met, verdict.in_contact)) continue;
       verdict.witness = met.witness;

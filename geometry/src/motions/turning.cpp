@@ -26,8 +26,8 @@ bool is_at_rest(const Twist& twist) {
 
 double greatest_norm(const CornerView& corners) {
   double most = 0.0;
-  for (std::size_t i = 0; i < corners.size; ++i) most = std::max(most, norm(corners.data[i]));
-  return most;
+  for (std::size_t i = 0; i < corners.size; ++i) most = std::max(most, squared_norm(corners.data[i]));
+  return std::sqrt(most);
 }
 
 /// Points that move together, about a reference point.
@@ -173,7 +173,6 @@ KeptGap GapKeeper::keep(const GapToKeep& q) {
   EXACTVO_REQUIRE(q.a.corners.size > 0 && q.b.corners.size > 0, "no corners");
   const double rounding = rounding_of(q);
   KeptGap kept;
-  kept.lost_by = kInfinity;
   double now = 0.0;
   for (int tried = 0; tried < kMostDirections && !kept.whole; ++tried) {
     place_at(q, now);
@@ -200,7 +199,12 @@ KeptGap GapKeeper::keep(const GapToKeep& q) {
     now += low;
   }
   kept.kept_until = kept.whole ? q.duration : now;
-  if (kept.whole) return kept;
+  return kept;
+}
+
+LostGap GapKeeper::lose(const GapToKeep& q, const KeptGap& kept) {
+  const double now = kept.kept_until, rounding = rounding_of(q);
+  LostGap lost{kInfinity, {}};
   place_at(q, now);
   double least = kInfinity;
   const auto nearest = [&](const std::vector<Vec2>& points, const std::vector<Vec2>& hull) {
@@ -209,21 +213,21 @@ KeptGap GapKeeper::keep(const GapToKeep& q) {
         const Vec2 on = nearest_on(p, hull[i], hull[(i + 1) % hull.size()]);
         if (squared_norm(p - on) < least) {
           least = squared_norm(p - on);
-          kept.place = 0.5 * (p + on);
+          lost.place = 0.5 * (p + on);
         }
       }
   };
   nearest(a_, b_);
   nearest(b_, a_);
-  kept.place += q.a.at + displacement_after(q.a.twist, now).by;
+  lost.place += q.a.at + displacement_after(q.a.twist, now).by;
   for (double by = 0x1p-32; by <= 1.0; by *= 2.0) {
     const double then = std::min(q.duration, now + by * q.duration);
     if (gap_at(q, then) + rounding < q.required) {
-      kept.lost_by = then;
+      lost.lost_by = then;
       break;
     }
   }
-  return kept;
+  return lost;
 }
 
 }  // namespace exactvo::geometry

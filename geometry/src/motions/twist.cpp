@@ -22,6 +22,7 @@ constexpr double kUp = 1.0 + 0x1p-49;
 
 Displacement displacement_after(const Twist& twist, double time) {
   const double angle = twist.turn * time, half = 0.5 * angle;
+  if (angle == 0.0) return {time * twist.velocity, 1.0, 0.0};
   const double c = std::cos(half), s = std::sin(half);
   const double along = time * sine_share(half, s);
   const Vec2 chord{c * twist.velocity.x - s * twist.velocity.y, s * twist.velocity.x + c * twist.velocity.y};

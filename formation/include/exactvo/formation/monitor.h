@@ -158,6 +158,9 @@ class Monitor {
   struct Clear {
     double until = 0.0;    ///< s of the way
     double lost_by = 0.0;  ///< s of the way; infinite if not known
+    geometry::GapToKeep lost;
+    geometry::KeptGap kept;
+    double offset = 0.0;  ///< s of the way, at which the stretch of `lost` begins
     std::optional<MonitorWitness> witness;
   };
 
@@ -171,6 +174,7 @@ class Monitor {
   Pace pace_at(double share, bool is_trajectory) const;
   double share_within(double length, bool is_trajectory) const;
   Clear clear_of_obstacles(double length, bool& in_contact);
+  bool is_far_from(const Mover& mover, const Pace& pace) const;
   bool clear_of_mover(const Mover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact);
 
   MonitorSetup setup_;

@@ -55,8 +55,12 @@ struct GapToKeep {
 struct KeptGap {
   bool whole = false;       ///< certified: all the time
   double kept_until = 0.0;  ///< s, certified: kept from 0 to here; 0 also where it is not kept at the start
-  double lost_by = 0.0;     ///< s: certainly not kept at this moment; infinite where none was found, and where `whole`
-  Vec2 place;               ///< m, rounded: where the two are nearest at `kept_until`
+};
+
+/// How it is lost.
+struct LostGap {
+  double lost_by = 0.0;  ///< s: certainly not kept at this moment; infinite where none was found
+  Vec2 place;            ///< m, rounded: where the two are nearest at `kept_until`
 };
 
 /// Answers one question after the other, with memory that only the first ones take.
@@ -64,6 +68,9 @@ class GapKeeper {
  public:
   /// REQUIRES: finite numbers within the ranges of the fields, corners as they are described.
   KeptGap keep(const GapToKeep& question);
+
+  /// What ends a gap that is not kept all the time. REQUIRES: `kept` is the answer to the question, !kept.whole.
+  LostGap lose(const GapToKeep& question, const KeptGap& kept);
 
   /// m: the gap less the reach at a time. Rounded, within `rounding_of`. REQUIRES: as above, 0 <= time.
   double gap_at(const GapToKeep& question, double time);

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The check of certificates of turning bodies, in rationals. It shares nothing with what decides motions but the plain
+// types.
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/geometry/turning_motions.h"
+
+namespace exactvo::geometry {
+namespace turn_check {
+namespace {
+
+using Number = mpq_class;
+
+/// Angles, rad: the series below need few terms.
+constexpr int kMostAngle = 64;
+/// Numbers are rounded to multiples of 2^-kGrid, with what that loses added to the enclosure.
+constexpr unsigned kGrid = 320;
+
+struct Between {
+  Number low, high;
+};
+
+Number grid_step() {
+  mpz_class two = 1;
+  mpz_mul_2exp(two.get_mpz_t(), two.get_mpz_t(), kGrid);
+  return {mpz_class(1), two};
+}
+
+/// A multiple of 2^-kGrid within one step.
+Number on_grid(const Number& x) {
+  mpz_class scaled = x.get_num();
+  mpz_mul_2exp(scaled.get_mpz_t(), scaled.get_mpz_t(), kGrid);
+  mpz_class floor;
+  mpz_fdiv_q(floor.get_mpz_t(), scaled.get_mpz_t(), x.get_den().get_mpz_t());
+  return floor * grid_step();
+}
+
+struct SineAndCosine {
+  Between sine, cosine;
+};
+
+/// By their series at a point of the grid near the angle. Each term is rounded once; |angle| <= 64, so that terms fall
+/// by at least half from the 128th on, and what is left is no more than the last one.
+SineAndCosine enclosed(const Number& angle) {
+  const Number step = grid_step(), a = on_grid(angle);
+  Number sine = 0, cosine = 0, term = 1;
+  unsigned long k = 0;
+  for (;; ++k) {
+    const bool is_even = k % 2 == 0, is_plus = k % 4 < 2;
+    (is_even ? cosine : sine) += is_plus ? term : Number(-term);
+    term = on_grid(term * a / static_cast<unsigned long>(k + 1));
+    if (k > 2 * kMostAngle && abs(term) <= step) break;
+  }
+  // Of a rounding of a term by one step, the later terms get |a|^j / j! <= e^64 < 2^93 times as much; there are k
+  // terms.
+  mpz_class growth = k + 4;
+  mpz_mul_2exp(growth.get_mpz_t(), growth.get_mpz_t(), 94);
+  const Number error = growth * step;
+  return {{Number(sine - error), Number(sine + error)}, {Number(cosine - error), Number(cosine + error)}};
+}
+
+/// At least the root.
+Number root_above(const Number& square) {
+  mpz_class scaled = square.get_num();
+  mpz_mul_2exp(scaled.get_mpz_t(), scaled.get_mpz_t(), 2 * kGrid);
+  mpz_class floor, root;
+  mpz_cdiv_q(floor.get_mpz_t(), scaled.get_mpz_t(), square.get_den().get_mpz_t());
+  mpz_sqrt(root.get_mpz_t(), floor.get_mpz_t());
+  return (root + 1) * grid_step();
+}
+
+struct Place {
+  Number x, y;
+};
+Number along(const Place& n, const Number& x, const Number& y) {
+  return n.x * x + n.y * y;
+}
+
+class TurnCheck {
+ public:
+  explicit TurnCheck(const TurningMotion& m)
+      : m_(m), turn_(m.twist.turn), vx_(m.twist.velocity.x), vy_(m.twist.velocity.y) {}
+
+  bool is_small() const { return abs(turn_) * (Number(m_.end) - Number(m_.start)) <= kMostAngle; }
+
+  bool separates(const Separation& s, const RoundedPolygon& part, const Segment& edge) const {
+    const bool finite = is_finite(s.direction) && std::isfinite(s.margin) && s.margin >= 0.0;
+    if (!finite || s.direction == Vec2{}) return false;
+    const Place n{Number(s.direction.x), Number(s.direction.y)};
+    const Number most =
+        std::max(along(n, Number(edge.a.x), Number(edge.a.y)), along(n, Number(edge.b.x), Number(edge.b.y)));
+    const Number span = Number(s.to) - Number(s.from);
+    const Number reach = Number(part.radius) + Number(s.margin);
+    for (const Vec2 c : part.corners) {
+      const Number x(c.x), y(c.y), speed_x = vx_ - turn_ * y, speed_y = vy_ + turn_ * x;
+      const Number stray = abs(turn_) * root_above(Number(speed_x * speed_x + speed_y * speed_y)) * span * span / 8;
+      const Number needed = reach + stray, length2 = n.x * n.x + n.y * n.y;
+      for (const double time : {s.from, s.to}) {
+        const Number gap = lowest(n, x, y, time) - most;
+        const Number left = gap * gap, right = needed * needed * length2;
+        if (!(sgn(gap) > 0 && (s.margin > 0.0 ? left >= right : left > right))) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether the corner begins inside, by the even-odd rule.
+  bool begins_inside(Vec2 corner, const std::vector<Segment>& edges) const {
+    const Number x = Number(m_.at.x) + Number(corner.x), y = Number(m_.at.y) + Number(corner.y);
+    bool inside = false;
+    for (const Segment& e : edges) {
+      const Number ax(e.a.x), ay(e.a.y), bx(e.b.x), by(e.b.y);
+      if ((ay > y) == (by > y)) continue;
+      if (x < ax + (y - ay) / (by - ay) * (bx - ax)) inside = !inside;
+    }
+    return inside;
+  }
+
+ private:
+  /// No more than the corner's place along n.
+  Number lowest(const Place& n, const Number& x, const Number& y, double time) const {
+    const Number at = along(n, Number(m_.at.x), Number(m_.at.y)), passed = Number(time) - Number(m_.start);
+    if (sgn(turn_) == 0) return at + along(n, Number(x + passed * vx_), Number(y + passed * vy_));
+    // at + (sin v + (1 - cos) J v) / w + cos q + sin J q, with J (x, y) = (-y, x).
+    const Number across = along(n, Number(-vy_), vx_) / turn_;
+    const Number of_sine = along(n, vx_, vy_) / turn_ + along(n, Number(-y), x), of_cosine = along(n, x, y) - across;
+    const SineAndCosine e = enclosed(turn_ * passed);
+    return at + across + of_sine * (sgn(of_sine) > 0 ? e.sine.low : e.sine.high) +
+           of_cosine * (sgn(of_cosine) > 0 ? e.cosine.low : e.cosine.high);
+  }
+
+  const TurningMotion& m_;
+  Number turn_, vx_, vy_;
+};
+
+}  // namespace
+}  // namespace turn_check
+
+bool proves_clear(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
+                  const Obstacle& obstacle) {
+  const turn_check::TurnCheck check(motion);
+  if (!(motion.start <= motion.end) || !check.is_small()) return false;
+  const std::vector<Segment> edges = edges_of(obstacle);
+  if (has_interior(obstacle))
+    for (const RoundedPolygon& part : body)
+      if (check.begins_inside(part.corners.at(0), edges)) return false;
+  std::size_t next = 0;
+  for (std::size_t part = 0; part < body.size(); ++part)
+    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
+      double reached = motion.start;
+      bool some = false;
+      for (; next < certificate.separations.size() && !(some && reached == motion.end); ++next) {
+        const Separation& s = certificate.separations[next];
+        if (s.part != part || s.other != edge || s.from != reached || !(s.to >= s.from && s.to <= motion.end)) break;
+        if (!check.separates(s, body[part], edges[edge])) return false;
+        reached = s.to;
+        some = true;
+      }
+      if (!some || reached != motion.end) return false;
+    }
+  return next == certificate.separations.size();
+}
+
+}  // namespace exactvo::geometry
