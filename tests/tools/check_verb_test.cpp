@@ -266,6 +266,7 @@ TEST(CheckVerb, AJumpWhereAPlanIsSwitchedIsAFinding) {
   }
   row(4.002547, "1", 5.093, 0.0);
   row(4.1, "1", 5.2, 0.0);
+  row(4.1, "3", 5.3, 0.1);
   const Outcome outcome = checked(text, "--radius 0.2");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("jump: 1, line 84: 1.093 m in 0.002547 s, 429.132 m/s"),
@@ -463,7 +464,7 @@ TEST(CheckVerb, MixedFrameRatesAreDecidedExactly) {
   };
   rows("A", 40, 4.0, [](double t) { return std::pair(t, 0.0); });
   rows("B", 12, 4.0, [](double t) { return std::pair(1.9, t - 1.9); });
-  rows("C", 4, 4.0, [](double t) { return std::pair(t, 1.0); });
+  rows("C", 4, 4.0, [](double t) { return std::pair(t - 1.0, 1.0); });
   const Outcome outcome = checked(text, "--radius 0.1 --near 0");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("overlap: A and B"), HasSubstr("0.2 m deep at 1.9 s"), HasSubstr("0 gaps")));

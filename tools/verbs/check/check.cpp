@@ -59,6 +59,7 @@ void require_positive(const std::string& option, double value, const std::string
 void check_flags(const CheckFlags& flags) {
   check_format("--format", flags.format, datasets::trajectory_formats());
   require_known("--between", flags.between, between_names());
+  reading_options(flags.reading, "--map-format");
   require_positive("--scale", flags.scale, "metres of one unit of length, above 0");
   require(flags.frame_rate >= 0.0 && std::isfinite(flags.frame_rate), "--frame-rate",
           fmt::format("{}", flags.frame_rate), "frames a second, above 0");
