@@ -107,11 +107,11 @@ Proof. vm_compute. reflexivity. Qed.
 
 (* --- Routes and chains: a box with a door of 1.2 m --- *)
 Definition box : list obstacle := [Wall [(d 3152519739159347 51, d 4 0); (d 0 0, d 4 0); (d 0 0, d 0 0); (d 4 0, d 0 0); (d 4 0, d 4 0); (d 5854679515581645 51, d 4 0)]].
-Definition start : point := (2, 2).
-Definition goal : point := (2, 9).
-Definition a_disc_of_half_a_metre_passes : forall e x, In e (sides [start; goal]) -> on e x -> room box (Q2R (1 # 2)) x.
+Definition within : point := (2, 2).
+Definition beyond : point := (2, 9).
+Definition a_disc_of_half_a_metre_passes : forall e x, In e (sides [within; beyond]) -> on e x -> room box (Q2R (1 # 2)) x.
 Proof. apply route_sound. vm_compute. reflexivity. Qed.
-Example a_wider_one_does_not : route box (13 # 20) [start; goal] = false.
+Example a_wider_one_does_not : route box (13 # 20) [within; beyond] = false.
 Proof. vm_compute. reflexivity. Qed.
 Definition door : list joint :=
   [{| spot := (d 3152519739159347 51, d 4 0); obstacle_no := 0; edge_no := 0; gap_follows := false |};
@@ -120,9 +120,9 @@ Definition door : list joint :=
    {| spot := (d 4 0, d 0 0); obstacle_no := 0; edge_no := 3; gap_follows := false |};
    {| spot := (d 4 0, d 4 0); obstacle_no := 0; edge_no := 4; gap_follows := false |};
    {| spot := (d 5854679515581645 51, d 4 0); obstacle_no := 0; edge_no := 4; gap_follows := true |}].
-Definition no_way : ~ way box (Q2R (13 # 20)) (real start) (real goal).
+Definition no_way : ~ way box (Q2R (13 # 20)) (real within) (real beyond).
 Proof. apply (chain_sound _ _ _ _ door). vm_compute. reflexivity. Qed.
-Example a_narrower_one_is_not_held : chain box (3 # 5) start goal door = false.
+Example a_narrower_one_is_not_held : chain box (3 # 5) within beyond door = false.
 Proof. vm_compute. reflexivity. Qed.
 Definition no_room : ~ room box (Q2R (13 # 20)) (real (7 # 2, 2)).
 Proof. apply (blocked_sound _ _ _ 0%nat (Some 3%nat)). vm_compute. reflexivity. Qed.
@@ -155,4 +155,38 @@ Definition post (r : Q) : list motion := [{| from := (1, 2); to := (1, 2); size 
 Definition it_passes_the_post : all_steps (fun a b => keeps_apart [] (post 1) (moves [1] a b)) (with_start [[(-(5), 0)]; [(7, 0)]]).
 Proof. apply run_sound. vm_compute. reflexivity. Qed.
 Example a_larger_post_is_in_its_way : run [] (post (1025 # 1024)) [1] [[(-(5), 0)]; [(7, 0)]] = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- Sweeps: two walkers of a file of tracks, and a third past a square --- *)
+Definition walker : trip := {| leave := d 3152519739159347 50; arrive := d 3602879701896397 50; start := (d (-5877197513718497) 50, d (-5800636320053199) 55); goal := (d (-658651445502935) 47, d (-3206562934687793) 54);
+  parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 3602879701896397 54 |}] |}.
+Definition other_walker : trip := {| leave := d 3152519739159347 50; arrive := d 5854679515581645 50; start := (d (-17) 1, d (-5080060379673919) 54); goal := (d (-11) 1, d (-6106881094714393) 54);
+  parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 3602879701896397 54 |}] |}.
+Definition between_walkers : list separation :=
+  [{| part_no := 0; other_no := 0; since := d 3152519739159347 50; until := d 3602879701896397 50;
+      direction := (d 9001076599103277 53, d 5312830578007299 57); width := d 1622551864023849 49 |}].
+Definition walkers_never_meet : never_meet walker other_walker.
+Proof. apply (sweep_sound _ _ between_walkers). vm_compute. reflexivity. Qed.
+Definition wider (more : Q) (m : trip) : trip := {| leave := leave m; arrive := arrive m; start := start m; goal := goal m;
+  parts := map (fun p => {| corners := corners p; reach := reach p + more |}) (parts m) |}.
+Example wider_ones_might : sweep (wider 3 walker) other_walker between_walkers = false.
+Proof. vm_compute. reflexivity. Qed.
+Example without_the_last_moment_nothing_is_said : sweep walker other_walker (map (fun s => {| part_no := part_no s; other_no := other_no s;
+  since := since s; until := (since s + until s) / 2; direction := direction s; width := width s |}) between_walkers) = false.
+Proof. vm_compute. reflexivity. Qed.
+Definition passer : trip := {| leave := d 0 0; arrive := d 2 0; start := (d 0 0, d 0 0); goal := (d 3 0, d 1 1);
+  parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 1 2 |}] |}.
+Definition square : obstacle := Solid [[(1, 1); (2, 1); (2, 2); (1, 2)]].
+Definition past_the_square : list separation :=
+  [{| part_no := 0; other_no := 0; since := d 0 0; until := d 2 0;
+      direction := (d 5923097743747963 55, d (-8884646615621927) 53); width := d 3671297930057301 53 |};
+   {| part_no := 0; other_no := 1; since := d 0 0; until := d 2 0;
+      direction := (d 5923097743747963 55, d (-8884646615621927) 53); width := d 3671297930057301 53 |};
+   {| part_no := 0; other_no := 2; since := d 0 0; until := d 2 0;
+      direction := (d 5923097743747951 55, d (-1110580826952741) 50); width := d 1569493068208893 50 |};
+   {| part_no := 0; other_no := 3; since := d 0 0; until := d 2 0;
+      direction := (d 5923097743747951 55, d (-1110580826952741) 50); width := d 2576036182996473 52 |}].
+Definition it_stays_out : stays_out passer square.
+Proof. apply (sweep_past_sound _ _ past_the_square). vm_compute. reflexivity. Qed.
+Example with_an_edge_left_out_it_might_not : sweep_past passer square (tl past_the_square) = false.
 Proof. vm_compute. reflexivity. Qed.

@@ -7,10 +7,8 @@ Open Scope R_scope.
 
 (* --- Plane --- *)
 Definition vec := (R * R)%type.
-Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).
-Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
-Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
-Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
+Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).  Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
+Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).  Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
 Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
 Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
 Definition point := (Q * Q)%type.  Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
@@ -23,12 +21,10 @@ Inductive shape :=
 | Polygon (vertices : list point)                       (* their hull: segments are polygons of two vertices *)
 | Disc (centre : point) (radius : Q)
 | Ellipse (centre : point) (l11 l21 l22 : Q).           (* the unit disc under [l11 0; l21 l22], moved to the centre *)
-
 (* The same of the disc of radius sqrt(m). *)
 Definition in_ellipse (m : R) (c : point) (l11 l21 l22 : Q) (x : vec) := exists a b,
   a * a + b * b <= m /\ x = add (real c) (Q2R l11 * a, Q2R l21 * a + Q2R l22 * b).
-Definition inside (b : shape) (x : vec) : Prop :=
-  match b with
+Definition inside (b : shape) (x : vec) : Prop := match b with
   | Polygon vs => hull vs x
   | Disc c r => dot (sub x (real c)) (sub x (real c)) <= Q2R r * Q2R r
   | Ellipse c l11 l21 l22 => in_ellipse 1 c l11 l21 l22 x
@@ -54,8 +50,7 @@ Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := f
 Record row := { row_normal : point; row_offset : Q; soft : bool }.
 Record program := { rows : list row; disc : option Q; box_x : option Q; box_y : option Q; wish : point }.
 Definition at_most (x : R) (b : option Q) := match b with Some q => x <= Q2R q | None => True end.
-Definition slow (p : program) (v : vec) :=
-  match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
+Definition slow (p : program) (v : vec) := match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
   at_most (Rabs (fst v)) (box_x p) /\ at_most (Rabs (snd v)) (box_y p).
 Definition holds (give : R) (v : vec) (c : row) := Q2R (row_offset c) - give <= dot (real (row_normal c)) v.
 Definition allowed (give : R) (p : program) (v : vec) :=   (* hard ones hold, soft ones are broken by at most `give` *)
@@ -78,29 +73,22 @@ Definition sides (ps : list point) : list edge := match ps with [] => [] | a :: 
 Definition ring_sides (ps : list point) : list edge := match ps with [] => [] | a :: r => sides_from a (r ++ [a]) end.
 Definition edges_of (o : obstacle) : list edge := match o with Wall l => sides l | Solid rs => flat_map ring_sides rs end.
 Definition on (e : edge) (x : vec) := hull [fst e; snd e] x.
-
 (* Does the ray from x upward cross the side ab? Of its ends the left one counts, the right one does not. *)
-Definition le (a b : R) : bool := if Rle_dec a b then true else false.
-Definition lt (a b : R) : bool := if Rlt_dec a b then true else false.
+Definition le (a b : R) : bool := if Rle_dec a b then true else false.  Definition lt (a b : R) : bool := if Rlt_dec a b then true else false.
 Definition line (a b : vec) (t : R) : R := snd a + (snd b - snd a) / (fst b - fst a) * (t - fst a).
-Definition crosses (x a b : vec) : bool :=
-  xorb (le (fst a) (fst x)) (le (fst b) (fst x)) && lt (snd x) (line a b (fst x)).
+Definition crosses (x a b : vec) : bool := xorb (le (fst a) (fst x)) (le (fst b) (fst x)) && lt (snd x) (line a b (fst x)).
 Definition odd (es : list edge) (x : vec) : bool :=     (* is the number of crossings odd? *)
   fold_right (fun e sum => xorb (crosses x (real (fst e)) (real (snd e))) sum) false es.
 
 (* The disc has room at x: x is in no polygon, and no edge is nearer than r. *)
-Definition outside (os : list obstacle) (x : vec) := forall o, In o os ->
-  match o with Wall _ => True | Solid _ => odd (edges_of o) x = false end.
-Definition room (os : list obstacle) (r : R) (x : vec) := outside os x /\
-  forall o e y, In o os -> In e (edges_of o) -> on e y -> apart r x y.
+Definition outside (os : list obstacle) (x : vec) := forall o, In o os -> match o with Wall _ => True | Solid _ => odd (edges_of o) x = false end.
+Definition room (os : list obstacle) (r : R) (x : vec) := outside os x /\ forall o e y, In o os -> In e (edges_of o) -> on e y -> apart r x y.
 Definition near (d : R) (x y : vec) := Rabs (fst y - fst x) < d /\ Rabs (snd y - snd x) < d.
 Definition continuous (p : R -> vec) := forall t, 0 <= t <= 1 -> forall e, 0 < e ->
   exists d, 0 < d /\ forall s, 0 <= s <= 1 -> Rabs (s - t) < d -> near e (p t) (p s).
-Definition way (os : list obstacle) (r : R) (s g : vec) := exists p,
-  continuous p /\ p 0 = s /\ p 1 = g /\ forall t, 0 <= t <= 1 -> room os r (p t).
+Definition way (os : list obstacle) (r : R) (s g : vec) := exists p, continuous p /\ p 0 = s /\ p 1 = g /\ forall t, 0 <= t <= 1 -> room os r (p t).
 
-(* A corner of a closed chain, the obstacle and the edge of it that it lies on (numbered from 0), and whether a gap or
-   that edge leads to the next corner. *)
+(* A corner of a closed chain, the obstacle and the edge of it that it lies on, and whether a gap or that edge leads on. *)
 Record joint := { spot : point; obstacle_no : nat; edge_no : nat; gap_follows : bool }.
 
 (* --- Step and Run: all robots move at once, straight and evenly, past edges and discs that do too or stand still --- *)
@@ -115,23 +103,33 @@ Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list poi
   match rows with a :: ((b :: _) as r) => P a b /\ all_steps P r | _ => True end.
 Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows | [] => [] end.   (* rest, then the steps *)
 
+(* --- Sweep: bodies of convex parts, each grown by a reach, that move straight and evenly between two moments --- *)
+Record part := { corners : list point; reach : Q }.     (* corners seen from the place of the body *)
+Record trip := { leave : Q; arrive : Q; start : point; goal : point; parts : list part }.
+Definition under_way (m : trip) (t : R) := Q2R (leave m) <= t <= Q2R (arrive m).
+Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it *)
+  let l := Q2R (leave m) in let a := Q2R (arrive m) in mix (if Req_EM_T l a then s else (t - l) / (a - l)) (real (start m)) (real (goal m)).
+Definition covers (m : trip) (t s : R) (x : vec) := exists p y, In p (parts m) /\ hull (corners p) y /\
+  let d := sub x (add (at_time m t s) y) in dot d d <= Q2R (reach p) * Q2R (reach p).
+Definition never_meet (a b : trip) := forall t s x, under_way a t -> under_way b t -> 0 <= s <= 1 -> covers a t s x -> ~ covers b t s x.
+Definition stays_out (a : trip) (o : obstacle) := forall t s x, under_way a t -> 0 <= s <= 1 -> covers a t s x ->
+  outside [o] x /\ forall e, In e (edges_of o) -> ~ on e x.
+(* A direction that parts two of them, numbered from 0 (of an obstacle: its edges), between two moments. *)
+Record separation := { part_no : nat; other_no : nat; since : Q; until : Q; direction : point; width : Q }.
+
 (* --- The promises --- *)
 Module Type Verifier.
-  Parameter half_plane_holds : half_plane -> bool.
-  Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
+  Parameter half_plane_holds : half_plane -> bool.  Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
   Parameter pair_holds : half_plane -> point -> Q -> Q -> bool.
   Parameter pair_sound : forall c p r other, pair_holds c p r other = true -> keep_each_other_clear c p r other.
   Parameter contains : shape -> list point -> Q -> bool.
   Parameter contains_sound : forall c l11 l21 l22 ps m, contains (Ellipse c l11 l21 l22) ps m = true ->
     forall x, hull ps x -> in_ellipse (1 - Q2R m) c l11 l21 l22 x.
   Parameter nearest farthest least : program -> choice -> bool.
-  Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.
-  Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
+  Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.  Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
   Parameter least_sound : forall p c, least p c = true -> gives_least p c.
-  Parameter pinned : program -> point -> bool.
-  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
-  Parameter contradicted : program -> choice -> bool.
-  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
+  Parameter pinned : program -> point -> bool.  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
+  Parameter contradicted : program -> choice -> bool.  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
   Parameter route : list obstacle -> Q -> list point -> bool.
   Parameter route_sound : forall os r ps, route os r ps = true ->
     forall e x, In e (sides ps) -> on e x -> room os (Q2R r) x.
@@ -140,11 +138,13 @@ Module Type Verifier.
     room os (Q2R r) (real s) /\ room os (Q2R r) (real g) /\ ~ way os (Q2R r) (real s) (real g).
   Parameter blocked : list obstacle -> Q -> point -> nat -> option nat -> bool.   (* by an edge, or inside a polygon *)
   Parameter blocked_sound : forall os r x o e, blocked os r x o e = true -> ~ room os (Q2R r) (real x).
-  Parameter starts : list obstacle -> list motion -> bool.
-  Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
+  Parameter starts : list obstacle -> list motion -> bool.  Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
   Parameter step : list obstacle -> list motion -> list motion -> bool.
   Parameter step_sound : forall os discs ms, step os discs ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os discs ms.
   Parameter run : list obstacle -> list motion -> list Q -> list (list point) -> bool.   (* also of one row *)
   Parameter run_sound : forall os discs sizes rows, run os discs sizes rows = true ->
     Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os discs (moves sizes a b)) (with_start rows).
+  Parameter sweep : trip -> trip -> list separation -> bool.  Parameter sweep_sound : forall a b l, sweep a b l = true -> never_meet a b.
+  Parameter sweep_past : trip -> obstacle -> list separation -> bool.
+  Parameter sweep_past_sound : forall a o l, sweep_past a o l = true -> stays_out a o.
 End Verifier.

@@ -173,3 +173,43 @@ let route c =
             (if Json.(bool (get "inside" c)) then None else Some Json.(count (get "edge" c))) in
       if proven then "valid" else if radius = 0. then "not covered: a point, radius 0" else "not proven"
   with Json.Bad -> "not a certificate"
+
+(* --- Bodies that never meet, in JSON --- *)
+exception Not_covered of string
+
+let trip q m =
+  let known k = List.mem k ["from"; "to"; "body"] in
+  (match m with
+   | Json.Obj members -> List.iter (fun (k, _) -> if not (known k) then raise (Not_covered ("a motion with \"" ^ k ^ "\""))) members
+   | _ -> raise Json.Bad);
+  let timed = function Json.Arr [Json.Num t; Json.Num x; Json.Num y] -> (t, (q x, q y)) | _ -> raise Json.Bad in
+  let leave, start = timed (Json.get "from" m) and arrive, goal = timed (Json.get "to" m) in
+  let part p =
+    let r = Json.(num (get "radius" p)) in
+    if r < 0. then raise Json.Bad;
+    { corners = List.map (plain q) (at_least 1 Json.(arr (get "corners" p))); reach = q r } in
+  if arrive < leave then raise Json.Bad;
+  { leave = q leave; arrive = q arrive; start; goal; parts = List.map part (at_least 1 Json.(arr (get "body" m))) }
+
+let clear c =
+  try
+    let q = over (bits_needed c) in
+    let number k s = q Json.(num (get k s)) in
+    let separation s = { part_no = Json.(count (get "part" s)); other_no = Json.(count (get "other" s));
+      since = number "from" s; until = number "to" s; direction = plain q (Json.get "direction" s); width = number "margin" s } in
+    let a = trip q (Json.get "a" c) and separations = List.map separation Json.(arr (get "separations" c)) in
+    let proven = match Json.find "b" c, Json.find "obstacle" c with
+      | Some b, None -> Checked.sweep a (trip q b) separations
+      | None, Some o -> Checked.sweep_past a (obstacle q o) separations
+      | _ -> raise Json.Bad in
+    if proven then "valid" else "not proven"
+  with Json.Bad -> "not a certificate" | Not_covered what -> "not covered: " ^ what
+
+(* Elsewhere than under "certificate" other objects have kinds too. *)
+let is_certificate c = is_route c || Json.find "kind" c = Some (Json.Str "clear")
+(* By its kind; nothing where it names none. *)
+let of_kind c =
+  match Json.find "kind" c with
+  | Some (Json.Str "clear") -> Some (clear c)
+  | Some (Json.Str kind) -> Some (if is_route c then route c else "not covered: a certificate of kind \"" ^ kind ^ "\"")
+  | _ -> None

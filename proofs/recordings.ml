@@ -1,5 +1,5 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* The reader, continued: answers of `exactvo lp`, recordings and recordings of crowds; and the command line. *)
+(* The reader, continued: files of certificates, answers of `exactvo lp`, recordings and recordings of crowds. *)
 open Checker
 open Exact
 
@@ -38,16 +38,18 @@ let rec in_json found none v =
   match v with
   | Json.Str s -> if Certificates.begins s then found (Certificates.line s)
   | Json.Arr l -> List.iter (in_json found none) l
-  | Json.Obj _ when Certificates.is_route v -> found (Certificates.route v)
+  | Json.Obj _ when Certificates.is_certificate v -> Option.iter found (Certificates.of_kind v)
   | Json.Obj m -> List.iter (fun (k, c) ->
       if k <> "certificate" then in_json found none c else match c with
         | Json.Null -> none ()
-        | c when Certificates.is_route c -> found (Certificates.route c)
         | Json.Str s -> found (Certificates.line s)
-        | c -> found (match Json.find "text" c with Some (Json.Str s) -> Certificates.line s | _ -> "not a certificate")) m
+        | c -> found (match Json.find "text" c with
+            | Some (Json.Str s) when not (Certificates.is_certificate c) -> Certificates.line s
+            | _ -> Option.value (Certificates.of_kind c) ~default:"not a certificate")) m
   | _ -> ()
 
 let certificates file text =
+  Certificates.obstacles := None;
   let verdicts = ref [] and none = ref 0 in
   let found v = verdicts := v :: !verdicts in
   let json span = match Json.parse_part text span with v -> in_json found (fun () -> incr none) v | exception Json.Bad -> found "unreadable JSON" in
@@ -284,40 +286,11 @@ let crowd file s =
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
     ok
 
-let usage = "Check certificates and recordings by checkers that are proven in Coq\n\
-Usage: exactvo-verify FILE [OPTIONS]\n\n\
-Positionals:\n\
-\032 FILE                Certificates, as audit --certificate takes them; a recording.jsonl; a crowd's FILE.evr; answers of lp --json with --problems; - for stdin\n\n\
-Options:\n\
-\032 -h,--help           Print this help message and exit\n\
-\032 --problems FILE     The problems, a line of JSON each, that FILE has the answers of\n\n\
-Examples:\n\
-\032 exactvo route office.geojson --from 2,3 --to 18,7 --radius 0.4 --json | exactvo-verify -\n\
-\032 exactvo lp problems.jsonl --json > answers.jsonl && exactvo-verify answers.jsonl --problems problems.jsonl\n\
-\032 exactvo-verify out/A2/recording.jsonl\n\
-\032   (what is proven, and what is trusted: docs/guide/proofs.md)\n\n\
-Exit status:\n\
-\032 0    all of it is verified\n\
-\032 1    some of it is not\n\
-\032 2    the file or an option is wrong\n"
-
-let main () =
-
-  let outcome = match List.tl (Array.to_list Sys.argv) with
-    | ["-h"] | ["--help"] -> print_string usage; Ok true
-    | ([file] | [file; "--problems"; _]) as args when file = "-" || (file <> "" && file.[0] <> '-') -> (try
-        let text = read file in
-        Ok (match args with
-          | [_; _; problems] -> answers file text problems
-          | _ when String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && text.[7] >= '1' && text.[7] <= '3' -> crowd file text
-          | _ when String.starts_with ~prefix:"{\"header\"" text -> recording file text
-          | _ -> certificates file text)
-      with
-      | Stack_overflow -> Error (file ^ ": found more robots or numbers than the stack holds, expected a larger one (ulimit -s unlimited)")
-      | Refused (f, place, found, expected, code) ->
-        Error (Printf.sprintf "%s: %sfound %s, expected %s [%s]" f (if place = "" then "" else place ^ ": ") found expected code))
-    | args -> Error (Printf.sprintf "found '%s', expected a file and at most --problems FILE (--help)" (String.concat " " args)) in
-  match outcome with
-  | Ok true -> exit 0
-  | Ok false -> exit 1
-  | Error words -> flush stdout; prerr_endline ("exactvo-verify: error: " ^ String.trim words); exit 2
+(* --- Any of them --- *)
+let is_crowd text = String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && text.[7] >= '1' && text.[7] <= '3'
+(* Whether all of the file is verified. *)
+let judge file =
+  let text = read file in
+  if is_crowd text then crowd file text
+  else if String.starts_with ~prefix:"{\"header\"" text then recording file text
+  else certificates file text

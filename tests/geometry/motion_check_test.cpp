@@ -743,5 +743,21 @@ TEST(MotionCertificate, InsideAPolygonIsNotProvenByItsEdges) {
   EXPECT_TRUE(geometry::proves_clear(edges, rest, geometry::disc_body(0.5), walls));
 }
 
+// A radius below 0 proved a body clear of what it met: the reach of the other one shrank by it.
+TEST(MotionCertificate, BodiesAndTimesThatCannotBeAreRefused) {
+  const geometry::Motion rest = geometry::held({0, {0, 1}}, 1), other = geometry::held({0, {0, 0}}, 1);
+  const MotionCertificate touching{{{0, 0, 0.0, 1.0, {0, 1}, 0.0}}};
+  EXPECT_FALSE(geometry::proves_clear(touching, rest, geometry::disc_body(1.0), other, geometry::disc_body(0.0)));
+  const geometry::RigidBody negative{{{{0, 0}}, -0.5}}, nothing{{{}, 1.0}};
+  const Obstacle wall = Polyline{{{-3, 0}, {3, 0}}};
+  EXPECT_THROW(geometry::proves_clear(touching, rest, geometry::disc_body(1.0), other, negative), std::logic_error);
+  EXPECT_THROW(geometry::proves_clear(touching, rest, negative, other, geometry::disc_body(1.0)), std::logic_error);
+  EXPECT_THROW(geometry::proves_clear(touching, rest, negative, wall), std::logic_error);
+  EXPECT_THROW(geometry::proves_clear(touching, rest, nothing, wall), std::logic_error);
+  const geometry::Motion back = StraightMotion{{1, {0, 1}}, {0, {0, 1}}};
+  EXPECT_THROW(geometry::proves_clear({}, back, geometry::disc_body(1.0), wall), std::logic_error);
+  EXPECT_THROW(geometry::proves_clear({}, rest, geometry::disc_body(1.0), back, negative), std::logic_error);
+}
+
 }  // namespace
 }  // namespace exactvo::test

@@ -181,7 +181,7 @@ TEST(RouteContact, EndsOnObstaclesOfEveryKindAreProven) {
     const test::FieldKind kind = test::kFieldKinds[static_cast<std::size_t>(k) % std::size(test::kFieldKinds)];
     const test::RouteField f = test::route_field(random, kind);
     // Gaps of 1e-12 m between corners that almost coincide leave a point no room to go near the shortest curve.
-    const double longer = kind == test::FieldKind::rounded ? 1e-4 : 1e-9;
+    const double longer = 1e-9;
     const RoutePlan plan(RouteMap(f.obstacles), 0.0);
     const auto place_on = [&] {
       const std::vector<Segment> edges =

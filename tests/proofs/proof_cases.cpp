@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes certificates, every second one forged, with the verdicts of the checkers in C++, for the proven checker to
-// judge too: proof_cases COUNT SEED OUT. A third of COUNT each are half-planes and containments (lines.txt), routes
-// (routes.jsonl) and choices (problems.jsonl, answers.jsonl); a file NAME.valid beside each has a 0 or 1 a line.
+// judge too: proof_cases COUNT SEED OUT. A quarter of COUNT each are half-planes and containments (lines.txt), routes
+// (routes.jsonl), bodies that never meet (clear.jsonl) and choices (problems.jsonl, answers.jsonl); a file NAME.valid
+// beside each has a 0 or 1 a line.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "exactvo/geometry/motion_certificate.h"
 #include "exactvo/geometry/routes.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/constraint.h"
 #include "exactvo/vo/containment.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/velocity_obstacle.h"
+#include "geometry/motion_case.h"
 #include "geometry/route_mutations.h"
 #include "lp/problem_kinds.h"
 #include "options/program_options.h"
+#include "support/motion_certificates.h"
 #include "support/route_certificates.h"
 #include "support/run.h"
 
@@ -167,6 +173,59 @@ void write_routes(std::size_t count, SeededRandom& random, const std::string& fo
   }
 }
 
+// --- Bodies that never meet, as `exactvo check --certificates` writes them ---
+
+/// Every number of a tree.
+void numbers_of(Json& json, std::vector<Json*>& numbers) {
+  if (json.is_number()) numbers.push_back(&json);
+  if (json.is_structured())
+    for (Json& member : json) numbers_of(member, numbers);
+}
+
+void forge(Json& certificate, SeededRandom& random) {
+  std::vector<Json*> numbers;
+  numbers_of(certificate, numbers);
+  Json& number = *numbers[static_cast<std::size_t>(random.integer(0, static_cast<int>(numbers.size()) - 1))];
+  if (number.is_number_unsigned()) {
+    number = number.get<unsigned>() + 1;
+  } else {
+    number = slightly_off(number.get<double>(), random);
+  }
+  Json& separations = certificate["separations"];
+  if (random.integer(0, 9) == 0 && !separations.empty())
+    separations.erase(static_cast<std::size_t>(random.integer(0, static_cast<int>(separations.size()) - 1)));
+}
+
+bool never_meet(const Json& certificate) {
+  return tools::check_motion_certificate(tools::OrderedJson::parse(certificate.dump())).valid;
+}
+
+std::optional<Json> clear_at_random(SeededRandom& random) {
+  constexpr test::MotionKind kStraight[] = {test::MotionKind::discs, test::MotionKind::disc_and_edges,
+                                            test::MotionKind::bodies};
+  const test::MotionCase c = test::random_motion_case(random, kStraight[random.integer(0, 2)]);
+  const auto* a = std::get_if<geometry::StraightMotion>(&c.a);
+  const auto* b = c.b ? std::get_if<geometry::StraightMotion>(&*c.b) : nullptr;
+  if (a == nullptr || (c.b && b == nullptr)) return std::nullopt;
+  const auto certificate =
+      c.b ? geometry::certify(c.a, c.body_a, *c.b, c.body_b) : geometry::certify(c.a, c.body_a, *c.obstacle);
+  if (!certificate) return std::nullopt;
+  const tools::BodyInMotion moving{*a, &c.body_a};
+  if (b != nullptr) return tools::certificate_json(*certificate, moving, {*b, &c.body_b});
+  return tools::certificate_json(*certificate, moving, formation::SceneObstacle{"0", *c.obstacle});
+}
+
+void write_clear(std::size_t count, SeededRandom& random, const std::string& folder) {
+  Cases cases(folder, "clear", ".jsonl");
+  for (std::size_t k = 0; k < count;) {
+    auto certificate = clear_at_random(random);
+    if (!certificate) continue;
+    if (k % 2) forge(*certificate, random);
+    cases.add(certificate->dump(), never_meet(*certificate));
+    ++k;
+  }
+}
+
 // --- Choices, as `exactvo lp` reads and prints them ---
 
 Json number_or_null(double bound) {
@@ -267,14 +326,15 @@ int main(int argc, char** argv) {
     std::uint64_t count = 10000, seed = 1;
     std::string out;
     tools::ProgramOptions options("proof_cases", "Writes certificates, real and forged, with the verdicts of C++.");
-    options.whole_number("COUNT", count, 3, "Certificates in all");
+    options.whole_number("COUNT", count, 4, "Certificates in all");
     options.whole_number("SEED", seed, 0, "Of the random numbers");
     options.text("OUT", out, "A folder that exists", true);
     if (!options.parse(argc, argv)) return 0;
     SeededRandom random(seed);
-    write_lines(count / 3, random, out);
-    write_routes(count / 3, random, out);
-    write_choices(count - count / 3 * 2, random, out);
+    write_lines(count / 4, random, out);
+    write_routes(count / 4, random, out);
+    write_clear(count / 4, random, out);
+    write_choices(count - count / 4 * 3, random, out);
     return 0;
   });
 }

@@ -8,6 +8,9 @@ axioms        the theorems of Theorems.v rest on the axioms that the guide lists
 coqchk        Coq's own checker accepts every compiled theory
 certificates  what the program writes is verified; each number of it changed is refused
 recordings    of runs and crowds likewise; of random crowds the verdict on pairs of robots is that of `audit`
+command       files, folders, options and exit statuses of exactvo-verify
+scenes        recordings of scenes in datasets/data and edited copies: what one of both refutes the other does. From
+              `--count 100000` on of all scenes
 page          COUNT claims, half of them forged: one verdict from C++, the checker of `view`'s page and the proven one
 differential  COUNT certificates, half of them forged: one verdict from the checkers in C++ and the proven one,
               and of 400 routes from the one in Python. A campaign of 10^5 is
@@ -93,7 +96,7 @@ def axioms(tools):
 def coqchk(tools):
     # Our theories alone: the guide has the command that checks the standard library too.
     ours = [f"ExactVO.{path.stem}" for path in sorted(tools.theories.glob("*.vo"))]
-    require(len(ours) == 9, ours)
+    require(len(ours) == 10, ours)
     checked = run("coqchk", "-silent", "-o", "-Q", tools.theories, "ExactVO", *[word for name in ours for word in ("-norec", name)])
     words = checked.stdout + checked.stderr
     require(checked.returncode == 0 and "CONTEXT SUMMARY" in words, words)
@@ -144,6 +147,18 @@ def with_number(tree, path, change):
     return copy
 
 
+def compared(tools, changed, kind):
+    """How many changed certificates were judged: alike by `audit` and exactvo-verify, and not all alike."""
+    path = tools.file("changed.jsonl", "\n".join(changed) + "\n")
+    audited = json.loads(run(tools.program, "audit", "--certificate", path, "--json").stdout)["verdicts"]
+    status, verdicts, words = tools.verified("changed.jsonl", "\n".join(changed) + "\n")
+    require(len(verdicts) == len(audited) == len(changed), len(verdicts), len(audited), len(changed))
+    require("valid" in audited and any(v != "valid" for v in audited), kind, "forgeries of one verdict only")
+    for line, ours, theirs in zip(changed, verdicts, audited):
+        require((ours == "valid") == (theirs == "valid"), kind, ours, theirs, line)
+    return len(changed)
+
+
 def certificates(tools):
     square = "POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))"
     lines = []
@@ -171,14 +186,26 @@ def certificates(tools):
         # Some of these are true all the same, such as a corner moved away from walls: the audit says which.
         changed = [json.dumps(with_number(certificate, path, change)) for path in numbers_in(certificate)
                    for change in (lambda x: x + 1 if isinstance(x, int) else x + 0.35, lambda x: x - 1 if isinstance(x, int) else 0.5 * x)]
-        path = tools.file("changed.jsonl", "\n".join(changed) + "\n")
-        audited = json.loads(run(tools.program, "audit", "--certificate", path, "--json").stdout)["verdicts"]
-        status, verdicts, words = tools.verified("changed.jsonl", "\n".join(changed) + "\n")
-        require(len(verdicts) == len(audited) == len(changed) > 100, len(verdicts), len(audited), len(changed))
-        require("valid" in audited and any(v != "valid" for v in audited), kind, "forgeries of one verdict only")
-        for line, ours, theirs in zip(changed, verdicts, audited):
-            require((ours == "valid") == (theirs == "valid"), kind, ours, theirs, line)
-        count += len(changed)
+        require(len(changed) > 100, kind, len(changed))
+        count += compared(tools, changed, kind)
+
+    tracks = tools.file("tracks.csv", "t,id,x,y\n0,A,0,0\n0,B,3.5,-1.25\n2,A,3,0.5\n2,B,1,-1.5\n")
+    square = tools.file("square.wkt", "POLYGON((1 1, 2 1, 2 2, 1 2, 1 1))\n")
+    proofs = tools.folder / "proofs.jsonl"
+    for body in (("--radius", "0.25"), ("--footprint", "POLYGON((-0.2 -0.2, 0.2 -0.2, 0.2 0.2, -0.2 0.2, -0.2 -0.2))")):
+        tools.make("check", tracks, *body, "--map", square, "--near", "5", "--certificates", proofs)
+        text = proofs.read_text()
+        status, verdicts, words = tools.verified("proofs.jsonl", text)
+        require(status == 0 and verdicts == ["valid"] * 3, words)
+        for certificate in [json.loads(line)["certificate"] for line in text.splitlines() if '"kind"' in line]:
+            changed = [json.dumps(with_number(certificate, path, change)) for path in numbers_in(certificate)
+                       for change in (lambda x: x + 1 if isinstance(x, int) else x + 0.35, lambda x: x - 1 if isinstance(x, int) else 0.5 * x - 0.1)]
+            count += compared(tools, changed, "clear")
+        certificate = json.loads(text.splitlines()[0])["certificate"]
+        for other, words in ((dict(certificate, kind="curved"), 'not covered: a certificate of kind "curved"'),
+                             (dict(certificate, a=dict(certificate["a"], twist=0.1)), 'not covered: a motion with "twist"')):
+            status, verdicts, _ = tools.verified("other.jsonl", json.dumps({"certificate": other}))
+            require(status == 1 and verdicts == [words], verdicts)
 
     problems = ('{"bound":{"disc":3},"preferred":[3,0],"constraints":[{"normal":[-1,0],"offset":-1.75}]}\n'
                 '{"bound":{"disc":2},"preferred":[1,0],"constraints":[{"normal":[1,0],"offset":1,"priority":"soft"},{"normal":[-1,0],"offset":1,"priority":"soft"}]}\n'
@@ -204,6 +231,38 @@ def certificates(tools):
     missing = run(tools.verify, tools.folder / "missing")
     require(missing.returncode == 2 and "E_FILE_MISSING" in missing.stderr, missing.stderr)
     print(count, "forgeries judged")
+
+
+def command(tools):
+    """Files, folders, options, exit statuses."""
+    asked = lambda *arguments, **options: run(tools.verify, *arguments, **options)
+    version, told = asked("--version"), asked("--help")
+    require(version.returncode == 0 and re.match(r"exactvo-verify \d+\.\d+\.\d+\nproven with Coq 8\.", version.stdout), version.stdout)
+    require(told.returncode == 0 and re.search(r"^Exit status:\n  0 .*\n  1 .*\n  2 ", told.stdout, re.M), told.stdout)
+    runs = tools.folder / "runs"
+    (runs / "b").mkdir(parents=True)
+    run(tools.program, "simulate", tools.source / "datasets/data/paper/A7.json", "--no-figures", "--out", runs / "a", check=True)
+    text = (runs / "a/recording.jsonl").read_text()
+    (runs / "b/recording.jsonl").write_text(text)
+    (runs / "b/crowd.evr").write_bytes(crowd([[(0, 0), (2000, 0)]] * 2, [0.5, 0.5]))
+    (runs / "notes.txt").write_text("none of them\n")
+    done = asked(runs)
+    require(done.returncode == 0 and done.stdout.endswith("3 files: 3 verified, 0 not, 0 wrong\n"), done.stdout, done.stderr)
+    require([line for line in done.stdout.splitlines() if line.startswith(str(runs))] == [str(runs / name) for name in ("a/recording.jsonl", "b/crowd.evr", "b/recording.jsonl")], done.stdout)
+    meeting = tools.file("meeting.evr", crowd([[(0, 0), (1000, 0)]] * 2, [0.5, 0.5]))
+    done = asked(runs, meeting)
+    require(done.returncode == 1 and done.stdout.endswith("4 files: 3 verified, 1 not, 0 wrong\n"), done.stdout)
+    done = asked(meeting, tools.folder / "missing", runs / "b/crowd.evr")
+    require(done.returncode == 2 and done.stdout.endswith("3 files: 1 verified, 1 not, 1 wrong\n") and "E_FILE_MISSING" in done.stderr, done.stdout, done.stderr)
+    done = asked("-", input=text)
+    require(done.returncode == 0 and "opposite half-planes" in done.stdout, done.stdout)
+    empty = tools.folder / "empty"
+    empty.mkdir()
+    for arguments, words in (((), "found no file"), (("--nope",), "found '--nope'"), ((empty,), "a folder without recordings"), (("--problems",), "nothing behind it"),
+                             ((meeting, meeting, "--problems", meeting), "found 2 files of answers"), (("--", "--version"), "E_FILE_MISSING"), (("",), "found ''")):
+        done = asked(*arguments)
+        require(done.returncode == 2 and words in done.stderr and done.stderr.startswith("exactvo-verify: error: "), arguments, done.stderr)
+    print("files, folders and options")
 
 
 # --- Recordings ---
@@ -375,17 +434,100 @@ def recordings(tools):
     print("random crowds:", verdicts[True], "clear,", verdicts[False], "not; seed", tools.flags.seed)
 
 
+# --- Scenes and edited copies ---
+
+SLICE = ("paper/A1", "paper/A7", "paper/B0", "room/room")  # of ctest; a campaign takes all
+
+
+KINDS = ("position", "onto", "offset", "chosen", "normal", "preferred", "multiplier")
+
+
+def changed_row(rng, lines, rows, kind):
+    """A number or the place of that kind of a row, changed; what it is of."""
+    for _ in range(100):
+        k = rng.choice(rows[:-1])
+        row = json.loads(lines[k])
+        robot = rng.choice(row["row"]["robots"])
+        bound = [c for c in robot.get("constraints", []) if c.get("certified")]
+        if bound:
+            break
+    else:
+        kind = "position"
+    by = rng.choice((1e-12, 1e-6, 1e-3, 0.3, 3.0)) * rng.choice((-1, 1))
+    if kind == "onto":  # an obstacle
+        obstacle = rng.choice(json.loads(lines[0])["header"]["scenario"]["obstacles"])
+        robot["position"] = obstacle["disc"]["centre"] if "disc" in obstacle else obstacle.get("polygon", obstacle.get("polyline"))[0]
+    elif kind in ("position", "chosen", "preferred"):
+        robot[kind][rng.randrange(2)] += by
+    else:
+        constraint = rng.choice(bound)
+        if kind == "normal":
+            constraint["normal"][rng.randrange(2)] += by
+        else:
+            constraint[kind] = constraint.get(kind, 0.0) + by
+    return lines[:k] + [json.dumps(row) + "\n"] + lines[k + 1:], f"{kind} of row {k - rows[0]} by {by}"
+
+
+def judged(tools, name, lines):
+    """By exactvo-verify and by `audit`: half-planes, choices, motions. None where a point is asked of more by the audit."""
+    path = tools.file("scene.jsonl", "".join(lines))
+    proven, audited = run(tools.verify, path), run(tools.program, "audit", path, "--json")
+    require(proven.returncode in (0, 1) and audited.returncode in (0, 1), name, proven.stderr, audited.stderr)
+    report, words = json.loads(audited.stdout), proven.stdout
+    counts = lambda pattern: [int(x) for x in re.search(pattern, words).groups()]
+    all_rows, apart, clear = counts(r"(\d+) asked, in (\d+) no two robots overlap, in (\d+) also")
+    planes, pairs, choices = (counts(what + r": (\d+) asked, (\d+) proven") for what in ("at rest", "opposite half-planes", "choices with multipliers"))
+    ours = {"half_planes": planes[0] == planes[1] and pairs[0] == pairs[1], "choices": choices[0] == choices[1], "motions": all_rows == clear}
+    theirs = {point: report["points"][point]["refuted"] == 0 for point in ours}
+    # The audit first compares what a row says of its choice: which half-planes bind, and the violation. No theorem does.
+    if ours["choices"]:
+        theirs["choices"] = not re.search("breaks a half-plane or the speed bound|is not proven the best|has more multipliers", json.dumps(report["findings"]))
+    theirs["motions"] = theirs["motions"] and report["collisions"] == 0
+    return ours, theirs, "the motions: robots do not move straight" in words or "moving obstacles" in words
+
+
+def scenes(tools):
+    """Of every scene of datasets/data (in ctest: of a few) and of edited copies: what one checker refutes the other does."""
+    campaign = tools.flags.count >= 100000
+    data, rng = tools.source / "datasets/data", random.Random(tools.flags.seed)
+    all_scenes = sorted(path for path in data.glob("*/*.json") if '"robots"' in path.read_text() or '"formation"' in path.read_text())
+    chosen = [path for path in all_scenes if campaign or str(path.relative_to(data).with_suffix("")) in SLICE]
+    require(len(chosen) >= len(SLICE), chosen)
+    copies = max(len(KINDS), tools.flags.count // 5000)
+    tally, judged_copies = {}, 0
+    for scene in chosen:
+        out = tools.folder / scene.stem
+        made = run(tools.program, "simulate", scene, "--no-figures", "--decisions", "binding", "--out", out)
+        require(made.returncode in (0, 1), scene, made.stderr)
+        lines = (out / "recording.jsonl").read_text().splitlines(True)
+        rows = [k for k, line in enumerate(lines) if line.startswith('{"row"')]
+        for copy in range(copies + 1):
+            edited, what = changed_row(rng, lines, rows, KINDS[copy % len(KINDS)]) if copy else (lines, "as it was made")
+            ours, theirs, rows_alone = judged(tools, scene, edited)
+            for point in ours:
+                # The audit asks more of motions where they are curves, or obstacles move, and of half-planes against what moves.
+                at_least = point == "half_planes" or (point == "motions" and rows_alone)
+                agrees = (ours[point] or not theirs[point]) if at_least else ours[point] == theirs[point]
+                require(agrees, "seed", tools.flags.seed, scene, what, point, "proven:", ours, "audit:", theirs)
+                tally[point, ours[point], theirs[point]] = tally.get((point, ours[point], theirs[point]), 0) + 1
+            judged_copies += copy > 0
+    for point in ("half_planes", "choices", "motions"):
+        require(tally.get((point, False, False), 0) > 0, point, "was never refuted:", tally)
+    print(len(chosen), "scenes,", judged_copies, "edited copies;", *(f"{point}: proven {ours}, audit {theirs}: {n};" for (point, ours, theirs), n in sorted(tally.items())), "seed", tools.flags.seed)
+
+
 # --- One verdict ---
 
 
 def differential(tools):
     made = run(tools.cases, tools.flags.count, tools.flags.seed, tools.folder)
     require(made.returncode == 0, made.stderr)
-    for name, file, options in (("lines", "lines.txt", ()), ("routes", "routes.jsonl", ()), ("answers", "answers.jsonl", ("--problems", tools.folder / "problems.jsonl"))):
+    for name, file, options in (("lines", "lines.txt", ()), ("routes", "routes.jsonl", ()), ("clear", "clear.jsonl", ()),
+                                ("answers", "answers.jsonl", ("--problems", tools.folder / "problems.jsonl"))):
         expected = [line == "1" for line in (tools.folder / f"{name}.valid").read_text().split()]
         done = run(tools.verify, tools.folder / file, *options)
         verdicts = re.findall(r"^\d+: (.*)$", done.stdout, re.M)
-        require(len(verdicts) == len(expected) >= tools.flags.count // 3, name, len(verdicts), len(expected), done.stderr)
+        require(len(verdicts) == len(expected) >= tools.flags.count // 4, name, len(verdicts), len(expected), done.stderr)
         for line, ours, theirs in zip((tools.folder / file).read_text().splitlines(), verdicts, expected):
             require((ours == "valid") == theirs, name, "seed", tools.flags.seed, "proven:", ours, "C++:", theirs, line)
         require(0.2 < sum(expected) / len(expected) < 0.9, name, "hardly anything is forged, or real:", sum(expected), len(expected))
@@ -432,7 +574,7 @@ def page(tools):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "recordings", "page", "differential"])
+    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "command", "recordings", "scenes", "page", "differential"])
     for name in ("program", "cases", "claims", "build", "source"):
         parser.add_argument("--" + name, required=True)
     parser.add_argument("--count", type=int, default=10000)

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "exactvo/geometry/motion_certificate.h"
+#include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace motion_check {
@@ -88,6 +89,14 @@ std::vector<Number> bernstein(std::vector<Number> values) {
   }
   for (std::size_t i = 0; i < n; ++i) values[i] /= rows[i][i];
   return values;
+}
+
+void require(const Motion& motion) {
+  EXACTVO_REQUIRE(start_of(motion) <= end_of(motion), hex_text(start_of(motion)) + " " + hex_text(end_of(motion)));
+}
+void require(const RigidBody& body) {
+  for (const RoundedPolygon& part : body)
+    EXACTVO_REQUIRE(part.radius >= 0.0 && !part.corners.empty(), hex_text(part.radius));
 }
 
 class Check {
@@ -185,6 +194,10 @@ bool all_hold(const Check& check, const MotionCertificate& certificate, const Ri
 
 bool proves_clear(const MotionCertificate& certificate, const Motion& a, const RigidBody& body_a, const Motion& b,
                   const RigidBody& body_b) {
+  motion_check::require(a);
+  motion_check::require(b);
+  motion_check::require(body_a);
+  motion_check::require(body_b);
   const motion_check::Check check(a, &b);
   return motion_check::all_hold(check, certificate, body_a, body_b.size(), [&](std::size_t i) {
     return std::pair{body_b[i].corners, body_b[i].radius};
@@ -193,6 +206,8 @@ bool proves_clear(const MotionCertificate& certificate, const Motion& a, const R
 
 bool proves_clear(const MotionCertificate& certificate, const Motion& a, const RigidBody& body_a,
                   const Obstacle& obstacle) {
+  motion_check::require(a);
+  motion_check::require(body_a);
   const motion_check::Check check(a, nullptr);
   const std::vector<Segment> edges = edges_of(obstacle);
   if (has_interior(obstacle))

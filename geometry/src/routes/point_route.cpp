@@ -196,11 +196,14 @@ class TautCurve {
     constexpr double kRounding = 0x1p-45;
     const Vec2 a = points_[leg], d = points_[leg + 1] - a;
     const Vec2 right = row_.end(portal, false), along = row_.end(portal, true) - right;
-    const double r = cross(d, right - a), l = cross(d, along);
-    if (std::fabs(l) > kRounding * size_ * norm(d)) return std::clamp(-r / l, 0.0, 1.0);
-    // The piece runs along the portal: to where it ends.
     const double squared = squared_norm(along);
-    return squared > 0.0 ? std::clamp(dot(points_[leg + 1] - right, along) / squared, 0.0, 1.0) : 0.5;
+    if (!(squared > 0.0)) return 0.5;
+    const double begin = dot(a - right, along) / squared, end = dot(points_[leg + 1] - right, along) / squared;
+    const double r = cross(d, right - a), l = cross(d, along);
+    // A piece that runs along the portal crosses it where it ends. One that almost does so crosses it between its ends,
+    // however wrong the quotient is: beyond them the route would have to come back.
+    const double share = std::fabs(l) > kRounding * size_ * norm(d) ? -r / l : end;
+    return std::clamp(std::clamp(share, std::min(begin, end), std::max(begin, end)), 0.0, 1.0);
   }
 
   double inset_share(std::size_t portal, double inset) const {
