@@ -98,9 +98,13 @@ TEST_P(Generator, Property3_ItemsKeepToTheirSquares) {
 }
 
 TEST_P(Generator, FarItemsAreAsGood) {
-  for (const SceneObstacle& o : generated_item(GetParam(), 9'999'999, 5)) {
+  const auto item = generated_item(GetParam(), 9'999'999, 5);
+  EXPECT_FALSE(item.empty());
+  for (const SceneObstacle& o : item) {
     if (const auto* polygon = std::get_if<Polygon>(&o.shape)) {
       EXPECT_TRUE(geometry::is_simple(polygon->outer)) << o.id;
+    } else {
+      EXPECT_TRUE(geometry::normalize_polyline(std::get<geometry::Polyline>(o.shape).points).problems.empty()) << o.id;
     }
   }
 }

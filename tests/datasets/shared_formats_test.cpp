@@ -47,13 +47,16 @@ TEST(SharedFormats, MovingAiMapsHaveTheirBlockedCells) {
 
 TEST(SharedFormats, MovingAiTasksCount) {
   EXACTVO_NEEDS_SHARED_DATA();
+  int files = 0;
   for (const ManifestRow& row : manifest_of({"movingai"})) {
     if (row.format != "movingai-scen") continue;
+    ++files;
     SCOPED_TRACE(row.path);
     const std::vector<PathTask> tasks = read_tasks(shared_data() / row.path);
     EXPECT_EQ(static_cast<long>(tasks.size()), row.count("tasks"));
     EXPECT_TRUE(read_all(row.path).obstacles.empty());
   }
+  EXPECT_GT(files, 0);
 }
 
 TEST(SharedFormats, RosMapsReadOrNameWhatIsMissing) {

@@ -51,6 +51,15 @@ TEST_F(SmallFormats, EveryPointLiesInAPolygon) {
   for (const Vec2 p : points) EXPECT_TRUE(covers(file, p)) << p.x << " " << p.y;
   EXPECT_LE(file.coverage->occupied, 300u);
   EXPECT_EQ(file.coverage->cell_area, 0.05 * 0.05);
+  // Nothing else is covered: a place in no cell of a point is farther from each of them than the diagonal of a cell.
+  int free = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Vec2 at = random.in_box(2.5);
+    if (std::any_of(points.begin(), points.end(), [&](Vec2 p) { return geometry::norm(p - at) <= 0.0708; })) continue;
+    EXPECT_FALSE(covers(file, at)) << at.x << " " << at.y;
+    ++free;
+  }
+  EXPECT_GT(free, 500);
 }
 
 TEST_F(SmallFormats, PointsAreKnownByTheirFirstLineAndBadOnesNamed) {
