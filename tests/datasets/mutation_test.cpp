@@ -63,18 +63,23 @@ TEST_P(DamagedFiles, GiveObstaclesOrADataError) {
     return read_obstacles(folder / sample.name, options);
   };
   EXPECT_NO_THROW(read(sample.text));
+  int refused = 0, accepted = 0;
   for (int k = 0; k < 400; ++k) {
     const std::string text = damaged(sample.text, random);
     try {
       const ReadCounts n = read(text).counts;
       ASSERT_EQ(n.read, n.done + n.repaired + n.passed_over + n.rejected) << text;
+      ++(n.rejected > 0 ? refused : accepted);
     } catch (const DataError& error) {
       ASSERT_FALSE(error.found().empty()) << text;
+      ++refused;
     } catch (const std::exception& error) {
       FAIL() << error.what() << "\n" << text;
     }
   }
   std::filesystem::remove_all(folder);
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(accepted, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -129,16 +134,19 @@ TEST(DamagedScenarios, AreRefusedByName) {
   std::ifstream file(std::filesystem::path(EXACTVO_SOURCE_DIR) / "datasets/data/paper/B3.json");
   std::ostringstream good;
   good << file.rdbuf();
+  int refused = 0;
   for (int k = 0; k < 1000; ++k) {
     const std::string text = damaged(good.str(), random);
     try {
       parse_scenario(text, "damaged.json", {});
     } catch (const DataError& error) {
       ASSERT_FALSE(error.expected().empty()) << text;
+      ++refused;
     } catch (const std::exception& error) {
       FAIL() << error.what() << "\n" << text;
     }
   }
+  EXPECT_GT(refused, 500);
 }
 
 }  // namespace

@@ -91,11 +91,11 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
                  formation::method_names()))
           ->capture_default_str();
   flags.method_option = method;
-  flags.of_goals = {app.add_option(
-      "--guidance,-g", flags.guidance,
-      help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};
+  flags.of_goals = {
+      app.add_option("--guidance,-g", flags.guidance,
+                     help("Guidance of robots with goals, overriding the scenario", formation::guidance_names()))};
   app.add_option("--liveness", flags.liveness,
-                 help("What prevents deadlocks, instead of what the scenario says (in formations plan or off)",
+                 help("Prevention of deadlocks, overriding the scenario (in formations plan or off)",
                       formation::liveness_names()));
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))

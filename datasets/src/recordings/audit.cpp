@@ -346,7 +346,7 @@ void add(AuditReport& sum, const AuditReport& other) {
 std::vector<std::string> not_audited(const AuditReport& report) {
   std::vector<std::string> words;
   if (!report.scenario_was_given)
-    words.emplace_back("that the scenario in the recording is the one that was meant (--scenario FILE compares them)");
+    words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
   words.emplace_back(
       "why a velocity was preferred, and what is said beside the numbers: mode, side, note, clearance, "
       "method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall time");

@@ -328,11 +328,10 @@ void declare_reading(CLI::App& app, BatchFlags& flags) {
   app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
   app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
-  app.add_option("--unknown", flags.unknown, "What unknown cells of ROS maps are: free, blocked")
-      ->capture_default_str();
-  app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)");
+  app.add_option("--unknown", flags.unknown, "Unknown cells of ROS maps: free, blocked")->capture_default_str();
+  app.add_option("--cell-size", flags.cell_size, "Cell size of grids without a scale (1) and of scans (0.05), m");
   app.add_option("--partition", flags.partition,
-                 "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
+                 "Method for convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
                  "approximate, optimal")
       ->capture_default_str();
   app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m")
@@ -340,10 +339,10 @@ void declare_reading(CLI::App& app, BatchFlags& flags) {
 }
 
 void declare_robot(CLI::App& app, BatchFlags& flags) {
-  app.add_option("--time-horizon", flags.time_horizon, "s; horizon of the velocity obstacles");
+  app.add_option("--time-horizon", flags.time_horizon, "Horizon of the velocity obstacles, s");
   app.add_option("--radius", flags.radius, "Radius of the robot, m");
   app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
-  app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are nearest to this velocity")
+  app.add_option("--velocity", flags.velocity, "X,Y, m/s; the half-planes are those nearest to this velocity")
       ->capture_default_str();
   app.add_option("--goal", flags.goal,
                  "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
@@ -360,7 +359,7 @@ void declare_batch(CLI::App& app, BatchFlags& flags) {
 Verb batch_verb() {
   return {"batch", "Decompose, enclose and certify every obstacle of every file",
           "  exactvo batch maps --out out/maps -j 4 --repair\n"
-          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after an interruption, or beside a running "
+          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after an interruption, or next to a running "
           "batch)\n"
           "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"

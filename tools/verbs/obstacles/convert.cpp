@@ -92,7 +92,7 @@ void declare_convert(CLI::App& app, ConvertFlags& flags) {
   app.add_option("in", flags.in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")
       ->required();
   app.add_option("out", flags.out,
-                 "The file to write; its extension says the format. - is stdout (wkt, or as --to says)")
+                 "The file to write; its extension selects the format. - is stdout (wkt, or the format of --to)")
       ->required();
   declare_reading_flags(app, flags.reading, "--from");
   app.add_option("--to", flags.to, fmt::format("What to write: {}", fmt::join(datasets::writable_formats(), " ")));

@@ -32,7 +32,8 @@ struct GenerateFlags {
 };
 
 constexpr std::uint64_t kMostItemsDrawn = 400;
-constexpr const char* kOutHelp = "The file to write; its extension says the format. - is stdout (wkt, or as --to says)";
+constexpr const char* kOutHelp =
+    "The file to write; its extension selects the format. - is stdout (wkt, or the format of --to)";
 
 std::string kind_help() {
   return fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " "));
@@ -116,7 +117,7 @@ ExitCode generate(const GenerateFlags& flags) {
 
 void declare_generate(CLI::App& app, GenerateFlags& flags) {
   app.add_option("kind", flags.kind, kind_help());
-  declare_seed(app, flags.seed, "Of the generator; the same seed gives the same bytes on every machine");
+  declare_seed(app, flags.seed, "Seed of the generator; the same seed gives the same bytes on every machine");
   app.add_option("--count", flags.count, "Number of items; one maze, block or field consists of several obstacles");
   app.add_option("--out", flags.out, kOutHelp);
   app.add_option("--to", flags.to, "The format of --out, if its extension does not determine it");

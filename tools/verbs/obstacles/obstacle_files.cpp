@@ -80,7 +80,7 @@ void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string
                  fmt::format("Input format: {}; by default detected from content, then name",
                              fmt::join(datasets::readable_formats(), " ")));
   app.add_option("--units", flags.units, "Units of coordinates: automatic, metres or degrees");
-  app.add_option("--unknown", flags.unknown, "What unknown cells of ROS maps are: free or blocked");
+  app.add_option("--unknown", flags.unknown, "Unknown cells of ROS maps: free or blocked");
   app.add_option("--cell-size", flags.cell_size, "Cell size of scans, point lists and grids without a scale, m");
 }
 

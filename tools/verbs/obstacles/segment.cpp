@@ -285,7 +285,7 @@ void declare_segment(CLI::App& app, SegmentFlags& flags) {
   app.add_option("files", flags.files, "Obstacle files of any readable format")->required();
   declare_reading_flags(app, flags.reading);
   app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m");
-  app.add_option("--radius", flags.radius, "Of the robot, for clearances by equation (8), m");
+  app.add_option("--radius", flags.radius, "Radius of the robot, for clearances by equation (8), m");
   app.add_option("--facade-margin", flags.facade_margin,
                  "Least depth of a facade inside its ellipse, m; choose a smaller value for obstacles of millimetres")
       ->capture_default_str();

@@ -42,7 +42,7 @@ void declare_validate(CLI::App& app, ValidateFlags& flags) {
   declare_reading_flags(app, flags.reading);
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");
   app.add_flag("--strict", flags.strict,
-               "Status 1 also for what every verb repairs as it reads: winding, closure, repeated vertices");
+               "Status 1 also for problems that every verb repairs as it reads: winding, closure, repeated vertices");
 }
 
 }  // namespace

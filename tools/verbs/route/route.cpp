@@ -336,8 +336,7 @@ void declare_route(CLI::App& app, RouteFlags& flags) {
   app.add_option("--queries", flags.queries,
                  "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "
                  "start_x,start_y,goal_x,goal_y, or a .scen of the Moving AI benchmarks");
-  app.add_option("--cell-point", flags.cell_point,
-                 "Which point of a cell of a Moving AI map is meant: middle, or corner (top left)")
+  app.add_option("--cell-point", flags.cell_point, "Point of a cell of a Moving AI map: middle, or corner (top left)")
       ->capture_default_str();
   declare_reading_flags(app, flags.reading);
   app.add_flag("--repair", flags.repair, "Repair invalid geometry first");

@@ -227,8 +227,9 @@ ExitCode audit(const AuditFlags& flags) {
 void declare_audit(CLI::App& app, AuditFlags& flags) {
   app.add_option("path", flags.path,
                  "A recording.jsonl, or - for stdin; a crowd's FILE.evr; or a folder searched for both");
-  app.add_option("--sample", flags.sample, "Of a recording of a crowd, check about this many motions; 0: all");
-  app.add_option("--scenario", flags.scenario, "FILE that the recordings must be of, with its obstacle files");
+  app.add_option("--sample", flags.sample, "Check about this many motions of a crowd's recording; 0: all");
+  app.add_option("--scenario", flags.scenario,
+                 "Scenario FILE that the recordings must belong to, with its obstacle files");
   app.add_option(
       "--certificate", flags.certificates,
       "FILE with one certificate per line, the output of vo --json or route --json, or what check --certificates "

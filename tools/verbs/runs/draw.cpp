@@ -79,7 +79,7 @@ ExitCode draw_figures(const DrawFlags& flags) {
 void declare_draw(CLI::App& app, DrawFlags& flags) {
   app.add_option("recording", flags.recording, "recording.jsonl, the folder of a run, or a crowd's FILE.evr")
       ->required();
-  declare_out(app, flags.out, "Folder for the figures; by default figures/ beside the recording");
+  declare_out(app, flags.out, "Folder for the figures; by default figures/ next to the recording");
 }
 
 }  // namespace

@@ -394,14 +394,15 @@ ExitCode explain(const ExplainFlags& flags) {
 
 void declare_explain(CLI::App& app, ExplainFlags& flags) {
   app.add_option("scenario", flags.scenario,
-                 "JSON file, or - for stdin; or the recording of a run, or its folder. Of many robots the decision "
-                 "is computed again as simulate makes the run")
+                 "JSON file, or - for stdin; or the recording of a run, or its folder. For a run without recorded "
+                 "decisions the decision is computed again")
       ->required();
   app.add_option("--time,-t", flags.time, "Time of the decision, s")->required();
   app.add_option("--robot,-r", flags.robot, "The robot: its id, or its index from 0")->required();
   declare_out(app, flags.out, kFigureFileHelp);
   app.add_option("--map", flags.map,
-                 "The same for a map: the robot's route, where it heads for, and what separates a goal out of reach");
+                 "Figure of the map, FILE as for --out: the robot's route, the point that it heads for, and the chain "
+                 "round a goal out of reach");
   app.add_flag("--json", flags.json, "The decision, its half-planes and the remarks as JSON");
   declare_simulation_flags(app, flags.simulation);
   declare_decisions(app, flags.decisions);

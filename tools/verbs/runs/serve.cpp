@@ -73,7 +73,7 @@ void declare_serve(CLI::App& app, ServeFlags& flags) {
       app, flags.page, 1,
       "A scenario, which is run with every half-plane, the folder of a run, or a recording (.jsonl, of a "
       "crowd .evr); none: three scenes to start from");
-  app.add_option("--port", flags.port, "Port of 127.0.0.1; 0: one that is free")
+  app.add_option("--port", flags.port, "Port of 127.0.0.1; 0: any free port")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
   app.add_flag("--open", flags.opens, "Open the address in the desktop's browser (xdg-open)");
@@ -82,7 +82,7 @@ void declare_serve(CLI::App& app, ServeFlags& flags) {
 }  // namespace
 
 Verb serve_verb() {
-  return {"serve", "The page of view on this computer, where dragging computes: Ctrl-C ends it",
+  return {"serve", "Show the page of view with the program behind it, so that you can drag things; Ctrl-C ends it",
           "  exactvo serve --open\n"
           "  exactvo serve datasets/data/paper/A7.json\n"
           "  exactvo serve out/A7 --port 8080\n"

@@ -263,7 +263,7 @@ void declare_options(CLI::App& app, VoFlags& flags) {
       ->allow_extra_args(false);
   declare_reading_flags(app, flags.reading);
   app.add_option("--obstacle-velocity", flags.obstacle_velocities,
-                 "X,Y in m/s, one an --obstacle; at rest where missing")
+                 "X,Y in m/s, one for each --obstacle; at rest if missing")
       ->allow_extra_args(false);
   app.add_option("--pieces", flags.pieces,
                  "For a non-convex obstacle: convex (default: all of its convex pieces) or hull");
@@ -275,13 +275,13 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "Lines). The file: vx,vy on each line, CSV with columns vx and vy, or JSON Lines");
   app.add_option("--radius", flags.radius, "Radius of the robot, m; required unless --robot is given");
   app.add_option("--robot", flags.robot,
-                 "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");
+                 "A robot that is a convex polygon, instead of --radius: WKT round its reference point 0,0");
   app.add_option(
          "--time-horizon", flags.time_horizon,
          "s, from 2^-100 to 2^100; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
       ->required();
   app.add_option("--responsibility", flags.responsibility,
-                 "How much of the change the robot takes, in (0, 1]. Below 1 a second half-plane is given, which "
+                 "Share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is printed, which "
                  "holds only if the other side takes the rest");
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
   app.add_option(
