@@ -493,7 +493,7 @@ def scenes(tools):
     all_scenes = sorted(path for path in data.glob("*/*.json") if '"robots"' in path.read_text() or '"formation"' in path.read_text())
     chosen = [path for path in all_scenes if campaign or str(path.relative_to(data).with_suffix("")) in SLICE]
     require(len(chosen) >= len(SLICE), chosen)
-    copies = max(len(KINDS), tools.flags.count // 5000)
+    copies = max(len(KINDS), tools.flags.count // 20000)
     tally, judged_copies = {}, 0
     for scene in chosen:
         out = tools.folder / scene.stem

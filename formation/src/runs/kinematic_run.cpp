@@ -39,7 +39,7 @@ class KinematicRun {
         own_(rules_, scene_.bodies()),
         ways_(scenario.robots.size()),
         journeys_(scenario, guide, liveness_, positions_, room_at_ends(scenario),
-                  options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots,
+                  takes_edges(options.method) ? scenario.horizons.orca : scenario.horizons.robots,
                   TakenOnTheWay::reached),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario.obstacles),
         joint_(
@@ -180,6 +180,7 @@ class KinematicRun {
 
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
+    if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
     own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
   }
 

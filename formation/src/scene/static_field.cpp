@@ -120,8 +120,8 @@ double StaticField::horizon(double distance, const Viewpoint& from) const {
 double StaticField::farthest_that_matters(const Viewpoint& from) const {
   constexpr double kRounding = 1.0 + 1e-9;
   const Horizons& h = rules_->horizons;
-  if (rules_->method != Method::orca && rule_ == HorizonRule::literal) return kEverywhere;
-  const double tau = rules_->method == Method::orca ? h.orca : h.most;
+  if (!takes_edges(rules_->method) && rule_ == HorizonRule::literal) return kEverywhere;
+  const double tau = takes_edges(rules_->method) ? h.orca : h.most;
   return kRounding * (std::sqrt(2.0) * from.max_speed * tau + from.radius + kContactSkin);
 }
 
@@ -134,7 +134,7 @@ double StaticField::distance_within(const Viewpoint& from, double reach) const {
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
   const double within = distance_within(from, reach);
-  if (rules_->method == Method::orca) return add_edges(from, within, out);
+  if (takes_edges(rules_->method)) return add_edges(from, within, out);
   for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
   std::sort(out.begin(), out.end(), comes_before);
 }
