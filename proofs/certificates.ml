@@ -102,6 +102,7 @@ let coordinate q x text =
       let digit i c = (c >= '0' && c <= '9') || (c = '-' && i = 0 && from = 0) in
       let t = String.sub text from (upto - from) in
       String.iteri (fun i c -> if not (digit i c) then raise Json.Bad) t;
+      if t = "" || t = "-" then raise Json.Bad;
       try Whole.of_string t with Invalid_argument _ -> raise Json.Bad in
     let n = String.length text in
     let num, den = match String.index_opt text '/' with

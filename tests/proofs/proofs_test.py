@@ -189,6 +189,16 @@ def certificates(tools):
         require(len(changed) > 100, kind, len(changed))
         count += compared(tools, changed, kind)
 
+    # Fractions beside doubles: what is none is refused, and so is one that is not next to its double.
+    route = {"kind": "route", "radius": 0.5, "start": [1, 0], "goal": [3, 0], "length": 2, "lower_bound": 2, "obstacles": [{"id": "w", "polyline": [[0, -1], [0, 1]]}]}
+    for x, y, holds in (("2", "0", True), ("2/1", "0/7", True), ("4/2", "-0", True), ("2", "/1", False), ("2", "-", False), ("2", "-/1", False), ("2/", "0", False),
+                        ("2/0", "0", False), ("2/-1", "0", False), ("+2", "0", False), ("0x2", "0", False), ("2 ", "0", False), ("2/1/1", "0", False), ("3", "0", False)):
+        fractions = dict(route, points=[[1, 0], [2, 0, x, y], [3, 0]])
+        _, verdicts, words = tools.verified("fractions.json", json.dumps(fractions))
+        audited = json.loads(run(tools.program, "audit", "--certificate", tools.folder / "fractions.json", "--json").stdout)["verdicts"]
+        require((verdicts == ["valid"]) == (audited == ["valid"]) == holds, x, y, verdicts, audited)
+        count += 1
+
     tracks = tools.file("tracks.csv", "t,id,x,y\n0,A,0,0\n0,B,3.5,-1.25\n2,A,3,0.5\n2,B,1,-1.5\n")
     square = tools.file("square.wkt", "POLYGON((1 1, 2 1, 2 2, 1 2, 1 1))\n")
     proofs = tools.folder / "proofs.jsonl"
@@ -493,7 +503,7 @@ def scenes(tools):
     all_scenes = sorted(path for path in data.glob("*/*.json") if '"robots"' in path.read_text() or '"formation"' in path.read_text())
     chosen = [path for path in all_scenes if campaign or str(path.relative_to(data).with_suffix("")) in SLICE]
     require(len(chosen) >= len(SLICE), chosen)
-    copies = max(len(KINDS), tools.flags.count // 5000)
+    copies = max(len(KINDS), tools.flags.count // 20000)
     tally, judged_copies = {}, 0
     for scene in chosen:
         out = tools.folder / scene.stem

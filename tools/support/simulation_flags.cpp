@@ -181,6 +181,9 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
   if (options.guidance == formation::Guidance::route && options.method == formation::Method::ivo_edge)
     throw UsageError("--guidance", "route with ivo-edge, whose ellipses would close what a route passes",
                      "another method: orca, ivo-cluster or ivo");
+  if (options.liveness && !formation::promises_between_robots(options.method))
+    throw UsageError("--liveness", flags.liveness + " with " + flags.method + ", which promises nothing between robots",
+                     "another method: orca, ivo-edge, ivo-cluster or ivo");
   options.controller =
       parse_choice<formation::Controller>("--controller", flags.controller, formation::controller_names());
   options.integrator =

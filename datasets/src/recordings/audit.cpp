@@ -335,7 +335,8 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
         &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
-  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums})
+  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
+                                  &AuditReport::without_pairs})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -353,6 +354,9 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   words.emplace_back(
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");
+  if (report.without_pairs)
+    words.emplace_back(
+        "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "

@@ -15,6 +15,7 @@
 
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/family.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "recordings/exact_shapes.h"
 
@@ -102,7 +103,12 @@ class DecisionAudit : public RowAudit {
   explicit DecisionAudit(const AuditedRun& run)
       : run_(run),
         literal_horizons_(run.file.recording.controller_options &&
-                          !run.file.recording.controller_options->horizon_clamp) {}
+                          !run.file.recording.controller_options->horizon_clamp) {
+    formation::Method method = formation::Method::ivo;
+    if (parse(run.file.info.method, method) && !promises_between_robots(method))
+      cone_ = method == formation::Method::rvo ? vo::Variant::rvo : vo::Variant::hrvo;
+    run.tally.report.without_pairs = cone_.has_value();
+  }
 
   void check_step(const RowInRun& at) override {
     place_moving(at.row);
@@ -113,7 +119,7 @@ class DecisionAudit : public RowAudit {
       half_planes_hold(s);
       choice_is_best(s);
     }
-    for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t i = 0; i < all.size() && !cone_; ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j)
         if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot '" + id(all[j]) + "'");
   }
@@ -370,9 +376,26 @@ class DecisionAudit : public RowAudit {
       return vo::is_true({run_.file.recording.bodies[c.body].shape, at, radius, c.time_horizon, {}, c.half_plane});
     const formation::Robot& other = run_.scenario.robots[c.index];
     const RobotStep& them = s.step->robots[c.index];
-    if (other.cooperates) return keeps_pair_apart(s, c);
     const geometry::Disc disc{them.anchor, other.radius};
+    if (other.cooperates && cone_) return leaves_cone(s, c, disc) || keeps_pair_apart(s, c);
+    if (other.cooperates) return keeps_pair_apart(s, c);
     return vo::is_true({disc, at, radius, c.time_horizon, them.anchor_velocity, c.half_plane});
+  }
+
+  /// The half-plane excludes the inside of the cone of a method that promises nothing between robots; the recording has
+  /// twice the time horizon, as the cone is cut off there.
+  bool leaves_cone(const Seen& s, const DecisionConstraint& c, const geometry::Disc& disc) const {
+    if (!has_numbers(c.half_plane) || !(c.time_horizon > 0.0) || !std::isfinite(c.time_horizon)) return false;
+    vo::Encounter pair;
+    pair.obstacle = disc;
+    pair.obstacle_velocity = s.step->robots[c.index].anchor_velocity;
+    pair.position = s.state->anchor;
+    pair.velocity = s.state->anchor_velocity;
+    pair.radius = run_.scenario.robots[s.robot].radius;
+    pair.time_horizon = 0.5 * c.time_horizon;
+    const vo::Member member = vo::family_member(*cone_, pair);
+    return member.cone &&
+           vo::is_true({disc, pair.position, pair.radius, c.time_horizon, member.cone->apex, c.half_plane});
   }
 
   /// Against a robot that cooperates. Either this half-plane takes half of what the pair's relative velocity must
@@ -499,6 +522,7 @@ class DecisionAudit : public RowAudit {
   }
 
   const AuditedRun& run_;
+  std::optional<vo::Variant> cone_;           ///< of a method that promises nothing between robots
   bool literal_horizons_;                     ///< the controller's horizons may be shorter than a step
   std::vector<geometry::ConvexShape> moved_;  ///< moving obstacles in the present row
 };

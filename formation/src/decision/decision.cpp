@@ -99,7 +99,7 @@ PairConstraints with_a_plan(const RobotsAt& now, std::size_t i, std::size_t j, b
 
 vo::ReciprocalOptions pair_rule(const DecisionRules& rules) {
   vo::ReciprocalOptions rule;
-  const bool baseline = rules.method == Method::orca;
+  const bool baseline = takes_edges(rules.method);
   rule.time_horizon = baseline ? rules.horizons.orca : rules.horizons.robots;
   rule.contact_time = contact_time(rules.time_step, rules.horizons);
   rule.margin = std::max(kContactSkin, baseline ? 0.0 : rules.margins.robot);

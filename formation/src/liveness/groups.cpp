@@ -81,7 +81,7 @@ Groups::Groups(const Scenario& scenario, const DecisionRules& rules, const std::
       plans_(plans),
       is_stopped_(std::move(is_stopped)),
       patience_(patience_of(robots)),
-      margin_(scenario.formation || rules.method == Method::orca ? 0.0 : rules.margins.robot),
+      margin_(scenario.formation || takes_edges(rules.method) ? 0.0 : rules.margins.robot),
       of_robot_(robots.size()),
       group_of_(robots.size(), kNone),
       wanted_(robots.size()),

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "decision/decision.h"
+#include "decision/sides.h"
 #include "liveness/groups.h"
 #include "runs/run_schedule.h"
 
@@ -53,6 +54,10 @@ class JointDecisions {
 
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
+
+  /// Of a method that promises nothing between robots: half-planes against the others that leave the robot what is
+  /// nearest to its preferred velocity.
+  void take_sides(std::size_t i, Vec2 preferred) { formation::detail::take_sides(now(), i, preferred, others[i]); }
 
   /// Along the plan, as fast as all half-planes allow. Those of `field` have one time step as their horizon, so that
   /// they hold the planned velocity back no more than safety requires.

@@ -211,6 +211,7 @@ class KinematicSteps final : public Stepper {
 
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
+    if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
     own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
   }
 

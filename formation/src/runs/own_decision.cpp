@@ -38,7 +38,7 @@ Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   }
   const bool in_contact = is_in_contact();
   if (in_contact) decision.mode = Mode::pushing_out;
-  if (rules_.method == Method::orca) return preferred;
+  if (takes_edges(rules_.method)) return preferred;
   if (rules_.method != Method::ivo) return ties_broken(way, preferred, decision);
   const BoundaryFollower::Answer answer =
       way.follower.steer({errand.time, rules_.time_step, moment(rules_.horizons), here, errand.goal,

@@ -32,6 +32,9 @@ std::vector<std::string> warnings_with(const Scenario& scenario, const Simulatio
       warnings.push_back(std::move(warning));
   for (std::string& warning : preflight_warnings(scenario, offsets_in_use(scenario, options), reach))
     warnings.push_back(std::move(warning));
+  if (!promises_between_robots(options.method))
+    warnings.push_back(std::string("method ") + name(options.method) +
+                       " promises nothing between robots: they may overlap, and the metrics count it");
   return warnings;
 }
 
@@ -56,6 +59,7 @@ Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options)
 }
 
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (!promises_between_robots(options.method)) return Liveness::off;
   const Liveness wanted = options.liveness.value_or(scenario.liveness);
   if (scenario.formation) {
     const bool has_margins = options.method == Method::ivo || options.method == Method::ivo_cluster;
@@ -92,6 +96,8 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
+  EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
+                  std::string("method ") + name(options.method) + " of a formation");
   EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");
   const Clock::time_point start = Clock::now();
   Recording recording;

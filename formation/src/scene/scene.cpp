@@ -16,7 +16,7 @@ Scene::Scene(const Scenario& scenario, const SimulationOptions& options)
 
 Scene::Scene(Method method, const std::vector<SceneObstacle>& obstacles, const std::vector<Robot>& robots,
              const std::vector<MovingObstacle>& moving, const geometry::FacadeEllipseOptions& ellipse) {
-  if (method == Method::orca)
+  if (takes_edges(method))
     add_chains(obstacles);
   else
     add_pieces(obstacles);

@@ -121,8 +121,8 @@ double StaticField::horizon(double distance, const Viewpoint& from) const {
 double StaticField::farthest_that_matters(const Viewpoint& from) const {
   constexpr double kRounding = 1.0 + 1e-9;
   const Horizons& h = rules_->horizons;
-  if (rules_->method != Method::orca && rule_ == HorizonRule::literal) return kEverywhere;
-  const double tau = rules_->method == Method::orca ? h.orca : h.most;
+  if (!takes_edges(rules_->method) && rule_ == HorizonRule::literal) return kEverywhere;
+  const double tau = takes_edges(rules_->method) ? h.orca : h.most;
   return kRounding * (std::sqrt(2.0) * from.max_speed * tau + from.radius + kContactSkin);
 }
 
@@ -135,8 +135,9 @@ double StaticField::distance_within(const Viewpoint& from, double reach) const {
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
   const double within = distance_within(from, reach);
-  if (rules_->method == Method::orca && !from.brakes) return add_edges(from, within, out);
-  if (rules_->method == Method::orca)
+  const bool edges = takes_edges(rules_->method);
+  if (edges && !from.brakes) return add_edges(from, within, out);
+  if (edges)
     scene_->edges_by_place().for_each_within(from.position, within, [&](std::size_t edge) {
       build({scene_->edge(edge), edge, EnclosureGrade::tight, 0}, from, out);
     });

@@ -96,7 +96,7 @@ class StaticField {
   void constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach = kEverywhere) const;
 
   /// Whether the field knows what its half-planes leave a velocity: else there are only `constraints`.
-  bool bounds_room() const { return rule_ == HorizonRule::clamped && rules_->method != Method::orca; }
+  bool bounds_room() const { return rule_ == HorizonRule::clamped && !takes_edges(rules_->method); }
   bool is_empty() const { return is_small_ && all_.empty(); }
 
   /// A body of the field, under the names that recordings use.

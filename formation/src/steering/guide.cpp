@@ -211,8 +211,7 @@ Vec2 Guide::way_out(double radius, Vec2 here) const {
 
 std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options) {
   if (guidance_of(scenario, options) == Guidance::none) return std::nullopt;
-  return std::optional<Guide>(std::in_place, scenario,
-                              options.method == Method::orca ? 0.0 : scenario.margins.obstacle);
+  return std::optional<Guide>(std::in_place, scenario, takes_edges(options.method) ? 0.0 : scenario.margins.obstacle);
 }
 
 }  // namespace exactvo::formation::detail

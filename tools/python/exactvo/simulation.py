@@ -378,7 +378,7 @@ def simulate(
     `exactvo simulate --decisions binding`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
     that have arrived before they move, by how much `recentre` moves the slots of a formation.
 
-    method       "orca" (the textbook's baseline), "ivo-edge" (the paper), "ivo-cluster", "ivo"
+    method       "orca" (the textbook's baseline), "rvo" and "hrvo" (which promise nothing between robots), "ivo-edge" (the paper), "ivo-cluster", "ivo"
     guidance     "route" or "none" instead of the scenario's
     liveness     "plan", "bias" or "off" instead of the scenario's
     controller   of formations: "paper-literal", "paper-signs", "corrected", "default"

@@ -71,16 +71,16 @@ std::string ends_of(const geometry::Segment& s) {
 }
 
 /// Where the enclosure is, in the words in which a run's report names it.
-std::string place_words(const formation::Scenario& scenario, const TrapPlace& place, bool orca) {
+std::string place_words(const formation::Scenario& scenario, const TrapPlace& place, bool is_edge) {
   const std::string of = " of " + names_of_obstacles(scenario, place.enclosure.obstacles);
-  if (orca) return "edge " + ends_of(*place.facade) + of;
+  if (is_edge) return "edge " + ends_of(*place.facade) + of;
   const std::string number = fmt::format("enclosure {}", place.number);
   if (place.facade) return number + ", facade " + ends_of(*place.facade) + of;
   return number + of;
 }
 
-std::string subject_words(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
-  if (!f.overlapping) return place_words(scenario, f.place, orca);
+std::string subject_words(const formation::Scenario& scenario, const TrapFinding& f, bool is_edge) {
+  if (!f.overlapping) return place_words(scenario, f.place, is_edge);
   const std::string first = names_of_obstacles(scenario, f.place.enclosure.obstacles);
   const std::string second = names_of_obstacles(scenario, f.overlapping->enclosure.obstacles);
   if (first == second)
@@ -108,9 +108,9 @@ std::string verdict_words(const TrapFinding& f) {
   return is_shut_off ? "a stall is possible, but not for a robot that starts here" : "a stall is possible";
 }
 
-std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
+std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, bool is_edge) {
   const std::string grade = f.overlapping ? "overlapping, heuristic" : name(f.place.enclosure.grade);
-  std::string text = fmt::format("{}, {}: {} ({})", scenario.robots[f.robot].id, subject_words(scenario, f, orca),
+  std::string text = fmt::format("{}, {}: {} ({})", scenario.robots[f.robot].id, subject_words(scenario, f, is_edge),
                                  verdict_words(f), grade);
   if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", relative margin {:.3g}", *f.margin);
   if (!f.start_clear) text += "; the start is not clear of it";
@@ -140,8 +140,8 @@ ExitCode trap(const TrapFlags& flags) {
     for (const TrapFinding& f : findings) list.push_back(json_of(scenario, f));
     text = laid_out(list);
   } else {
-    const bool orca = flags.simulation.method == formation::name(formation::Method::orca);
-    for (const TrapFinding& f : findings) text += words_of(scenario, f, orca);
+    const bool edges = takes_edges(options.method);
+    for (const TrapFinding& f : findings) text += words_of(scenario, f, edges);
     if (findings.empty()) text = "no obstacles: nothing to stall at\n";
   }
   print(text);

@@ -105,6 +105,7 @@ struct AuditReport {
   double largest_violation = 0.0;      ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
 
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
+  bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 

@@ -23,6 +23,8 @@ namespace exactvo::formation {
 /// How robots avoid obstacles.
 enum class Method {
   orca,         ///< van den Berg et al. 2011: the baseline
+  rvo,          ///< van den Berg, Lin and Manocha 2008, to compare with; promises nothing between robots
+  hrvo,         ///< Snape et al. 2011, to compare with; promises nothing between robots
   ivo_edge,     ///< the paper: one ellipse per facade
   ivo_cluster,  ///< enclosures merged where they overlap and fitted trap-free; pure equation (12)
   ivo           ///< ivo_cluster, boost where certified, following after a stall
@@ -48,8 +50,10 @@ ControllerOptions controller_options_of(Controller controller);
 
 ///@{
 /// The words of the command line for the values of an enumeration, in their order.
-constexpr geometry::Names<Method, 4> word_table(Method) {
+constexpr geometry::Names<Method, 6> word_table(Method) {
   return {{{Method::orca, "orca"},
+           {Method::rvo, "rvo"},
+           {Method::hrvo, "hrvo"},
            {Method::ivo_edge, "ivo-edge"},
            {Method::ivo_cluster, "ivo-cluster"},
            {Method::ivo, "ivo"}}};
@@ -86,6 +90,16 @@ constexpr geometry::Names<Mode, 9> word_table(Mode) {
            {Mode::arrived, "arrived"}}};
 }
 ///@}
+
+/// Whether what two robots may do is safe together. With rvo and hrvo each assumes what the other one will do, so that
+/// they may choose different sides: they take obstacles as orca does, and of robots nothing is promised.
+constexpr bool promises_between_robots(Method method) {
+  return method != Method::rvo && method != Method::hrvo;
+}
+/// Whether obstacles are edges by the baseline's rule, without margins.
+constexpr bool takes_edges(Method method) {
+  return method == Method::orca || !promises_between_robots(method);
+}
 
 /// The word of a value, such as "ivo-edge".
 template <class Enum, class = decltype(word_table(Enum{}))>
