@@ -316,7 +316,7 @@ void run_kinematic(const Scenario& scenario, const SimulationOptions& options, G
                    RunSink& sink) {
   RunSchedule schedule(scenario, options);
   RobotsOfRun robots(scenario, guide, liveness_of(scenario, options), room_at_ends(scenario),
-                     options.method == Method::orca ? scenario.horizons.orca : scenario.horizons.robots,
+                     takes_edges(options.method) ? scenario.horizons.orca : scenario.horizons.robots,
                      TakenOnTheWay::reached);
   KinematicSteps steps(robots, options, guide, schedule, recording, sink);
   sink.add_state(state_of(robots, nullptr));
