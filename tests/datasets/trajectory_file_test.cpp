@@ -181,6 +181,67 @@ TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   expect_row(paths.rows[4], 1, 2.0, 6.0, 4.0, 2);
 }
 
+TEST(TrajectoryFile, ReadsVelocities) {
+  const Content c = content_of("t,id,x,y,vx,vy\n0,A,1,2,3,-4\n", {"", 0.0, 0.5});
+  EXPECT_EQ(c.rows[0].velocity, (geometry::Vec2{1.5, -2.0}));
+  EXPECT_FALSE(is_finite(content_of("t,id,x,y,vx\n0,A,1,2,3\n").rows[0].velocity));
+}
+
+TEST(TrajectoryFile, ReadsPolynomialsAsCurvesAndSamplesOfThem) {
+  const Content c = content_of("# duration,x^0,x^1,x^2,y^0,y^1,y^2,z^0\n2,0,4,1,1,0,0,7\n1,12,0,0,1,2,0,7\n");
+  EXPECT_EQ(c.file.format, "polynomials");
+  ASSERT_EQ(c.file.curves.size(), 1u);
+  ASSERT_EQ(c.file.curves[0].size(), 2u);
+  const geometry::CurvedMotion& second = c.file.curves[0][1];
+  EXPECT_EQ(std::tie(second.start, second.end), std::make_tuple(2.0, 3.0));
+  EXPECT_THAT(c.file.curves[0][0].points,
+              ElementsAre(geometry::Vec2{0, 1}, geometry::Vec2{4, 0}, geometry::Vec2{1, 0}));
+  EXPECT_EQ(c.rows.size(), 33u);
+  expect_row(c.rows[16], 0, 2.0, 12.0, 1.0, 2);
+  EXPECT_EQ(c.rows[8].velocity, (geometry::Vec2{6.0, 0.0}));
+  EXPECT_EQ(refusal_of("duration,x^0,x^1,y^0,y^1\n1e60,0,1,0,0\n").code(), DataCode::out_of_range);
+  EXPECT_EQ(refusal_of("duration,x^0,y^0\n-1,0,0\n").code(), DataCode::out_of_range);
+  std::string header = "duration", row = "1";
+  for (const char* axis : {"x", "y"})
+    for (int k = 0; k <= 11; ++k) {
+      header += std::string(",") + axis + "^" + std::to_string(k);
+      row += ",0";
+    }
+  EXPECT_THAT(refusal_of(header + "\n" + row + "\n").what(), HasSubstr("powers up to 10"));
+}
+
+TEST(TrajectoryFile, ReadsRowsInMemory) {
+  datasets::TrajectoryColumns columns{{"A", "B"}, {0, 1, 0}, {0, 0, 1}, {1, 2, 3}, {4, 5, 6}, {}, {7, 8, 9}, {0, 0, 0}};
+  TrajectoryReader reader(columns, "rows", {"", 0.0, 2.0});
+  for (int round = 0; round < 2; ++round) {
+    std::vector<TrajectoryRow> rows;
+    reader.read([&](const TrajectoryRow& row) { rows.push_back(row); });
+    ASSERT_EQ(rows.size(), 3u);
+    expect_row(rows[2], 0, 1.0, 6.0, 12.0, 3);
+    EXPECT_EQ(rows[2].velocity, (geometry::Vec2{18.0, 0.0}));
+  }
+  EXPECT_THAT(reader.file().agents, ElementsAre("A", "B"));
+  columns.time[2] = 0.0;
+  TrajectoryReader twice(columns, "rows");
+  EXPECT_THROW(twice.read([](const TrajectoryRow&) {}), DataError);
+  columns.time.pop_back();
+  EXPECT_THROW(TrajectoryReader(columns, "rows"), std::logic_error);
+}
+
+TEST(TrajectoryFile, OnlyPolynomialsAreReadTogether) {
+  const TextFile one("duration,x^0,x^1,y^0,y^1\n1,0,1,0,0\n"), other("duration,x^0,y^0\n1,5,5\n"),
+      table("t,id,x,y\n0,A,1,2\n");
+  TrajectoryReader fleet(std::vector<std::string>{one.path(), other.path()});
+  std::size_t rows = 0;
+  fleet.read([&](const TrajectoryRow& row) { rows += row.agent + 1; });
+  EXPECT_EQ(rows, 17u + 2u * 17u);
+  EXPECT_EQ(fleet.file().curves.size(), 2u);
+  EXPECT_THAT(fleet.file().file, HasSubstr("and 1 more"));
+  EXPECT_THROW(TrajectoryReader(std::vector<std::string>{one.path(), table.path()}), DataError);
+  EXPECT_EQ(datasets::recognised_trajectory_format(one.path()), "polynomials");
+  EXPECT_EQ(datasets::recognised_trajectory_format(table.path()), "csv");
+}
+
 TEST(TrajectoryFile, ScalesAndReadsAgain) {
   const TextFile file("t,id,x,y\n0,A,100,200\n");
   TrajectoryReader reader(file.path(), {"", 0.0, 0.01});
@@ -327,6 +388,7 @@ TEST(TrajectoryFile, CutAndChangedFilesNeverEndInAnythingButAnAnswer) {
       "<fcd-export><timestep time=\"0\"><vehicle id=\"a\" x=\"1\" y=\"2\" angle=\"9\"/></timestep></fcd-export>\n",
       "schedule:\n  a:\n    - x: 1\n      y: 1\n      t: 0\n",
       "Agent 0: (1,2)->(1,3)->\n",
+      "duration,x^0,x^1,y^0,y^1\n1.5,0,1,0,0.25\n0.5,1.5,2,0.5,0\n",
   };
   std::size_t read = 0, refused = 0;
   const std::string bytes("\0\xff<>\"'{}[](),;:#\n -+e9", 22);

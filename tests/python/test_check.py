@@ -115,7 +115,7 @@ def test_databases_of_jupedsim(tmp_path):
     assert (caught.value.code, caught.value.where) == ("E_NUMBER", "row 4")
     other = tmp_path / "other.sqlite"
     with sqlite3.connect(other) as database:
-        database.execute("CREATE TABLE nothing (frame INTEGER)")
+        database.execute("CREATE TABLE others (frame INTEGER)")
     (tmp_path / "cut.sqlite").write_bytes(path.read_bytes()[:5000])
     for bad in (other, tmp_path / "cut.sqlite"):
         with pytest.raises(exactvo.DataError) as caught:

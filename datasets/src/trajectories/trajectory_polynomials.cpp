@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "exactvo/datasets/input_text.h"
+#include "exactvo/datasets/obstacle_file.h"
 #include "files/text_file.h"
 #include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
@@ -101,10 +102,19 @@ void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
     if (!(duration > 0.0) || !(begin + duration > begin))
       out.refuse(DataCode::out_of_range, lines.number(), fields[header->duration], "a duration above 0 s");
     geometry::CurvedMotion curve{geometry::CurveBasis::powers, begin, begin + duration, {}};
-    for (std::size_t k = 0; k < header->x.size(); ++k)
-      curve.points.push_back(out.scale() *
-                             geometry::Vec2{out.number(fields[header->x[k]], "a coefficient", lines.number()),
-                                            out.number(fields[header->y[k]], "a coefficient", lines.number())});
+    double power = 1.0;  // of the duration
+    for (std::size_t k = 0; k < header->x.size(); ++k) {
+      const auto coefficient = [&](std::size_t column) {
+        const double c = out.scale() * out.number(fields[column], "a coefficient", lines.number());
+        if (!(std::fabs(c) * power <= kLargestCoordinate))
+          out.refuse(DataCode::out_of_range, lines.number(),
+                     fields[column] + " of a piece of " + fields[header->duration] + " s", "terms up to 2^100 m");
+        return c;
+      };
+      const double x = coefficient(header->x[k]);
+      curve.points.push_back({x, coefficient(header->y[k])});
+      power *= duration;
+    }
     const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
     const bool is_first = curves.empty();
     for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {

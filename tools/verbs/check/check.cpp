@@ -513,6 +513,7 @@ Verb check_verb() {
       "  exactvo check runs.csv --radius 0.3 --map office.geojson --figure out/check.svg\n"
       "  exactvo check obsmat.txt --radius 0.2 --frame-rate 15 --json\n"
       "  exactvo check plan.yaml --footprint 'POLYGON ((-0.4 -0.3, 0.4 -0.3, 0.4 0.3, -0.4 0.3))'\n"
+      "  exactvo check cars.csv --radius 1 --between cubic --map lab.yaml --unknown blocked\n"
       "  exactvo check out/recording.jsonl --certificates proofs.jsonl && exactvo audit --certificate proofs.jsonl\n"
       "    (status 0: no overlap, contact included; 1: an overlap; 2: a file or an option is wrong)\n",
       with_flags(declare_check, check)};
