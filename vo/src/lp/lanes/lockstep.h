@@ -110,9 +110,8 @@ class Lockstep {
 
   /// Two rounds, with no line and with one in the working set, then as many as it takes.
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
-    for_all(states, packs, [this](PackState& w) {
+    for_all(states, packs, [](PackState& w) {
       w.pack.derive();
-      if (kHard) w.pack.expect_hard(out_.active);
       w.pack.start();
     });
     for_all(states, packs, [this](PackState& w) { turn_away(w); });
@@ -213,7 +212,7 @@ class Lockstep {
   HWY_INLINE void ask_for(std::size_t at, PackState& state) const {
     const std::size_t start = first_line_of(in_, at);
     const T* arrays[3] = {in_.normal_x, in_.normal_y, in_.offset};
-    for (std::size_t k = 0; k < 3; ++k) state.ahead[k] = {arrays[k] + start, nullptr, in_.block, 0};
+    for (std::size_t k = 0; k < 3; ++k) state.ahead[k] = {arrays[k] + start, nullptr, in_.block};
     for (const T* numbers : {in_.preferred_x, in_.preferred_y, in_.disc}) hwy::Prefetch(numbers + at);
     for (const T* numbers : {out_.velocity_x, out_.velocity_y, out_.violation}) hwy::Prefetch(numbers + at);
     hwy::Prefetch(out_.status + at);
@@ -225,7 +224,7 @@ class Lockstep {
     const std::size_t block = std::min(at / in_.block + blocks, (in_.count - 1) / in_.block);
     const std::size_t part = block * in_.block * in_.lines + at % in_.block * in_.lines;
     const T* arrays[3] = {in_.normal_x, in_.normal_y, in_.offset};
-    for (std::size_t k = 0; k < 3; ++k) state.ahead[k].beyond = arrays[k] + part, state.ahead[k].beyond_step = kLanes;
+    for (std::size_t k = 0; k < 3; ++k) state.ahead[k].beyond = arrays[k] + part;
   }
 
   /// `Iota` from what is not a constant is stored lane by lane.
@@ -267,7 +266,7 @@ class Lockstep {
     p.id = numbers_from(at);
     states[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
     states[0].begin(hn::FirstN(d, count));
-    std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_, 0, 0});
+    std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_, 0});
     solve(states, 1);
     finish_some(p, hn::AndNot(states[0].gone, states[0].lanes));
     flush_deferred();
@@ -282,7 +281,6 @@ class Lockstep {
       const M lanes = hn::FirstN(d, std::min(kLanes, size - from));
       Pack<D> p;
       rare_.load(from, p);
-      if (kHard) p.expect_hard(out_.active);
       Descent<D> descent(p);
       descent.template run<kHard, kIndex>(rare_.rows(from), lanes);
       finish_some(p, hn::AndNot(descent.unsettled, lanes));

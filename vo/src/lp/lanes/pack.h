@@ -86,8 +86,6 @@ struct Pack {
   LineV<D> entering;              ///< the line violated most
   M violated;                     ///< lanes that have one
   M relaxing;                     ///< lanes on the relaxation phase
-  std::size_t most_hard;          ///< hard lines of the lane that has most of them
-  bool numbers;                   ///< whether numbers of lines are asked for, and not only which lines are hard
 
   HWY_INLINE void derive() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
@@ -95,12 +93,6 @@ struct Pack {
     noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
     disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
     disc_squared = hn::Mul(disc, disc);
-  }
-
-  /// Before lines are priced among which some may be hard.
-  HWY_INLINE void expect_hard(bool wants_numbers) {
-    most_hard = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, hard_count)));
-    numbers = wants_numbers;
   }
 
   HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
@@ -151,28 +143,27 @@ template <class T>
 struct Ahead {
   const T* next = nullptr;
   const T* beyond = nullptr;
-  std::size_t next_step = 0, beyond_step = 0;
+  std::size_t next_step = 0;
 };
 
 /// Which of these.
 enum class Ask { nothing, next, both };
 
-/// The lines from `from` up to `to`: by how much the line violated most is violated, and which it is. Three masked
-/// moves a line cost less than its number and a look at the line afterwards: they are one operation each with AVX-512,
-/// and with AVX2 on AMD's processors. kHard: some of the lines may be hard; kExtra: something is added to violations.
+/// The line violated most a lane: by how much, and which. Three masked moves a line cost less than its number and a
+/// look at the line afterwards: they are one operation each with AVX-512, and with AVX2 on AMD's processors. Where no
+/// lane relaxes nothing is added (kExtra false).
 template <bool kHard, bool kExtra, bool kNumber, Ask kAsk, class D, class T>
-HWY_INLINE void price_lines(const Rows<T>& rows, std::size_t from, std::size_t to, const Pack<D>& p,
-                            const Asked<D>& asked, const Ahead<T>& ahead, hn::Vec<D>& most_of_all, LineV<D>& line) {
+HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const Ahead<T>& ahead,
+                          hn::Vec<D>& most_of_all, LineV<D>& line) {
   const D d;
   using V = hn::Vec<D>;
-  const V one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
-  V most = most_of_all, ex = line.x, ey = line.y, ec = line.c, index = line.index;
-  V number = hn::Set(d, static_cast<T>(from));
-  const T *nx = rows.x + from * rows.stride, *ny = rows.y + from * rows.stride, *c = rows.c + from * rows.stride;
-#pragma GCC unroll 5
-  for (std::size_t k = from; k < to; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
-    if (kAsk != Ask::nothing) hwy::Prefetch(ahead.next + k * ahead.next_step);
-    if (kAsk == Ask::both) for_second_cache(ahead.beyond + k * ahead.beyond_step);
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
+  V most = asked.allowed, ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
+  const T *nx = rows.x, *ny = rows.y, *c = rows.c, *next = ahead.next, *beyond = ahead.beyond;
+#pragma GCC unroll 2
+  for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
+    if (kAsk != Ask::nothing) hwy::Prefetch(next), next += ahead.next_step;
+    if (kAsk == Ask::both) for_second_cache(beyond), beyond += hn::MaxLanes(D());
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
     if (kExtra) by = hn::Add(by, kHard ? pick(hn::Lt(number, hard_count), asked.hard, asked.soft) : asked.soft);
@@ -181,27 +172,13 @@ HWY_INLINE void price_lines(const Rows<T>& rows, std::size_t from, std::size_t t
     ex = pick(more, x, ex);
     ey = pick(more, y, ey);
     ec = pick(more, offset, ec);
-    if (kNumber) index = pick(more, number, index);
-    if (kNumber || kHard) number = hn::Add(number, one);
+    if (kNumber) {
+      index = pick(more, number, index);
+      number = hn::Add(number, one);
+    }
   }
   most_of_all = most;
   line = {ex, ey, ec, index};
-}
-
-/// The line violated most a lane. Where no lane relaxes nothing is added (kExtra false). Beyond the last hard line of
-/// any lane none is hard, and no number is needed to tell: if none is asked for, `index` is there that of the first of
-/// these.
-template <bool kHard, bool kExtra, bool kIndex, Ask kAsk, class D, class T>
-HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const Ahead<T>& ahead,
-                          hn::Vec<D>& most, LineV<D>& line) {
-  const D d;
-  if (!kHard) return price_lines<false, kExtra, kIndex, kAsk>(rows, 0, rows.count, p, asked, ahead, most, line);
-  const std::size_t hard = std::min(p.most_hard, rows.count);
-  price_lines<true, kExtra, true, kAsk>(rows, 0, hard, p, asked, ahead, most, line);
-  if (p.numbers) return price_lines<false, kExtra, true, kAsk>(rows, hard, rows.count, p, asked, ahead, most, line);
-  const hn::Vec<D> before = most;
-  price_lines<false, kExtra, false, kAsk>(rows, hard, rows.count, p, asked, ahead, most, line);
-  line.index = pick(hn::Gt(most, before), hn::Set(d, static_cast<T>(hard)), line.index);
 }
 
 /// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
@@ -212,12 +189,11 @@ template <bool kHard, bool kIndex, Ask kAsk, class D, class T>
 HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const Ahead<T>& ahead = {}) {
   const D d;
   using V = hn::Vec<D>;
-  const V zero = hn::Zero(d);
   const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
   const Asked<D> asked = {pick(p.relaxing, enough, hn::Sub(p.noise, p.slack)), hn::IfThenElseZero(p.relaxing, p.slack),
                           hn::IfThenElseZero(p.relaxing, hn::Neg(p.level))};
-  V most = asked.allowed;
-  LineV<D> line = {zero, zero, zero, hn::Set(d, T(kNoLine))};
+  V most;
+  LineV<D> line;
   if (kHard && !hn::AllFalse(d, p.relaxing))
     find_most<kHard, true, kIndex, kAsk>(rows, p, asked, ahead, most, line);
   else

@@ -120,7 +120,6 @@ HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
   pack.py = hn::Set(d, problem.preferred.y);
   pack.speed = hn::Set(d, problem.disc);
   pack.hard_count = hn::Set(d, static_cast<double>(problem.hard));
-  pack.expect_hard(true);
   pack.derive();
 }
 
