@@ -122,6 +122,9 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   EXPECT_TRUE(a.formation || a.liveness == b.liveness);
   EXPECT_EQ(a.speed_bound, b.speed_bound);
   EXPECT_TRUE(same_bits(numbers_of(a), numbers_of(b)));
+  ASSERT_EQ(a.acceleration.has_value(), b.acceleration.has_value());
+  EXPECT_TRUE(!a.acceleration || same_bits(a.acceleration->max, b.acceleration->max));
+  EXPECT_EQ(a.braking_time, b.braking_time);
 }
 
 }  // namespace exactvo::datasets::test

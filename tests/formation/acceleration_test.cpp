@@ -3,12 +3,18 @@
 // rationals, and whole runs by their audit.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/run_info.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/navigator.h"
 #include "exactvo/formation/simulation.h"
@@ -572,6 +578,57 @@ TEST(Acceleration, ValidateSaysWhatToChange) {
                        "/robots/0/velocity")
                 .find("meets robot"),
             std::string::npos);
+}
+
+constexpr const char* kText =
+    R"({"name": "one", "robots": [{"id": "R1", "position": [0, 0], "max_speed": 1.5, "goal": [4, 0]}],
+  "acceleration": {"max": 1.25}, "braking_time": 1.4})";
+
+TEST(Acceleration, ScenariosAreReadAndWritten) {
+  const Scenario s = datasets::parse_scenario(kText, "one.json", {});
+  ASSERT_TRUE(s.acceleration);
+  EXPECT_EQ(s.acceleration->max, 1.25);
+  EXPECT_EQ(braking_time_of(s), 1.4);
+  const std::string written = datasets::write_scenario(s);
+  EXPECT_NE(written.find("\"acceleration\""), std::string::npos);
+  EXPECT_EQ(datasets::write_scenario(datasets::parse_scenario(written, "again.json", {})), written);
+  EXPECT_EQ(crowd_problems(s).at(0).pointer, "/acceleration");
+}
+
+TEST(Acceleration, WhatAFileSaysWrongIsRefusedByACode) {
+  const auto refusal = [](const std::string& from,
+                          const std::string& to) -> std::pair<datasets::DataCode, std::string> {
+    std::string text = kText;
+    text.replace(text.find(from), from.size(), to);
+    try {
+      datasets::parse_scenario(text, "one.json", {});
+    } catch (const datasets::DataError& e) {
+      return {e.code(), e.place()};
+    }
+    return {datasets::DataCode::cut_off, "was read"};
+  };
+  using datasets::DataCode;
+  EXPECT_EQ(refusal("{\"max\": 1.25}", "1.25").first, DataCode::wrong_type);
+  EXPECT_EQ(refusal("1.25", "0").first, DataCode::out_of_range);
+  EXPECT_EQ(refusal("\"max\"", "\"most\"").first, DataCode::key_unknown);
+  EXPECT_EQ(refusal("1.4", "1.2"), std::pair(DataCode::scenario, std::string("/braking_time")));
+  EXPECT_EQ(refusal("\"acceleration\": {\"max\": 1.25}, ", ""),
+            std::pair(DataCode::scenario, std::string("/braking_time")));
+}
+
+/// Through a file: limits of a robot's own are half-planes of the recording like others.
+TEST(Acceleration, RecordingsKeepLimits) {
+  const datasets::RecordingFile file = recorded(on_circle(3, 2.0, 1.0));
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("exactvo_acceleration_" + std::to_string(::getpid()) + ".jsonl");
+  datasets::write_recording(path, file);
+  const datasets::AuditReport report = datasets::audit_recording(path, &file.scenario);
+  const datasets::RecordingFile read = datasets::read_recording(path);
+  std::filesystem::remove(path);
+  EXPECT_TRUE(report.clean()) << (report.findings.empty() ? "" : report.findings.front());
+  EXPECT_GT(report[datasets::AuditPoint::braking].proven, file.recording.steps.size());
+  EXPECT_EQ(seen_in(read.scenario, read.recording).limited, seen_in(file.scenario, file.recording).limited);
+  EXPECT_GT(seen_in(read.scenario, read.recording).limited, 10u);
 }
 
 /// A robot that starts with a velocity from which it can just brake.

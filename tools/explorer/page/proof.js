@@ -243,11 +243,12 @@ function checkChoice(run, d) {
 
 function checkConstraint(run, d, h) {
   if (!h.certified) return {ok: null, why: 'not certified: nothing is claimed'};
+  if (h.isOwnLimit) return {ok: null, why: 'a limit of its own: nothing is claimed'};
   const claim = {shape: h.shape, x: d.anchor[0], y: d.anchor[1], radius: h.radius, timeHorizon: h.timeHorizon, ux: h.ux, uy: h.uy,
     nx: h.nx, ny: h.ny, c: h.c};
   if (h.kind !== 'robot' || !run.robots[h.index].cooperates) return checkHalfPlane(claim);
   const other = run.decision(d.row, h.index);
-  const halves = other.halfPlanes.filter((o) => o.kind === 'robot' && o.index === d.robot);
+  const halves = other.halfPlanes.filter((o) => o.kind === 'robot' && o.index === d.robot && !o.isOwnLimit);
   return checkHalfOfPair(claim, [d.anchorVelocity, other.anchorVelocity], halves);
 }
 
