@@ -14,6 +14,7 @@ Verb lp_verb();
 Verb vo_verb();
 Verb audit_verb();
 Verb check_verb();
+Verb monitor_verb();
 Verb trap_verb();
 Verb route_verb();
 Verb validate_verb();
@@ -25,9 +26,9 @@ Verb segment_verb();
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {
-      simulate_verb(), explain_verb(), draw_verb(),    view_verb(),  serve_verb(),    paper_verb(),
-      lp_verb(),       vo_verb(),      audit_verb(),   check_verb(), trap_verb(),     route_verb(),
-      validate_verb(), repair_verb(),  convert_verb(), batch_verb(), generate_verb(), segment_verb()};
+      simulate_verb(), explain_verb(), draw_verb(),  view_verb(),     serve_verb(),  paper_verb(), lp_verb(),
+      vo_verb(),       audit_verb(),   check_verb(), monitor_verb(),  trap_verb(),   route_verb(), validate_verb(),
+      repair_verb(),   convert_verb(), batch_verb(), generate_verb(), segment_verb()};
   return all;
 }
 

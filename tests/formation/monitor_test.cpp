@@ -186,6 +186,8 @@ TEST(Monitor, RobotBesideAMoverMayLeaveIt) {
   EXPECT_EQ(v.share, 1.0);
   EXPECT_TRUE(v.in_contact);
   EXPECT_LT(monitor.judge({}, ahead(0.5), close).share, 0.01);
+  EXPECT_EQ(monitor.judge({}, ahead(0.0), close).share, 1.0) << "to stand is always allowed";
+  EXPECT_EQ(monitor.judge({}, ahead(0.0), mover_at(0.9, 5.0)).share, 1.0);
 }
 
 // --- Trajectories ---
@@ -204,6 +206,19 @@ TEST(Monitor, TrajectoryIsClearUntilBrakingMustBegin) {
   EXPECT_FALSE(monitor.judge(too_near).proven) << "it cannot brake in time";
   EXPECT_THROW(monitor.judge({{0.0, {}}}), MonitorError);
   EXPECT_THROW(monitor.judge({{0.0, {}}, {0.0, {{1, 0}, 0}}}), MonitorError);
+}
+
+TEST(Monitor, WayIsThatOfTheShare) {
+  Monitor monitor(setup_with(geometry::disc_body(0.3), {}));
+  EXPECT_TRUE(monitor.way(1.0).empty());
+  monitor.judge({{1, 2}, 0.5}, ahead(1.0, 0.4));
+  ASSERT_EQ(monitor.way(1.0).size(), 1u);
+  EXPECT_NEAR(monitor.way(1.0)[0].motion.end, 0.2 + 0.5, 1e-12);
+  EXPECT_NEAR(monitor.way(0.5)[0].motion.end, 0.1 + 0.125, 1e-12);
+  EXPECT_EQ(monitor.way(0.5)[0].heading, 0.5);
+  monitor.judge({{0.0, {{0, 0}, 0}}, {1.0, {{1, 0}, 0}}, {2.0, {{2, 0}, 1}}});
+  EXPECT_EQ(monitor.way(1.0).size(), 3u) << "the last one for braking";
+  EXPECT_EQ(monitor.way(0.0).size(), 1u);
 }
 
 // --- Against an oracle that samples ---

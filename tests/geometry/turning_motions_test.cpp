@@ -339,6 +339,9 @@ TEST(TurningMotions, ClearDrivesHaveCertificatesThatProveThemAndChangedOnesAreRe
     longer.end += 1.0;
     EXPECT_FALSE(proves_clear(*certificate, longer, body, wall));
     // Margins are as large as they can be but for rounding and the stray of a piece: a larger body has none left.
+    RigidBody shrunk = body;
+    shrunk[0].radius = -1.0;
+    EXPECT_FALSE(proves_clear(*certificate, m, shrunk, wall));
     RigidBody grown = body;
     for (RoundedPolygon& part : grown) part.radius += 10.0;
     EXPECT_FALSE(proves_clear(*certificate, m, grown, wall));

@@ -189,6 +189,22 @@ TEST(GapKeeper, ANeedleThatTurnsPastAPostIsDecided) {
   }
 }
 
+// A known failure of conservative advancement: two boxes that come towards each other, whose bounds of motion cancelled
+// where they were added with their signs.
+TEST(GapKeeper, TwoBoxesThatComeTowardsEachOtherMeetWhenTheyShould) {
+  const std::vector<Vec2> box{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  const geometry::CornerView corners{box.data(), box.size()};
+  GapKeeper keeper;
+  for (const double speed : {1.0, -1.0}) {
+    const GapToKeep q{{{-3, 0}, {{1, 0}, 0.0}, corners}, {{3, 0}, {{-speed, 0}, 0.0}, corners}, 10.0, 0.0, 0.0, 0.0};
+    const KeptGap kept = keeper.keep(q);
+    EXPECT_EQ(kept.whole, speed < 0.0) << "they keep their distance only where both go the same way";
+    if (speed > 0.0) {
+      EXPECT_NEAR(kept.kept_until, 2.0, 1e-8);
+    }
+  }
+}
+
 TEST(GapKeeper, CornersMustBeThere) {
   EXPECT_THROW(GapKeeper().keep({}), std::logic_error);
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "support/certificate_json.h"
+#include "support/turning_certificates.h"
 
 namespace exactvo::tools {
 
@@ -19,6 +20,7 @@ using geometry::RoundedPolygon;
 using geometry::Separation;
 using geometry::StraightMotion;
 using geometry::TimedPoint;
+using geometry::TurningMotion;
 
 namespace {
 
@@ -30,21 +32,33 @@ OrderedJson timed_json(const TimedPoint& p) {
   return OrderedJson::array({p.time, p.at.x, p.at.y});
 }
 
-OrderedJson moving_json(const BodyInMotion& moving) {
+OrderedJson parts_json(const RigidBody& body) {
   OrderedJson parts = OrderedJson::array();
-  for (const RoundedPolygon& part : *moving.body)
+  for (const RoundedPolygon& part : body)
     parts.push_back({{"corners", points_json(part.corners)}, {"radius", part.radius}});
+  return parts;
+}
+
+OrderedJson moving_json(const BodyInMotion& moving) {
   if (const auto* straight = std::get_if<StraightMotion>(&moving.motion))
-    return {{"from", timed_json(straight->from)}, {"to", timed_json(straight->to)}, {"body", parts}};
+    return {{"from", timed_json(straight->from)}, {"to", timed_json(straight->to)}, {"body", parts_json(*moving.body)}};
   const auto& curve = std::get<CurvedMotion>(moving.motion);
   return {{"basis", kBases[static_cast<std::size_t>(curve.basis)]},
           {"start", curve.start},
           {"end", curve.end},
           {"points", points_json(curve.points)},
-          {"body", parts}};
+          {"body", parts_json(*moving.body)}};
 }
 
-OrderedJson json_with(const MotionCertificate& certificate, const BodyInMotion& a, const char* key, OrderedJson other) {
+OrderedJson turning_json(const TurningMotion& motion, const RigidBody& body) {
+  return {{"from", timed_json({motion.start, motion.at})},
+          {"until", motion.end},
+          {"velocity", json_point(motion.twist.velocity)},
+          {"turn", motion.twist.turn},
+          {"body", parts_json(body)}};
+}
+
+OrderedJson json_with(const MotionCertificate& certificate, OrderedJson a, const char* key, OrderedJson other) {
   OrderedJson separations = OrderedJson::array();
   for (const Separation& s : certificate.separations)
     separations.push_back({{"part", s.part},
@@ -53,7 +67,7 @@ OrderedJson json_with(const MotionCertificate& certificate, const BodyInMotion& 
                            {"to", s.to},
                            {"direction", json_point(s.direction)},
                            {"margin", s.margin}});
-  return {{"kind", kKind}, {"a", moving_json(a)}, {key, std::move(other)}, {"separations", separations}};
+  return {{"kind", kKind}, {"a", std::move(a)}, {key, std::move(other)}, {"separations", separations}};
 }
 
 // --- Reading (certificate_json.h) ---
@@ -108,6 +122,34 @@ Read certificate_in(const OrderedJson& json) {
   return read;
 }
 
+/// A body that drives and turns, and what stands still.
+struct Turning {
+  MotionCertificate certificate;
+  TurningMotion motion;
+  RigidBody body;
+  geometry::Obstacle obstacle;
+};
+
+Turning turning_in(const OrderedJson& json) {
+  const OrderedJson& a = json.at("a");
+  const TimedPoint from = timed_in(a.at("from"));
+  return {{list_in(json.at("separations"), 0, separation_in)},
+          {from.time, a.at("until").get<double>(), from.at, {pair_in(a.at("velocity")), a.at("turn").get<double>()}},
+          list_in(a.at("body"), 1, part_in),
+          obstacle_in(json.at("obstacle"))};
+}
+
+CheckedCertificate check_turning(const OrderedJson& certificate) {
+  const auto read = read_or_nothing([&] { return turning_in(certificate); });
+  if (!read) return {"not a certificate", "", false};
+  const TurningMotion& m = read->motion;
+  const std::string claim = fmt::format(
+      "clear of an obstacle, from ({:.6g}, {:.6g}) at {:.6g} s with ({:.6g}, {:.6g}) m/s, {:.6g} rad/s until {:.6g} s",
+      m.at.x, m.at.y, m.start, m.twist.velocity.x, m.twist.velocity.y, m.twist.turn, m.end);
+  const bool is_proven = proves_clear(read->certificate, m, read->body, read->obstacle);
+  return {is_proven ? "valid" : "not proven", claim, is_proven};
+}
+
 bool proves(const Read& read) {
   if (read.obstacle) return proves_clear(read.certificate, read.a.motion, read.a.body, *read.obstacle);
   return proves_clear(read.certificate, read.a.motion, read.a.body, read.b->motion, read.b->body);
@@ -116,12 +158,17 @@ bool proves(const Read& read) {
 }  // namespace
 
 OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a, const BodyInMotion& b) {
-  return json_with(certificate, a, "b", moving_json(b));
+  return json_with(certificate, moving_json(a), "b", moving_json(b));
 }
 
 OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a,
                              const formation::SceneObstacle& obstacle) {
-  return json_with(certificate, a, "obstacle", obstacle_json(obstacle));
+  return json_with(certificate, moving_json(a), "obstacle", obstacle_json(obstacle));
+}
+
+OrderedJson turning_certificate_json(const MotionCertificate& certificate, const TurningMotion& motion,
+                                     const RigidBody& body, const formation::SceneObstacle& obstacle) {
+  return json_with(certificate, turning_json(motion, body), "obstacle", obstacle_json(obstacle));
 }
 
 bool is_motion_certificate(const OrderedJson& certificate) {
@@ -130,6 +177,8 @@ bool is_motion_certificate(const OrderedJson& certificate) {
 }
 
 CheckedCertificate check_motion_certificate(const OrderedJson& certificate) {
+  const OrderedJson* a = member(certificate, "a");
+  if (a != nullptr && member(*a, "turn") != nullptr) return check_turning(certificate);
   const auto read = read_or_nothing([&] { return certificate_in(certificate); });
   if (!read) return {"not a certificate", "", false};
   const Motion& m = read->a.motion;

@@ -299,7 +299,8 @@ MonitorVerdict Monitor::judged(bool is_trajectory, const std::vector<Mover>& mov
   }
   std::size_t first = 0;  // the mover that was met last is asked first
   const auto is_clear = [&](double share) {
-    if (share == 0.0 && !is_trajectory) return true;
+    // A robot that stands is promised nothing.
+    if (!is_trajectory && (share == 0.0 || brake_time_ == 0.0)) return true;
     const Pace pace = pace_at(share, is_trajectory);
     for (std::size_t k = 0; k < movers.size(); ++k) {
       const std::size_t index = (first + k) % movers.size();
@@ -365,6 +366,7 @@ MonitorVerdict Monitor::judge(const Pose& pose, const Command& command, const st
   Twist in_world = command.twist;
   if (!command.in_world_axes) in_world.velocity = geometry::rotated(command.twist.velocity, pose.heading);
   way_.push_back({pose, in_world, pace_at(1.0, false).length()});
+  is_trajectory_ = false;
   return judged(false, movers);
 }
 
@@ -396,7 +398,21 @@ MonitorVerdict Monitor::judge(const std::vector<TimedPose>& trajectory, const st
   way_.push_back({end,
                   {geometry::rotated(last.velocity, end.heading), last.turn},
                   (setup_.latency + 0.5 * brake_time_) * kUp + 0x1p-40 * held_});
+  is_trajectory_ = true;
   return judged(true, movers);
+}
+
+std::vector<MonitorArc> Monitor::way(double share) const {
+  std::vector<MonitorArc> arcs;
+  const double length = way_.empty() ? 0.0 : pace_at(share, is_trajectory_).length();
+  double offset = 0.0;
+  for (const Stretch& stretch : way_) {
+    const double end = std::min(offset + stretch.duration, length);
+    if (!(offset < end || arcs.empty())) break;
+    arcs.push_back({{offset, end, stretch.start.at, stretch.twist}, stretch.start.heading});
+    offset += stretch.duration;
+  }
+  return arcs;
 }
 
 }  // namespace exactvo::formation

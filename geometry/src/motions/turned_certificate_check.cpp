@@ -136,11 +136,20 @@ class TurnCheck {
   Number turn_, vx_, vy_;
 };
 
+bool is_readable(const TurningMotion& m, const RigidBody& body) {
+  return std::isfinite(m.start) && std::isfinite(m.end) && is_finite(m.at) && is_finite(m.twist.velocity) &&
+         std::isfinite(m.twist.turn) && std::all_of(body.begin(), body.end(), [](const RoundedPolygon& part) {
+           return part.radius >= 0.0 && std::isfinite(part.radius) && !part.corners.empty() &&
+                  std::all_of(part.corners.begin(), part.corners.end(), is_finite);
+         });
+}
+
 }  // namespace
 }  // namespace turn_check
 
 bool proves_clear(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
                   const Obstacle& obstacle) {
+  if (!turn_check::is_readable(motion, body)) return false;
   const turn_check::TurnCheck check(motion);
   if (!(motion.start <= motion.end) || !check.is_small()) return false;
   const std::vector<Segment> edges = edges_of(obstacle);

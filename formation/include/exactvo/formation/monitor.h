@@ -39,6 +39,7 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/motions.h"
 #include "exactvo/geometry/turning.h"
+#include "exactvo/geometry/turning_motions.h"
 #include "exactvo/geometry/twist.h"
 
 namespace exactvo::formation {
@@ -95,6 +96,12 @@ struct MonitorVerdict {
   std::optional<MonitorWitness> witness;  ///< where share < 1
 };
 
+/// An arc of a way. Times are seconds of the way at full share: where the robot brakes, more time passes.
+struct MonitorArc {
+  geometry::TurningMotion motion;  ///< of the reference point, and how the footprint turns from `heading` on
+  double heading = 0.0;            ///< rad, as it begins
+};
+
 /// What is wrong with an argument.
 enum class MonitorProblem {
   not_finite,    ///< a number is NaN or infinite
@@ -129,6 +136,9 @@ class Monitor {
 
   /// The same of a trajectory: its first pose is where the robot is. Throws MonitorError.
   MonitorVerdict judge(const std::vector<TimedPose>& trajectory, const std::vector<Mover>& movers = {});
+
+  /// The way of the last command or trajectory at a share of it, braking included; none before. Allocates.
+  std::vector<MonitorArc> way(double share) const;
 
  private:
   /// A convex piece of an obstacle.
@@ -185,6 +195,7 @@ class Monitor {
   std::vector<Part> parts_;
   double body_reach_ = 0.0;  ///< m: a disc about the reference point that holds the footprint
   double held_ = 0.0;        ///< s, at share 1
+  bool is_trajectory_ = false;
   double brake_time_ = 0.0;  ///< s, at share 1
   std::vector<Stretch> way_;
   geometry::GapKeeper keeper_;

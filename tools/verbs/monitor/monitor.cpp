@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo monitor: commands and trajectories in, a line of JSON each; how much of each is proven clear comes out.
+#include "exactvo/formation/monitor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/input_text.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/box.h"
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/turning_motions.h"
+#include "figures/figure.h"
+#include "json/json_text.h"
+#include "support/footprint.h"
+#include "support/terminal.h"
+#include "support/turning_certificates.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/monitor/figure.h"
+#include "verbs/obstacles/obstacle_files.h"
+
+namespace exactvo::tools {
+namespace {
+
+using datasets::DataCode;
+using datasets::DataError;
+using datasets::Json;
+using datasets::JsonCursor;
+using datasets::JsonWriter;
+using formation::Command;
+using formation::Monitor;
+using formation::MonitorError;
+using formation::MonitorProblem;
+using formation::MonitorSetup;
+using formation::MonitorVerdict;
+using formation::Mover;
+using formation::TimedPose;
+
+/// Bytes: no line may be longer.
+constexpr std::size_t kLongestQuestion = std::size_t{1} << 20;
+
+struct MonitorFlags {
+  std::string file = "-", map, footprint, figure, certificates;
+  ReadingFlags reading;  ///< of the map
+  std::optional<double> radius;
+  MonitorSetup setup;
+};
+
+/// One line of input. `id` comes back as it is.
+struct MonitorQuestion {
+  Json id;
+  geometry::Pose pose;
+  std::optional<Command> command;
+  std::vector<TimedPose> trajectory;
+  std::vector<Mover> movers;
+  std::vector<std::string> names;  ///< of the movers
+};
+
+double finite_number(const JsonCursor& at) {
+  const double x = at.number();
+  if (!std::isfinite(x)) at.refuse("a finite number", DataCode::not_finite);
+  return x;
+}
+
+void require_size(const JsonCursor& list, std::size_t size, const char* expected) {
+  if (list.size() != size) list.refuse(expected, DataCode::wrong_count);
+}
+
+geometry::Vec2 point_in(const JsonCursor& at) {
+  require_size(at, 2, "[x, y], m");
+  return {finite_number(at.at(0)), finite_number(at.at(1))};
+}
+
+/// From the place `first` of the list on: x, y, heading.
+geometry::Pose pose_in(const JsonCursor& list, std::size_t first) {
+  return {{finite_number(list.at(first)), finite_number(list.at(first + 1))}, finite_number(list.at(first + 2))};
+}
+
+Command command_in(const JsonCursor& line) {
+  Command command;
+  const JsonCursor velocity = line.at("velocity");
+  require_size(velocity, 2, "[ahead, left], m/s");
+  command.twist.velocity = {finite_number(velocity.at(0)), finite_number(velocity.at(1))};
+  if (line.has("turn")) command.twist.turn = finite_number(line.at("turn"));
+  if (!line.has("frame")) return command;
+  const JsonCursor frame = line.at("frame");
+  if (frame.text() != "body" && frame.text() != "world") frame.refuse("body or world", DataCode::not_an_option);
+  command.in_world_axes = frame.text() == "world";
+  return command;
+}
+
+void read_mover(const JsonCursor& at, MonitorQuestion& question) {
+  Mover mover;
+  if (at.has("polygon") == at.has("position"))
+    at.refuse("either \"position\" and \"radius\", or \"polygon\"", DataCode::no_alternative);
+  mover.shape.corners.clear();
+  if (at.has("position")) {
+    mover.shape.corners.push_back(point_in(at.at("position")));
+    mover.shape.radius = finite_number(at.at("radius"));
+  } else {
+    const JsonCursor polygon = at.at("polygon");
+    for (std::size_t k = 0; k < polygon.size(); ++k) mover.shape.corners.push_back(point_in(polygon.at(k)));
+    if (at.has("radius")) mover.shape.radius = finite_number(at.at("radius"));
+  }
+  mover.max_speed = finite_number(at.at("max_speed"));
+  if (at.has("position_error")) mover.position_error = finite_number(at.at("position_error"));
+  question.names.push_back(at.has("id") ? at.at("id").text() : std::to_string(question.movers.size()));
+  question.movers.push_back(std::move(mover));
+  at.end_of_object();
+}
+
+MonitorQuestion question_in(const JsonCursor& line) {
+  MonitorQuestion question;
+  if (line.has("id")) question.id = line.at("id").json();
+  if (line.has("trajectory")) {
+    const JsonCursor list = line.at("trajectory");
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const JsonCursor row = list.at(k);
+      require_size(row, 4, "[time, x, y, heading], s, m and rad");
+      question.trajectory.push_back({finite_number(row.at(0)), pose_in(row, 1)});
+    }
+  } else {
+    const JsonCursor pose = line.at("pose");
+    require_size(pose, 3, "[x, y, heading], m and rad");
+    question.pose = pose_in(pose, 0);
+    question.command = command_in(line);
+  }
+  if (line.has("movers")) {
+    const JsonCursor movers = line.at("movers");
+    for (std::size_t k = 0; k < movers.size(); ++k) read_mover(movers.at(k), question);
+  }
+  line.end_of_object();
+  return question;
+}
+
+/// Certificates that the proven ways are clear of the obstacles near them.
+class ProofFile {
+ public:
+  ProofFile(const std::string& path, const MonitorSetup& setup)
+      : out_(path, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
+        setup_(setup) {
+    for (const formation::SceneObstacle& obstacle : setup.obstacles) {
+      geometry::Box box;
+      for (const geometry::Vec2 v : geometry::vertices_of(obstacle.shape)) box.add(v);
+      boxes_.push_back(box);
+    }
+  }
+
+  void add(std::size_t line, const std::vector<formation::MonitorArc>& way) {
+    for (const formation::MonitorArc& arc : way) {
+      geometry::RigidBody body = setup_.footprint;
+      double reach = 0.0;
+      for (geometry::RoundedPolygon& part : body) {
+        part.radius += setup_.margin;
+        for (geometry::Vec2& corner : part.corners) {
+          corner = geometry::rotated(corner, arc.heading);
+          reach = std::max(reach, norm(corner) + part.radius);
+        }
+      }
+      reach += norm(arc.motion.twist.velocity) * (arc.motion.end - arc.motion.start);
+      for (std::size_t k = 0; k < boxes_.size(); ++k) {
+        if (geometry::distance_below(boxes_[k], arc.motion.at) > reach * (1.0 + 0x1p-40)) continue;
+        const formation::SceneObstacle& obstacle = setup_.obstacles[k];
+        const auto proof = certify(arc.motion, body, obstacle.shape);
+        OrderedJson json{{"line", line}};
+        if (proof)
+          json["certificate"] = turning_certificate_json(*proof, arc.motion, body, obstacle);
+        else
+          json.update({{"certificate", nullptr}, {"obstacle", obstacle.id}});
+        ++(proof ? count_ : without_);
+        put(json);
+      }
+    }
+  }
+  void finish() {
+    put({{"summary", {{"certificates", count_}, {"without", without_}}}});
+    out_.commit();
+  }
+
+ private:
+  void put(const OrderedJson& json) {
+    out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
+  }
+  datasets::AtomicFile out_;
+  const MonitorSetup& setup_;
+  std::vector<geometry::Box> boxes_;
+  std::size_t count_ = 0, without_ = 0;
+};
+
+class Answers {
+ public:
+  /// `picture` and `proofs` may be null.
+  Answers(const std::vector<std::string>& obstacles, const std::string& file, MonitorPicture* picture,
+          ProofFile* proofs)
+      : obstacles_(obstacles), file_(file), picture_(picture), proofs_(proofs) {}
+
+  /// Prints the answer to line `number`; false where the line is wrong, which the answer then says.
+  bool answer(Monitor& monitor, std::string_view text, std::size_t number) {
+    json_.clear();
+    json_.begin_object().member("line", number);
+    bool is_right = true;
+    try {
+      const Json parsed = datasets::parse_json_line(text, file_, number);
+      const JsonCursor line(parsed, file_, "", JsonCursor::OtherKeys::refused);
+      if (!parsed.is_object()) line.refuse("an object");
+      if (parsed.contains("id")) json_.key("id").raw(parsed["id"].dump());
+      const MonitorQuestion question = question_in(line);
+      const MonitorVerdict verdict = question.command ? monitor.judge(question.pose, *question.command, question.movers)
+                                                      : monitor.judge(question.trajectory, question.movers);
+      put(question, verdict);
+      if (picture_ && !picture_->is_full())
+        picture_->add(
+            {title_of(question, verdict), monitor.way(1.0), monitor.way(verdict.share), question.movers, verdict});
+      if (proofs_ && verdict.proven) proofs_->add(number, monitor.way(verdict.share));
+    } catch (const DataError& error) {
+      put_error(code_name(error.code()), error.place(), error.found(), error.expected());
+      is_right = false;
+    } catch (const MonitorError& error) {
+      put_error(code_name(code_of(error.problem())), "", error.what(), "");
+      is_right = false;
+    }
+    json_.end_object();
+    print(std::string(json_.text()) + "\n");
+    return is_right;
+  }
+
+ private:
+  static DataCode code_of(MonitorProblem problem) {
+    return problem == MonitorProblem::not_finite     ? DataCode::not_finite
+           : problem == MonitorProblem::out_of_range ? DataCode::out_of_range
+                                                     : DataCode::wrong_count;
+  }
+
+  static std::string title_of(const MonitorQuestion& question, const MonitorVerdict& verdict) {
+    const std::string share = fmt::format("share {:.3g}", verdict.share);
+    return question.id.is_string() ? question.id.get<std::string>() + ": " + share : share;
+  }
+
+  void put(const MonitorQuestion& question, const MonitorVerdict& v) {
+    json_.member("share", v.share);
+    if (question.command) {
+      const geometry::Twist& twist = question.command->twist;
+      json_.member("velocity", geometry::Vec2{v.share * twist.velocity.x + 0.0, v.share * twist.velocity.y + 0.0});
+      json_.member("turn", v.share * twist.turn + 0.0);
+    } else {
+      const double from = question.trajectory.front().time, to = question.trajectory.back().time;
+      json_.member("until", from + v.share * (to - from));
+    }
+    json_.member("not_above", v.not_above).member("proven", v.proven).member("in_contact", v.in_contact);
+    json_.key("witness");
+    if (!v.witness) {
+      json_.null();
+      return;
+    }
+    json_.begin_object();
+    if (v.witness->is_mover)
+      json_.member("mover", question.names[v.witness->index]);
+    else
+      json_.member("obstacle", obstacles_[v.witness->index]);
+    json_.member("time", v.witness->time).member("place", v.witness->place).end_object();
+  }
+
+  void put_error(const char* code, const std::string& place, const std::string& found, const std::string& expected) {
+    json_.key("error").begin_object().member("code", code);
+    if (!place.empty()) json_.member("place", place);
+    json_.member("found", found);
+    if (!expected.empty()) json_.member("expected", expected);
+    json_.end_object();
+  }
+
+  const std::vector<std::string>& obstacles_;
+  const std::string& file_;
+  MonitorPicture* picture_;
+  ProofFile* proofs_;
+  JsonWriter json_{JsonWriter::Layout::compact};
+};
+
+MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obstacles) {
+  MonitorSetup setup = flags.setup;
+  if (!flags.radius && flags.footprint.empty())
+    throw missing_option("monitor", "option --radius or --footprint", "the size of the robot");
+  if (flags.radius) require_length("--radius", *flags.radius);
+  setup.footprint = flags.footprint.empty()
+                        ? geometry::disc_body(*flags.radius)
+                        : footprint_body(footprint_shape(flags.footprint), flags.radius.value_or(0.0));
+  if (!flags.map.empty()) {
+    datasets::ReadOptions reading = reading_options(flags.reading, "--map-format");
+    reading.keep_going = false;
+    datasets::ObstacleFile content = datasets::read_obstacles(flags.map, reading);
+    say_notes(content);
+    setup.obstacles = std::move(content.obstacles);
+  }
+  for (const formation::SceneObstacle& o : setup.obstacles) obstacles.push_back(o.id);
+  return setup;
+}
+
+Monitor monitor_of(const MonitorSetup& setup) {
+  try {
+    return Monitor(setup);
+  } catch (const MonitorError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+ExitCode monitor(const MonitorFlags& flags) {
+  std::vector<std::filesystem::path> inputs{flags.file};
+  if (!flags.map.empty()) inputs = all_read_with({flags.map}, flags.reading.format, flags.file);
+  for (const std::string& file : {flags.footprint, flags.certificates})
+    if (!file.empty()) inputs.emplace_back(file);
+  if (!flags.certificates.empty()) {
+    refuse_input_as_output(flags.file, "", "--certificates", flags.certificates);
+    if (!flags.map.empty())
+      refuse_input_as_output(flags.map, flags.reading.format, "--certificates", flags.certificates);
+  }
+  check_figure_name("--figure", flags.figure, inputs);
+  std::vector<std::string> obstacles;
+  const MonitorSetup setup = setup_of(flags, obstacles);
+  Monitor monitor = monitor_of(setup);
+  std::optional<MonitorPicture> picture;
+  if (!flags.figure.empty()) picture.emplace(setup);
+  const std::string name = datasets::name_of_input(flags.file);
+  datasets::TextLines lines(flags.file, kLongestQuestion);
+  std::optional<ProofFile> proofs;
+  if (!flags.certificates.empty()) proofs.emplace(flags.certificates, setup);
+  Answers answers(obstacles, name, picture ? &*picture : nullptr, proofs ? &*proofs : nullptr);
+  std::size_t wrong = 0;
+  for (std::string_view line; lines.next(line);) {
+    throw_if_reader_left();
+    if (interrupted()) throw Interrupted();
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    wrong += !answers.answer(monitor, line, lines.number());
+  }
+  if (proofs) proofs->finish();
+  if (picture && !picture->is_empty())
+    write_figure(picture->figure("Commands, and how much of each is proven clear"), flags.figure);
+  if (wrong == 0) return ExitCode::success;
+  message(fmt::format("{}: {} without an answer", name, geometry::counted(wrong, "line")));
+  return ExitCode::negative;
+}
+
+void declare_monitor(CLI::App& app, MonitorFlags& flags) {
+  app.add_option(
+         "file", flags.file,
+         "Commands and trajectories, a line of JSON each; by default -, which is stdin. Each is answered at once")
+      ->capture_default_str();
+  app.add_option("--radius", flags.radius, "Radius of a robot that is a disc, m");
+  app.add_option(
+      "--footprint", flags.footprint,
+      "WKT or FILE: a polygon round the point that poses mean, x ahead; --radius grows it. Or with --radius a "
+      "line with that half width");
+  app.add_option("--map", flags.map, "Obstacle file of any readable format: what stands still");
+  app.add_option(
+      "--map-format", flags.reading.format,
+      fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
+  app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
+  app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
+  MonitorSetup& setup = flags.setup;
+  app.add_option("--max-deceleration", setup.max_deceleration, "By which the robot can certainly brake, m/s^2")
+      ->capture_default_str();
+  app.add_option("--max-turn-deceleration", setup.max_turn_deceleration,
+                 "By which it can certainly stop turning, rad/s^2")
+      ->capture_default_str();
+  app.add_option("--latency", setup.latency, "From a decision to its effect, s")->capture_default_str();
+  app.add_option("--period", setup.period, "From a decision to the next, s")->capture_default_str();
+  app.add_option("--margin", setup.margin, "By which localisation, map and drive are off together at most, m")
+      ->capture_default_str();
+  app.add_option("--certificates", flags.certificates,
+                 "FILE: certificates that the proven ways are clear of what is near, for audit --certificate");
+  app.add_option("--figure", flags.figure,
+                 fmt::format("Draw the first {} lines. {}", MonitorPicture::kMostPanels, kFigureFileHelp));
+}
+
+}  // namespace
+
+Verb monitor_verb() {
+  return {"monitor", "Say for a control loop how much of each command is proven clear, line by line",
+          "  echo '{\"pose\": [0, 0, 0], \"velocity\": [1.5, 0], \"turn\": 0.4}' | exactvo monitor --radius 0.3 --map "
+          "datasets/data/crossing/corners.wkt\n"
+          "  exactvo monitor commands.jsonl --footprint 'POLYGON ((-0.4 -0.3, 0.6 -0.3, 0.6 0.3, -0.4 0.3))' --map "
+          "map.yaml --latency 0.15\n"
+          "    (a line holds \"pose\" [x, y, heading] in m and rad, \"velocity\" [ahead, left] in m/s and \"turn\" in "
+          "rad/s;\n"
+          "    or \"trajectory\", a list of [time, x, y, heading]; and \"movers\". The answer's \"share\" of it, then "
+          "braking,\n"
+          "    is proven clear. A line that is wrong is answered with an \"error\", and the next one is read; status 1 "
+          "says\n"
+          "    at the end that there were such lines. docs/guide/monitor.md)\n",
+          with_flags(declare_monitor, monitor)};
+}
+
+}  // namespace exactvo::tools
