@@ -172,7 +172,7 @@ TEST(Reservations, LongStepsAreSafeToo) {
   EXPECT_EQ(r.overlaps, 0u);
 }
 
-// --- Five ways in which earlier rules jammed for ever ---
+// --- Ways in which earlier rules jammed for ever ---
 
 RobotUnderWay robot_at(Vec2 position, Vec2 goal) {
   RobotUnderWay r;
@@ -279,6 +279,52 @@ TEST(Reservations, ARobotPushesAnotherOffItsGoal) {
   EXPECT_EQ(reservations.places()[0], robots[0].goal);
   EXPECT_GT(norm(reservations.places()[1] - robots[0].goal), 1.0);
   EXPECT_LT(reservations.ticket(1), reservations.ticket(0)) << "it makes way first";
+}
+
+/// Places of the lattice are at the goals of others where goals lie close: robots pushed each other off them by turns.
+TEST(Reservations, ARobotAtItsGoalStepsAsideNoFartherThanItMust) {
+  std::size_t looked = 0;
+  for (const double off : {-0.9, -0.5, -0.1, 0.1, 0.5, 0.9}) {
+    Reservations reservations(open_space(), 2, 0.1, 0.5, WhoReserves::all);
+    std::vector<RobotUnderWay> robots = {robot_at({0.0, 0.0}, {1.5, 0.0}), robot_at({0.75, off}, {0.75, off})};
+    reservations.look(robots);
+    ASSERT_EQ(reservations.places()[0], robots[0].goal) << "it pushes";
+    const Vec2 aside = reservations.places()[1] - robots[1].goal;
+    EXPECT_LE(norm(aside), 1.0 + kKeptFromOthers - std::fabs(off) + 1e-6) << off;
+    EXPECT_GT(aside.y * off, 0.0) << off;
+    ++looked;
+  }
+  EXPECT_EQ(looked, 6u);
+}
+
+/// It steps out of the way rather than ahead of the robot that pushes it, though ahead would be nearer to its goal.
+TEST(Reservations, APushedRobotIsNotPushedOnAndOn) {
+  for (const double side : {1.0, -1.0}) {
+    Reservations reservations(open_space(), 2, 0.1, 0.5, WhoReserves::all);
+    std::vector<RobotUnderWay> robots = {robot_at({0.0, 0.0}, {2.3 * side, 0.0}),
+                                         robot_at({1.06 * side, 0.0}, {4.3 * side, 0.0})};
+    robots[1].yields = true;
+    reservations.look(robots);
+    ASSERT_GT(side * reservations.places()[0].x, 0.5) << "it pushes";
+    EXPECT_GE(std::fabs(reservations.places()[1].y), 1.0);
+  }
+}
+
+/// Off the rows of places and in touch with the corners, each of the two is in the way of every place of the other but
+/// those straight on.
+TEST(Reservations, TwoRobotsSideBySideInTheMouthOfAPassageMakeWay) {
+  Scenario s;
+  add_wall(s, {{3.0, 8.0}, {3.0, 1.0}, {-3.0, 1.0}, {-3.0, 8.0}});
+  add_wall(s, {{3.0, -8.0}, {3.0, -1.0}, {-3.0, -1.0}, {-3.0, -8.0}});
+  add_robot(s, {2.12, 0.0}, {9.0, 0.0});
+  add_robot(s, {1.06, 0.0}, {9.0, 3.0});
+  add_robot(s, {0.0, 0.0}, {9.0, -3.0});
+  add_robot(s, {3.0396, -0.5015}, {-20.0, -2.0});
+  add_robot(s, {3.0461, 0.5}, {-20.0, 2.0});
+  const DriveReport r = ReservationDrive(s).run(100.0);
+  EXPECT_EQ(r.home, s.robots.size());
+  EXPECT_EQ(r.overlaps, 0u);
+  EXPECT_EQ(r.at_walls, 0u);
 }
 
 // --- Rows of places ---

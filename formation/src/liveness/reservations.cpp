@@ -37,6 +37,10 @@ constexpr double kWallRounding = 1e-7;
 constexpr double kLongestDrive = 1.61;
 constexpr double kWidestRows = 1.2;
 constexpr double kCostOfPushing = 0.2, kCostOfPushingOn = 0.6;
+/// Of a place where the robot that pushes would push it again next, as far ahead of that as `kFarAhead`.
+constexpr double kCostOfBeingAhead = 1.0, kFarAhead = 2.0;
+/// As near to a wall a robot can also drive straight along its row.
+constexpr double kBesideWall = 0.1;
 constexpr int kMostRows = 5;
 /// Share of a pitch: nearer, the robot stands on the place.
 constexpr double kStandsOn = 0.01;
@@ -78,6 +82,11 @@ bool comes_near(Vec2 p, Vec2 q, Vec2 o, double keep) {
   return comes_near_until_left(p, q, o, keep) || squared_norm(q - o) < keep * keep;
 }
 
+/// A square lattice.
+PlaceRows open_rows(double pitch) {
+  return {{}, {1.0, 0.0}, {0.0, 1.0}, pitch, pitch, 0};
+}
+
 }  // namespace
 
 PlaceRows rows_about(const ObstacleSpace& space, Vec2 place, double radius, double pitch) {
@@ -85,7 +94,7 @@ PlaceRows rows_about(const ObstacleSpace& space, Vec2 place, double radius, doub
   constexpr double kOpposite = 0.98;   // cosine
   constexpr double kRounding = 0.999;  // of steps that cross no wall
   constexpr double kOffWall = 1e-3;    // pitches
-  PlaceRows open{{}, {1.0, 0.0}, {0.0, 1.0}, pitch, pitch, 0};
+  const PlaceRows open = open_rows(pitch);
   if (space.is_open()) return open;
   const double widest = kMostRows * pitch, reach = 0.5 * widest + radius;
   const Vec2 from_wall = space.from_nearest_edge(place, reach);
@@ -319,7 +328,7 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   std::sort(waiting_.begin(), waiting_.end(), [this](std::size_t a, std::size_t b) { return is_before(a, b); });
   for (const std::uint32_t i : waiting_) {
     oldest_pusher_ = i;
-    if (decided_[i] != step_) reserve(i, 0);
+    if (decided_[i] != step_) reserve(i, 0, i);
   }
   has_changed_ = has_changed_ || tickets_ != tickets;
   count_ = 0;
@@ -372,17 +381,30 @@ void Reservations::look_about(std::size_t i, Outlook& out) const {
   if (to_next > kPlaceReached * diameter_)
     add(off_walls(i, p + std::min(1.0, pitch_ / to_next) * (r.next() - p)), true);
   const PlaceRows rows = rows_about(space_, p, r.radius, pitch_);
-  const double column = std::round(dot(p - rows.origin, rows.along) / rows.column);
-  double row = std::round(dot(p - rows.origin, rows.across) / rows.row);
-  if (rows.rows > 0) row = std::clamp(row, 0.0, rows.rows - 1.0);
-  out.stands_on_place = norm(rows.place(column, row) - p) <= kStandsOn * pitch_;
-  for (const double y : {row - 1.0, row, row + 1.0})
-    for (const double x : {column - 1.0, column, column + 1.0}) {
-      if (!rows.has_row(y)) continue;
-      const Vec2 place = rows.place(x, y);
-      const double far2 = squared_norm(place - p);
-      if (far2 > squared(kStandsOn * pitch_) && far2 < squared(kLongestDrive * pitch_)) add(place);
-    }
+  const auto add_places = [&](const PlaceRows& of, const auto& may_add) {
+    const double column = std::round(dot(p - of.origin, of.along) / of.column);
+    double row = std::round(dot(p - of.origin, of.across) / of.row);
+    if (of.rows > 0) row = std::clamp(row, 0.0, of.rows - 1.0);
+    for (const double y : {row - 1.0, row, row + 1.0})
+      for (const double x : {column - 1.0, column, column + 1.0}) {
+        if (!of.has_row(y)) continue;
+        const Vec2 place = of.place(x, y);
+        const double far2 = squared_norm(place - p);
+        if (far2 > squared(kStandsOn * pitch_) && far2 < squared(kLongestDrive * pitch_) && may_add(place)) add(place);
+      }
+    return norm(of.place(column, row) - p) <= kStandsOn * pitch_;
+  };
+  out.stands_on_place = add_places(rows, [](Vec2) { return true; });
+  // Two robots side by side in the mouth of a passage touch its corners: all that they can do is to go straight.
+  const double beside_wall = r.radius + kBesideWall * pitch_;
+  if (!out.stands_on_place && space_.clearance(p, beside_wall) < beside_wall) {
+    for (const Vec2 way : {rows.along, -rows.along}) add(p + pitch_ * way);
+    if (rows.rows == 0)
+      for (const Vec2 way : {rows.across, -rows.across}) add(p + pitch_ * way);
+  }
+  // Out of a passage it goes to places of the open.
+  if (rows.rows > 0)
+    add_places(open_rows(pitch_), [&](Vec2 place) { return rows_about(space_, place, r.radius, pitch_).rows == 0; });
 }
 
 /// Places that others stand on or drive to cost more.
@@ -432,7 +454,7 @@ bool Reservations::try_place(std::size_t i, const Option& to, std::size_t near, 
     places_[i] = to.place;
     for (std::size_t k = 0; k < pushed && has_room; ++k) {
       const std::uint32_t j = list_[near_end + k];
-      has_room = depth < kLongestRow && decided_[j] != step_ && reserve(j, depth + 1);
+      has_room = depth < kLongestRow && decided_[j] != step_ && reserve(j, depth + 1, i);
     }
     if (!has_room) places_[i] = before;
   }
@@ -440,15 +462,16 @@ bool Reservations::try_place(std::size_t i, const Option& to, std::size_t near, 
   return has_room;
 }
 
-/// A place for the robot, if there is one; then those that it pushes have one too. `depth`: how many push in a row.
-bool Reservations::reserve(std::size_t i, std::size_t depth) {
+/// A place for the robot, if there is one; then those that it pushes have one too. `depth`: how many push in a row,
+/// the last of them `pusher`; 0: none does.
+bool Reservations::reserve(std::size_t i, std::size_t depth, std::size_t pusher) {
   decided_[i] = step_;
   const std::size_t near = list_.size();
   for_each_near(at(i), reach_, [&](std::uint32_t j) {
     if (j != i) list_.push_back(j);
   });
   is_pushing_[i] = 1;
-  const bool found = find_place(i, near, depth);
+  const bool found = find_place(i, near, depth, pusher);
   is_pushing_[i] = 0;
   list_.resize(near);
   if (found) {
@@ -462,40 +485,74 @@ bool Reservations::reserve(std::size_t i, std::size_t depth) {
   return found;
 }
 
-bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth) {
+/// Where the pusher drives on it would push the robot again, all the way ahead of it: two that have to change places
+/// would push each other to and fro.
+void Reservations::weigh_way_of_pusher(std::size_t i, std::size_t pusher, Options& options) const {
+  constexpr double kRounding = 1.0 - 1e-6;  // a place that just leaves the pusher's way is out of it
+  const double keep = kRounding * ((*robots_)[i].radius + (*robots_)[pusher].radius + kKeptFromOthers * diameter_);
+  const Vec2 from = places_[pusher], on = (*robots_)[pusher].next() - from;
+  const double far = norm(on), reach = kFarAhead * pitch_;
+  const Vec2 to = from + (far > reach ? reach / far : 1.0) * on;
+  for (std::size_t k = 0; k < options.count; ++k)
+    if (squared_distance(options.all[k].place, from, to) < keep * keep)
+      options.all[k].cost += kCostOfBeingAhead * pitch_;
+}
+
+/// Near its goal a robot steps out of the pusher's way no farther than it must, so that it is back soon. At a place of
+/// the lattice it would stand at the goals of others, which are pushed off these: where goals lie close, for ever.
+void Reservations::add_steps_aside(std::size_t i, std::size_t pusher, std::size_t near, Options& options) const {
+  constexpr double kRounding = 1.0 + 1e-9;
+  const RobotUnderWay& r = (*robots_)[i];
+  if (squared_norm(r.goal - r.position) >= squared(pitch_)) return;
+  const double keep = kRounding * (r.radius + (*robots_)[pusher].radius + kKeptFromOthers * diameter_);
+  const Vec2 from = at(pusher), way = places_[pusher] - from;
+  const double length = norm(way);
+  if (length == 0.0) return;
+  const Vec2 on = way / length, nearest = from + std::clamp(dot(at(i) - from, on), 0.0, length) * on;
+  const Vec2 away = at(i) - nearest;
+  const double off = norm(away);
+  const std::array<Vec2, Options::kMostAside> ways = {off > 0.0 ? away / off : on, left_of(on), -left_of(on)};
+  for (const Vec2 aside : ways) {
+    const Vec2 place = nearest + keep * aside;
+    if (!is_open(i, place)) continue;
+    const double cost = way_from(i, place) + cost_of_pushing(i, place, true, near, list_.size());
+    options.all[options.count++] = {place, cost, false, false};
+  }
+}
+
+bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth, std::size_t pusher) {
   const Outlook& found = outlook_of(i);  // another robot's may take its room
   const bool is_pushed = depth > 0, may_settle = !is_pushed && !of_[i].is_at_goal && !found.stands_on_place;
   const bool is_restless = !is_pushed && !of_[i].is_at_goal && of_[i].in_vain < kGivesUpAfter &&
                            of_[i].in_vain % kRestlessEvery == kRestlessEvery - 1;
-  const std::size_t near_end = list_.size();
-  std::array<Option, Outlook::kMost> options;
-  const std::size_t count = found.count;
   SplitMix64 random(step_ * of_.size() + i);
   const bool is_shaken =
       is_pushed && of_[oldest_pusher_].in_vain > kShakeAfter && of_[oldest_pusher_].in_vain < kGivesUpAfter;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Prospect& p = found.places[k];
-    options[k] = {p.place, p.way + cost_of_pushing(i, p.place, is_pushed, near, near_end), p.leads_on, p.pushes_nobody};
-    if (is_shaken) options[k].cost += 2.0 * pitch_ * random.fraction();
+  Options options;
+  for (; options.count < found.count; ++options.count) {
+    const Prospect& p = found.places[options.count];
+    const double cost = p.way + cost_of_pushing(i, p.place, is_pushed, near, list_.size());
+    options.all[options.count] = {p.place, cost, p.leads_on, p.pushes_nobody};
   }
-  const auto sort = [&] {  // few, and equal ones stay in order
-    for (std::size_t k = 1; k < count; ++k)
-      for (std::size_t at = k; at > 0 && options[at].cost < options[at - 1].cost; --at)
-        std::swap(options[at], options[at - 1]);
-  };
+  if (is_pushed) {
+    add_steps_aside(i, pusher, near, options);
+    weigh_way_of_pusher(i, pusher, options);
+  }
+  const auto begin = options.all.begin(), end = begin + static_cast<std::ptrdiff_t>(options.count);
+  if (is_shaken) std::for_each(begin, end, [&](Option& o) { o.cost += 2.0 * pitch_ * random.fraction(); });
   const auto try_all = [&](auto&& may_take) {
-    sort();
-    return std::any_of(options.begin(), options.begin() + static_cast<std::ptrdiff_t>(count),
-                       [&](const Option& o) { return may_take(o) && try_place(i, o, near, depth); });
+    for (auto at = begin; at != end; ++at)  // few, and equal ones stay in order
+      for (auto k = at; k != begin && k->cost < (k - 1)->cost; --k) std::swap(*k, *(k - 1));
+    return std::any_of(begin, end, [&](const Option& o) { return may_take(o) && try_place(i, o, near, depth); });
   };
   if (try_all([&](const Option& o) { return is_pushed ? !o.pushes_nobody : o.leads_on; })) return true;
   const auto is_place = [](const Option& o) { return !o.pushes_nobody; };
   if (may_settle) {  // off the rows of places, and no way on: to a place of them
-    for (std::size_t k = 0; k < count; ++k) options[k].cost = squared_norm(options[k].place - at(i));
+    std::for_each(begin, end, [&](Option& o) { o.cost = squared_norm(o.place - at(i)); });
     if (try_all(is_place)) return true;
   }
   if (!is_restless) return false;
-  for (std::size_t k = 0; k < count; ++k) options[k].cost = random.fraction();
+  std::for_each(begin, end, [&](Option& o) { o.cost = random.fraction(); });
   return try_all(is_place);
 }
 

@@ -133,7 +133,7 @@ class Reservations {
   };
   /// Where a robot could drive from where it stands.
   struct Outlook {
-    static constexpr std::size_t kMost = 11;
+    static constexpr std::size_t kMost = 24;
     // What it follows from.
     std::size_t robot = static_cast<std::size_t>(-1);
     Vec2 position, goal;
@@ -153,6 +153,11 @@ class Reservations {
     double cost = 0.0;  ///< those that cost less are tried first
     bool leads_on = false, pushes_nobody = false;
   };
+  struct Options {
+    static constexpr std::size_t kMostAside = 3;
+    std::size_t count = 0;
+    std::array<Option, Outlook::kMost + kMostAside> all;
+  };
 
   Vec2 at(std::size_t i) const { return (*robots_)[i].position; }
   bool is_moving(std::size_t i) const;
@@ -168,11 +173,13 @@ class Reservations {
   bool is_something_ahead(std::size_t i) const;
   bool is_before(std::size_t a, std::size_t b) const;
 
-  bool reserve(std::size_t i, std::size_t depth);
+  bool reserve(std::size_t i, std::size_t depth, std::size_t pusher);
   const Outlook& outlook_of(std::size_t i);
   void look_about(std::size_t i, Outlook& out) const;
   double cost_of_pushing(std::size_t i, Vec2 place, bool is_pushed, std::size_t near, std::size_t near_end) const;
-  bool find_place(std::size_t i, std::size_t near, std::size_t depth);
+  bool find_place(std::size_t i, std::size_t near, std::size_t depth, std::size_t pusher);
+  void weigh_way_of_pusher(std::size_t i, std::size_t pusher, Options& options) const;
+  void add_steps_aside(std::size_t i, std::size_t pusher, std::size_t near, Options& options) const;
   bool is_there_room(std::size_t i, const Option& to, std::size_t near, std::size_t near_end, std::size_t& pushed);
   bool try_place(std::size_t i, const Option& to, std::size_t near, std::size_t depth);
 
