@@ -64,7 +64,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
-  return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
+  const bool is_without = options.steering || options.half_planes || scenario.separate;
+  return wanted == Liveness::plan && (!is_guided || is_without) ? Liveness::bias : wanted;
 }
 
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {
@@ -91,6 +92,8 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
+  EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),
+                  "steering or half-planes of a user, in a formation");
   EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");
   const Clock::time_point start = Clock::now();
   Recording recording;

@@ -19,11 +19,12 @@ struct DecisionRules {
   Margins margins;                                    ///< beside radii and facades
   double time_step = 0.05;                            ///< s, > 0
   double neighbour_distance = 15.0;                   ///< m, > 0
+  bool separate = false;                              ///< robots that overlap part, and do not come nearer
 };
 
 inline DecisionRules rules_of(const Scenario& scenario, const SimulationOptions& options) {
   return {options.method,     guidance_of(scenario, options), scenario.speed_bound, scenario.horizons, scenario.margins,
-          scenario.time_step, scenario.neighbour_distance};
+          scenario.time_step, scenario.neighbour_distance,    scenario.separate};
 }
 
 }  // namespace exactvo::formation::detail
