@@ -120,6 +120,7 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   EXPECT_TRUE(a.formation || a.guidance == b.guidance);
   EXPECT_TRUE(a.formation || a.unreachable == b.unreachable);
   EXPECT_TRUE(a.formation || a.liveness == b.liveness);
+  EXPECT_EQ(a.separate, b.separate);
   EXPECT_EQ(a.speed_bound, b.speed_bound);
   EXPECT_TRUE(same_bits(numbers_of(a), numbers_of(b)));
   ASSERT_EQ(a.acceleration.has_value(), b.acceleration.has_value());

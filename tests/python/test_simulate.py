@@ -241,3 +241,71 @@ def test_joint_plans_are_those_of_the_recording(tmp_path):
     again = exactvo.read_recording(tmp_path / "recording.jsonl").plans
     assert [p.row for p in again] == [p.row for p in run.plans] and np.array_equal(again[0].places, run.plans[0].places)
     assert exactvo.simulate(scenario, liveness="off").plans == ()
+
+
+CROSSING = {
+    "name": "crossing",
+    "time_step": 0.1,
+    "time_limit": 30,
+    "guidance": "none",
+    "robots": [
+        {"id": f"R{k}", "position": [4 * x, 4 * y], "goal": [-4 * x, -4 * y], "radius": 0.3, "max_speed": 1}
+        for k, (x, y) in enumerate([(1, 0.1), (0, 1), (-1, 0), (0, -1)])
+    ],
+}
+
+
+def test_steering_sets_the_preferred_velocities():
+    seen = []
+
+    def steering(now):
+        seen.append(now.time)
+        assert now.position.shape == now.velocity.shape == now.preferred.shape == (4, 2)
+        return 0.5 * now.preferred
+
+    run = exactvo.simulate(CROSSING, steering=steering)
+    assert seen == run.time[:-1].tolist()
+    assert np.hypot(*run.preferred[:-1].reshape(-1, 2).T).max() <= 0.5 + 1e-12
+    assert "steered" in run.mode and run.metrics["arrived"] == 4
+    assert run.metrics["collisions"] == [] and run.audit()["points"]["choices"]["refuted"] == 0
+
+    def in_place(now):
+        now.preferred *= 0.5
+
+    assert exactvo.simulate(CROSSING, steering=in_place).position.tobytes() == run.position.tobytes()
+
+
+def test_own_half_planes_hold_and_are_recorded():
+    def half_planes(now):
+        return [exactvo.OwnHalfPlane(k, exactvo.vo.HalfPlane((1.0, 0.0), -0.25), hard=k % 2 == 0) for k in range(4)]
+
+    run = exactvo.simulate(CROSSING, half_planes=half_planes)
+    own = run.own_half_planes(5, 2)
+    assert [o.half_plane.offset for o in own] == [-0.25] and own[0].hard and run.own_stage(5, 2) == "held"
+    assert run.chosen[:-1, ::2, 0].min() >= -0.25
+    assert run.audit()["points"]["choices"]["refuted"] == 0
+    assert exactvo.simulate(CROSSING).own_stage(5, 2) == "none"
+
+
+@pytest.mark.parametrize(
+    "rules, where",
+    [
+        ({"steering": lambda now: now.preferred[:2]}, "steering"),
+        ({"steering": lambda now: now.preferred * np.nan}, "steering"),
+        ({"half_planes": lambda now: [1]}, "half_planes"),
+        ({"half_planes": lambda now: [exactvo.OwnHalfPlane(4, exactvo.vo.HalfPlane((1.0, 0.0), 0.0))]}, "half_planes"),
+        ({"half_planes": lambda now: [exactvo.OwnHalfPlane(0, exactvo.vo.HalfPlane((0.0, 0.0), 0.0))]}, "half_planes"),
+    ],
+)
+def test_answers_that_are_none_end_the_run(rules, where):
+    with pytest.raises(exactvo.ArgumentError) as refused:
+        exactvo.simulate(CROSSING, **rules)
+    assert refused.value.where == where
+
+
+def test_what_steering_raises_ends_the_run():
+    def steering(now):
+        raise ZeroDivisionError("mine")
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        exactvo.simulate(CROSSING, steering=steering)

@@ -227,6 +227,8 @@ std::string way_words(const Decision& d) {
       return "the preferred velocity follows the boundary, after a stall";
     case formation::Mode::pushing_out:
       return "the robot is in contact, and the preferred velocity leads away from it";
+    case formation::Mode::steered:
+      return "the preferred velocity was set by the user";
     default:
       return "";
   }
@@ -309,6 +311,22 @@ std::string fallen_words(const Decision& d) {
       d.step.constraints[first].time_horizon);
 }
 
+/// What the user has asked for in this step.
+std::string own_words(const Decision& d) {
+  std::string text;
+  for (const formation::OwnConstraint& c : d.step.own) {
+    const double violation = geometry::violation(c.half_plane, d.step.chosen) / norm(c.half_plane.normal);
+    const std::string effect = violation > kOnLine ? "violated by " + amount(violation) + " m/s"
+                               : c.active          ? "binding"
+                                                   : "slack";
+    text += fmt::format("Asked by the user, {}: {:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s, {}\n", c.hard ? "hard" : "soft",
+                        c.half_plane.normal.x, c.half_plane.normal.y, c.half_plane.offset, effect);
+  }
+  if (d.step.own_stage == formation::OwnStage::left_out)
+    text += "     Left out: half-planes against obstacles and robots leave no room by themselves.\n";
+  return text;
+}
+
 std::string why(const Decision& d) {
   if (d.step.status == lp::Status::relaxed) return relaxed_words(d);
   if (d.step.status != lp::Status::optimal) return "";
@@ -371,7 +389,7 @@ std::optional<double> time_to_contact(const GrownShape& s, Vec2 v) {
 }
 
 std::string explanation(const Decision& decision) {
-  return head(decision) + constraints_words(decision) + why(decision) + fallen_words(decision);
+  return head(decision) + constraints_words(decision) + why(decision) + own_words(decision) + fallen_words(decision);
 }
 
 }  // namespace exactvo::tools

@@ -169,8 +169,7 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   } else {
     problem.bound.box_x = problem.bound.box_y = max_speed;
   }
-  for (const DecisionConstraint& c : step.constraints)
-    problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
+  problem.constraints = problem_of(step, step.constraints);
   const lp::Proven proven = lp::solve_certified(problem);
   const lp::Solution& solution = proven.solution;
   step.preferred = preferred;
@@ -180,18 +179,23 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   step.exact_multipliers = proven.exact_stage && solution.status != lp::Status::no_interior &&
                            lp::check(problem, lp::claim_of(problem, solution)) != lp::CertificateError::none;
   step.bound.clear();
-  for (DecisionConstraint& c : step.constraints) {
-    c.active = false;
-    c.multiplier = 0.0;
-  }
+  const auto bind = [](auto& c, std::optional<double> multiplier) {
+    c.active = multiplier.has_value();
+    c.multiplier = multiplier.value_or(0.0);
+  };
+  for (DecisionConstraint& c : step.constraints) bind(c, std::nullopt);
+  for (formation::OwnConstraint& c : step.own) bind(c, std::nullopt);
   for (std::size_t k = 0; k < solution.active_count; ++k) {
     lp::ActiveConstraint active = solution.active[k];
     if (step.exact_multipliers) active.multiplier = 0.0;
     if (lp::is_speed_bound(active.binding)) {
       step.bound.push_back(active);
     } else {
-      step.constraints[active.binding.index].active = true;
-      step.constraints[active.binding.index].multiplier = active.multiplier;
+      const std::size_t k = active.binding.index, against_bodies = step.constraints.size();
+      if (k < against_bodies)
+        bind(step.constraints[k], active.multiplier);
+      else
+        bind(step.own[k - against_bodies], active.multiplier);
     }
   }
 }

@@ -180,6 +180,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("decision.violation", each<double>(robots, &RobotStep::violation), 0);
   columns.add("decision.status", each<std::uint8_t>(robots, &RobotStep::status), 0);
   columns.add("decision.exact_multipliers", each<std::uint8_t>(robots, &RobotStep::exact_multipliers), 0);
+  columns.add("decision.own_stage", each<std::uint8_t>(robots, &RobotStep::own_stage), 0);
   columns.add("decision.half_planes",
               each<std::uint32_t>(robots, [](const RobotStep& r) { return r.constraints.size(); }));
   columns.add("decision.parts", each<std::uint32_t>(robots, [](const RobotStep& r) { return r.bound.size(); }));

@@ -340,6 +340,8 @@ void add(AuditReport& sum, const AuditReport& other) {
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
+  sum.started_overlapping.insert(sum.started_overlapping.end(), other.started_overlapping.begin(),
+                                 other.started_overlapping.end());
   sum.cut_off.insert(sum.cut_off.end(), other.cut_off.begin(), other.cut_off.end());
   sum.findings.insert(sum.findings.end(), other.findings.begin(), other.findings.end());
 }
@@ -399,6 +401,7 @@ std::string to_json(const AuditReport& report) {
   json.member("against_moving_obstacles", report.moving_questions);
   json.member("against_robots", report.robot_questions);
   json.member("largest_bulge", report.largest_bulge).end_object();
+  json.member_if(!report.started_overlapping.empty(), "started_overlapping", report.started_overlapping);
   json.member("not_audited", not_audited(report)).member("findings", report.findings);
   return json.end_object().take();
 }

@@ -28,6 +28,8 @@ using exact::Rational;
 using exact::Verdict;
 using formation::DecisionConstraint;
 using formation::GoalBodies;
+using formation::OwnConstraint;
+using formation::OwnStage;
 using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
@@ -94,6 +96,17 @@ bool is_beyond_proof(const lp::Problem& problem, const lp::Solution& chosen) {
   constexpr double kRounding = 1.0 + 0x1p-40;
   return chosen.violation <= kRounding * exact.solution.violation &&
          norm(chosen.velocity - problem.preferred) <= kRounding * norm(exact.solution.velocity - problem.preferred);
+}
+
+/// While half-planes of a user give, no other does.
+bool holds_bodies(OwnStage stage) {
+  return stage == OwnStage::held || stage == OwnStage::gave;
+}
+bool is_hard_in(OwnStage stage, const DecisionConstraint& c) {
+  return c.hard || holds_bodies(stage);
+}
+bool is_hard_in(OwnStage stage, const OwnConstraint& c) {
+  return stage == OwnStage::held && c.hard;
 }
 
 constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
@@ -427,10 +440,13 @@ class DecisionAudit : public RowAudit {
       const std::string text = at_row(s.row, "the choice of " + id(s) + why);
       is_open ? run_.tally.open(AuditPoint::choices, text) : run_.tally.refuted(AuditPoint::choices, text);
     };
+    const auto all_have_numbers = [](const auto& some) {
+      return std::all_of(some.begin(), some.end(), [](const auto& c) { return has_numbers(c.half_plane); });
+    };
     if (!geometry::is_finite(r.preferred) || !geometry::is_finite(r.chosen) || !std::isfinite(r.violation) ||
-        !std::all_of(r.constraints.begin(), r.constraints.end(),
-                     [](const DecisionConstraint& c) { return has_numbers(c.half_plane); }))
+        !all_have_numbers(r.constraints) || !all_have_numbers(r.own))
       return answer(" is without numbers", false);
+    if (const std::string early = earlier_stage(s); !early.empty()) return answer(early, false);
     const Violations most = violations(s);
     run_.tally.report.largest_violation =
         std::max(run_.tally.report.largest_violation, exact::at_least(most.forbidden));
@@ -454,6 +470,37 @@ class DecisionAudit : public RowAudit {
            false);
   }
 
+  /// A decision with half-planes of a user counts in the first stage that has an answer: the one before has none.
+  std::string earlier_stage(const Seen& s) const {
+    const RobotStep& r = *s.state;
+    if (r.own.empty() != (r.own_stage == OwnStage::none))
+      return " has half-planes of a user in no stage, or none in one";
+    const bool has_answer = r.status == lp::Status::optimal || r.status == lp::Status::relaxed;
+    if (holds_bodies(r.own_stage) && !has_answer) return " is made in a stage that has no answer";
+    if (r.own_stage == OwnStage::none || r.own_stage == OwnStage::held) return "";
+    lp::Problem before;
+    state(s, r.own_stage == OwnStage::gave ? OwnStage::held : OwnStage::gave, before);
+    const lp::Status status = lp::solve_exact(before).solution.status;
+    if (status == lp::Status::infeasible || status == lp::Status::no_interior) return "";
+    return " gives up half-planes of a user that can be held";
+  }
+
+  /// The linear program of a stage.
+  void state(const Seen& s, OwnStage stage, lp::Problem& problem) const {
+    const auto take = [&](const auto& some) {
+      for (const auto& c : some)
+        problem.constraints.push_back({c.half_plane, is_hard_in(stage, c) ? lp::Priority::hard : lp::Priority::soft});
+    };
+    const double speed = run_.scenario.robots[s.robot].max_speed;
+    if (run_.scenario.speed_bound == formation::SpeedBoundKind::disc)
+      problem.bound.disc = speed;
+    else
+      problem.bound.box_x = problem.bound.box_y = speed;
+    problem.preferred = s.state->preferred;
+    take(s.state->constraints);
+    if (holds_bodies(stage)) take(s.state->own);
+  }
+
   /// m/s
   struct Violations {
     Rational forbidden, given;
@@ -465,12 +512,16 @@ class DecisionAudit : public RowAudit {
     const bool no_room = r.status == lp::Status::no_interior, infeasible = r.status == lp::Status::infeasible;
     const Point chosen = exactly(r.chosen);
     Violations most{Rational(0), Rational(0)};
-    for (const DecisionConstraint& c : r.constraints) {
+    const auto take = [&](const auto& c) {
       const Rational violation = violation_at(c.half_plane, chosen);
-      const bool may_give = infeasible || (!c.hard && (no_room || r.status == lp::Status::relaxed));
+      const bool is_hard = is_hard_in(r.own_stage, c);
+      const bool may_give = infeasible || (!is_hard && (no_room || r.status == lp::Status::relaxed));
       if (!may_give) most.forbidden = std::max(most.forbidden, violation);
-      if (may_give && c.hard == infeasible) most.given = std::max(most.given, violation);
-    }
+      if (may_give && is_hard == infeasible) most.given = std::max(most.given, violation);
+    };
+    for (const DecisionConstraint& c : r.constraints) take(c);
+    if (holds_bodies(r.own_stage))
+      for (const OwnConstraint& c : r.own) take(c);
     return most;
   }
 
@@ -487,24 +538,27 @@ class DecisionAudit : public RowAudit {
     if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
     for (const lp::ActiveConstraint& part : r.bound)
       if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
-    for (const DecisionConstraint& c : r.constraints) {
+    const auto wrong_with = [&](const auto& c) {
       if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
       if (!c.active && c.multiplier != 0.0) return " has a multiplier for an inactive half-plane";
       if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
         return " lists a half-plane as active whose boundary it is not on";
+      return "";
+    };
+    std::string wrong;
+    for (const DecisionConstraint& c : r.constraints)
+      if (wrong.empty()) wrong = wrong_with(c);
+    for (const OwnConstraint& c : r.own) {
+      if (wrong.empty()) wrong = wrong_with(c);
+      if (wrong.empty() && c.active && !holds_bodies(r.own_stage)) wrong = " lists as active what it leaves out";
     }
-    return "";
+    return wrong;
   }
 
   /// The decision as a problem of the recorded half-planes, and its answer. Says what is wrong with its terms.
   std::string stated(const Seen& s, lp::Problem& problem, lp::Solution& solution) const {
     const RobotStep& r = *s.state;
-    const double speed = run_.scenario.robots[s.robot].max_speed;
-    if (run_.scenario.speed_bound == formation::SpeedBoundKind::disc)
-      problem.bound.disc = speed;
-    else
-      problem.bound.box_x = problem.bound.box_y = speed;
-    problem.preferred = r.preferred;
+    state(s, r.own_stage, problem);
     solution.velocity = r.chosen;
     solution.status = r.status;
     solution.violation = r.violation;
@@ -513,9 +567,14 @@ class DecisionAudit : public RowAudit {
       fits = fits && solution.active_count < solution.active.size() && multiplier >= 0.0 && std::isfinite(multiplier);
       if (fits) solution.active[solution.active_count++] = {binding, multiplier};
     };
+    std::size_t number = 0;
     for (const DecisionConstraint& c : r.constraints) {
-      problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
-      if (c.active) take(lp::constraint_at(problem.constraints.size() - 1), c.multiplier);
+      if (c.active) take(lp::constraint_at(number), c.multiplier);
+      ++number;
+    }
+    for (const OwnConstraint& c : r.own) {
+      if (c.active) take(lp::constraint_at(number), c.multiplier);
+      ++number;
     }
     for (const lp::ActiveConstraint& part : r.bound) take(part.binding, part.multiplier);
     return fits ? "" : " has more multipliers, or others, than an optimum has";

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recordings/audit_points.h"
 
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "exactvo/geometry/told_apart.h"
+
 namespace exactvo::datasets {
 namespace {
 
 using exact::Chord;
 using exact::ExactWay;
+using exact::Point;
 using exact::Rational;
 using exact::StepMotion;
+using exact::Straight;
 using exact::Verdict;
 using formation::MotionLaw;
 
@@ -54,6 +63,7 @@ class MotionAudit : public RowAudit {
       report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
       driven.push_back({motion, box_of(whole)});
     }
+    if (run_.scenario.separate) part(at, driven);
     const Moved moved = displacements(from, to);
     for (std::size_t i = 0; i < driven.size(); ++i) {
       if (run_.file.recording.motion != MotionLaw::straight) ++report.curved_steps;
@@ -141,6 +151,10 @@ class MotionAudit : public RowAudit {
       ++run_.tally.report.robot_questions;
       const double radius = run_.scenario.robots[i].radius, other = run_.scenario.robots[j].radius;
       if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
+      if (parting_.count(std::minmax(i, j)) > 0) {
+        if (comes_nearer(driven[i], driven[j])) answer.take(Verdict::meets, "robot", run_.scenario.robots[j].id);
+        continue;
+      }
       const Rational reach = Rational(radius) + Rational(other);
       const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
       const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
@@ -149,8 +163,56 @@ class MotionAudit : public RowAudit {
     }
   }
 
+  // --- Pairs that started in overlap ---
+
+  static Straight relative(const Driven& a, const Driven& b) {
+    return a.motion.seen_from(b.motion).over(Rational(0), Rational(1)).way;
+  }
+
+  /// Pairs that overlap in the first row, and of these the ones that still do.
+  void part(const RowInRun& at, const std::vector<Driven>& driven) {
+    const std::vector<formation::Robot>& robots = run_.scenario.robots;
+    const auto overlap = [&](std::size_t i, std::size_t j) {
+      const Point d = relative(driven[i], driven[j]).from;
+      const Rational reach = Rational(robots[i].radius) + Rational(robots[j].radius);
+      return exact::dot(d, d) < reach * reach;
+    };
+    if (at.number == 0)
+      for (std::size_t i = 0; i < driven.size(); ++i)
+        for (std::size_t j = i + 1; j < driven.size(); ++j)
+          if (overlap(i, j)) {
+            parting_.emplace(i, j);
+            told_[{i, j}] = run_.tally.report.started_overlapping.size();
+            run_.tally.report.started_overlapping.push_back(robots[i].id + " and " + robots[j].id +
+                                                            ", still in overlap at the end");
+          }
+    for (auto pair = parting_.begin(); pair != parting_.end();) {
+      const auto [i, j] = *pair;
+      if (overlap(i, j)) {
+        ++pair;
+        continue;
+      }
+      run_.tally.report.started_overlapping[told_.at(*pair)] =
+          robots[i].id + " and " + robots[j].id + ", apart from " + geometry::lossless(at.row.time) + " s on";
+      pair = parting_.erase(pair);
+    }
+  }
+
+  /// By more than the rounding of places and motions. Straight motions: the distance is convex, so that it grows all
+  /// the way if it does at the start.
+  bool comes_nearer(const Driven& a, const Driven& b) const {
+    const Straight seen = relative(a, b), of_a = a.motion.over(Rational(0), Rational(1)).way;
+    const Point m = seen.to - seen.from;
+    const auto size = [](const Point& p) { return Rational(abs(p.x) + abs(p.y)); };
+    const Rational rounding = kRoundingOfPlaces * (size(of_a.from) + size(seen.from) + size(m));
+    return exact::dot(seen.from, m) < -size(seen.from) * rounding;
+  }
+
+  static constexpr double kRoundingOfPlaces = 0x1p-44;  ///< of the coordinates, in a step
   const AuditedRun& run_;
   std::vector<RationalObstacle> moving_;
+  std::set<std::pair<std::size_t, std::size_t>> parting_;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> told_;  ///< where in the report each pair stands
 };
 
 }  // namespace

@@ -77,6 +77,15 @@ inline void exact_multipliers(const JsonCursor& json, bool& are_exact) {
   if (are_exact && json.at("multipliers").text() != "exact") json.at("multipliers").refuse("\"exact\"");
 }
 
+template <>
+inline constexpr bool kOnOneLine<formation::OwnConstraint> = true;
+/// What a user asked for.
+template <class Codec>
+void members(Codec& json, For<Codec, formation::OwnConstraint>& c) {
+  json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
+  json.member("hard", c.hard).member("active", c.active).member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
+}
+
 /// One robot's part of a row. What is empty or as usual is left out.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
@@ -96,6 +105,8 @@ void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   json.member_if(!robot.note.empty(), "note", robot.note);
   json.member_if(robot.uncertified != 0, "uncertified", robot.uncertified);
   json.member_if(!robot.constraints.empty(), "constraints", robot.constraints);
+  json.member_if(robot.own_stage != formation::OwnStage::none, "own_stage", robot.own_stage);
+  json.member_if(!robot.own.empty(), "own", robot.own);
 }
 
 template <class Codec>

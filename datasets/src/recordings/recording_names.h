@@ -32,7 +32,13 @@ inline const auto& words(lp::Status) {
 inline const auto& words(formation::Mode) {
   using E = formation::Mode;
   static const auto kWords = named({E::direct, E::guided, E::boost, E::by_plan, E::going_back, E::following,
-                                    E::pushing_out, E::staying, E::arrived});
+                                    E::pushing_out, E::steered, E::staying, E::arrived});
+  return kWords;
+}
+
+inline const auto& words(formation::OwnStage) {
+  using E = formation::OwnStage;
+  static const auto kWords = named({E::none, E::held, E::gave, E::left_out});
   return kWords;
 }
 

@@ -119,6 +119,7 @@ class ScenarioReader {
     read_obstacle_list(list_in(tree, "obstacles"), scenario);
     read_robot_list(tree.at("robots"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
+    scenario.separate = tree.value("separate", false);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);

@@ -60,6 +60,7 @@ void append_choices(JsonWriter& json, const Scenario& scenario) {
     if (scenario.unreachable != formation::Unreachable::stay)
       json.member("unreachable", formation::name(scenario.unreachable));
     json.member("liveness", formation::name(scenario.liveness));
+    json.member_if(scenario.separate, "separate", true);
   }
   json.member("speed_bound", scenario.speed_bound == formation::SpeedBoundKind::box ? "box" : "disc");
 }

@@ -36,6 +36,16 @@ const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t 
   return nullptr;
 }
 
+/// Of a half-plane against a body: where a user has asked for others, none of these gives.
+lp::Priority priority_in(OwnStage stage, bool is_hard) {
+  const bool holds = is_hard || stage == OwnStage::held || stage == OwnStage::gave;
+  return holds ? lp::Priority::hard : lp::Priority::soft;
+}
+
+lp::Priority priority_of_own(OwnStage stage, const OwnConstraint& c) {
+  return stage == OwnStage::held && c.hard ? lp::Priority::hard : lp::Priority::soft;
+}
+
 Party party(const RobotsAt& now, std::size_t i, Vec2 velocity) {
   const Robot& r = now.robots[i];
   return {i, now.scene.robot(i), {now.anchors[i].position, velocity, r.radius}, r.max_speed, r.cooperates};
@@ -179,6 +189,7 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
   Constraint* mine = against(j, now.scene, constraints[i]);
   Constraint* theirs = against(i, now.scene, constraints[j]);
   if (!mine || !theirs) return;
+  if (now.rules.separate && mine->clearance < 0.0) return;  // rest satisfies what they have
   const PairConstraints pair = now.rules.has_brakes()
                                    ? braking(now, i, j)
                                    : at_rest(now, i, j, contact_time(now.rules.time_step, now.rules.horizons), gap);
@@ -209,6 +220,28 @@ void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& p
               : with_a_plan(now, i, j, planned[i].has_value(), std::max(gap_of(i), gap_of(j))).of_a;
     }
   }
+}
+
+void keep_from_nearing(const RobotsAt& now, std::vector<std::vector<Constraint>>& constraints) {
+  if (!now.rules.separate) return;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (!now.robots[i].cooperates) continue;
+    for (Constraint& c : constraints[i]) {
+      if (!(c.clearance < 0.0) || !is_of_robot(now.scene, c) || !now.robots[c.index].cooperates) continue;
+      const Vec2 apart = now.anchors[i].position - now.anchors[c.index].position;
+      c.normal = apart == Vec2{} ? Vec2{i < c.index ? -1.0 : 1.0, 0.0} : geometry::normalized(apart);
+      c.half_plane = {c.normal, 0.0};
+      c.proof = vo::Proof::none;
+    }
+  }
+}
+
+std::optional<Vec2> way_apart(const Scene& scene, const std::vector<Constraint>& mine) {
+  Vec2 sum;
+  for (const Constraint& c : mine)
+    if (c.clearance < 0.0 && is_of_robot(scene, c)) sum += c.normal;
+  constexpr double kLeast = 1e-6;  // of unit vectors: less has no direction
+  return norm(sum) > kLeast ? std::optional(geometry::normalized(sum)) : std::nullopt;
 }
 
 std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
@@ -288,8 +321,11 @@ void Decider::state_problem(const DecisionInput& in) {
   problem_.preferred = in.preferred;
   problem_.constraints.clear();
   for (const std::vector<Constraint>* some : {in.statics, in.others})
-    for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
-  for (const Constraint& c : limits_) problem_.constraints.push_back({c.half_plane, c.priority});
+    for (const Constraint& c : *some)
+      problem_.constraints.push_back({c.half_plane, priority_in(stage_, c.priority == lp::Priority::hard)});
+  for (const Constraint& c : limits_) problem_.constraints.push_back({c.half_plane, lp::Priority::hard});
+  if (stage_ == OwnStage::held || stage_ == OwnStage::gave)
+    for (const OwnConstraint& c : *in.own) problem_.constraints.push_back({c.half_plane, priority_of_own(stage_, c)});
 }
 
 lp::Solution Decider::rounded_solution(const DecisionInput& in) {
@@ -311,6 +347,18 @@ lp::Proven Decider::proven_solution(const DecisionInput& in) {
   return lp::solve_certified(problem_);
 }
 
+/// The first stage that has an answer. What shows that an earlier one has none is in all half-planes.
+lp::Proven Decider::solution_in_stages(DecisionInput& in) {
+  stage_ = OwnStage::none;
+  if (!in.own || in.own->empty()) return proven_solution(in);
+  for (stage_ = OwnStage::held;; stage_ = stage_ == OwnStage::held ? OwnStage::gave : OwnStage::left_out) {
+    lp::Proven proven = proven_solution(in);
+    const lp::Status status = proven.solution.status;
+    if (stage_ == OwnStage::left_out || status == lp::Status::optimal || status == lp::Status::relaxed) return proven;
+    in.keep_all = true;
+  }
+}
+
 Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
   if (!proven.exact_stage) return Proof::multipliers;
   if (proven.solution.status == lp::Status::no_interior) return Proof::whole_problem;
@@ -320,9 +368,10 @@ Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
                                                                            : Proof::whole_problem;
 }
 
-void Decider::decide(const DecisionInput& in, Decision& decision) {
+void Decider::decide(const DecisionInput& of_user, Decision& decision) {
+  DecisionInput in = of_user;
   if (rules_->has_brakes()) limit_change(in.from);
-  const lp::Proven proven = proven_solution(in);
+  const lp::Proven proven = solution_in_stages(in);
   const Proof proof = proof_of(proven);
   solution_ = proven.solution;
   decision.exact_multipliers = proof == Proof::exact_multipliers;
@@ -351,6 +400,15 @@ void Decider::decide(const DecisionInput& in, Decision& decision) {
     const lp::ActiveConstraint* active = active_at(solution_, number++);
     if (keep_all || active) kept_.emplace_back(&c, active);
   }
+  decision.own_stage = stage_;
+  decision.own.clear();
+  if (stage_ == OwnStage::none) return;
+  for (OwnConstraint c : *in.own) {
+    const lp::ActiveConstraint* active = stage_ == OwnStage::left_out ? nullptr : active_at(solution_, number++);
+    c.active = active != nullptr;
+    c.multiplier = active ? active->multiplier : 0.0;
+    decision.own.push_back(c);
+  }
 }
 
 void Decider::kept(std::vector<DecisionConstraint>& out) const {
@@ -365,3 +423,17 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
 }
 
 }  // namespace exactvo::formation::detail
+
+namespace exactvo::formation {
+
+std::vector<lp::Constraint> problem_of(const Decision& decision, const std::vector<DecisionConstraint>& constraints) {
+  std::vector<lp::Constraint> problem;
+  for (const DecisionConstraint& c : constraints)
+    problem.push_back({c.half_plane, detail::priority_in(decision.own_stage, c.hard)});
+  if (decision.own_stage == OwnStage::held || decision.own_stage == OwnStage::gave)
+    for (const OwnConstraint& c : decision.own)
+      problem.push_back({c.half_plane, detail::priority_of_own(decision.own_stage, c)});
+  return problem;
+}
+
+}  // namespace exactvo::formation

@@ -97,6 +97,15 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
 void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
                   std::vector<std::vector<Constraint>>& constraints, const std::vector<double>& gaps = {});
 
+/// Where robots part (`DecisionRules::separate`): the half-planes of two that overlap and both yield give way to those
+/// of not coming nearer, n.(v_a - v_b) >= 0 with n from one to the other, half each: rest satisfies all of them. Of two
+/// in one place the first goes to the left.
+void keep_from_nearing(const RobotsAt& now, std::vector<std::vector<Constraint>>& constraints);
+
+/// Unit, from a robot's half-planes: away from those that it overlaps; nothing where it overlaps none, or is in their
+/// middle.
+std::optional<Vec2> way_apart(const Scene& scene, const std::vector<Constraint>& mine);
+
 /// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
 std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
                                     const std::vector<Constraint>& others);
@@ -110,6 +119,7 @@ struct DecisionInput {
   const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
   NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
+  const std::vector<OwnConstraint>* own = nullptr;  ///< what the user asks for; null or empty: nothing
 };
 
 /// Makes decisions one after the other in memory of its own.
@@ -121,9 +131,9 @@ class Decider {
   /// Room for decisions among so many half-planes: they allocate nothing then, unless doubles do not prove them.
   void reserve(std::size_t constraints);
 
-  /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound` and `uncertified`; the other
-  /// fields are the caller's. With an acceleration the change from `from.velocity` is limited by half-planes that name
-  /// the robot itself. Keeps the constraints that bind or are violated, and those against what can be met within
+  /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `uncertified` and `own`; the
+  /// other fields are the caller's. With an acceleration the change from `from.velocity` is limited by half-planes that
+  /// name the robot itself. Keeps the constraints that bind or are violated, and those against what can be met within
   /// a step: with these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
   void decide(const DecisionInput& in, Decision& decision);
   /// What the last decision kept. REQUIRES: what it was made from is still there.
@@ -148,6 +158,7 @@ class Decider {
   void state_problem(const DecisionInput& in);
   lp::Solution rounded_solution(const DecisionInput& in);
   lp::Proven proven_solution(const DecisionInput& in);
+  lp::Proven solution_in_stages(DecisionInput& in);
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   DecisionConstraint named(const Kept& kept) const;
 
@@ -155,6 +166,7 @@ class Decider {
   const vo::BodyTable* bodies_;
   std::vector<geometry::HalfPlane> limit_;
   std::vector<Constraint> limits_;  ///< of the robot's acceleration, as half-planes of its own
+  OwnStage stage_ = OwnStage::none;
   lp::Problem problem_;
   lp::Pricing pricing_;
   lp::SolveMemory memory_;

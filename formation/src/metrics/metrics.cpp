@@ -47,6 +47,17 @@ std::string of_detours(const Metrics& m) {
   return text;
 }
 
+/// Of a scenario whose robots may start in overlap: such pairs have not collided. Each is said.
+void tell_starts(const Scenario& scenario, Metrics& m) {
+  if (!scenario.separate) return;
+  const auto starts = [](const Collision& c) { return c.kind == CollisionKind::robot && c.from == 0.0; };
+  for (const Collision& c : m.collisions)
+    if (starts(c))
+      m.warnings.push_back(c.robot + " and " + c.with + " started in overlap, by " + detail::metres(c.depth) +
+                           ", and were apart from " + detail::number_text(c.until, 4) + " s on");
+  m.collisions.erase(std::remove_if(m.collisions.begin(), m.collisions.end(), starts), m.collisions.end());
+}
+
 /// How a run ended, from its measurements and from what the run says: collisions first, so that nothing sounds like
 /// success where it was none; long detours of a formation last.
 std::string outcome_words(const Metrics& m, const std::string& end) {
@@ -107,6 +118,7 @@ Evaluation Evaluator::finish(const Recording& run) {
   m.routes = run.routes;
   m.wall_time = run.wall_time;
   m.warnings = run.warnings;
+  tell_starts(parts_->scenario, m);
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
   const std::vector<std::size_t> deadlock = parts_->stuck.deadlock(run);

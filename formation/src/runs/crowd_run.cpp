@@ -143,6 +143,8 @@ class CrowdSteps final : public Stepper {
     if (reservations_) reserve();
     for (std::size_t i = own_begin(); i < own_end(); ++i)
       preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
+    if (options_.steering)
+      steer_by(options_.steering, {own_begin(), own_end(), report_.time, at_, velocity_}, preferred_);
     share_preferred();
     crowd_.set_preferred(preferred_);
   }
@@ -177,6 +179,7 @@ class CrowdSteps final : public Stepper {
   /// along its route. In as many steps as there are turns none of these has changed, from velocities of 0 on: so the
   /// next ones do what they have done.
   bool repeats_itself() const override {
+    if (options_.steering) return false;  // the user may want something else at any time
     const auto is_long_ago = [this](std::size_t step) { return step + 1 + kLookAgain <= report_.steps; };
     if (!is_long_ago(std::max({moved_, claimed_, reserved_}))) return false;
     if (static_cast<double>(report_.steps - moved_) * scenario_.time_step < journeys_.longest_pause()) return false;
@@ -368,7 +371,7 @@ class CrowdSteps final : public Stepper {
 
   Vec2 preferred_of(std::size_t i) {
     const Vec2 preferred = journeys_.beside_taken(i, journeys_.preferred(i));
-    if (liveness_ == Liveness::off) return preferred;
+    if (liveness_ == Liveness::off || options_.steering) return preferred;
     const double held_up = journeys_[i].keep_right.held_up;
     const bool waits = journeys_[i].cut_by.has_value();  // not for robots
     const Vec2 turned = journeys_.kept_right(i, preferred, velocity_[i], 0.0, KeepRight::kPatience, !waits);
@@ -469,6 +472,7 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
             geometry::lossless(fastest(s.moving_obstacles[k])) + " m/s",
             "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
   require(!s.acceleration, "/acceleration", "an acceleration", "none, for a crowd, whose velocities jump");
+  require(!s.separate, "/separate", "true", "false, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   const double step = position_step_for(s);
   const auto [tolerance, least] = geometry::told_apart(s.arrival_tolerance, step, 6);
@@ -486,7 +490,9 @@ RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, 
   RunSchedule schedule(scenario, options, std::chrono::milliseconds{0});
   std::optional<Guide> guide;
   if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide.emplace(scenario, 0.0);
-  const Liveness liveness = options.liveness.value_or(scenario.liveness);
+  EXACTVO_REQUIRE(!options.half_planes, "half-planes of a user, in a run on a crowd");
+  Liveness liveness = options.liveness.value_or(scenario.liveness);
+  if (options.steering && liveness == Liveness::plan) liveness = Liveness::bias;
   RobotsOfRun robots(scenario, guide ? &*guide : nullptr, liveness, room_at_ends_of(scenario, liveness),
                      scenario.horizons.orca, TakenOnTheWay::passed_beside);
   RunSink* const first_sink = options.ranks && options.ranks->rank() > 0 ? nullptr : sink;

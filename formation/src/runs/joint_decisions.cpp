@@ -21,6 +21,7 @@ void JointDecisions::begin_step() {
 
 void JointDecisions::look_at_robots(const Groups* groups) {
   robot_constraints(now(), pairs_, others);
+  keep_from_nearing(now(), others);
   if (!groups || !groups->any()) return;
   std::vector<std::optional<Vec2>> planned(anchors.size());
   std::vector<double> gaps(anchors.size(), gap);
@@ -65,7 +66,9 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 /// a robot keeps to what braking satisfies, against static obstacles too (braking.h).
 void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
-    return row.robots[i].status != lp::Status::optimal || (groups.is_member(i) && held_by_all_[i]);
+    const OwnStage stage = row.robots[i].own_stage;  // where the user's give, no others do
+    const bool holds = stage == OwnStage::held || stage == OwnStage::gave;
+    return (row.robots[i].status != lp::Status::optimal && !holds) || (groups.is_member(i) && held_by_all_[i]);
   };
   std::set<std::size_t> contradicted;
   for (std::size_t i = 0; i < others.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include "decision/decision.h"
 #include "exactvo/formation/passing.h"
+#include "exactvo/geometry/require.h"
 #include "liveness/groups.h"
 #include "runs/joint_decisions.h"
 #include "runs/own_decision.h"
@@ -36,12 +37,15 @@ class KinematicSteps final : public Stepper {
         rules_(rules_of(scenario_, options)),
         scene_(scenario_, options),
         schedule_(schedule),
+        options_(options),
         own_(rules_, scene_.bodies()),
         robots_(robots),
         positions_(robots.at),
         velocities_(robots.velocity),
         journeys_(robots.journeys),
         ways_(robots.size()),
+        steered_(robots.size()),
+        asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
             rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
@@ -128,10 +132,34 @@ class KinematicSteps final : public Stepper {
     move_obstacles(scenario_.moving_obstacles, time, scene_, row.moving);
     journeys_.look_at_moving_obstacles(time, row.moving);
     for (std::size_t i = 0; i < ways_.size(); ++i) journeys_.go_round(i, goes_by_plan(i));
+    if (options_.steering || options_.half_planes) ask_user();
     row.robots.reserve(ways_.size());
     for (std::size_t i = 0; i < ways_.size(); ++i) row.robots.push_back(decide_one(i));
     if (groups_) joint_.settle(*groups_, row);
     return row;
+  }
+
+  /// With all robots on their ways to their present goals.
+  void ask_user() {
+    const RobotSlice all{0, ways_.size(), now_, positions_, velocities_};
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      prepare(i);
+      journeys_.look_along(i);
+      steered_[i] = journeys_.beside_taken(i, journeys_.preferred(i));
+      asked_[i].clear();
+    }
+    if (options_.steering) steer_by(options_.steering, all, steered_);
+    if (!options_.half_planes) return;
+    std::vector<OwnHalfPlane> asked;
+    options_.half_planes(all, steered_, asked);
+    for (const OwnHalfPlane& h : asked) {
+      EXACTVO_REQUIRE(h.robot < ways_.size(), "half_planes: robot " + std::to_string(h.robot) + ", of " +
+                                                  std::to_string(ways_.size()) + " robots");
+      EXACTVO_REQUIRE(geometry::is_finite(h.half_plane.normal) && h.half_plane.normal != Vec2{} &&
+                          std::isfinite(h.half_plane.offset),
+                      "half_planes: one of " + scenario_.robots[h.robot].id + " is not finite, or has the normal 0");
+      asked_[h.robot].push_back({h.half_plane, h.hard});
+    }
   }
 
   void look_at_claims() {
@@ -172,9 +200,14 @@ class KinematicSteps final : public Stepper {
 
   // --- One robot ---
 
-  RobotStep decide_one(std::size_t i) {
+  void prepare(std::size_t i) {
     if (journeys_.pass_goal(i)) look_at_goal(i);
     journeys_.look_whether_it_waits(i, is_at_rest(i) && !goes_by_plan(i));
+  }
+
+  RobotStep decide_one(std::size_t i) {
+    const bool is_prepared = options_.steering || options_.half_planes;
+    if (!is_prepared) prepare(i);
     if (!goes_by_plan(i)) {
       if (guide_) journeys_.look_along(i);
       look(i);
@@ -188,7 +221,11 @@ class KinematicSteps final : public Stepper {
       choose_by_plan(i, step);
       return step;
     }
-    const Vec2 preferred = journeys_.beside_taken(i, steer(i, step));
+    const std::optional<Vec2> apart = rules_.separate ? way_apart(scene_, joint_.others[i]) : std::optional<Vec2>();
+    if (apart) step.mode = Mode::pushing_out;
+    const Vec2 preferred = apart               ? scenario_.robots[i].max_speed * *apart
+                           : options_.steering ? steered(i, step)
+                                               : journeys_.beside_taken(i, steer(i, step));
     choose(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step), step);
     return step;
   }
@@ -212,7 +249,7 @@ class KinematicSteps final : public Stepper {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
-    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
+    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -237,6 +274,12 @@ class KinematicSteps final : public Stepper {
       return is_of_robot(scene_, c) && is_in_the_way(c.index, c.half_plane) &&
              space.is_clear(positions_[i], positions_[c.index], kContactSkin);
     });
+  }
+
+  /// As the user wants it. A robot that rests at its goal counts as there all the same.
+  Vec2 steered(std::size_t i, RobotStep& step) const {
+    step.mode = journeys_.at_goal(i) ? Mode::arrived : own_.is_in_contact() ? Mode::pushing_out : Mode::steered;
+    return steered_[i];
   }
 
   Vec2 steer(std::size_t i, RobotStep& step) {
@@ -296,11 +339,14 @@ class KinematicSteps final : public Stepper {
   Scene scene_;
   RunSchedule& schedule_;
   double now_ = 0.0;  ///< s, of the present row
+  const SimulationOptions& options_;
   OwnDecision own_;
   RobotsOfRun& robots_;
   std::vector<Vec2>&positions_, &velocities_;
   Journeys& journeys_;
   std::vector<OwnWay> ways_;
+  std::vector<Vec2> steered_;                      ///< m/s, by the user
+  std::vector<std::vector<OwnConstraint>> asked_;  ///< by the user, of each robot
   ObstacleSpace walls_, open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
   JointDecisions joint_;

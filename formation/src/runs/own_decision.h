@@ -62,10 +62,12 @@ class OwnDecision {
   /// The preferred velocity, by the run's method; sets `mode` and `side` and adds to `note`.
   Vec2 steer(OwnWay& way, const Errand& errand, Decision& decision);
 
-  /// What it chooses goes on the record. `others`: robots and moving obstacles.
+  /// What it chooses goes on the record. `others`: robots and moving obstacles; `own`: what the user asks for.
   void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all,
-              RobotStep& step) {
-    decider_.decide(input(preferred, here, others, keep_all), step);
+              const std::vector<OwnConstraint>& own, RobotStep& step) {
+    DecisionInput in = input(preferred, here, others, keep_all);
+    in.own = &own;
+    decider_.decide(in, step);
   }
   /// The same into a list.
   void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, Decision& decision,

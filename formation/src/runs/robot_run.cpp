@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "exactvo/geometry/require.h"
 #include "scene/goals.h"
 
 namespace exactvo::formation::detail {
@@ -68,6 +69,16 @@ void RobotRun::add_reasons() {
   if (because.size() > named) text += "; " + std::to_string(because.size() - named) + " more for such reasons";
   if (report.stands_still) text += "; nothing moves, and every further step would repeat the last";
   if (report.arrived < robots_.size()) stepper_.add_words(text);
+}
+
+void steer_by(const RunSteering& steering, const RobotSlice& robots, std::vector<Vec2>& preferred) {
+  const std::size_t size = preferred.size();
+  steering(robots, preferred);
+  EXACTVO_REQUIRE(preferred.size() == size, "steering: " + std::to_string(preferred.size()) +
+                                                " preferred velocities, of " + std::to_string(size) + " robots");
+  for (std::size_t i = robots.first; i < robots.last; ++i)
+    EXACTVO_REQUIRE(geometry::is_finite(preferred[i]),
+                    "steering: the preferred velocity of robot " + std::to_string(i) + " is not finite");
 }
 
 }  // namespace exactvo::formation::detail

@@ -97,4 +97,7 @@ inline RunState state_of(const RobotsOfRun& robots, const Crowd* crowd) {
   return {robots.report.steps, robots.report.time, robots.at, robots.velocity, crowd};
 }
 
+/// Asks the user for preferred velocities. REQUIRES: finite ones.
+void steer_by(const RunSteering& steering, const RobotSlice& robots, std::vector<Vec2>& preferred);
+
 }  // namespace exactvo::formation::detail

@@ -68,8 +68,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
-  const bool can_plan = is_guided && !scenario.acceleration;
-  return wanted == Liveness::plan && !can_plan ? Liveness::bias : wanted;
+  const bool is_without = options.steering || options.half_planes || scenario.separate || scenario.acceleration;
+  return wanted == Liveness::plan && (!is_guided || is_without) ? Liveness::bias : wanted;
 }
 
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {
@@ -98,6 +98,8 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
                   std::string("method ") + name(options.method) + " of a formation");
+  EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),
+                  "steering or half-planes of a user, in a formation");
   EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");
   const Clock::time_point start = Clock::now();
   Recording recording;

@@ -22,6 +22,7 @@ struct DecisionRules {
   Margins margins;                                    ///< beside radii and facades
   double time_step = 0.05;                            ///< s, > 0
   double neighbour_distance = 15.0;                   ///< m, > 0
+  bool separate = false;                              ///< robots that overlap part, and do not come nearer
   double acceleration = geometry::kInfinity;          ///< m/s^2, of each robot
   double braking_time = 0.0;                          ///< s, tau of braking; 0: velocities jump
 
@@ -38,6 +39,7 @@ inline DecisionRules rules_of(const Scenario& scenario, const SimulationOptions&
   DecisionRules rules{
       options.method,     guidance_of(scenario, options), scenario.speed_bound, scenario.horizons, scenario.margins,
       scenario.time_step, scenario.neighbour_distance};
+  rules.separate = scenario.separate;
   if (scenario.acceleration) rules.acceleration = scenario.acceleration->max;
   rules.braking_time = braking_time_of(scenario);
   return rules;

@@ -159,7 +159,7 @@ class Run {
       anchor: [s[at], s[at + 1]], anchorVelocity: [s[at + 2], s[at + 3]], position: [s[at + 4], s[at + 5]],
       velocity: [s[at + 6], s[at + 7]], preferred: [s[at + 8], s[at + 9]], chosen: [s[at + 10], s[at + 11]],
       violation: c['decision.violation'][k], status: this.head.statuses[c['decision.status'][k]],
-      hasExactMultipliers: c['decision.exact_multipliers'][k] !== 0, halfPlanes: [], parts: [],
+      hasExactMultipliers: c['decision.exact_multipliers'][k] !== 0, isOfUser: c['decision.own_stage'][k] !== 0, halfPlanes: [], parts: [],
     };
     for (let i = this.starts[k]; i < this.starts[k + 1]; ++i) decision.halfPlanes.push(this.halfPlane(i, row, robot));
     for (let i = this.partStarts[k]; i < this.partStarts[k + 1]; ++i)
@@ -216,7 +216,7 @@ class Run {
 }
 
 const COLUMNS = ['time', 'x', 'y', 'vx', 'vy', 'mode', 'status', 'side', 'leader', 'moving', 'decision.time', 'decision.state',
-  'decision.violation', 'decision.status', 'decision.exact_multipliers', 'decision.half_planes', 'decision.parts', 'decision.moving', 'decision.waits',
+  'decision.violation', 'decision.status', 'decision.exact_multipliers', 'decision.own_stage', 'decision.half_planes', 'decision.parts', 'decision.moving', 'decision.waits',
   'part.kind', 'part.multiplier', 'half_plane.body', 'half_plane.index', 'half_plane.piece', 'half_plane.flags', 'half_plane.line',
   'half_plane.time_horizon', 'half_plane.clearance', 'half_plane.multiplier'];
 const PART_KINDS = ['line', 'disc', 'right', 'left', 'top', 'bottom'];

@@ -236,6 +236,7 @@ function answerOf(d) {
 
 // {ok: true | false | null (nothing is claimed), why}.
 function checkChoice(run, d) {
+  if (d.isOfUser) return {ok: null, why: 'half-planes of the user take part, which a page does not have: see audit'};
   const problem = problemOf(run, d), answer = answerOf(d);
   const decided = checkDecision(problem, answer);
   return decided.ok === true ? checkStatement(problem, answer, d.halfPlanes) : decided;

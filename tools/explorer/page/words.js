@@ -84,6 +84,7 @@ const TURNED = {
   boost: 'boost turned the preferred velocity onto the tangent of the enclosure in the way',
   following: 'the preferred velocity follows the boundary, after a stall',
   'pushing-out': 'the robot is in contact, and the preferred velocity leads away from it',
+  steered: 'the preferred velocity was set by the user',
 };
 
 // "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for nobody. A cycle of which some still move

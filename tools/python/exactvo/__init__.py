@@ -30,7 +30,7 @@ from .explorer import ExplorerPage, view
 from .navigator import Navigator, NavigatorDecision
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
-from .simulation import METHODS, Recording, Scenario, read_recording, simulate
+from .simulation import METHODS, OwnHalfPlane, Recording, RobotsNow, Scenario, read_recording, simulate
 from .sweeps import sweep
 from .vo import VelocityObstacle, free_velocities, velocity_obstacles
 
@@ -50,9 +50,11 @@ __all__ = [
     "Navigator",
     "NavigatorDecision",
     "Obstacles",
+    "OwnHalfPlane",
     "Polygon",
     "Recording",
     "RobotKind",
+    "RobotsNow",
     "Route",
     "RouteMap",
     "RouteNotProvenError",

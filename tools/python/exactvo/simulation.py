@@ -29,7 +29,19 @@ if TYPE_CHECKING:
     import matplotlib.animation
     import pandas
 
-__all__ = ["METHODS", "JointPlan", "RecordedHalfPlane", "Recording", "Scenario", "ScenarioRobot", "read_recording", "simulate"]
+__all__ = [
+    "METHODS",
+    "JointPlan",
+    "OwnHalfPlane",
+    "RecordedHalfPlane",
+    "RecordedOwnHalfPlane",
+    "Recording",
+    "RobotsNow",
+    "Scenario",
+    "ScenarioRobot",
+    "read_recording",
+    "simulate",
+]
 
 #: What `simulate(method=...)` takes: the textbook's baseline, the paper's, with merged enclosures, and the default.
 METHODS: tuple[str, ...] = tuple(_exactvo.method_names())
@@ -178,6 +190,74 @@ def _half_plane_of(fields: tuple[Any, ...]) -> RecordedHalfPlane:
 
 
 @dataclass(frozen=True, eq=False)
+class RobotsNow:
+    """The robots of a run before a step, in the order of the scenario: what `simulate` hands to `steering` and `half_planes`.
+    The arrays are copies."""
+
+    time: float  #: s
+    position: Floats  #: n x 2, m
+    velocity: Floats  #: n x 2, m/s
+    preferred: Floats  #: n x 2, m/s: what the run would prefer; for `half_planes` what `steering` has made of it
+
+
+@dataclass(frozen=True)
+class OwnHalfPlane:
+    """A half-plane of velocities that is asked of a robot in one step (docs/guide/own-rules.md). Hard ones hold wherever those
+    against obstacles and robots allow it; soft ones give before them."""
+
+    robot: int  #: in the order of the scenario
+    half_plane: HalfPlane
+    hard: bool = True
+
+
+@dataclass(frozen=True)
+class RecordedOwnHalfPlane:
+    """A half-plane that `simulate(half_planes=...)` asked for in a decision."""
+
+    half_plane: HalfPlane
+    hard: bool
+    active: bool  #: binds the chosen velocity
+    multiplier: float  #: m/s, of its normal in chosen - preferred
+
+
+def _steered(steering: Callable[[RobotsNow], Any]) -> Callable[..., Floats]:
+    """Asks for preferred velocities. Raises `ArgumentError` for an answer of another shape."""
+
+    def ask(*fields: Any) -> Floats:
+        now = RobotsNow(*fields)
+        answer = steering(now)
+        wanted: Floats = np.ascontiguousarray(now.preferred if answer is None else answer, dtype=np.float64)
+        if wanted.shape != now.preferred.shape:
+            raise ArgumentError("steering", f"an array of shape {wanted.shape}", f"one of shape {now.preferred.shape}, or None")
+        if not np.isfinite(wanted).all():
+            robot = int(np.flatnonzero(~np.isfinite(wanted).all(axis=1))[0])
+            raise ArgumentError("steering", f"{wanted[robot].tolist()} for robot {robot}", "finite velocities, m/s")
+        return wanted
+
+    return ask
+
+
+def _asked(half_planes: Callable[[RobotsNow], Any]) -> Callable[..., list[tuple[Any, ...]]]:
+    """Asks for half-planes. Raises `ArgumentError` for what is none."""
+
+    def ask(*fields: Any) -> list[tuple[Any, ...]]:
+        now = RobotsNow(*fields)
+        result: list[tuple[Any, ...]] = []
+        for own in half_planes(now) or ():
+            if not isinstance(own, OwnHalfPlane):
+                raise ArgumentError("half_planes", repr(own)[:60], "an OwnHalfPlane")
+            (x, y), offset = own.half_plane.normal, own.half_plane.offset
+            if not 0 <= own.robot < len(now.position):
+                raise ArgumentError("half_planes", f"robot {own.robot}", f"0 to {len(now.position) - 1}")
+            if not (np.isfinite([x, y, offset]).all() and (x, y) != (0, 0)):
+                raise ArgumentError("half_planes", repr(own)[:120], "finite numbers, and a normal other than 0")
+            result.append((int(own.robot), float(x), float(y), float(offset), bool(own.hard)))
+        return result
+
+    return ask
+
+
+@dataclass(frozen=True, eq=False)
 class JointPlan:
     """The plan of robots that waited for each other (docs/guide/liveness.md): moves one after the other."""
 
@@ -243,7 +323,7 @@ class Recording:
     @property
     def mode(self) -> npt.NDArray[np.str_]:
         """steps x robots: "direct", "guided", "by-plan", "going-back", "staying", "boost", "following", "pushing-out",
-        "arrived"."""
+        "steered", "arrived"."""
         return np.asarray(_exactvo.mode_names)[self._native.mode]
 
     @property
@@ -281,6 +361,24 @@ class Recording:
         step = range(len(self))[step]
         robot = range(self.position.shape[1])[robot]
         return tuple(_half_plane_of(fields) for fields in self._native.half_planes(step, robot))
+
+    def own_half_planes(self, step: int, robot: int) -> tuple[RecordedOwnHalfPlane, ...]:
+        """Those that `simulate(half_planes=...)` asked of a decision. Raises `IndexError`, `ArgumentError`."""
+        step = range(len(self))[step]
+        robot = range(self.position.shape[1])[robot]
+        _, own = self._native.own_half_planes(step, robot)
+        return tuple(
+            RecordedOwnHalfPlane(HalfPlane(*half_plane), hard, active, multiplier) for half_plane, hard, active, multiplier in own
+        )
+
+    def own_stage(self, step: int, robot: int) -> str:
+        """How far a decision held what `simulate(half_planes=...)` asked for: "held", but perhaps for soft ones; "gave", by the
+        least that obstacles and robots allow; "left-out", as these alone leave no room; "none" where nothing was asked. Raises
+        `IndexError`, `ArgumentError`."""
+        step = range(len(self))[step]
+        robot = range(self.position.shape[1])[robot]
+        stage: str = self._native.own_half_planes(step, robot)[0]
+        return stage
 
     @property
     def plans(self) -> tuple[JointPlan, ...]:
@@ -373,6 +471,8 @@ def simulate(
     record_all: bool = False,
     threads: int = 1,
     progress: Callable[[float], Union[bool, None]] | None = None,
+    steering: Callable[[RobotsNow], Any] | None = None,
+    half_planes: Callable[[RobotsNow], Any] | None = None,
 ) -> Recording:
     """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
     `exactvo simulate --decisions binding`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
@@ -386,6 +486,10 @@ def simulate(
     record_all   keep every half-plane of every decision, not only those that bind
     threads      that search for joint plans, 0 to 1024; 0: as many as there are. The result is the same
     progress     called with the simulated time (s) about ten times a second; False ends the run there
+    steering     called with a `RobotsNow` before every step; returns preferred velocities, n x 2, m/s, or changes
+                 `preferred` in place. Robots with goals only, as the next
+    half_planes  called likewise; returns a list of `OwnHalfPlane`, half-planes of velocities for this step
+                 (docs/guide/own-rules.md). With either there are no joint plans
 
     Raises `ArgumentError`, `DataError`, `MissingFileError`. Ctrl-C ends it. Releases the interpreter's lock.
     """
@@ -402,7 +506,8 @@ def simulate(
         raise ArgumentError("threads", repr(threads)[:60], "0 to 1024")
     return Recording(
         _exactvo.simulate(
-            given._native, method, guidance, liveness, controller, integrator, record_all, threads, progress, warn
+            given._native, method, guidance, liveness, controller, integrator, record_all, threads, progress,
+            None if steering is None else _steered(steering), None if half_planes is None else _asked(half_planes), warn,
         )
     )
 

@@ -51,6 +51,31 @@ void fill_columns(Run& run) {
   }
 }
 
+/// The robots of a slice as (time, positions, velocities, preferred), arrays of their own.
+py::tuple now_as_tuple(const formation::RobotSlice& robots, const std::vector<Vec2>& preferred) {
+  return py::make_tuple(robots.time, as_array(robots.positions), as_array(robots.velocities), as_array(preferred));
+}
+
+/// What Python asks of the robots of a run. It gets all robots at once, and what it raises ends the run.
+void take_own_rules(const py::object& steering, const py::object& asks, formation::SimulationOptions& options) {
+  if (!steering.is_none())
+    options.steering = [&steering](const formation::RobotSlice& robots, std::vector<Vec2>& preferred) {
+      const py::gil_scoped_acquire held;
+      const auto wanted = steering(*now_as_tuple(robots, preferred)).cast<py::array_t<double, py::array::c_style>>();
+      for (std::size_t i = robots.first; i < robots.last; ++i)
+        preferred[i] = {wanted.data()[2 * i], wanted.data()[2 * i + 1]};
+    };
+  if (!asks.is_none())
+    options.half_planes = [&asks](const formation::RobotSlice& robots, const std::vector<Vec2>& preferred,
+                                  std::vector<formation::OwnHalfPlane>& out) {
+      const py::gil_scoped_acquire held;
+      for (const py::handle h : asks(*now_as_tuple(robots, preferred))) {
+        const auto [robot, x, y, offset, hard] = h.cast<std::tuple<std::size_t, double, double, double, bool>>();
+        out.push_back({robot, {{x, y}, offset}, hard});
+      }
+    };
+}
+
 /// Keeps the rows, and tells Python what is said before the run. What Python raises ends the run.
 class WarningSink : public formation::RunSink {
  public:
@@ -69,7 +94,8 @@ class WarningSink : public formation::RunSink {
 
 std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& method, const py::object& guidance,
                               const py::object& liveness, const std::string& controller, const std::string& integrator,
-                              bool record_all, int threads, const py::object& progress, const py::object& warn) {
+                              bool record_all, int threads, const py::object& progress, const py::object& steering,
+                              const py::object& asks, const py::object& warn) {
   using namespace formation;
   SimulationOptions options;
   options.method = word<Method>(method, "method", method_names(), &parse);
@@ -85,6 +111,7 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     return progress.is_none() || py::bool_(!progress(time).equal(py::bool_(false)));
   };
+  take_own_rules(steering, asks, options);
   auto run = std::make_unique<Run>();
   run->file.scenario = handle.scenario;
   if (const std::string moved = recentring_notice(handle.scenario, options); !moved.empty()) warn(moved);
@@ -147,6 +174,15 @@ py::list half_planes(const Run& run, std::size_t step, std::size_t robot) {
     result.append(py::make_tuple(as_tuple(c.half_plane), static_cast<int>(c.source), c.index, c.certified, c.hard,
                                  c.active, c.multiplier, c.clearance));
   return result;
+}
+
+/// The half-planes of one decision that the user asked for, and the stage in which it was made.
+py::tuple own_half_planes(const Run& run, std::size_t step, std::size_t robot) {
+  const formation::RobotStep& decision = run.file.recording.steps.at(step).robots.at(robot);
+  py::list result;
+  for (const formation::OwnConstraint& c : decision.own)
+    result.append(py::make_tuple(as_tuple(c.half_plane), c.hard, c.active, c.multiplier));
+  return py::make_tuple(name(decision.own_stage), result);
 }
 
 /// (row, from_row, robots, starts, who moves, where to), a tuple per plan.
@@ -224,6 +260,7 @@ void bind_simulate(py::module_& module) {
              return LoadedScenario{run.file.scenario, {}, {}};
            })
       .def("half_planes", &half_planes)
+      .def("own_half_planes", &own_half_planes)
       .def("plans", &plans)
       .def(
           "audit", [](const Run& run) { return datasets::to_json(datasets::audit(run.file)); }, WithoutGil());

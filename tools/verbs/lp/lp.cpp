@@ -273,9 +273,9 @@ lp::Problem problem_of(const formation::Scenario& scenario, const formation::Rob
     problem.bound.disc = max_speed;
   else
     problem.bound.box_x = problem.bound.box_y = max_speed;
-  for (const formation::DecisionConstraint& c : robot.constraints)
-    problem.constraints.push_back(
-        {c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft, static_cast<int>(c.body)});
+  problem.constraints = formation::problem_of(robot, robot.constraints);
+  for (std::size_t k = 0; k < robot.constraints.size(); ++k)
+    problem.constraints[k].label = static_cast<int>(robot.constraints[k].body);
   return problem;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/own_rules.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/vo/constraint.h"
@@ -52,6 +53,7 @@ enum class Mode {
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle
+  steered,      ///< by the user (SimulationOptions::steering)
   arrived       ///< at its last goal
 };
 
@@ -72,7 +74,13 @@ struct Decision {
   double turned_right = 0.0;    ///< rad: by which rule R1 (liveness) turned `preferred` for others that may be met
   std::string note;             ///< why a mode began or ended, empty otherwise
   std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
+  OwnStage own_stage = OwnStage::none;  ///< where the user has asked for half-planes
+  std::vector<OwnConstraint> own;       ///< these, in their order
 };
+
+/// The half-planes of a decision as the linear program has them: those against bodies, then the user's. While the
+/// user's give, those against robots do not. Without the bound and the preferred velocity.
+std::vector<lp::Constraint> problem_of(const Decision& decision, const std::vector<DecisionConstraint>& constraints);
 
 /// One robot's state at the start of a step, and its decision.
 struct RobotStep : Decision {

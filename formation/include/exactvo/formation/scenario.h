@@ -157,6 +157,7 @@ struct Scenario {
   Guidance guidance = Guidance::route;                ///< of robots with goals
   Unreachable unreachable = Unreachable::stay;        ///< of robots with goals along routes
   Liveness liveness = Liveness::plan;                 ///< of robots with goals or slots
+  bool separate = false;                              ///< of robots with goals: they may start in overlap, and part
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how every robot's max_speed is meant
   Horizons horizons;                                  ///< of the velocity obstacles
   Margins margins;                                    ///< beside radii and facades

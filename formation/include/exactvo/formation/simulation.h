@@ -78,7 +78,11 @@ constexpr geometry::Names<Unreachable, 2> word_table(Unreachable) {
 constexpr geometry::Names<Liveness, 3> word_table(Liveness) {
   return {{{Liveness::off, "off"}, {Liveness::bias, "bias"}, {Liveness::plan, "plan"}}};
 }
-constexpr geometry::Names<Mode, 9> word_table(Mode) {
+constexpr geometry::Names<OwnStage, 4> word_table(OwnStage) {
+  return {
+      {{OwnStage::none, "none"}, {OwnStage::held, "held"}, {OwnStage::gave, "gave"}, {OwnStage::left_out, "left-out"}}};
+}
+constexpr geometry::Names<Mode, 10> word_table(Mode) {
   return {{{Mode::direct, "direct"},
            {Mode::guided, "guided"},
            {Mode::by_plan, "by-plan"},
@@ -87,6 +91,7 @@ constexpr geometry::Names<Mode, 9> word_table(Mode) {
            {Mode::boost, "boost"},
            {Mode::following, "following"},
            {Mode::pushing_out, "pushing-out"},
+           {Mode::steered, "steered"},
            {Mode::arrived, "arrived"}}};
 }
 ///@}
@@ -140,6 +145,11 @@ struct SimulationOptions {
   /// Called with the simulated time, s: about ten times a second of wall time, on a crowd after every step. Returning
   /// false stops the run, in any rank that of all.
   std::function<bool(double)> progress;
+
+  // Of robots with goals: what the user adds (own_rules.h). With either there are no joint plans.
+
+  RunSteering steering;       ///< sets the preferred velocities; none: the run does
+  RunHalfPlanes half_planes;  ///< asks for half-planes; none: nobody does. Not on a crowd
 
   // Of a run on a crowd (crowd_run.h).
 
