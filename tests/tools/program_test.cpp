@@ -138,6 +138,21 @@ TEST(Simulate, AnUnknownMethodNamesTheKnownOnes) {
   EXPECT_FALSE(here.has("out"));
 }
 
+TEST(Simulate, MethodsThatPromiseNothingBetweenRobotsSaySo) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  for (const std::string method : {"rvo", "hrvo"}) {
+    const Outcome outcome = here.run("simulate s.json --no-figures --force --out out --method " + method);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("method " + method + " promises nothing between robots"));
+    EXPECT_THAT(here.run("audit out").out, HasSubstr("the method promises nothing between robots"));
+    EXPECT_EQ(here.run("simulate s.json --liveness plan --method " + method).status, 2);
+    const Outcome formation = here.run("simulate " + data_file("paper/B0.json") + " --method " + method);
+    EXPECT_EQ(formation.status, 2);
+    EXPECT_THAT(formation.err, HasSubstr("--method: found '" + method + ", which formations do not have'"));
+  }
+}
+
 struct BadScenario {
   const char* name;
   const char* from;
