@@ -108,6 +108,9 @@ TEST(CheckVerb, PolynomialsOfSeveralFilesAreOneFleet) {
   EXPECT_EQ(wide.status, 1);
   EXPECT_THAT(wide.out, HasSubstr("overlap: one and other"));
   EXPECT_EQ(here.run("check fleet --radius 0.4 --between hold").status, 2);
+  here.write("second/one.csv", "duration,x^0,y^0\n1,9,9\n");
+  const Outcome named = here.run("check fleet second/one.csv --radius 0.1 --json");
+  EXPECT_THAT(named.out, AllOf(HasSubstr("\"id\":\"one\""), HasSubstr("\"id\":\"second/one.csv\""))) << named.err;
   for (const char* bad : {"0,1,2,3,4,5,6\n", "1,2\n", "1,0,4,0,0,3,x\n", ""}) {
     here.write("bad.csv", std::string("duration,x^0,x^1,x^2,y^0,y^1,y^2\n") + bad);
     const Outcome outcome = here.run("check bad.csv --radius 1");

@@ -89,7 +89,11 @@ void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
   if (header->x.size() > geometry::kMostDegree + 1)
     out.refuse(DataCode::out_of_range, 1, "x^" + std::to_string(header->x.size() - 1),
                "powers up to " + std::to_string(geometry::kMostDegree));
-  const std::size_t agent = out.agent(path.stem().string());
+  // Files of one name in several folders are told apart by their paths.
+  const std::vector<std::string>& known = out.file().agents;
+  const std::string stem = path.stem().string();
+  const bool is_taken = std::find(known.begin(), known.end(), stem) != known.end();
+  const std::size_t agent = out.agent(is_taken ? path.string() : stem);
   std::vector<geometry::CurvedMotion> curves;
   double begin = 0.0;
   while (lines.next(line)) {

@@ -134,11 +134,11 @@ Chorded chorded(const Motion& motion) {
 
 /// One motion of one body that is under way.
 struct Piece {
-  Box box;  ///< holds the body all the time
-  StraightMotion motion;                       ///< the chord of a curve
-  std::shared_ptr<const CurvedMotion> curve;   ///< null: straight
-  double stray = 0.0;                          ///< m, of the curve from the chord
-  std::uint64_t serial = 0;  ///< from 1, rising as pieces come
+  Box box;                                    ///< holds the body all the time
+  StraightMotion motion;                      ///< the chord of a curve
+  std::shared_ptr<const CurvedMotion> curve;  ///< null: straight
+  double stray = 0.0;                         ///< m, of the curve from the chord
+  std::uint64_t serial = 0;                   ///< from 1, rising as pieces come
   std::uint32_t body = 0;
   bool continues = false;  ///< begins when and where the body's piece before it ends
   /// Continues, and lasts: what is met at its first moment is met by the piece before it, too. (A way that is gone in
