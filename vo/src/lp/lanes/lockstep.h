@@ -212,7 +212,7 @@ class Lockstep {
   HWY_INLINE void ask_for(std::size_t at, PackState& state) const {
     const std::size_t start = first_line_of(in_, at);
     const T* arrays[3] = {in_.normal_x, in_.normal_y, in_.offset};
-    for (std::size_t k = 0; k < 3; ++k) state.ahead[k] = {arrays[k] + start, nullptr, in_.block};
+    for (std::size_t k = 0; k < 3; ++k) state.ahead[k] = {arrays[k] + start, nullptr};
     for (const T* numbers : {in_.preferred_x, in_.preferred_y, in_.disc}) hwy::Prefetch(numbers + at);
     for (const T* numbers : {out_.velocity_x, out_.velocity_y, out_.violation}) hwy::Prefetch(numbers + at);
     hwy::Prefetch(out_.status + at);
@@ -266,7 +266,7 @@ class Lockstep {
     p.id = numbers_from(at);
     states[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
     states[0].begin(hn::FirstN(d, count));
-    std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_, 0});
+    std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_});
     solve(states, 1);
     finish_some(p, hn::AndNot(states[0].gone, states[0].lanes));
     flush_deferred();

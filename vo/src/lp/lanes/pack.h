@@ -45,7 +45,7 @@ template <class V, class M>
 V HWY_INLINE pick(M m, V yes, V no) {
   return hn::IfThenElse(m, yes, no);
 }
-/// Without kIndex nobody asks for numbers of lines, and they stay as they are.
+/// Without kIndex no numbers of lines are needed, and they stay as they are.
 template <bool kIndex = true, class D, class M>
 LineV<D> HWY_INLINE pick(M m, const LineV<D>& yes, const LineV<D>& no) {
   return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.c, no.c),
@@ -143,7 +143,6 @@ template <class T>
 struct Ahead {
   const T* next = nullptr;
   const T* beyond = nullptr;
-  std::size_t next_step = 0;
 };
 
 /// Which of these.
@@ -159,12 +158,13 @@ HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>&
   using V = hn::Vec<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
   V most = asked.allowed, ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
-  const T *nx = rows.x, *ny = rows.y, *c = rows.c, *next = ahead.next, *beyond = ahead.beyond;
+  const T *nx = rows.x, *ny = rows.y, *c = rows.c, *beyond = ahead.beyond;
+  const std::size_t stride = rows.stride, end = rows.count * stride;
 #pragma GCC unroll 2
-  for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
-    if (kAsk != Ask::nothing) hwy::Prefetch(next), next += ahead.next_step;
+  for (std::size_t at = 0; at < end; at += stride) {  // one index for all arrays
+    if (kAsk != Ask::nothing) hwy::Prefetch(ahead.next + at);
     if (kAsk == Ask::both) for_second_cache(beyond), beyond += hn::MaxLanes(D());
-    const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
+    const V x = hn::LoadU(d, nx + at), y = hn::LoadU(d, ny + at), offset = hn::LoadU(d, c + at);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
     if (kExtra) by = hn::Add(by, kHard ? pick(hn::Lt(number, hard_count), asked.hard, asked.soft) : asked.soft);
     const auto more = hn::Gt(by, most);
@@ -184,7 +184,7 @@ HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>&
 /// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
 /// second only the hard ones do, and soft ones count from `level` on. The level is taken off the soft ones rather than
 /// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. Without kIndex
-/// the number of the line stays what it was: who asks for none is spared the cost.
+/// the number of the line stays what it was, which saves its cost.
 template <bool kHard, bool kIndex, Ask kAsk, class D, class T>
 HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const Ahead<T>& ahead = {}) {
   const D d;
