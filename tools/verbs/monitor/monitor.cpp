@@ -362,6 +362,7 @@ void declare_monitor(CLI::App& app, MonitorFlags& flags) {
       "--map-format", flags.reading.format,
       fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
   app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
+  app.add_option("--unknown", flags.reading.unknown, "What unknown cells of ROS maps are: free or blocked");
   app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
   MonitorSetup& setup = flags.setup;
   app.add_option("--max-deceleration", setup.max_deceleration, "By which the robot can certainly brake, m/s^2")
