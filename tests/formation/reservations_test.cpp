@@ -297,6 +297,21 @@ TEST(Reservations, ARobotAtItsGoalStepsAsideNoFartherThanItMust) {
   EXPECT_EQ(looked, 6u);
 }
 
+/// If places always came in the same order, a few robots could push each other off their goals in a cycle for ever.
+TEST(Reservations, RobotsDoNotPushEachOtherOffTheirGoalsInACycle) {
+  test::SeededRandom random(test::seed_of_run(7));
+  std::size_t home = 0, robots = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Scenario s = exchange_of_places(5, 5, 1.1, random);
+    const DriveReport r = ReservationDrive(s).run(200.0);
+    home += r.home;
+    robots += s.robots.size();
+    EXPECT_EQ(r.overlaps, 0u) << "scene " << k;
+  }
+  EXPECT_EQ(robots, 60u * 25u);
+  EXPECT_EQ(home, robots);
+}
+
 /// It steps out of the way rather than ahead of the robot that pushes it, though ahead would be nearer to its goal.
 TEST(Reservations, APushedRobotIsNotPushedOnAndOn) {
   for (const double side : {1.0, -1.0}) {

@@ -53,6 +53,11 @@ constexpr double kFree = 1.0;
 constexpr double kInMotion = 0.35;
 /// After so many tries in vain the places of pushed robots come in changing order.
 constexpr std::uint32_t kShakeAfter = 10;
+/// So do they, less changed, for each fourth time that a robot is pushed off its goal: else some may push each other
+/// off their goals in a cycle for ever.
+constexpr std::uint32_t kShakeEvery = 4;
+/// Pitches: by how much costs change.
+constexpr double kShaken = 2.0, kShakenAtGoals = 1.0;
 /// After as many in vain a robot goes anywhere.
 constexpr std::uint32_t kRestlessEvery = 32;
 /// After as many nothing is new.
@@ -311,6 +316,7 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   const std::uint64_t tickets = tickets_;
   for (std::size_t i = 0; i < of_.size(); ++i) {
     OfRobot& of = of_[i];
+    of.pushed_off += of.is_at_goal && !robots[i].is_at_goal;
     of.is_at_goal = robots[i].is_at_goal;
     if (of.is_at_goal || of.leg != robots[i].leg) of.at_goal_last = step_;
     of.leg = robots[i].leg;
@@ -520,14 +526,19 @@ void Reservations::add_steps_aside(std::size_t i, std::size_t pusher, std::size_
   }
 }
 
+/// Pitches: by how much the costs of places change for robots that are pushed for this one.
+double Reservations::shaking_of(const OfRobot& of) {
+  if (of.in_vain > kShakeAfter && of.in_vain < kGivesUpAfter) return kShaken;
+  return of.pushed_off % kShakeEvery == kShakeEvery - 1 ? kShakenAtGoals : 0.0;
+}
+
 bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth, std::size_t pusher) {
   const Outlook& found = outlook_of(i);  // another robot's may take its room
   const bool is_pushed = depth > 0, may_settle = !is_pushed && !of_[i].is_at_goal && !found.stands_on_place;
   const bool is_restless = !is_pushed && !of_[i].is_at_goal && of_[i].in_vain < kGivesUpAfter &&
                            of_[i].in_vain % kRestlessEvery == kRestlessEvery - 1;
   SplitMix64 random(step_ * of_.size() + i);
-  const bool is_shaken =
-      is_pushed && of_[oldest_pusher_].in_vain > kShakeAfter && of_[oldest_pusher_].in_vain < kGivesUpAfter;
+  const double shaken = is_pushed ? shaking_of(of_[oldest_pusher_]) : 0.0;
   Options options;
   for (; options.count < found.count; ++options.count) {
     const Prospect& p = found.places[options.count];
@@ -539,7 +550,7 @@ bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth
     weigh_way_of_pusher(i, pusher, options);
   }
   const auto begin = options.all.begin(), end = begin + static_cast<std::ptrdiff_t>(options.count);
-  if (is_shaken) std::for_each(begin, end, [&](Option& o) { o.cost += 2.0 * pitch_ * random.fraction(); });
+  if (shaken > 0.0) std::for_each(begin, end, [&](Option& o) { o.cost += shaken * pitch_ * random.fraction(); });
   const auto try_all = [&](auto&& may_take) {
     for (auto at = begin; at != end; ++at)  // few, and equal ones stay in order
       for (auto k = at; k != begin && k->cost < (k - 1)->cost; --k) std::swap(*k, *(k - 1));
@@ -602,8 +613,8 @@ Vec2 Reservations::preferred_of(std::size_t i) {
 void Reservations::put(crowd::SnapshotWriter& to) const {
   to.fields(step_, tickets_, reserved_, places_, clear_);
   for (const OfRobot& of : of_)
-    to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
-              of.is_at_goal);
+    to.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.pushed_off, of.leg,
+              of.has_way_then, of.is_at_goal);
 }
 
 void Reservations::get(crowd::SnapshotReader& from) {
@@ -611,8 +622,8 @@ void Reservations::get(crowd::SnapshotReader& from) {
   const bool fits = reserved_.size() == of_.size() && places_.size() == of_.size() && clear_.size() == of_.size();
   from.require(fits, "other robots");
   for (OfRobot& of : of_)
-    from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.leg, of.has_way_then,
-                of.is_at_goal);
+    from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.pushed_off, of.leg,
+                of.has_way_then, of.is_at_goal);
   std::fill(decided_.begin(), decided_.end(), 0);
 }
 

@@ -120,6 +120,7 @@ class Reservations {
     std::uint64_t free_since = 0;    ///< step at which something was ahead last
     double way_then = 0.0;           ///< m
     std::uint32_t in_vain = 0;       ///< reservations that were not to be had since the last one
+    std::uint32_t pushed_off = 0;    ///< how many times it was at its goal and is not any more
     std::uint32_t leg = 0;
     std::uint8_t has_way_then = 0;
     std::uint8_t is_at_goal = 0;
@@ -177,6 +178,7 @@ class Reservations {
   const Outlook& outlook_of(std::size_t i);
   void look_about(std::size_t i, Outlook& out) const;
   double cost_of_pushing(std::size_t i, Vec2 place, bool is_pushed, std::size_t near, std::size_t near_end) const;
+  static double shaking_of(const OfRobot& of);
   bool find_place(std::size_t i, std::size_t near, std::size_t depth, std::size_t pusher);
   void weigh_way_of_pusher(std::size_t i, std::size_t pusher, Options& options) const;
   void add_steps_aside(std::size_t i, std::size_t pusher, std::size_t near, Options& options) const;
