@@ -158,6 +158,29 @@ TEST(ScenarioFile, WrongDiscsAndVelocitiesAreNamed) {
   }
 }
 
+TEST(ScenarioFile, SlowlyBrakingRobotsLookAheadUntilTheyStand) {
+  const std::string head =
+      R"({"name": "n", "robots": [{"id": "R", "position": [1, 2], "goal": [3, 4], "max_speed": 3}], )";
+  const Scenario read = parse_scenario(head + R"("acceleration": {"max": 0.5}})", "t", {});
+  EXPECT_EQ(read.horizons.most, formation::braking_time_of(read));
+  EXPECT_EQ(read.horizons.robots, formation::braking_time_of(read));
+  EXPECT_EQ(read.horizons.orca, formation::braking_time_of(read));
+  const Scenario quick = parse_scenario(head + R"("acceleration": {"max": 50}})", "t", {});
+  EXPECT_EQ(quick.horizons.most, formation::Horizons{}.most);
+  const DataError refused = refusal_of(
+      [&] { parse_scenario(head + R"("acceleration": {"max": 0.5}, "horizons": {"robots": 2}})", "t", {}); });
+  EXPECT_EQ(refused.place(), "/horizons/robots") << refused.what();
+}
+
+TEST(ScenarioFile, RobotsThatPartCannotHaveAnAcceleration) {
+  const DataError refused = refusal_of([&] {
+    parse_scenario(R"({"name": "n", "robots": [{"id": "R", "position": [1, 2], "goal": [3, 4]}], "separate": true,
+                       "acceleration": {"max": 3}})",
+                   "t", {});
+  });
+  EXPECT_EQ(refused.place(), "/separate") << refused.what();
+}
+
 TEST(ScenarioFile, DefaultsAreThoseOfTheStructs) {
   const Scenario read =
       parse_scenario(R"({"name": "n", "robots": [{"id": "R", "position": [1, 2], "goal": [3, 4]}]})", "t", {});

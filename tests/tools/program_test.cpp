@@ -150,6 +150,9 @@ TEST(Simulate, MethodsThatPromiseNothingBetweenRobotsSaySo) {
     const Outcome formation = here.run("simulate " + data_file("paper/B0.json") + " --method " + method);
     EXPECT_EQ(formation.status, 2);
     EXPECT_THAT(formation.err, HasSubstr("--method: found '" + method + ", which formations do not have'"));
+    here.write("brakes.json", R"({"name": "b", "robots": [{"id": "R", "position": [0, 0], "goal": [3, 0]}],
+                                  "acceleration": {"max": 2}})");
+    EXPECT_THAT(here.run("simulate brakes.json --method " + method).err, HasSubstr("cannot promise to brake in time"));
   }
 }
 

@@ -145,9 +145,12 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
   formation::Method method = formation::Method::ivo;
-  if (scenario.formation && parse(flags.method, method) && !promises_between_robots(method))
-    throw UsageError("--method", flags.method + ", which formations do not have",
-                     "another method: orca, ivo-edge, ivo-cluster or ivo");
+  if ((scenario.formation || scenario.acceleration) && parse(flags.method, method) && !promises_between_robots(method))
+    throw UsageError(
+        "--method",
+        flags.method + (scenario.formation ? ", which formations do not have"
+                                           : ", which cannot promise to brake in time, with an acceleration"),
+        "another method: orca, ivo-edge, ivo-cluster or ivo");
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
   if (scenario.formation && flags.liveness == "bias")

@@ -125,6 +125,7 @@ class ScenarioReader {
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_value(JsonCursor(tree, file_, ""), scenario);
+    look_ahead_while_braking(tree, scenario);
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
     refuse_repeated_ids(scenario);
     if (scenario.formation && tree.at("formation").at("leader").contains("to"))
@@ -324,6 +325,18 @@ class ScenarioReader {
 
   [[noreturn]] void refuse(const std::string& pointer, const std::string& found) const {
     throw DataError(DataCode::scenario, file_, pointer, found, "an id of its own");
+  }
+
+  /// Robots that brake slowly look ahead at least until they stand, unless the file says otherwise.
+  static void look_ahead_while_braking(const Json& tree, Scenario& scenario) {
+    const double tau = formation::braking_time_of(scenario);
+    const Json given = tree.value("horizons", Json::object());
+    const auto look = [&](const char* name, double& horizon) {
+      if (!given.contains(name)) horizon = std::max(horizon, tau);
+    };
+    look("most", scenario.horizons.most);
+    look("orca", scenario.horizons.orca);
+    look("robots", scenario.horizons.robots);
   }
 
   /// What no schema can say: robots that overlap, lists whose lengths must agree, ...

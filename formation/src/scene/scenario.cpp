@@ -243,6 +243,8 @@ void check_acceleration(const Scenario& s, Checker& c) {
             "robots with goals; a formation has /formation/controller_options/acceleration_bound");
   c.require(s.moving_obstacles.empty(), "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
             "none" + with_it + ": no braking is proven to evade what moves by itself");
+  c.require(!s.separate, "/separate", "true",
+            "false" + with_it + ": robots that overlap cannot brake clear of each other");
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const std::string robot = "/robots/" + std::to_string(i);
     c.require(s.robots[i].cooperates, robot + "/cooperates", "false", "true" + with_it);
