@@ -6,7 +6,7 @@
 >>> run.plot()                                                 # doctest: +SKIP
 
 `exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
-`exactvo.Crowd` many robots, `exactvo.Navigator` one robot in a control loop, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files, `exactvo.check` whether recorded or planned bodies collided.
+`exactvo.Crowd` many robots, `exactvo.Navigator` one robot in a control loop, `exactvo.Monitor` how much of a command is clear, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios (`exactvo.sweep` many at once), `exactvo.datasets` obstacle files, `exactvo.check` whether recorded or planned bodies collided.
 SI units: metres, seconds, radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and
 ``where``. The guide: docs/guide/python.md.
 """
@@ -27,6 +27,7 @@ from .collisions import CheckResult, MotionEvent, check
 from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError, ScenarioWarning
 from .explorer import ExplorerPage, view
+from .monitor import Monitor, MonitorVerdict, MonitorWitness
 from .navigator import Navigator, NavigatorDecision
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
@@ -46,6 +47,9 @@ __all__ = [
     "ExactVOError",
     "ExplorerPage",
     "MissingFileError",
+    "Monitor",
+    "MonitorVerdict",
+    "MonitorWitness",
     "MotionEvent",
     "Navigator",
     "NavigatorDecision",

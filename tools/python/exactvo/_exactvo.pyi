@@ -251,6 +251,19 @@ def simulate(
     record_all: bool, threads: int, progress: Callable[[float], bool | None] | None,
     steering: Callable[..., Any] | None, half_planes: Callable[..., Any] | None, warn: Callable[[str], None], /,
 ) -> Run: ...
+class Monitor:
+    def judge(
+        self, pose: object, velocity: object, turn: object, in_world_axes: bool, positions: object, radii: object,
+        max_speeds: object, position_errors: object, /,
+    ) -> tuple[Any, ...]: ...
+    def judge_trajectory(
+        self, poses: object, positions: object, radii: object, max_speeds: object, position_errors: object, /,
+    ) -> tuple[Any, ...]: ...
+
+def monitor(
+    obstacles: Obstacles, radius: object, footprint: object, max_deceleration: object, max_turn_deceleration: object,
+    latency: object, period: object, margin: object, /,
+) -> Monitor: ...
 class Navigator:
     def decide(
         self, time: object, position: object, velocity: object, ids: list[int], positions: object, velocities: object,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exactvo/formation/crowd.h"
+#include "exactvo/formation/monitor.h"
 #include "exactvo/formation/navigator.h"
 #include "exactvo/geometry/routes.h"
 #include "module.h"
@@ -22,6 +23,15 @@ void raise(const char* type, const py::tuple& arguments) {
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
 
+/// "FIELD: found FOUND, expected EXPECTED".
+void raise_refused(const std::string& text) {
+  const std::string found = ": found ", expected = ", expected ";
+  const std::size_t first = text.find(found), last = text.rfind(expected);
+  const std::size_t from = first + found.size();
+  raise("ArgumentError",
+        py::make_tuple(text.substr(0, first), text.substr(from, last - from), text.substr(last + expected.size())));
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -31,12 +41,10 @@ void translate(std::exception_ptr thrown) {
     raise(e.code() == datasets::DataCode::file_missing ? "MissingFileError" : "DataError", as_tuple(e));
   } catch (const formation::CrowdError& e) {
     raise("CrowdError", py::make_tuple(name(e.problem()), std::string(e.what())));
-  } catch (const formation::NavigatorError& e) {  // "FIELD: found FOUND, expected EXPECTED"
-    const std::string text = e.what(), found = ": found ", expected = ", expected ";
-    const std::size_t first = text.find(found), last = text.rfind(expected);
-    const std::size_t from = first + found.size();
-    raise("ArgumentError",
-          py::make_tuple(text.substr(0, first), text.substr(from, last - from), text.substr(last + expected.size())));
+  } catch (const formation::NavigatorError& e) {
+    raise_refused(e.what());
+  } catch (const formation::MonitorError& e) {
+    raise_refused(e.what());
   } catch (const geometry::RouteNotProven& e) {
     raise("RouteNotProvenError", py::make_tuple(std::string(e.what())));
   } catch (const std::logic_error& e) {  // a requirement of the library's that was not asked here

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_exactvo, module) {
   bind_crowd(module);
   bind_simulate(module);
   bind_navigator(module);
+  bind_monitor(module);
   bind_obstacle_files(module);
   bind_rvo2(module);
   bind_check(module);

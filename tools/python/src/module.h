@@ -21,6 +21,7 @@ void bind_routes(py::module_& module);
 void bind_crowd(py::module_& module);
 void bind_simulate(py::module_& module);
 void bind_navigator(py::module_& module);
+void bind_monitor(py::module_& module);
 void bind_obstacle_files(py::module_& module);
 void bind_rvo2(py::module_& module);
 void bind_check(py::module_& module);
