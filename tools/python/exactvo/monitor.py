@@ -5,7 +5,7 @@
 >>> monitor = exactvo.Monitor([exactvo.Wall([(1, -2), (1, 2)])], radius=0.3, latency=0.1, period=0.1)
 >>> verdict = monitor.judge((0, 0, 0), (1.5, 0))
 >>> round(verdict.share, 4), verdict.witness.obstacle
-(0.6666, 0)
+(0.6667, 0)
 >>> monitor.judge((0, 0, 0), (0.9, 0)).share
 1.0
 """
