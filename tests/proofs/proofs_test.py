@@ -464,8 +464,11 @@ def changed_row(rng, lines, rows, kind):
     else:
         kind = "position"
     by = rng.choice((1e-12, 1e-6, 1e-3, 0.3, 3.0)) * rng.choice((-1, 1))
-    if kind == "onto":  # an obstacle
-        obstacle = rng.choice(json.loads(lines[0])["header"]["scenario"]["obstacles"])
+    obstacles = json.loads(lines[0])["header"]["scenario"]["obstacles"]
+    if kind == "onto" and not obstacles:
+        kind = "position"
+    if kind == "onto":
+        obstacle = rng.choice(obstacles)
         robot["position"] = obstacle["disc"]["centre"] if "disc" in obstacle else obstacle.get("polygon", obstacle.get("polyline"))[0]
     elif kind in ("position", "chosen", "preferred"):
         robot[kind][rng.randrange(2)] += by
