@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Own steering and own half-planes: six robots circle a place that none may enter, and every decision holds that.
+// Own steering and own half-planes: six robots are drawn to a place that none may enter, and circle it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@ using namespace exactvo;
 using geometry::Vec2;
 
 int main() {
-  constexpr double kForbidden = 2.0, kRing = 3.0, kStep = 0.1;  // m, m, s
+  constexpr double kForbidden = 2.0, kRing = 1.5, kStep = 0.1;  // m, m, s
   formation::Scenario scenario;
   scenario.name = "ring";
   scenario.time_step = kStep;
@@ -21,7 +21,7 @@ int main() {
     formation::Robot robot;
     robot.id = "R" + std::to_string(k + 1);
     robot.radius = 0.3;
-    robot.max_speed = 1.0 + 0.1 * k;  // the fast ones come up behind the slow ones
+    robot.max_speed = 1.0;
     robot.position = {4.0 * std::cos(angle), 4.0 * std::sin(angle)};
     robot.goals = {-1.0 * robot.position};
     scenario.robots.push_back(robot);
