@@ -29,7 +29,7 @@ std::size_t packs_under_way(std::size_t lines) {
 }
 
 /// With packs of so many bytes of lines the next group does not come from memory in time: blocks beyond it are asked
-/// for too, into the second cache, in the order in which they lie. Fifty lines out of a set of 39 MB on AMD's Zen 4,
+/// for too, into the second cache, in the order in which they lie. Fifty lines out of a set of 39 MB on an AMD EPYC,
 /// AVX2, ns a problem in double and float: 193 and 105 without, 173 and 88 with; twenty lines, 2 KiB: no change.
 inline constexpr std::size_t kFarBytes = 3072;
 
