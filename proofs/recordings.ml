@@ -187,7 +187,7 @@ let recording file text =
     robots := List.length Json.(arr (get "robots" !scenario));
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
-      "choices without room or with exact multipliers"; "that rows follow from choices, and that the scenario is the one that was meant"];
+      "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices, and that the scenario is the one that was meant"];
     prepare (Certificates.bits_needed !scenario) in
   let row r =
     let ps = List.map (fun x -> pair_of (Json.get "position" x)) Json.(arr (get "robots" r)) in
