@@ -145,11 +145,13 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
   formation::Method method = formation::Method::ivo;
-  if ((scenario.formation || scenario.acceleration) && parse(flags.method, method) && !promises_between_robots(method))
+  if ((scenario.formation || scenario.acceleration || scenario.separate) && parse(flags.method, method) &&
+      !promises_between_robots(method))
     throw UsageError(
         "--method",
-        flags.method + (scenario.formation ? ", which formations do not have"
-                                           : ", which cannot promise to brake in time, with an acceleration"),
+        flags.method + (scenario.formation      ? ", which formations do not have"
+                        : scenario.acceleration ? ", which cannot promise to brake in time, with an acceleration"
+                                                : ", which promises nothing between robots that part"),
         "another method: orca, ivo-edge, ivo-cluster or ivo");
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
@@ -169,9 +171,10 @@ void note_liveness(const SimulationFlags& flags, const formation::Scenario& scen
   // ivo-edge never has guidance: there it is said only to who asks for plans.
   const bool may_have_guidance = options.method != formation::Method::ivo_edge;
   if (!scenario.formation && used == formation::Liveness::bias && (is_asked_for || may_have_guidance))
-    message(
-        "note: liveness is bias, not plan: among obstacles joint plans need guidance, so that robots only turn to the "
-        "right for each other");
+    message(std::string("note: liveness is bias, not plan: ") +
+            (scenario.acceleration || scenario.separate ? "joint plans rely on robots that can stand at once"
+                                                        : "among obstacles joint plans need guidance") +
+            ", so that robots only turn to the right for each other");
 }
 
 void note_recorded(const SimulationFlags& flags) {

@@ -120,6 +120,10 @@ class DecisionAudit : public RowAudit {
     formation::Method method = formation::Method::ivo;
     if (parse(run.file.info.method, method) && !promises_between_robots(method))
       cone_ = method == formation::Method::rvo ? vo::Variant::rvo : vo::Variant::hrvo;
+    if (cone_ && (run.scenario.acceleration || run.scenario.separate || run.scenario.formation)) {
+      run.tally.refuted(AuditPoint::scenario, "no run of this scenario has this method");
+      cone_.reset();
+    }
     run.tally.report.without_pairs = cone_.has_value();
   }
 

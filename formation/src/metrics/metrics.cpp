@@ -50,7 +50,10 @@ std::string of_detours(const Metrics& m) {
 /// Of a scenario whose robots may start in overlap: such pairs have not collided. Each is said.
 void tell_starts(const Scenario& scenario, Metrics& m) {
   if (!scenario.separate) return;
-  const auto starts = [](const Collision& c) { return c.kind == CollisionKind::robot && c.from == 0.0; };
+  // What grew deeper after the start is a collision.
+  const auto starts = [](const Collision& c) {
+    return c.kind == CollisionKind::robot && c.from == 0.0 && c.deepest_at == 0.0;
+  };
   for (const Collision& c : m.collisions)
     if (starts(c))
       m.warnings.push_back(c.robot + " and " + c.with + " started in overlap, by " + detail::metres(c.depth) +

@@ -51,7 +51,7 @@ class KinematicSteps final : public Stepper {
             rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
         recording_(recording) {
-    if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes())
+    if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
     for (const Robot& robot : scenario_.robots) {

@@ -107,6 +107,8 @@ geometry::FacadeEllipseOptions facade_ellipses(const Margins& margins) {
 const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec2>& goals) {
   require_goals(goals);
   if (!*name(setup.method)) refuse(Problem::out_of_range, "method", "no Method", "one");
+  if (!promises_between_robots(setup.method))
+    refuse(Problem::out_of_range, "method", name(setup.method), "orca, ivo-edge, ivo-cluster or ivo");
   if (setup.neighbours > kMostNeighbours)
     refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
   for (std::size_t k = 0; k < setup.obstacles.size(); ++k)

@@ -98,8 +98,9 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
                   std::string("method ") + name(options.method) + " of a formation");
-  EXACTVO_REQUIRE(!scenario.acceleration || promises_between_robots(options.method),
-                  std::string("method ") + name(options.method) + " with an acceleration");
+  EXACTVO_REQUIRE(!(scenario.acceleration || scenario.separate) || promises_between_robots(options.method),
+                  std::string("method ") + name(options.method) + " with an acceleration, or with robots that part");
+  EXACTVO_REQUIRE(!scenario.acceleration || !options.half_planes, "half-planes of a user, with an acceleration");
   EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),
                   "steering or half-planes of a user, in a formation");
   EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");

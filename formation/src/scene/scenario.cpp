@@ -228,6 +228,15 @@ void check_brakes(const detail::DecisionRules& rules, double fastest, bool is_gi
   holds_while_braking(rules.horizons.robots, "/horizons/robots");
 }
 
+/// Robots that may start in overlap: what the proof that none comes nearer needs.
+void check_separate(const Scenario& s, Checker& c) {
+  if (!s.separate) return;
+  c.require(!s.formation, "/separate", "true", "false with a formation");
+  c.require(s.moving_obstacles.empty(), "/separate", "true", "false with moving obstacles, which robots must evade");
+  for (std::size_t i = 0; i < s.robots.size(); ++i)
+    c.require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true with /separate");
+}
+
 /// Robots with an acceleration.
 void check_acceleration(const Scenario& s, Checker& c) {
   const std::string at = "/acceleration", with_it = " with /acceleration";
@@ -348,6 +357,7 @@ std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
     check_disc(scenario.obstacles[k], "/obstacles/" + std::to_string(k), c);
   check_moving(scenario, c);
   check_times(rules_of(scenario, {}), scenario.arrival_tolerance, scenario.time_limit, c);
+  check_separate(scenario, c);
   check_acceleration(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
   return std::move(c.problems);
