@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A control loop with a monitor: whatever drives the robot wants to go straight on, the monitor lets pass what is
-// proven clear. The exact verdict of each step shows that nothing was touched.
+// proven clear. The exact verdict of each step shows that nothing was touched: the margin keeps the robot out of
+// contact, where a step may go a nanometre deeper.
 #include <algorithm>
 #include <cstdio>
 
@@ -15,6 +16,7 @@ int main() {
   setup.footprint = {{{{-0.3, -0.25}, {0.7, -0.25}, {0.7, 0.25}, {-0.3, 0.25}}, 0.0}};
   setup.period = 0.1;
   setup.latency = 0.0;  // the command takes effect at once, and the next one 0.1 s later
+  setup.margin = 0.001;
   setup.obstacles = {{"wall", geometry::Polyline{{{4.0, -3.0}, {4.0, 3.0}}}}};
   Monitor monitor(setup);
 
@@ -36,5 +38,5 @@ int main() {
       nearest = std::min(nearest, 4.0 - (pose.at + geometry::rotated(c, pose.heading)).x);
   }
   std::printf("stopped %.4f m before the wall\n", nearest);
-  return nearest > 0.0 && nearest < 0.01 ? 0 : 1;
+  return nearest > 0.0009 && nearest < 0.01 ? 0 : 1;
 }

@@ -190,7 +190,78 @@ TEST(Monitor, RobotBesideAMoverMayLeaveIt) {
   EXPECT_EQ(monitor.judge({}, ahead(0.0), mover_at(0.9, 5.0)).share, 1.0);
 }
 
+TEST(Monitor, CornersOfAMoverMayComeInAnyOrder) {
+  Monitor monitor(setup_with(geometry::disc_body(0.3), {}));
+  std::vector<Vec2> corners{{2, -5}, {2, 5}, {6, 0}};
+  const auto is_before = [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; };
+  int judged = 0, cut = 0;
+  do {
+    const MonitorVerdict fast = monitor.judge({}, ahead(-0.5), {{{corners, 0.0}, 20.0, 0.0}});
+    EXPECT_LT(fast.share, 1e-3) << "it is 2 m away and comes at 20 m/s";
+    const double slow = monitor.judge({}, ahead(1.0), {{{corners, 0.1}, 1.0, 0.0}}).share;
+    cut += slow < 1.0;
+    EXPECT_EQ(slow, monitor.judge({}, ahead(1.0), {{{{{2, -5}, {6, 0}, {2, 5}}, 0.1}, 1.0, 0.0}}).share);
+    ++judged;
+  } while (std::next_permutation(corners.begin(), corners.end(), is_before));
+  EXPECT_EQ(judged, 6);
+  EXPECT_EQ(cut, 6);
+}
+
+// The time at which the robot rests is a root that loses half of the digits: this mover comes 1e-8 m too near then.
+TEST(Monitor, MoverThatArrivesAsTheRobotComesToRestIsMet) {
+  Monitor monitor(setup_with(geometry::disc_body(0.3), {}));
+  EXPECT_LT(monitor.judge({}, ahead(15.62243126268577), mover_at(520.7451345042193, 24.963955443195523)).share, 1.0);
+}
+
+TEST(Monitor, LessIsClearTheLessIsKnownWhereAMoverIs) {
+  Monitor monitor(setup_with(geometry::disc_body(0.3), {}));
+  double last = 1.0;
+  int in_contact = 0;
+  for (int k = 0; k <= 30; ++k) {
+    const MonitorVerdict v = monitor.judge({}, ahead(1.0), mover_at(1.0, 1.0, 0.03 * k));
+    EXPECT_LE(v.share, last) << 0.03 * k;
+    in_contact += v.in_contact;
+    last = v.share;
+  }
+  EXPECT_GE(in_contact, 15);
+  EXPECT_LT(in_contact, 31);
+}
+
 // --- Trajectories ---
+
+TEST(Monitor, TrajectoryThatLeavesAContactMayNotReturnToIt) {
+  MonitorSetup setup = setup_with(geometry::disc_body(0.3), {wall({{1.0, -10.0}, {1.0, 10.0}})});
+  Monitor monitor(setup);
+  const auto pose = [](double x) { return Pose{{x, 0}, 0}; };
+  const MonitorVerdict v = monitor.judge({{0.0, pose(0.9)}, {1.0, pose(-2.0)}, {2.0, pose(0.9)}});
+  EXPECT_TRUE(v.in_contact);
+  // It is at 0.7 after 1 + 2.7 / 2.9 s, and needs 0.1 s + 1.45 s of way.
+  EXPECT_NEAR(v.share, (1.0 + 2.7 / 2.9 - 1.55) / 2.0, 1e-6);
+  EXPECT_EQ(monitor.judge({{0.0, pose(0.9)}, {1.0, pose(0.8)}, {2.0, pose(-2.0)}}).share, 1.0) << "it leaves";
+}
+
+TEST(Monitor, TrajectoryThatIsTooFastIsRefusedAndTheMonitorIsAsItWas) {
+  Monitor monitor(setup_with(geometry::disc_body(0.3), {wall({{1.0, -10.0}, {1.0, 10.0}})}));
+  monitor.judge({}, ahead(0.5));
+  int refused = 0;
+  const std::vector<std::vector<TimedPose>> bad{{{0.0, {{-5, 0}, 0}}, {5e-324, {{-5, 0}, 3}}},
+                                                {{0.0, {{-5, 0}, 0}}, {1e-300, {{0.9, 0}, 0}}}};
+  for (const auto& trajectory : bad) {
+    try {
+      monitor.judge(trajectory);
+    } catch (const MonitorError& e) {
+      EXPECT_EQ(e.problem(), MonitorProblem::out_of_range);
+      ++refused;
+    }
+    ASSERT_EQ(monitor.way(1.0).size(), 1u);
+    EXPECT_EQ(monitor.way(1.0)[0].motion.twist.velocity.x, 0.5);
+  }
+  EXPECT_EQ(refused, 2);
+  EXPECT_EQ(monitor.judge({{0.0, {{-5, 0}, 0}}, {5e-324, {{-5, 0}, 0}}}, mover_at(9.0, 1.0)).share, 1.0);
+  MonitorSetup setup;
+  setup.max_deceleration = 1e-320;
+  EXPECT_THROW(Monitor m(setup), MonitorError);
+}
 
 TEST(Monitor, TrajectoryIsClearUntilBrakingMustBegin) {
   MonitorSetup setup = setup_with(geometry::disc_body(0.3), {wall({{3.0, -2.0}, {3.0, 2.0}})});

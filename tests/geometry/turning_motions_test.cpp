@@ -364,6 +364,38 @@ TEST(TurningMotions, CertificatesAgainstPolygonsSayThatTheBodyIsOutside) {
   EXPECT_FALSE(proves_clear({}, in_hole, square, block));
 }
 
+TEST(TurningMotions, BodiesThatTurnTooFarForTheCheckHaveNoCertificate) {
+  const Obstacle wall = Polyline{{{-3, 2}, {3, 2}}};
+  const RigidBody square{{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 0.0}};
+  const TurningMotion less{0, 63, {}, {{}, 1.0}}, more{0, 65, {}, {{}, -1.0}};
+  const auto certificate = certify(less, square, wall);
+  ASSERT_TRUE(certificate);
+  EXPECT_TRUE(proves_clear(*certificate, less, square, wall));
+  EXPECT_EQ(encounter(more, square, wall), Encounter::clear);
+  EXPECT_FALSE(certify(more, square, wall));
+}
+
+// Squares of the smaller lengths are 0 in doubles.
+TEST(TurningMotions, VerdictsDoNotDependOnTheUnitOfLength) {
+  int judged = 0;
+  for (const double unit : {1.0, 0x1p-600, 0x1p600}) {
+    for (int k = 0; k < 8; ++k) {
+      const double y = (0.5 + 0.25 * k) * unit;
+      const Obstacle wall = Polyline{{{-3.0 * unit, y}, {3.0 * unit, y}}};
+      const RigidBody square{
+          {{{-0.5 * unit, -0.5 * unit}, {0.5 * unit, -0.5 * unit}, {0.5 * unit, 0.5 * unit}, {-0.5 * unit, 0.5 * unit}},
+           0.125 * unit}};
+      // It turns by 1 rad. A corner comes to 0.71 cos(0.21) above the middle, which has risen by 0.23: with the radius
+      // 1.05 units in all.
+      EXPECT_EQ(encounter({0, 2, {}, {{0.25 * unit, 0.0}, 0.5}}, square, wall),
+                k < 3 ? Encounter::overlap : Encounter::clear)
+          << unit << " " << k;
+      ++judged;
+    }
+  }
+  EXPECT_EQ(judged, 24);
+}
+
 TEST(TurningMotions, BodiesWithoutAnInteriorAndBadNumbersAreRefused) {
   const Obstacle wall = Polyline{{{0, 1}, {1, 1}}};
   EXPECT_THROW(encounter({0, 1, {}, {{}, 1.0}}, RigidBody{{{{0, 0}, {1, 0}}, 0.0}}, wall), std::logic_error);

@@ -88,6 +88,12 @@ TEST(CheckVerb, RobotsThatFollowEachOtherByOneRowDoNotMeetWhereTheyAreHeld) {
   EXPECT_THAT(outcome.out, HasSubstr("0 overlaps, 0 contacts"));
 }
 
+TEST(CheckVerb, CubicThroughRowsAtAlmostTheSameTimeIsDecided) {
+  const Outcome outcome = checked("t,id,x,y\n0,A,0,0\n5e-324,A,1,0\n1,A,2,0\n", "--radius 0.2 --between cubic");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("0 overlaps"));
+}
+
 TEST(CheckVerb, PolynomialsOfSeveralFilesAreOneFleet) {
   const Workplace here;
   // one: (4 t, 3 t - 3 t^2), then on along x; other: against it, 0.7 m higher.
@@ -108,6 +114,9 @@ TEST(CheckVerb, PolynomialsOfSeveralFilesAreOneFleet) {
   EXPECT_EQ(wide.status, 1);
   EXPECT_THAT(wide.out, HasSubstr("overlap: one and other"));
   EXPECT_EQ(here.run("check fleet --radius 0.4 --between hold").status, 2);
+  const Outcome away = here.run("check fleet --radius 0.4 --max-gap 5");
+  EXPECT_EQ(away.status, 2);
+  EXPECT_THAT(away.err, HasSubstr("--max-gap"));
   here.write("second/one.csv", "duration,x^0,y^0\n1,9,9\n");
   const Outcome named = here.run("check fleet second/one.csv --radius 0.1 --json");
   EXPECT_THAT(named.out, AllOf(HasSubstr("\"id\":\"one\""), HasSubstr("\"id\":\"second/one.csv\""))) << named.err;
@@ -443,6 +452,8 @@ TEST(CheckVerb, BadInputIsNamed) {
       {"t,id,x,y\n0,A,1\n", "--radius 1", "E_COUNT"},
       {"t,id,x,y\n0,,1,2\n", "--radius 1", "an empty id"},
       {"t,id,x,y,vx,vy\n0,A,1,2,nan,0\n", "--radius 1 --between cubic", "line 2"},
+      {"t,id,x,y,vx,vy\n0,A,1,2,0,0\n1,A,1,2,1e308,0\n", "--radius 1 --between cubic", "line 3"},
+      {"t,id,x,y,vx,vy\n0,A,1,2,1e308,0\n", "--radius 1", "velocities in m/s up to 2^100"},
       {"t,id,x,y\n", "--radius 1", "no row"},
   };
   std::size_t judged = 0;

@@ -61,6 +61,19 @@ TEST(MonitorVerb, AnswersEachLineWithItsShareAndTheScaledCommand) {
   EXPECT_EQ(all[1]["witness"], nullptr);
 }
 
+TEST(MonitorVerb, TrajectoryThatIsTooFastIsAnsweredAndTheNextLineIsRead) {
+  const std::vector<json> all = answers(R"({"trajectory": [[0, -5, 0, 0], [5e-324, -5, 0, 3]]})"
+                                        "\n"
+                                        R"({"trajectory": [[0, -5, 0, 0], [1e-300, 0.9, 0, 0]]})"
+                                        "\n"
+                                        R"({"pose": [-5, 0, 0], "velocity": [0.5, 0]})"
+                                        "\n",
+                                        1);
+  ASSERT_EQ(all.size(), 3u);
+  for (int k = 0; k < 2; ++k) EXPECT_THAT(all[k]["error"]["found"].get<std::string>(), HasSubstr("m/s")) << k;
+  EXPECT_EQ(all[2]["share"], 1.0);
+}
+
 TEST(MonitorVerb, TrajectoriesMoversAndFootprintsAreRead) {
   const std::vector<json> all = answers(
       R"({"trajectory": [[5, -2, 0, 0], [8, 1, 0, 0]]})"

@@ -123,6 +123,9 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
   if (std::fabs(metres.x) > kLargestCoordinate || std::fabs(metres.y) > kLargestCoordinate ||
       std::fabs(time) > kLargestCoordinate)
     refuse(DataCode::out_of_range, line, "a number beyond 2^100", "places in m and times in s up to 2^100");
+  const geometry::Vec2 metres_a_second = options_.scale * velocity;  // no numbers: none is known
+  if (std::fabs(metres_a_second.x) > kLargestCoordinate || std::fabs(metres_a_second.y) > kLargestCoordinate)
+    refuse(DataCode::out_of_range, line, "a velocity beyond 2^100", "velocities in m/s up to 2^100");
   Last& last = last_[agent];
   const auto words = [&](double t) { return number_text(t) + " s of agent " + file_.agents[agent]; };
   const auto place_of_last = [&] { return file_.row_word + " " + std::to_string(last.line); };
@@ -137,7 +140,7 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
     return;
   }
   last = {time, metres, line};
-  take_({agent, time, metres, heading, options_.scale * velocity, line});
+  take_({agent, time, metres, heading, metres_a_second, line});
 }
 
 double TrajectorySink::time_of_frame(double frame, double of_file) {

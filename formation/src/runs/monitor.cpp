@@ -26,6 +26,8 @@ using geometry::Vec2;
 
 /// m, m/s, rad/s, s: products of two are far inside the range of doubles, and a difference keeps a micrometre.
 constexpr double kMostSize = 0x1p30;
+/// m/s^2, rad/s^2: with it the time to brake stays as far inside the range.
+constexpr double kLeastDeceleration = 0x1p-30;
 /// More than the few roundings of a formula of quotients and roots.
 constexpr double kDown = 1.0 - 0x1p-48, kUp = 1.0 + 0x1p-48;
 /// While the robot brakes, its way is looked at in as many parts: in each, time is bounded by a chord.
@@ -50,11 +52,6 @@ void require_within(double x, double least, const char* field) {
   if (!(x >= least && x < kMostSize))
     refuse_argument(MonitorProblem::out_of_range, field, digits_of(x),
                     "a number of at least " + digits_of(least) + " and less than 2^30");
-}
-
-void require_above_zero(double x, const char* field) {
-  require_within(x, 0.0, field);
-  if (x == 0.0) refuse_argument(MonitorProblem::out_of_range, field, "0", "a number above 0");
 }
 
 void require_place(Vec2 v, const char* field) {
@@ -96,8 +93,8 @@ const char* name(MonitorProblem problem) {
 }
 
 Monitor::Monitor(const MonitorSetup& setup) : setup_(setup) {
-  require_above_zero(setup.max_deceleration, "max_deceleration");
-  require_above_zero(setup.max_turn_deceleration, "max_turn_deceleration");
+  require_within(setup.max_deceleration, kLeastDeceleration, "max_deceleration");
+  require_within(setup.max_turn_deceleration, kLeastDeceleration, "max_turn_deceleration");
   require_within(setup.latency, 0.0, "latency");
   require_within(setup.period, 0.0, "period");
   require_within(setup.margin, 0.0, "margin");
@@ -140,9 +137,11 @@ Monitor::Monitor(const MonitorSetup& setup) : setup_(setup) {
 
 double Monitor::Pace::moment(double way) const {
   if (way <= held) return way / pace;
-  // way - held = pace (u - u^2 / (2 B)) after u s of braking, which lasts B = 2 braked / pace.
-  const double share = std::min(1.0, (way - held) / braked);
-  return held / pace + 2.0 * braked / pace * (1.0 - std::sqrt(1.0 - share));
+  // way - held = pace (u - u^2 / (2 B)) after u s of braking, which lasts B = 2 braked / pace. Near rest the root makes
+  // much of a rounding, so that what is left is rounded down before it.
+  const double gone = (way - held) / braked;
+  const double left = std::max(0.0, 1.0 - gone - 0x1p-50 * (1.0 + way / braked));
+  return (held / pace + 2.0 * braked / pace * (1.0 - std::sqrt(left))) * kUp;
 }
 
 Monitor::Pace Monitor::pace_at(double share, bool is_trajectory) const {
@@ -181,9 +180,21 @@ geometry::ConvexOnTwist Monitor::part_on(const Part& part, const Stretch& stretc
   return {stretch.start.at + d.by, {d.turned(stretch.twist.velocity), stretch.twist.turn}, corners};
 }
 
-double Monitor::gap_at_start(const Part& part, const geometry::ConvexOnTwist& other, double reach) {
-  turn_footprint(way_.front(), 0.0);
-  return keeper_.gap_at({part_on(part, way_.front(), 0.0), other, 0.0, reach, 0.0, 0.0}, 0.0);
+double Monitor::gap_as_it_begins(const Stretch& stretch, const Part& part, const geometry::ConvexOnTwist& other,
+                                 double reach) {
+  turn_footprint(stretch, 0.0);
+  return keeper_.gap_at({part_on(part, stretch, 0.0), other, 0.0, reach, 0.0, 0.0}, 0.0);
+}
+
+/// The gap at the start of the way, if it is less than 0 there and as each stretch begins up to this one; else 0.
+double Monitor::contact_until(const Stretch& last, const Part& part, const geometry::ConvexOnTwist& other,
+                              double reach) {
+  const double at_start = gap_as_it_begins(way_.front(), part, other, reach);
+  double latest = at_start;
+  for (const Stretch* next = &way_.front(); latest < 0.0 && next != &last;)
+    latest = gap_as_it_begins(*++next, part, other, reach);
+  turn_footprint(last, 0.0);
+  return latest < 0.0 ? at_start : 0.0;
 }
 
 Monitor::Clear Monitor::clear_of_obstacles(double length, bool& in_contact) {
@@ -208,8 +219,7 @@ Monitor::Clear Monitor::clear_of_obstacles(double length, bool& in_contact) {
         KeptGap kept = keeper_.keep(question);
         if (kept.whole) continue;
         if (offset > 0.0 || kept.kept_until == 0.0) {
-          const double at_start = gap_at_start(part, other, both);
-          turn_footprint(stretch, 0.0);
+          const double at_start = contact_until(stretch, part, other, both);
           if (at_start < 0.0) {
             in_contact = true;
             question.required = at_start - kMonitorSlack;
@@ -234,31 +244,31 @@ Monitor::Clear Monitor::clear_of_obstacles(double length, bool& in_contact) {
   return clear;
 }
 
-bool Monitor::is_far_from(const Mover& mover, const Pace& pace) const {
-  const std::vector<Vec2>& corners = mover.shape.corners;
-  double extent = mover.shape.radius + mover.position_error, way = 0.0;
-  for (const Vec2 corner : corners)
-    extent = std::max(extent, norm(corner - corners.front()) + mover.shape.radius + mover.position_error);
+bool Monitor::is_far_from(const SeenMover& mover, const Pace& pace) const {
+  const Vec2* corners = mover_corners_.data() + mover.first;
+  double extent = 0.0, way = 0.0;
+  for (std::size_t i = 0; i < mover.size; ++i) extent = std::max(extent, norm(corners[i] - corners[0]));
   for (const Stretch& stretch : way_) way += norm(stretch.twist.velocity) * stretch.duration;
-  const double near = body_reach_ + extent + way + mover.max_speed * pace.moment(pace.length());
-  return norm(corners.front() - way_.front().start.at) > near * kUp;
+  const double near =
+      body_reach_ + extent + mover.radius + mover.position_error + way + mover.max_speed * pace.moment(pace.length());
+  return norm(corners[0] - way_.front().start.at) > near * kUp;
 }
 
-bool Monitor::clear_of_mover(const Mover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact) {
-  const CornerView corners{mover.shape.corners.data(), mover.shape.corners.size()};
-  const geometry::ConvexOnTwist other{{}, {}, corners};
+bool Monitor::clear_of_mover(const SeenMover& mover, std::size_t index, const Pace& pace, Clear& clear,
+                             bool& in_contact) {
+  const geometry::ConvexOnTwist other{{}, {}, {mover_corners_.data() + mover.first, mover.size}};
   for (const Part& part : parts_) {
-    double reach = part.radius + mover.shape.radius + setup_.margin + kMonitorSlack;
+    const double reach = part.radius + mover.radius + mover.position_error + setup_.margin + kMonitorSlack;
     double speed = mover.max_speed, required = -kMonitorSlack;
-    if (gap_at_start(part, other, reach + mover.position_error) < 0.0) {
+    const double at_start = gap_as_it_begins(way_.front(), part, other, reach);
+    if (at_start < 0.0) {
       in_contact = true;
-      required += std::min(0.0, gap_at_start(part, other, reach));
+      required += at_start;
       speed = 0.0;
-    } else {
-      reach += mover.position_error;
     }
     double offset = 0.0;
     for (const Stretch& stretch : way_) {
+      if (required < -kMonitorSlack && gap_as_it_begins(stretch, part, other, reach) >= 0.0) required = -kMonitorSlack;
       // Cut where braking begins, and then a few times more.
       for (int cut = -1; cut < kBrakingParts; ++cut) {
         const auto end_of = [&](int k) { return pace.held + pace.braked * (k + 1) / kBrakingParts; };
@@ -269,6 +279,11 @@ bool Monitor::clear_of_mover(const Mover& mover, std::size_t index, const Pace& 
         turn_footprint(stretch, from - offset);
         GapToKeep question{part_on(part, stretch, from - offset),      other,   to - from, reach + speed * then * kUp,
                            speed * (later - then) / (to - from) * kUp, required};
+        // In next to no time, all of it counts at once.
+        if (!(question.growth < 0x1p100)) {
+          question.reach = reach + speed * later * kUp;
+          question.growth = 0.0;
+        }
         const KeptGap kept = keeper_.keep(question);
         if (kept.whole) continue;
         clear.until = from + kept.kept_until;
@@ -281,7 +296,7 @@ bool Monitor::clear_of_mover(const Mover& mover, std::size_t index, const Pace& 
   return true;
 }
 
-MonitorVerdict Monitor::judged(bool is_trajectory, const std::vector<Mover>& movers) {
+MonitorVerdict Monitor::judged(bool is_trajectory) {
   MonitorVerdict verdict;
   const Pace full = pace_at(1.0, is_trajectory);
   Clear clear = clear_of_obstacles(full.length(), verdict.in_contact);
@@ -302,11 +317,11 @@ MonitorVerdict Monitor::judged(bool is_trajectory, const std::vector<Mover>& mov
     // A robot that stands is promised nothing.
     if (!is_trajectory && (share == 0.0 || brake_time_ == 0.0)) return true;
     const Pace pace = pace_at(share, is_trajectory);
-    for (std::size_t k = 0; k < movers.size(); ++k) {
-      const std::size_t index = (first + k) % movers.size();
-      if (is_far_from(movers[index], pace)) continue;
+    for (std::size_t k = 0; k < movers_.size(); ++k) {
+      const std::size_t index = (first + k) % movers_.size();
+      if (is_far_from(movers_[index], pace)) continue;
       Clear met;
-      if (clear_of_mover(movers[index], index, pace, met, verdict.in_contact)) continue;
+      if (clear_of_mover(movers_[index], index, pace, met, verdict.in_contact)) continue;
       verdict.witness = met.witness;
       first = index;
       return false;
@@ -346,9 +361,26 @@ void Monitor::require_movers(const std::vector<Mover>& movers) const {
   }
 }
 
-void Monitor::brake_from(const Twist& twist) {
-  brake_time_ = std::max({brake_time_, norm(twist.velocity) / setup_.max_deceleration * kUp,
-                          std::fabs(twist.turn) / setup_.max_turn_deceleration * kUp});
+void Monitor::see(const std::vector<Mover>& movers) {
+  movers_.clear();
+  mover_corners_.clear();
+  for (const Mover& mover : movers) {
+    const std::size_t first = mover_corners_.size();
+    const std::vector<Vec2>& corners = mover.shape.corners;
+    if (corners.size() == 1) {
+      mover_corners_.push_back(corners.front());
+    } else {
+      const std::vector<Vec2> hull = geometry::convex_hull(corners).vertices;
+      mover_corners_.insert(mover_corners_.end(), hull.begin(), hull.end());
+    }
+    movers_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mover_corners_.size() - first),
+                       mover.shape.radius, mover.max_speed, mover.position_error});
+  }
+}
+
+double Monitor::braking_time(const Twist& twist) const {
+  return std::max(norm(twist.velocity) / setup_.max_deceleration * kUp,
+                  std::fabs(twist.turn) / setup_.max_turn_deceleration * kUp);
 }
 
 MonitorVerdict Monitor::judge(const Pose& pose, const Command& command, const std::vector<Mover>& movers) {
@@ -359,15 +391,15 @@ MonitorVerdict Monitor::judge(const Pose& pose, const Command& command, const st
     refuse_argument(MonitorProblem::out_of_range, "turn", digits_of(command.twist.turn),
                     "0, with a velocity in the world's axes");
   require_movers(movers);
-  brake_time_ = 0.0;
-  brake_from(command.twist);
+  see(movers);
+  brake_time_ = braking_time(command.twist);
   held_ = setup_.period + setup_.latency;
   way_.clear();
   Twist in_world = command.twist;
   if (!command.in_world_axes) in_world.velocity = geometry::rotated(command.twist.velocity, pose.heading);
   way_.push_back({pose, in_world, pace_at(1.0, false).length()});
   is_trajectory_ = false;
-  return judged(false, movers);
+  return judged(false);
 }
 
 MonitorVerdict Monitor::judge(const std::vector<TimedPose>& trajectory, const std::vector<Mover>& movers) {
@@ -383,15 +415,23 @@ MonitorVerdict Monitor::judge(const std::vector<TimedPose>& trajectory, const st
       refuse_argument(MonitorProblem::no_trajectory, "trajectory time", digits_of(trajectory[k].time),
                       "more than " + digits_of(trajectory[k - 1].time));
   require_movers(movers);
-  brake_time_ = 0.0;
-  way_.clear();
+  double brake_time = 0.0;
+  next_way_.clear();
   Twist last;
   for (std::size_t k = 1; k < trajectory.size(); ++k) {
     const TimedPose &from = trajectory[k - 1], &to = trajectory[k];
     last = geometry::twist_between(from.pose, to.pose, to.time - from.time);
-    brake_from(last);
-    way_.push_back({from.pose, {geometry::rotated(last.velocity, from.pose.heading), last.turn}, to.time - from.time});
+    if (!(std::max(norm(last.velocity), std::fabs(last.turn)) < kMostSize))
+      refuse_argument(MonitorProblem::out_of_range, "trajectory at " + digits_of(to.time) + " s",
+                      digits_of(norm(last.velocity)) + " m/s, " + digits_of(last.turn) + " rad/s",
+                      "a speed and a turn rate of less than 2^30");
+    brake_time = std::max(brake_time, braking_time(last));
+    next_way_.push_back(
+        {from.pose, {geometry::rotated(last.velocity, from.pose.heading), last.turn}, to.time - from.time});
   }
+  see(movers);
+  way_.swap(next_way_);
+  brake_time_ = brake_time;
   held_ = trajectory.back().time - trajectory.front().time;
   // Beyond its end, the trajectory goes on as it did at last.
   const Pose& end = trajectory.back().pose;
@@ -399,7 +439,7 @@ MonitorVerdict Monitor::judge(const std::vector<TimedPose>& trajectory, const st
                   {geometry::rotated(last.velocity, end.heading), last.turn},
                   (setup_.latency + 0.5 * brake_time_) * kUp + 0x1p-40 * held_});
   is_trajectory_ = true;
-  return judged(true, movers);
+  return judged(true);
 }
 
 std::vector<MonitorArc> Monitor::way(double share) const {

@@ -127,7 +127,8 @@ CurvedMotion hermite_cubic(const TimedPoint& from, Vec2 velocity, const TimedPoi
 
 Vec2 catmull_rom_velocity(const TimedPoint& before, const TimedPoint& after) {
   EXACTVO_REQUIRE(before.time < after.time, hex_text(before.time) + " " + hex_text(after.time));
-  return (after.at - before.at) / (after.time - before.time);
+  const Vec2 velocity = (after.at - before.at) / (after.time - before.time);
+  return is_finite(velocity) ? velocity : Vec2{};
 }
 
 std::vector<CurvedMotion> b_spline_pieces(const std::vector<Vec2>& control_points, std::size_t degree, double start,

@@ -297,6 +297,17 @@ class Question {
     for (const RoundedPolygon& part : body) parts.push_back({at, part_of(part)});
   }
 
+  /// Whether all that is not 0 is so far inside the range of doubles that no product of two leaves it.
+  static bool has_plain_sizes(const GapToKeep& q) {
+    const auto is_plain = [](double x) { return x == 0.0 || (std::fabs(x) >= 0x1p-400 && std::fabs(x) <= 0x1p400); };
+    const auto are_plain = [&](Vec2 v) { return is_plain(v.x) && is_plain(v.y); };
+    const auto is_plain_body = [&](const ConvexOnTwist& body) {
+      return are_plain(body.at) && are_plain(body.twist.velocity) && is_plain(body.twist.turn) &&
+             std::all_of(body.corners.data, body.corners.data + body.corners.size, are_plain);
+    };
+    return is_plain_body(q.a) && is_plain_body(q.b) && is_plain(q.duration) && is_plain(q.reach);
+  }
+
   std::optional<Encounter> filtered(const Part& part, const Standing& other) const {
     const double duration = m_.end - m_.start;
     const GapToKeep q{{m_.at, m_.twist, {part.corners.data(), part.corners.size()}},
@@ -305,7 +316,7 @@ class Question {
                       part.radius + other.part.radius,
                       0.0,
                       kAnyGap};
-    if (!std::isfinite(GapKeeper::rounding_of(q))) return std::nullopt;
+    if (!has_plain_sizes(q)) return std::nullopt;
     GapKeeper keeper;
     const KeptGap kept = keeper.keep(q);
     if (kept.whole) return Encounter::clear;

@@ -12,6 +12,8 @@ namespace {
 
 /// How often a piece of time is halved before the proof is given up.
 constexpr int kMostHalvingsOfTurn = 40;
+/// rad: `proves_clear` takes no more.
+constexpr double kMostTurned = 64.0;
 
 Vec2 nearest_on_edge(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 e = b - a;
@@ -87,6 +89,9 @@ class TurnProver {
 }  // namespace turned
 
 std::optional<MotionCertificate> certify(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle) {
+  // Just below, since the product is rounded.
+  const double angle = std::fabs(motion.twist.turn) * (motion.end - motion.start);
+  if (angle > turned::kMostTurned * (1.0 - 0x1p-50)) return std::nullopt;
   if (encounter(motion, body, obstacle) != Encounter::clear) return std::nullopt;
   const std::vector<Segment> edges = edges_of(obstacle);
   MotionCertificate certificate;

@@ -15,6 +15,7 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/motion_certificate.h"
 #include "figures/figure.h"
+#include "support/footprint.h"
 #include "support/motion_certificates.h"
 #include "support/parse_errors.h"
 #include "support/run.h"
@@ -80,35 +81,6 @@ void check_flags(const CheckFlags& flags) {
 
 // --- What moves ---
 
-/// The one shape of WKT, or of an obstacle file.
-geometry::Obstacle footprint_of(const std::string& text) {
-  std::error_code error;
-  const bool is_file = std::filesystem::exists(text, error);
-  const datasets::ObstacleFile content =
-      is_file ? datasets::read_obstacles(text) : datasets::parse_wkt(text, "--footprint");
-  if (content.obstacles.size() != 1)
-    throw UsageError("--footprint", geometry::counted(content.obstacles.size(), "shape"),
-                     "one polygon without holes, or one line that --radius makes wide");
-  return content.obstacles.front().shape;
-}
-
-/// A polygon grown by the radius, or a line that is `2 radius` wide, in pieces that are convex.
-RigidBody grown_body(const geometry::Obstacle& shape, double radius) {
-  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) {
-    if (radius == 0.0) throw lacking("--footprint with a line", "--radius", "half its width");
-    RigidBody body;
-    for (std::size_t k = 1; k < line->points.size(); ++k)
-      body.push_back({{line->points[k - 1], line->points[k]}, radius});
-    return body;
-  }
-  const auto& polygon = std::get<geometry::Polygon>(shape);
-  if (!polygon.holes.empty())
-    throw UsageError("--footprint", geometry::counted(polygon.holes.size(), "hole"), "a polygon without holes");
-  RigidBody body = geometry::polygon_body(polygon);
-  for (geometry::RoundedPolygon& part : body) part.radius = radius;
-  return body;
-}
-
 struct Bodies {
   std::vector<RigidBody> of_agent;
   double reach = 0.0;  ///< m, of the largest
@@ -137,7 +109,7 @@ Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const Trajecto
 }
 
 Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const TrajectorySurvey& survey) {
-  const RigidBody footprint = grown_body(footprint_of(flags.footprint), flags.radius.value_or(0.0));
+  const RigidBody footprint = footprint_body(footprint_shape(flags.footprint), flags.radius.value_or(0.0));
   Bodies bodies{{}, reach_of(footprint), "the footprint at its heading"};
   for (std::size_t k = 0; k < survey.agents().size(); ++k) {
     const datasets::AgentSurvey& agent = survey.agents()[k];
@@ -325,6 +297,9 @@ ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>&
   auto between = static_cast<Between>(std::find(names.begin(), names.end(), flags.between) - names.begin());
   if (has_curves && between != Between::straight)
     throw UsageError("--between", flags.between, "no such option for polynomials, which say how agents move");
+  if (has_curves && flags.max_gap)
+    throw UsageError("--max-gap", fmt::format("{}", *flags.max_gap),
+                     "no such option for polynomials, which say when agents are there");
   const CheckedFile asked{file,
                           survey,
                           map.name,

@@ -17,9 +17,13 @@
 /// their greatest speed from within their position error. Against movers the promise is passive safety (Macek et al.
 /// 2009; Mitsch et al. 2017): no collision while the robot moves. Nothing is promised to a robot that stands.
 ///
-/// Leaving a contact. Where the footprint touches or overlaps an obstacle at the start, what is proven is that it does
-/// not go deeper, by more than kMonitorSlack: depth is the length of the shortest shift that parts a convex part of the
-/// footprint and a convex piece of the obstacle. A mover that may already touch is taken as standing where it was seen.
+/// Leaving a contact. Where the footprint, grown by the margin, overlaps an obstacle at the start or is less than
+/// kMonitorSlack from it, what is proven is that it does not go deeper than at the start by more than kMonitorSlack:
+/// depth is the length of the shortest shift that parts a convex part of the footprint and a convex piece of the
+/// obstacle; a gap is a depth below 0. So a share above 0 may end in an overlap of up to kMonitorSlack where less than
+/// that was left, and again at each decision: a loop that must never touch has a margin. Once a part of a trajectory
+/// begins out of the contact, the rest must be clear. A mover that may already touch, from anywhere within its position
+/// error, is taken as standing, and the footprint does not go deeper into all of where it may be.
 ///
 /// Certified: `share` (continuous time, no sampling; all roundings are bounded, geometry/turning.h). Certified too:
 /// `not_above`. Against obstacles and the share of a command the two enclose the largest clear share. With movers a
@@ -51,8 +55,8 @@ inline constexpr double kMonitorSlack = 1e-9;
 struct MonitorSetup {
   /// In the body's axes (x ahead, y left), from the point that `Pose::at` means. Parts are convex hulls with a radius.
   geometry::RigidBody footprint = geometry::disc_body(0.3);
-  double max_deceleration = 1.0;         ///< m/s^2, > 0: by which the robot can certainly brake
-  double max_turn_deceleration = 2.0;    ///< rad/s^2, > 0: by which it can certainly stop turning
+  double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: by which the robot can certainly brake
+  double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: by which it can certainly stop turning
   double latency = 0.1;                  ///< s, >= 0: from a decision to its effect
   double period = 0.1;                   ///< s, >= 0: from a decision to the next
   double margin = 0.0;                   ///< m, >= 0: localisation, map and drive are off by no more than this together
@@ -75,7 +79,7 @@ struct Command {
 /// A piece of a trajectory.
 struct TimedPose {
   double time = 0.0;    ///< s, from now, rising
-  geometry::Pose pose;  ///< between two of them the twist is constant (geometry::twist_between)
+  geometry::Pose pose;  ///< between two of them the twist is constant (geometry::twist_between), less than 2^30
 };
 
 /// What ends the clear share.
@@ -125,7 +129,8 @@ class MonitorError : public std::invalid_argument {
 };
 
 /// Judges one command after the other. Deterministic. Not to be called from two threads at once; several monitors share
-/// nothing. Memory is that of the setup; once the lists have been as long as they get, `judge` allocates none.
+/// nothing. Memory is that of the setup; once the lists have been as long as they get, `judge` allocates none, but for
+/// the hulls of movers with several corners.
 class Monitor {
  public:
   /// Throws MonitorError.
@@ -174,18 +179,28 @@ class Monitor {
     std::optional<MonitorWitness> witness;
   };
 
+  /// A mover as it was seen, by the hull of its corners.
+  struct SeenMover {
+    std::uint32_t first = 0, size = 0;  ///< in `mover_corners_`
+    double radius = 0.0;                ///< m
+    double max_speed = 0.0;             ///< m/s
+    double position_error = 0.0;        ///< m
+  };
+
   void require_movers(const std::vector<Mover>& movers) const;
-  void brake_from(const geometry::Twist& twist);
+  void see(const std::vector<Mover>& movers);
+  double braking_time(const geometry::Twist& twist) const;
   void turn_footprint(double heading);
   void turn_footprint(const Stretch& stretch, double time);
   geometry::ConvexOnTwist part_on(const Part& part, const Stretch& stretch, double time) const;
-  double gap_at_start(const Part& part, const geometry::ConvexOnTwist& other, double reach);
-  MonitorVerdict judged(bool is_trajectory, const std::vector<Mover>& movers);
+  double gap_as_it_begins(const Stretch& stretch, const Part& part, const geometry::ConvexOnTwist& other, double reach);
+  double contact_until(const Stretch& last, const Part& part, const geometry::ConvexOnTwist& other, double reach);
+  MonitorVerdict judged(bool is_trajectory);
   Pace pace_at(double share, bool is_trajectory) const;
   double share_within(double length, bool is_trajectory) const;
   Clear clear_of_obstacles(double length, bool& in_contact);
-  bool is_far_from(const Mover& mover, const Pace& pace) const;
-  bool clear_of_mover(const Mover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact);
+  bool is_far_from(const SeenMover& mover, const Pace& pace) const;
+  bool clear_of_mover(const SeenMover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact);
 
   MonitorSetup setup_;
   std::vector<geometry::Vec2> corners_;  ///< of pieces
@@ -196,8 +211,10 @@ class Monitor {
   double body_reach_ = 0.0;  ///< m: a disc about the reference point that holds the footprint
   double held_ = 0.0;        ///< s, at share 1
   bool is_trajectory_ = false;
-  double brake_time_ = 0.0;  ///< s, at share 1
-  std::vector<Stretch> way_;
+  double brake_time_ = 0.0;              ///< s, at share 1
+  std::vector<Stretch> way_, next_way_;  ///< the second: while a trajectory is looked at
+  std::vector<geometry::Vec2> mover_corners_;
+  std::vector<SeenMover> movers_;
   geometry::GapKeeper keeper_;
 };
 

@@ -76,7 +76,7 @@ std::vector<CurvedMotion> b_spline_pieces(const std::vector<Vec2>& control_point
 CurvedMotion hermite_cubic(const TimedPoint& from, Vec2 velocity, const TimedPoint& to, Vec2 end_velocity);
 
 /// The velocity (m/s) that a Catmull-Rom spline over timed points has at the one between these two: the way from one to
-/// the other over the time. Rounded. REQUIRES: after.time > before.time.
+/// the other over the time; 0 where that is beyond all doubles. Rounded. REQUIRES: after.time > before.time.
 Vec2 catmull_rom_velocity(const TimedPoint& before, const TimedPoint& after);
 
 /// A motion of a body's reference point.

@@ -41,9 +41,9 @@ Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Ob
 Encounter encounter(const TurningMotion& motion, const RigidBody& body, const RigidBody& other, Vec2 other_at);
 
 /// A proof that the body stays clear of the obstacle (motion_certificate.h has the kind); none if they touch or
-/// overlap, or if they are so near to touching that 2^40 pieces of time are not enough. For each piece of time and each
-/// pair of a part and an edge it has a direction n and a margin: a corner c of the part goes along a circle, so that
-/// over a piece of length d
+/// overlap, if the body turns by more than 64 rad, or if they are so near to touching that 2^40 pieces of time are not
+/// enough. For each piece of time and each pair of a part and an edge it has a direction n and a margin: a corner c of
+/// the part goes along a circle, so that over a piece of length d
 ///
 ///     n.c(t)  >=  least of n.c(from), n.c(to)  -  |n| |turn| |speed of c| d^2 / 8
 ///
