@@ -28,6 +28,7 @@ struct Row {
       for (const std::size_t j : edges[i]) {
         DecisionConstraint& c = r.constraints.emplace_back();
         c.source = ConstraintSource::robot;
+        c.hard = false;
         c.index = j;
         c.half_plane = {{-1.0, 0.0}, 0.0};
       }

@@ -57,6 +57,8 @@ def test_no_wrong_argument_meets_the_extension_unnamed(calls, tmp_path, monkeypa
     for name, function, given in calls:
         for argument in given:
             for junk in JUNK:
+                if callable(junk) and argument in ("steering", "half_planes"):
+                    continue  # what a user's function raises is passed on
                 try:
                     function(**dict(given, **{argument: junk}))
                 except ANSWERS:

@@ -83,6 +83,8 @@ def test_wrong_arguments_raise_nothing_that_is_not_documented(tmp_path, monkeypa
     for name, function, given in good_calls(tmp_path):
         for argument in given if name not in NOT_ASKED else ():
             for junk in JUNK:
+                if callable(junk) and argument in ("steering", "half_planes"):
+                    continue  # what a user's function raises is passed on
                 try:
                     function(**dict(given, **{argument: junk}))
                 except Exception as error:

@@ -246,7 +246,7 @@ def test_joint_plans_are_those_of_the_recording(tmp_path):
 CROSSING = {
     "name": "crossing",
     "time_step": 0.1,
-    "time_limit": 30,
+    "time_limit": 60,
     "guidance": "none",
     "robots": [
         {"id": f"R{k}", "position": [4 * x, 4 * y], "goal": [-4 * x, -4 * y], "radius": 0.3, "max_speed": 1}

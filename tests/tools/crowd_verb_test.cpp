@@ -21,7 +21,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kRing = R"({"name": "ring", "time_step": 0.25, "time_limit": 60, "horizons": {"least": 0.5},
+constexpr const char* kRing = R"({"name": "ring", "time_step": 0.25, "time_limit": 90, "horizons": {"least": 0.5},
   "robots": [{"circle": {"count": 40, "radius": 20}, "max_speed": 1.5}],
   "obstacles": [{"polygon": [[4, 4], [6, 4], [6, 6], [4, 6]]}]})";
 

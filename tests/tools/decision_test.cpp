@@ -110,6 +110,8 @@ TEST(Decision, NamesWhatAConstraintStandsFor) {
   EXPECT_EQ(formation::name_of(enclosure, d.scenario, d.bodies), "enclosure 0 of obstacle north");
   DecisionConstraint robot = d.step.constraints[0];
   robot.source = ConstraintSource::robot;
+  EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "acceleration of robot R1");
+  robot.hard = false;
   EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "robot R1");
 }
 
@@ -164,6 +166,7 @@ TEST(Explanation, SaysForWhomARobotWaitsAndWhichPairsFellBack) {
   EXPECT_THAT(explanation(d), testing::Not(testing::AnyOf(HasSubstr("waiting"), HasSubstr("ell back"))));
   d.waiting = "R1 waits for R2, which moves";
   d.step.constraints[1].source = ConstraintSource::robot;
+  d.step.constraints[1].hard = false;
   d.step.constraints[1].index = 0;
   d.step.constraints[1].time_horizon = 0.1;
   d.fell_back = {0, 1};

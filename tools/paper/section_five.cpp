@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -156,7 +157,7 @@ class Experiments {
     if (method == Method::orca) add_figures(scenario, finished, "fig5-orca");
     if (method == Method::ivo_edge) add_figures(scenario, finished, "fig6-ivo-edge");
     if (method == Method::ivo) add_figures(scenario, finished, "fig6-ivo");
-    avoidance_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
+    avoidance_[method].push_back(std::move(finished.file));
   }
 
   void keep_formation(const std::string& scenario, FinishedRun finished, Controller controller) {
@@ -187,7 +188,7 @@ class Experiments {
   void add_sheets() {
     for (const Method method : kMethods) {
       std::vector<Panel> panels;
-      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) panels.push_back({panel_title(run), &run});
+      for (const auto& run : avoidance_[method]) panels.push_back({panel_title(run), &run});
       add_sheet(std::string("all-") + name(method), std::string("Section V.A, method ") + name(method), panels, 4);
     }
     std::vector<Panel> panels;
@@ -225,7 +226,7 @@ class Experiments {
   void add_comparison() {
     std::vector<Panel> panels;
     for (const Method method : {Method::orca, Method::ivo}) {
-      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) {
+      for (const auto& run : avoidance_[method]) {
         if (run.info.scenario == kComparison) panels.push_back({std::string("method ") + name(method), &run});
       }
     }
@@ -241,8 +242,8 @@ class Experiments {
   fs::path out_;
   ProgressLine line_;
   std::vector<std::string> metrics_;
-  std::vector<PageRun> pages_;                         ///< every run
-  std::vector<datasets::RecordingFile> avoidance_[4];  ///< by method
+  std::vector<PageRun> pages_;  ///< every run
+  std::map<Method, std::vector<datasets::RecordingFile>> avoidance_;
   std::vector<datasets::RecordingFile> formation_;
   std::vector<fs::path> scripts_;
   std::array<std::pair<double, double>, kFormationScenarios> jitter_{};  ///< paper-signs, default; m/s^2

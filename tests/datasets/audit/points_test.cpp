@@ -578,7 +578,7 @@ TEST(AuditPoints, RandomRunsAreRefutedByTheirMotionsAlone) {
     constexpr Method kMethods[] = {Method::ivo, Method::orca, Method::ivo_edge, Method::ivo_cluster};
     options.method = kMethods[round % 4];
     options.record_all = round % 5 == 0;
-    options.integrator = static_cast<formation::Integrator>(random.integer(0, 4));
+    options.integrator = static_cast<formation::Integrator>(random.integer(0, 2));
     options.controller = static_cast<formation::Controller>(random.integer(0, 3));
     const AuditReport report = audit(recorded(s, options), &s);
     for (std::size_t p = 0; p < kAuditPoints; ++p) {
