@@ -184,3 +184,13 @@ def test_bad_rows_are_named(tmp_path):
     with pytest.raises(exactvo.MissingFileError):
         exactvo.check(tmp_path / "missing.csv", radius=1)
     assert "csv" in exactvo.collisions.trajectory_formats()
+
+
+def test_rows_without_an_owner_are_refused():
+    columns = {"t": [0, 0, 1, 1], "x": [0, 5, 10, 5], "y": [0, -5, 0, 5]}
+    with pytest.raises(exactvo.ArgumentError, match="a column id"):
+        exactvo.check(columns, radius=0.25)
+    assert exactvo.check(dict(columns, name=["a", "b", "a", "b"]), radius=0.25).overlaps == 1
+    for nobody in (None, float("nan")):
+        with pytest.raises(exactvo.ArgumentError, match="an id in every row"):
+            exactvo.check(dict(columns, id=["a", "b", nobody, "b"]), radius=0.25)

@@ -36,7 +36,7 @@ Bounds = tuple[float, float]
 #: Columns of tables by the names that they go by, the best first; those of docs/guide/check.md.
 _NAMES: dict[str, tuple[str, ...]] = {
     "t": ("t", "time", "time_s", "timestamp", "frame"),
-    "id": ("id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id"),
+    "id": ("id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"),
     "x": ("x", "x_m"),
     "y": ("y", "y_m"),
     "theta": ("theta", "heading", "yaw"),
@@ -298,6 +298,8 @@ def _numbered(ids: Any) -> tuple[list[str], npt.NDArray[np.int64]]:
 
 
 def _name(one: Any) -> str:
+    if not isinstance(one, str) and str(one) in ("None", "nan", "NaT", "<NA>"):
+        raise ArgumentError("trajectories", f"the id {one}", "an id in every row")
     return str(int(one)) if isinstance(one, (float, np.floating)) and float(one).is_integer() else str(one)
 
 
@@ -312,6 +314,8 @@ def _table(table: Any, names: list[Any]) -> Columns:
         return None if found[column] is None else _floats(table[found[column]], column, 1)
 
     t, x, y = column_of("t"), column_of("x"), column_of("y")
+    if found["id"] is None and not (np.diff(t) > 0).all():
+        raise ArgumentError("trajectories", f"columns {', '.join(str(n) for n in names)[:60]}, and times that do not rise", "a column id: whose row it is")
     ids, rows = (["agent"], np.zeros(len(t), dtype=np.int64)) if found["id"] is None else _numbered(table[found["id"]])
     velocities = (column_of("vx"), column_of("vy")) if found["vx"] is not None and found["vy"] is not None else (None, None)
     return ids, rows, t, x, y, column_of("theta"), *velocities
