@@ -50,9 +50,15 @@ std::string of_detours(const Metrics& m) {
 /// Of a scenario whose robots may start in overlap: such pairs have not collided. Each is said.
 void tell_starts(const Scenario& scenario, Metrics& m) {
   if (!scenario.separate) return;
+  constexpr double kRounding = 1e-9;  // m
+  const auto robot = [&](const std::string& id) -> const Robot& {
+    return *std::find_if(scenario.robots.begin(), scenario.robots.end(), [&](const Robot& r) { return r.id == id; });
+  };
   // What grew deeper after the start is a collision.
-  const auto starts = [](const Collision& c) {
-    return c.kind == CollisionKind::robot && c.from == 0.0 && c.deepest_at == 0.0;
+  const auto starts = [&](const Collision& c) {
+    if (c.kind != CollisionKind::robot || c.from != 0.0) return false;
+    const Robot &a = robot(c.robot), &b = robot(c.with);
+    return c.depth <= a.radius + b.radius - norm(a.position - b.position) + kRounding;
   };
   for (const Collision& c : m.collisions)
     if (starts(c))
