@@ -43,7 +43,7 @@ class BrakingAudit : public RowAudit {
   }
 
  private:
-  /// Of a robot that brakes.
+  /// The way of a robot that brakes.
   struct Way {
     Straight way;
     geometry::Box box;

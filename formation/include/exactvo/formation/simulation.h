@@ -65,9 +65,7 @@ constexpr geometry::Names<Controller, 4> word_table(Controller) {
            {Controller::standard, "default"}}};
 }
 constexpr geometry::Names<Integrator, 3> word_table(Integrator) {
-  return {{{Integrator::exact, "exact"},
-           {Integrator::euler, "euler"},
-           {Integrator::rk4, "rk4"}}};
+  return {{{Integrator::exact, "exact"}, {Integrator::euler, "euler"}, {Integrator::rk4, "rk4"}}};
 }
 constexpr geometry::Names<Guidance, 2> word_table(Guidance) {
   return {{{Guidance::none, "none"}, {Guidance::route, "route"}}};
@@ -149,9 +147,9 @@ struct SimulationOptions {
   // Of robots with goals: what the user adds (own_rules.h). With either there are no joint plans.
 
   RunSteering steering;       ///< sets the preferred velocities; none: the run does
-  RunHalfPlanes half_planes;  ///< asks for half-planes; none: nobody does. Not on a crowd
+  RunHalfPlanes half_planes;  ///< adds half-planes of the user; empty: none are added. Not on a crowd
 
-  // Of a run on a crowd (crowd_run.h).
+  // Only for runs on a crowd (crowd_run.h).
 
   CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
   Ranks* ranks = nullptr;                                  ///< as CrowdOptions::ranks
