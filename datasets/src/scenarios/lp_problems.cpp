@@ -123,8 +123,8 @@ std::vector<lp::Problem> read_lines(const std::string& bytes, const std::string&
     at = end + 1;
     ++number;
     if (is_blank(line)) continue;
-    const bool is_whole = !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) ||
-                          Json::accept(line);
+    const bool is_whole =
+        !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) || Json::accept(line);
     if (!is_whole) return {parse_document(bytes, file)};
     problems.push_back(parse_line(line, number, file));
   }

@@ -9,6 +9,7 @@
 #include "decision/decision.h"
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
+#include "motion/differential.h"
 #include "runs/joint_decisions.h"
 #include "runs/journeys.h"
 #include "runs/own_decision.h"
@@ -51,6 +52,14 @@ class KinematicRun {
     for (const Robot& robot : scenario.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
+      wheels_.push_back(
+          robot.drive ? std::optional<WheelLimits>(std::in_place, *robot.drive, rules_.time_step, rules_.braking_time)
+                      : std::nullopt);
+    }
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      const std::optional<DifferentialDrive>& drive = scenario.robots[i].drive;
+      on_wheels_.push_back(
+          {wheels_[i] ? &*wheels_[i] : nullptr, {drive ? heading_vector(drive->heading) : Vec2{}, {}}});
     }
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look_at_goal(i);
@@ -151,7 +160,7 @@ class KinematicRun {
       look(i);
     }
     add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
-    RobotStep step = undecided(positions_[i], velocities_[i]);
+    RobotStep step = undecided_now(i);
     step.note = journeys_.take_note(i);
     if (journeys_.has_come_to_rest(i)) add_note(step.note, "stays: " + journeys_.words_of_claim(i));
     if (groups_) add_note(step.note, groups_->note(i));
@@ -160,7 +169,7 @@ class KinematicRun {
       return step;
     }
     const Vec2 preferred = journeys_.beside_taken(i, steer(i, step));
-    choose(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step), step);
+    choose(i, turned_round(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step)), step);
     return step;
   }
 
@@ -170,6 +179,7 @@ class KinematicRun {
     here.turns_after = journeys_.turns_after(i);
     here.robot = i;
     here.body = scene_.robot(i);
+    if (wheels_[i]) here.wheels = &on_wheels_[i];
     return here;
   }
 
@@ -183,6 +193,29 @@ class KinematicRun {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
     own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
+    if (wheels_[i]) keep_wheels_within_limits(i, step);
+  }
+
+  /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist breaks a limit, the choice is
+  /// drawn towards braking until it does not; between the two all half-planes hold.
+  void keep_wheels_within_limits(std::size_t i, RobotStep& step) {
+    const OnWheels& now = on_wheels_[i].state;
+    const Vec2 braked = rules_.braked(velocities_[i]), wish = step.chosen;
+    for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
+      if (step.status != lp::Status::optimal || wheels_[i]->allows(now.heading, now.speeds, step.chosen)) return;
+      own_.choose(wish + share * (braked - wish), viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), step);
+    }
+  }
+
+  /// What is preferred to drive straight back would be braked to a stand: it is turned aside, to the left, until the
+  /// heading has come round.
+  Vec2 turned_round(std::size_t i, Vec2 preferred) const {
+    if (!wheels_[i]) return preferred;
+    constexpr double kBehind = -0.9998;  // cos of 179 degrees
+    const Vec2 heading = on_wheels_[i].state.heading;
+    if (dot(heading, preferred) > kBehind * norm(preferred)) return preferred;
+    constexpr double kDegree = 0.0174533;
+    return geometry::rotated(preferred, cross(heading, preferred) >= 0.0 ? -kDegree : kDegree);
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -215,7 +248,9 @@ class KinematicRun {
       return {};
     }
     const bool at_goal = journeys_.at_goal(i);
-    if (!guide_ || at_goal) return own_.steer(ways_[i], {now_, viewpoint(i), journeys_.aim_of(i), at_goal}, step);
+    if (!guide_ || at_goal)
+      return own_.steer(ways_[i], {now_, viewpoint(i), journeys_.aim_of(i), at_goal, acceleration_of(scenario_, i)},
+                        step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
   }
@@ -233,8 +268,20 @@ class KinematicRun {
     return norm(velocities_[i]) <= kAtRest * scenario_.robots[i].max_speed;
   }
 
+  RobotStep undecided_now(std::size_t i) const {
+    RobotStep step = undecided(positions_[i], velocities_[i]);
+    if (wheels_[i]) step.wheels = on_wheels_[i].state;
+    return step;
+  }
+
   void move(const Step& row) {
     for (std::size_t i = 0; i < ways_.size(); ++i) {
+      if (wheels_[i]) {
+        OnWheels& state = on_wheels_[i].state;
+        const TwistOfStep twist =
+            twist_of(*scenario_.robots[i].drive, scenario_.time_step, state.heading, row.robots[i].chosen);
+        state = {turned(state.heading, twist.turn), twist.wheels};
+      }
       velocities_[i] = row.robots[i].chosen;
       positions_[i] += scenario_.time_step * row.robots[i].chosen;
     }
@@ -259,7 +306,7 @@ class KinematicRun {
     Step row;
     row.time = time;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
-      row.robots.push_back(undecided(positions_[i], velocities_[i]));
+      row.robots.push_back(undecided_now(i));
       if (journeys_.at_goal(i)) row.robots.back().mode = Mode::arrived;
     }
     return row;
@@ -310,6 +357,8 @@ class KinematicRun {
   double now_ = 0.0;  ///< s, of the present row
   OwnDecision own_;
   std::vector<Vec2> positions_, velocities_;
+  std::vector<std::optional<WheelLimits>> wheels_;
+  std::vector<WheelsNow> on_wheels_;  ///< of robots that have some
   std::vector<OwnWay> ways_;
   Journeys journeys_;
   ObstacleSpace walls_, open_space_{{}};

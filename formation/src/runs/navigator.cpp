@@ -215,7 +215,7 @@ class Navigator::Core {
     decision_.side = 0;
     head_for_goal();
     own_.look(*way_.field, here());
-    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived()}, decision_);
+    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived(), rules_.acceleration}, decision_);
     own_.choose(preferred, here(), others_, decision_, kept_);
     if (rules_.has_brakes()) keep_braking_possible(neighbours);
     return decision_;

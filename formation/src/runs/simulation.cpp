@@ -64,7 +64,7 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
-  const bool can_plan = is_guided && !scenario.acceleration;
+  const bool can_plan = is_guided && !(braking_time_of(scenario) > 0.0);
   return wanted == Liveness::plan && !can_plan ? Liveness::bias : wanted;
 }
 
