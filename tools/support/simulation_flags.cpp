@@ -145,11 +145,13 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
   formation::Method method = formation::Method::ivo;
-  if ((scenario.formation || scenario.acceleration) && parse(flags.method, method) && !promises_between_robots(method))
+  const bool brakes = braking_time_of(scenario) > 0.0;
+  if ((scenario.formation || brakes) && parse(flags.method, method) && !promises_between_robots(method))
     throw UsageError(
         "--method",
         flags.method + (scenario.formation ? ", which formations do not have"
-                                           : ", which cannot promise to brake in time, with an acceleration"),
+                                           : std::string(", which cannot promise to brake in time, with ") +
+                                                 (scenario.acceleration ? "an acceleration" : "robots on wheels")),
         "another method: orca, ivo-edge, ivo-cluster or ivo");
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
