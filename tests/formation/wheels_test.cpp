@@ -388,6 +388,9 @@ TEST(Wheels, WhatAFileSaysWrongIsRefusedByACode) {
   const auto scenario = [](const char* place) { return std::pair(DataCode::scenario, std::string(place)); };
   const std::string of_all = "\"braking_time\": 0.5, ";
   EXPECT_EQ(refusal("\"heading\": 90", "\"heading\": \"north\"").first, DataCode::wrong_type);
+  EXPECT_EQ(refusal("\"max_wheel_speed\": 0.22, ", ""),
+            std::pair(DataCode::key_missing, std::string("/robots/0/kinematics")));
+  EXPECT_EQ(refusal("\"omnidirectional\"", "\"omnidirectional\", \"reference\": 1"), scenario("/robots/1/kinematics"));
   EXPECT_EQ(refusal("0.22", "0").second, "/robots/0/kinematics/max_wheel_speed");
   EXPECT_EQ(refusal("\"goal\": [0, 2]", "\"goal\": [0, 2], \"max_speed\": 1"), scenario("/robots/0/max_speed"));
   EXPECT_EQ(refusal("\"goal\": [1, 2]", "\"goal\": [1, 2], \"heading\": 3"), scenario("/robots/1/heading"));
@@ -395,7 +398,7 @@ TEST(Wheels, WhatAFileSaysWrongIsRefusedByACode) {
   EXPECT_EQ(refusal(of_all, of_all + "\"separate\": true, "), scenario("/separate"));
   EXPECT_EQ(refusal(of_all, "\"braking_time\": 0.2, "), scenario("/braking_time"));
   EXPECT_EQ(refusal("0.22", "4"), scenario("/robots/0/kinematics/reference"));
-  EXPECT_EQ(refusal(of_all, of_all + R"("moving_obstacles": [{"id": "m", "disc": {"center": [9, 9], "radius": 1},
+  EXPECT_EQ(refusal(of_all, of_all + R"("moving_obstacles": [{"id": "m", "polygon": [[9, 9], [10, 9], [9, 10]],
                                         "path": [[0, 0], [1, 0]], "speed": 1}], )"),
             scenario("/moving_obstacles"));
 }

@@ -187,7 +187,15 @@ class RobotsReader {
     if (!has_wheels && entry.contains("heading"))
       refuse(DataCode::scenario, "heading", "a heading of a robot that moves in any direction",
              "none without \"kinematics\" of the type \"differential\"");
-    if (!has_wheels) return;
+    if (!has_wheels) {
+      if (entry.contains("kinematics") && entry["kinematics"].size() > 1)
+        refuse(DataCode::scenario, "kinematics", "wheels of a robot that moves in any direction",
+               "\"type\": \"differential\", or no other key");
+      return;
+    }
+    for (const char* key : {"wheel_separation", "max_wheel_speed", "max_wheel_acceleration"})
+      if (!entry["kinematics"].contains(key))
+        refuse(DataCode::key_missing, "kinematics", std::string("no ") + key, std::string("the key ") + key);
     if (entry.contains("max_speed"))
       refuse(DataCode::scenario, "max_speed", "a greatest speed of a robot on wheels",
              "kinematics/max_wheel_speed alone");

@@ -39,7 +39,7 @@ using geometry::HalfPlane;
 
 /// Share of a limit that is left to roundings.
 constexpr double kAimedAt = 1.0 - 1e-12;
-constexpr int kLeastChords = 24, kMostChords = 200;
+constexpr int kLeastChords = 25, kMostChords = 201;
 
 Vec2 left_of(Vec2 v) {
   return {-v.y, v.x};
@@ -112,8 +112,9 @@ void WheelLimits::make_polygon(double braking_time) {
   const double apex = kAimedAt * drive_.max_wheel_speed / arc_, side = std::min(side_, apex);
   const double touches = std::acos(side / apex), arc = 2.0 * geometry::kPi - 2.0 * touches;
   const double left = 1.0 - step_ / braking_time;
-  const int chords = std::clamp(static_cast<int>(std::ceil(0.5 * arc / std::acos(std::max(left, 0.5)))) + 1,
-                                kLeastChords, kMostChords);
+  // An odd number: with a corner straight behind, a robot that is to turn round would back up instead.
+  const int needed = static_cast<int>(std::ceil(0.5 * arc / std::acos(std::max(left, 0.5)))) + 1;
+  const int chords = std::clamp(needed | 1, kLeastChords, kMostChords);
   std::vector<Vec2> corners{{apex, 0.0}};
   for (int k = 0; k <= chords; ++k) {
     const double angle = touches + arc * k / chords;
