@@ -264,9 +264,9 @@ class KinematicSteps final : public Stepper {
     if (wheels_[i]) keep_wheels_within_limits(i, step);
   }
 
-  /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist breaks a limit, what is preferred
-  /// is drawn towards braking until it does not. Where half-planes are in the way of that, they count as contradictory:
-  /// those that it falls back to hold for braking, whose twist keeps all limits.
+  /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist breaks a limit, what is
+  /// preferred is drawn towards braking until it does not. Where half-planes are in the way of that, they count as
+  /// contradictory: those that it falls back to hold for braking, whose twist keeps all limits.
   void keep_wheels_within_limits(std::size_t i, RobotStep& step) {
     const OnWheels& now = on_wheels_[i].state;
     const Vec2 braked = rules_.braked(velocities_[i]), wish = step.chosen;
