@@ -185,6 +185,8 @@ let recording file text =
     if !curved then not_covered := ["the motions: robots do not move straight from row to row, and only the rows were looked at"];
     scenario := Json.get "scenario" h;
     robots := List.length Json.(arr (get "robots" !scenario));
+    if List.exists (fun r -> Json.find "kinematics" r <> None) Json.(arr (get "robots" !scenario)) then
+      refuse file "header" "robots on wheels" "robots that move in any direction; exactvo audit asks for wheels" "E_FORMAT_UNKNOWN";
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
       "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices, and that the scenario is the one that was meant"];

@@ -121,6 +121,9 @@ bool takes_preferred(const Decision& d) {
 
 /// Its own limit.
 std::string limit_words(const Decision& d) {
+  if (const std::optional<formation::DifferentialDrive>& drive = d.who().drive)
+    return fmt::format("wheels: at most {:g} m/s and {:g} m/s^2", drive->max_wheel_speed,
+                       drive->max_wheel_acceleration);
   return fmt::format("at most {:g} m/s^2, {:.3g} m/s in a time step", d.scenario.acceleration->max,
                      d.scenario.acceleration->max * d.scenario.time_step);
 }
@@ -145,7 +148,7 @@ std::string contact_words(const Decision& d, std::size_t i) {
 
 std::string proof_words(const DecisionConstraint& c) {
   if (!c.certified) return "not certified";
-  if (formation::is_own_limit(c)) return "a side of the polygon within what its acceleration allows";
+  if (formation::is_own_limit(c)) return "a side of the polygon within what its acceleration, or its wheels, allow";
   return c.source == formation::ConstraintSource::robot ? "proven safe together with the other robot's half"
                                                         : "proven to exclude the velocity obstacle";
 }
@@ -298,7 +301,7 @@ std::string fallen_words(const Decision& d) {
   const auto fallen = std::find(d.fell_back.begin(), d.fell_back.end(), 1);
   if (fallen == d.fell_back.end()) return "";
   const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
-  if (d.scenario.acceleration)
+  if (formation::braking_time_of(d.scenario) > 0.0)
     return fmt::format(
         "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots that "
         "brake,\n"

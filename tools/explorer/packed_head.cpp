@@ -69,12 +69,14 @@ Json to_json(const vo::Body& body) {
 
 Json robots_json(const formation::Scenario& scenario) {
   Json robots = Json::array();
-  for (const formation::Robot& robot : scenario.robots)
+  for (const formation::Robot& robot : scenario.robots) {
     robots.push_back({{"id", robot.id},
                       {"radius", robot.radius},
                       {"max_speed", robot.max_speed},
                       {"goals", flat(robot.goals)},
                       {"cooperates", robot.cooperates}});
+    if (robot.drive) robots.back()["on_wheels"] = true;
+  }
   return robots;
 }
 

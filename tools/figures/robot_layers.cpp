@@ -41,6 +41,7 @@ class RobotLayers {
       add_ways(alike);
       if (is_crowd()) add_outlines(alike);
       add_places(alike);
+      add_bodies(alike);
     }
     if (to_.detailed) add_times_of_moving_obstacles();
     add_goals();
@@ -163,6 +164,26 @@ class RobotLayers {
     to_.plot.data(
         index, to_.origin.using_columns(4, 5, ":6") + fmt::format(" with labels center font ',{}' textcolor rgb '{}'",
                                                                   robot_count() <= kFewRobots ? 10 : 8, colour));
+  }
+
+  /// Of those on wheels, within the discs: the body's disc about the axle, and how far ahead the reference point is.
+  void add_bodies(const std::vector<std::size_t>& alike) {
+    std::vector<std::size_t> on_wheels;
+    for (const std::size_t i : alike)
+      if (to_.run.scenario.robots[i].drive) on_wheels.push_back(i);
+    if (on_wheels.empty()) return;
+    const int index = to_.data.begin("bodies of " + names(on_wheels), "x [m], y [m]");
+    for (const std::size_t i : on_wheels) {
+      const formation::DifferentialDrive& drive = *to_.run.scenario.robots[i].drive;
+      for (const Step* step : places_of(i)) {
+        const formation::RobotStep& robot = step->robots[i];
+        if (!robot.wheels) continue;
+        const Vec2 axle = robot.position - drive.reference * robot.wheels->heading;
+        to_.data.ring(circle(axle, drive.body_radius));
+        to_.data.curve({axle, robot.position});
+      }
+    }
+    to_.draw(index, fmt::format("with lines lw 1 lc rgb '{}'", series_colour(alike.front())));
   }
 
   /// The row at which the robot came to rest, or the last one that can be drawn.

@@ -181,7 +181,7 @@ class RunAudit {
     check_header(file_, first, meant_, tally_);
     of_header_ = tally_.report.findings.size();
     run_.emplace(file_, tally_);
-    for (const auto& audit_point : {audit_decisions, audit_sequence, audit_motions, audit_braking})
+    for (const auto& audit_point : {audit_decisions, audit_sequence, audit_motions, audit_braking, audit_kinematics})
       points_.push_back(audit_point(*run_));
   }
 
@@ -293,7 +293,7 @@ AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
 
 const char* name(AuditPoint point) {
   constexpr const char* kNames[] = {"scenario", "bodies",  "completeness", "half_planes", "choices",
-                                    "sequence", "motions", "plans",        "braking"};
+                                    "sequence", "motions", "plans",        "braking",     "kinematics"};
   return kNames[static_cast<std::size_t>(point)];
 }
 
@@ -359,6 +359,10 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (report.without_pairs)
     words.emplace_back(
         "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");
+  if (report[AuditPoint::kinematics].asked() > 0)
+    words.emplace_back(
+        "that robots on wheels could not have chosen better velocities than their recorded limits allow, and that "
+        "their wheels did as recorded");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "

@@ -18,24 +18,23 @@ using formation::RobotStep;
 class BrakingAudit : public RowAudit {
  public:
   explicit BrakingAudit(const AuditedRun& run) : run_(run) {
-    if (!run.scenario.acceleration) return;
     tau_ = Rational(formation::braking_time_of(run.scenario));
-    const Rational most(run.scenario.acceleration->max);
-    most_change_ = most * run.duration;
+    if (sgn(tau_) == 0) return;
+    if (run.scenario.acceleration) most_change_ = Rational(run.scenario.acceleration->max) * run.duration;
     for (const formation::Robot& robot : run.scenario.robots)
-      run.tally.ask(AuditPoint::braking,
-                    tau_ * most >= Rational(formation::fastest(run.scenario.speed_bound, robot.max_speed)),
-                    "the braking time is too short for " + robot.id + " to stop");
+      run.tally.ask(AuditPoint::braking, can_stop(robot), "the braking time is too short for " + robot.id + " to stop");
   }
 
   void check_step(const RowInRun& at) override {
-    if (!run_.scenario.acceleration) return;
+    if (sgn(tau_) == 0) return;
     std::vector<Way> ways;
     for (const RobotStep& robot : at.row.robots) ways.push_back(way_of(robot));
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const RobotStep& robot = at.row.robots[i];
       const Point change = exactly(robot.chosen) - exactly(robot.velocity);
-      ask(exact::dot(change, change) <= most_change_ * most_change_, at, i, " changes its velocity by more than A dt");
+      if (run_.scenario.acceleration && !run_.scenario.robots[i].drive)
+        ask(exact::dot(change, change) <= most_change_ * most_change_, at, i,
+            " changes its velocity by more than A dt");
       ask(robot.status == lp::Status::optimal, at, i, " relaxes a half-plane");
       brakes_alone(ways[i], i, at);
       for (std::size_t j = i + 1; j < ways.size(); ++j) brake_together(ways[i], i, ways[j], j, at);
@@ -48,6 +47,13 @@ class BrakingAudit : public RowAudit {
     Straight way;
     geometry::Box box;
   };
+
+  bool can_stop(const formation::Robot& robot) const {
+    if (robot.drive)
+      return tau_ * Rational(robot.drive->max_wheel_acceleration) >= Rational(robot.drive->max_wheel_speed);
+    const double speed = formation::fastest(run_.scenario.speed_bound, robot.max_speed);
+    return !run_.scenario.acceleration || tau_ * Rational(run_.scenario.acceleration->max) >= Rational(speed);
+  }
 
   const std::string& id(std::size_t robot) const { return run_.scenario.robots[robot].id; }
 

@@ -327,8 +327,8 @@ class DecisionAudit : public RowAudit {
     if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
       return " names no body that stands for something";
     if (formation::is_own_limit(c)) {
-      const bool is_its_own =
-          run_.scenario.acceleration && c.index == s.robot && bodies[c.body].owners.front() == s.robot;
+      const bool is_its_own = (run_.scenario.acceleration || run_.scenario.robots[s.robot].drive) &&
+                              c.index == s.robot && bodies[c.body].owners.front() == s.robot;
       return is_its_own && c.piece == 0 ? "" : " has the priority of another kind";
     }
     if (c.hard != is_static(c)) return " has the priority of another kind";
@@ -377,6 +377,7 @@ class DecisionAudit : public RowAudit {
   bool leaves_its_change(const Seen& s, const DecisionConstraint& c) const {
     constexpr double kInside = 0.99144;  // less than cos(pi / 24)
     if (!has_numbers(c.half_plane)) return false;
+    if (run_.scenario.robots[s.robot].drive) return true;  // what wheels allow is asked of the choice alone
     const Point n = exactly(c.half_plane.normal);
     const Rational left = exact::dot(n, exactly(s.state->velocity)) - Rational(c.half_plane.offset);
     const Rational change = Rational(kInside) * Rational(run_.scenario.acceleration->max) * run_.duration;

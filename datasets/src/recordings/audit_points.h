@@ -141,6 +141,8 @@ std::unique_ptr<RowAudit> audit_decisions(const AuditedRun& run);
 std::unique_ptr<RowAudit> audit_sequence(const AuditedRun& run);
 /// (7): no two swept motions meet.
 std::unique_ptr<RowAudit> audit_motions(const AuditedRun& run);
+/// (10): robots on wheels drive what they chose.
+std::unique_ptr<RowAudit> audit_kinematics(const AuditedRun& run);
 /// (9): robots with an acceleration could have braked in every row.
 std::unique_ptr<RowAudit> audit_braking(const AuditedRun& run);
 

@@ -86,6 +86,11 @@ void members(Codec& json, For<Codec, formation::OwnConstraint>& c) {
   json.member("hard", c.hard).member("active", c.active).member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
 }
 
+template <class Codec>
+void members(Codec& json, For<Codec, formation::OnWheels>& wheels) {
+  json.member("heading", wheels.heading).member("left", wheels.speeds.left).member("right", wheels.speeds.right);
+}
+
 /// One robot's part of a row. What is empty or as usual is left out.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
@@ -96,6 +101,7 @@ void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   }
   json.member_if(!is_same(robot.anchor, robot.position), "anchor", robot.anchor);
   json.member_if(!is_same(robot.anchor_velocity, robot.velocity), "anchor_velocity", robot.anchor_velocity);
+  json.optional("wheels", robot.wheels);
   json.member("preferred", robot.preferred).member("chosen", robot.chosen).member("status", robot.status);
   json.member_if(!robot.bound.empty(), "bound", robot.bound);
   json.member_if(robot.violation != 0.0, "violation", robot.violation);

@@ -82,7 +82,7 @@ void add_pair(GrowingText& row, geometry::Vec2 v) {
 }
 
 void add_csv_row(GrowingText& row, const formation::Step& step, const formation::RobotStep& robot,
-                 std::string_view csv_id, bool has_leader) {
+                 std::string_view csv_id, bool has_leader, bool has_wheels) {
   row.add_number(step.time);
   row.add(',');
   row.add(csv_id);
@@ -96,6 +96,12 @@ void add_csv_row(GrowingText& row, const formation::Step& step, const formation:
   if (has_leader) {
     add_pair(row, step.leader_position);
     add_pair(row, step.leader_velocity);
+  }
+  if (robot.wheels) {
+    add_pair(row, robot.wheels->heading);
+    add_pair(row, {robot.wheels->speeds.left, robot.wheels->speeds.right});
+  } else if (has_wheels) {
+    row.add(",,,,");
   }
   row.add('\n');
 }
@@ -230,13 +236,17 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
 struct TrajectoryWriter::State {
   State(const std::filesystem::path& path, const formation::Scenario& scenario)
       : out(path), has_leader(scenario.formation.has_value()) {
-    for (const formation::Robot& robot : scenario.robots) csv_ids.push_back(csv_text(robot.id));
+    for (const formation::Robot& robot : scenario.robots) {
+      csv_ids.push_back(csv_text(robot.id));
+      has_wheels = has_wheels || robot.drive;
+    }
   }
 
   AtomicFile out;
   std::vector<std::string> csv_ids;  ///< of the robots
   bool has_leader;
-  GrowingText text;  ///< of a row, in memory that it leaves to the next
+  bool has_wheels = false;  ///< some robot
+  GrowingText text;         ///< of a row, in memory that it leaves to the next
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
@@ -244,7 +254,9 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const form
   state_->out.write(
       "time_s,robot,x_m,y_m,vx_m_s,vy_m_s,preferred_vx_m_s,preferred_vy_m_s,chosen_vx_m_s,chosen_vy_m_s,status,mode,"
       "side");
-  state_->out.write(scenario.formation ? ",leader_x_m,leader_y_m,leader_vx_m_s,leader_vy_m_s\n" : "\n");
+  if (scenario.formation) state_->out.write(",leader_x_m,leader_y_m,leader_vx_m_s,leader_vy_m_s");
+  if (state_->has_wheels) state_->out.write(",heading_x,heading_y,left_wheel_m_s,right_wheel_m_s");
+  state_->out.write("\n");
 }
 
 TrajectoryWriter::~TrajectoryWriter() = default;
@@ -253,7 +265,7 @@ void TrajectoryWriter::add(const formation::Step& row) {
   GrowingText& text = state_->text;
   text.clear();
   for (std::size_t i = 0; i < row.robots.size(); ++i)
-    add_csv_row(text, row, row.robots[i], state_->csv_ids.at(i), state_->has_leader);
+    add_csv_row(text, row, row.robots[i], state_->csv_ids.at(i), state_->has_leader, state_->has_wheels);
   state_->out.write(text.view());
 }
 

@@ -17,8 +17,26 @@ inline void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& p
   append_value(json, points);
 }
 
+void on_wheels(JsonWriter& json, const formation::Robot& robot, const formation::DifferentialDrive& drive);
+
+template <>
+inline constexpr bool kOnOneLine<formation::DifferentialDrive> = true;
+/// What stands in `kinematics`; infinite limits are left out.
+template <class Codec>
+void members(Codec& json, For<Codec, formation::DifferentialDrive>& drive) {
+  json.member("wheel_separation", drive.wheel_separation).member("max_wheel_speed", drive.max_wheel_speed);
+  json.member("max_wheel_acceleration", drive.max_wheel_acceleration);
+  json.member_if(drive.max_angular_speed < geometry::kInfinity, "max_angular_speed", drive.max_angular_speed);
+  json.member_if(drive.max_backward_speed < geometry::kInfinity, "max_backward_speed", drive.max_backward_speed);
+  json.member_if(drive.reference > 0.0, "reference", drive.reference);
+}
+
+/// Of a robot on wheels position and radius are those of its axle and body, in the drive.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Robot>& robot) {
+  if constexpr (!Codec::kReads) {
+    if (robot.drive) return on_wheels(json, robot, *robot.drive);
+  }
   json.member("id", robot.id).member("position", robot.position).optional("velocity", robot.velocity);
   json.optional("radius", robot.radius).optional("max_speed", robot.max_speed).optional("goals", robot.goals);
   json.optional("cooperates", robot.cooperates);

@@ -125,6 +125,8 @@ class ScenarioReader {
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_value(JsonCursor(tree, file_, ""), scenario);
+    for (formation::Robot& robot : scenario.robots)
+      if (robot.drive) put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), scenario.time_step);
     look_ahead_while_braking(tree, scenario);
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
     refuse_repeated_ids(scenario);

@@ -166,6 +166,7 @@ class RobotsReader {
       Robot& robot = out_.robots.emplace_back();
       members(at, robot);
       if (entry.contains("goal")) robot.goals = {entry.at("goal").get<Vec2>()};
+      read_drive(entry, robot);
       out_.origins.push_back({k, false});
       return;
     }
@@ -178,6 +179,33 @@ class RobotsReader {
     if (entry.contains("grid")) make_grid(entry.at("grid"));
     if (entry.contains("random")) make_random(entry.at("random"));
     if (entry.contains("file")) read_table(entry.at("file").get<std::string>());
+  }
+
+  /// Its axle and body; where the reference point is depends on the time step (`put_on_wheels`).
+  void read_drive(const Json& entry, Robot& robot) const {
+    const bool has_wheels = entry.contains("kinematics") && entry["kinematics"].value("type", "") == "differential";
+    if (!has_wheels && entry.contains("heading"))
+      refuse(DataCode::scenario, "heading", "a heading of a robot that moves in any direction",
+             "none without \"kinematics\" of the type \"differential\"");
+    if (!has_wheels) {
+      if (entry.contains("kinematics") && entry["kinematics"].size() > 1)
+        refuse(DataCode::scenario, "kinematics", "wheels of a robot that moves in any direction",
+               "\"type\": \"differential\", or no other key");
+      return;
+    }
+    for (const char* key : {"wheel_separation", "max_wheel_speed", "max_wheel_acceleration"})
+      if (!entry["kinematics"].contains(key))
+        refuse(DataCode::key_missing, "kinematics", std::string("no ") + key, std::string("the key ") + key);
+    if (entry.contains("max_speed"))
+      refuse(DataCode::scenario, "max_speed", "a greatest speed of a robot on wheels",
+             "kinematics/max_wheel_speed alone");
+    formation::DifferentialDrive& drive = robot.drive.emplace();
+    const JsonCursor kinematics(entry.at("kinematics"), file_, pointer_ + "/kinematics");
+    members(kinematics, drive);
+    drive.heading = entry.value("heading", 0.0);
+    drive.axle = robot.position;
+    drive.body_radius = robot.radius;
+    if (!(drive.reference > 0.0)) drive.reference = 0.5 * drive.wheel_separation;
   }
 
   [[noreturn]] void refuse(DataCode code, const char* key, const std::string& found,

@@ -86,6 +86,15 @@ void append_scenario(JsonWriter& json, const Scenario& scenario) {
   json.end_object();
 }
 
+void on_wheels(JsonWriter& json, const formation::Robot& robot, const formation::DifferentialDrive& drive) {
+  json.member("id", robot.id).member("position", drive.axle).member("heading", drive.heading);
+  json.member("radius", drive.body_radius).member("goals", robot.goals).member("cooperates", robot.cooperates);
+  json.object("kinematics", [&](JsonWriter& kinematics) {
+    kinematics.member("type", "differential");
+    members(kinematics, drive);
+  });
+}
+
 std::string write_scenario(const Scenario& scenario) {
   JsonWriter json(JsonWriter::Layout::indented);
   append_scenario(json, scenario);

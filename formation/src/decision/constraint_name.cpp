@@ -31,6 +31,8 @@ std::string id_at(const Items& items, std::size_t index) {
 }
 
 Named named(const DecisionConstraint& c, const Scenario& scenario, const std::vector<vo::Body>& bodies) {
+  if (is_own_limit(c) && c.index < scenario.robots.size() && scenario.robots[c.index].drive)
+    return {"wheels of robot", "wheels of robots", {id_at(scenario.robots, c.index)}, ""};
   if (is_own_limit(c))
     return {"acceleration of robot", "acceleration of robots", {id_at(scenario.robots, c.index)}, ""};
   if (c.source == ConstraintSource::robot) return {"robot", "robots", {id_at(scenario.robots, c.index)}, ""};

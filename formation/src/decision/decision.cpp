@@ -6,6 +6,7 @@
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "motion/differential.h"
 #include "scene/braking.h"
 #include "scene/near_pairs.h"
 #include "scene/step_limits.h"
@@ -304,7 +305,11 @@ void Decider::reserve(std::size_t constraints) {
 }
 
 void Decider::limit_change(const Viewpoint& from) {
-  acceleration_limits(*rules_, from.velocity, limit_);
+  if (from.wheels)
+    from.wheels->limits->half_planes(from.wheels->state.heading, from.wheels->state.speeds,
+                                     rules_->braked(from.velocity), limit_);
+  else
+    acceleration_limits(*rules_, from.velocity, limit_);
   limits_.clear();
   for (const geometry::HalfPlane& h : limit_) {
     Constraint& c = limits_.emplace_back();

@@ -473,6 +473,9 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
             "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
   require(!s.acceleration, "/acceleration", "an acceleration", "none, for a crowd, whose velocities jump");
   require(!s.separate, "/separate", "true", "false, for a crowd");
+  for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
+    require(!s.robots[i].drive, "/robots/" + std::to_string(i) + "/kinematics", "differential",
+            "omnidirectional, for a crowd, whose velocities jump");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   const double step = position_step_for(s);
   const auto [tolerance, least] = geometry::told_apart(s.arrival_tolerance, step, 6);

@@ -145,7 +145,7 @@ bool Journeys::stays(std::size_t i) const {
 
 Vec2 Journeys::preferred(std::size_t i) const {
   return straight_for(at_[i], scenario_.robots[i].max_speed, journeys_[i].heading, scenario_.time_step,
-                      acceleration_of(scenario_));
+                      acceleration_of(scenario_, i));
 }
 
 Vec2 Journeys::kept_right(std::size_t i, Vec2 preferred, Vec2 velocity, double least, double patience,

@@ -9,6 +9,7 @@
 #include "exactvo/formation/passing.h"
 #include "exactvo/geometry/require.h"
 #include "liveness/groups.h"
+#include "motion/differential.h"
 #include "runs/joint_decisions.h"
 #include "runs/own_decision.h"
 #include "runs/robot_run.h"
@@ -57,6 +58,14 @@ class KinematicSteps final : public Stepper {
     for (const Robot& robot : scenario_.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
+      wheels_.push_back(
+          robot.drive ? std::optional<WheelLimits>(std::in_place, *robot.drive, rules_.time_step, rules_.braking_time)
+                      : std::nullopt);
+    }
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      const std::optional<DifferentialDrive>& drive = scenario_.robots[i].drive;
+      on_wheels_.push_back(
+          {wheels_[i] ? &*wheels_[i] : nullptr, {drive ? heading_vector(drive->heading) : Vec2{}, {}}});
     }
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look_at_goal(i);
@@ -71,6 +80,7 @@ class KinematicSteps final : public Stepper {
 
   void move() override {
     for (std::size_t i = 0; i < ways_.size(); ++i) {
+      if (wheels_[i]) drive(i, row_.robots[i].chosen);
       velocities_[i] = row_.robots[i].chosen;
       positions_[i] += scenario_.time_step * row_.robots[i].chosen;
     }
@@ -213,7 +223,7 @@ class KinematicSteps final : public Stepper {
       look(i);
     }
     add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
-    RobotStep step = undecided(positions_[i], velocities_[i]);
+    RobotStep step = undecided_now(i);
     step.note = journeys_.take_note(i);
     if (journeys_.has_come_to_rest(i)) add_note(step.note, "stays: " + journeys_.words_of_claim(i));
     if (groups_) add_note(step.note, groups_->note(i));
@@ -226,7 +236,7 @@ class KinematicSteps final : public Stepper {
     const Vec2 preferred = apart               ? scenario_.robots[i].max_speed * *apart
                            : options_.steering ? steered(i, step)
                                                : journeys_.beside_taken(i, steer(i, step));
-    choose(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step), step);
+    choose(i, turned_round(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step)), step);
     return step;
   }
 
@@ -236,6 +246,7 @@ class KinematicSteps final : public Stepper {
     here.turns_after = journeys_.turns_after(i);
     here.robot = i;
     here.body = scene_.robot(i);
+    if (wheels_[i]) here.wheels = &on_wheels_[i];
     return here;
   }
 
@@ -250,6 +261,35 @@ class KinematicSteps final : public Stepper {
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
     own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
+    if (wheels_[i]) keep_wheels_within_limits(i, step);
+  }
+
+  /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist breaks a limit, what is
+  /// preferred is drawn towards braking until it does not. Where half-planes are in the way of that, they count as
+  /// contradictory: those that it falls back to hold for braking, whose twist keeps all limits.
+  void keep_wheels_within_limits(std::size_t i, RobotStep& step) {
+    const OnWheels& now = on_wheels_[i].state;
+    const Vec2 braked = rules_.braked(velocities_[i]), wish = step.chosen;
+    const auto is_done = [&] {
+      return step.status != lp::Status::optimal || wheels_[i]->allows(now.heading, now.speeds, step.chosen);
+    };
+    for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
+      if (is_done()) return;
+      own_.choose(wish + share * (braked - wish), viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i],
+                  step);
+    }
+    if (!is_done()) step.status = lp::Status::relaxed;
+  }
+
+  /// What is preferred to drive straight back would be braked to a stand: it is turned aside, to the left, until the
+  /// heading has come round.
+  Vec2 turned_round(std::size_t i, Vec2 preferred) const {
+    if (!wheels_[i]) return preferred;
+    constexpr double kBehind = -0.9998;  // cos of 179 degrees
+    const Vec2 heading = on_wheels_[i].state.heading;
+    if (dot(heading, preferred) > kBehind * norm(preferred)) return preferred;
+    constexpr double kDegree = 0.0174533;
+    return geometry::rotated(preferred, cross(heading, preferred) >= 0.0 ? -kDegree : kDegree);
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -288,7 +328,9 @@ class KinematicSteps final : public Stepper {
       return {};
     }
     const bool at_goal = journeys_.at_goal(i);
-    if (!guide_ || at_goal) return own_.steer(ways_[i], {now_, viewpoint(i), journeys_.aim_of(i), at_goal}, step);
+    if (!guide_ || at_goal)
+      return own_.steer(ways_[i], {now_, viewpoint(i), journeys_.aim_of(i), at_goal, acceleration_of(scenario_, i)},
+                        step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
   }
@@ -306,6 +348,19 @@ class KinematicSteps final : public Stepper {
     return norm(velocities_[i]) <= kAtRest * scenario_.robots[i].max_speed;
   }
 
+  /// By the twist that takes its reference point on by a step of `u`.
+  void drive(std::size_t i, Vec2 u) {
+    OnWheels& state = on_wheels_[i].state;
+    const TwistOfStep twist = twist_of(*scenario_.robots[i].drive, scenario_.time_step, state.heading, u);
+    state = {turned(state.heading, twist.turn), twist.wheels};
+  }
+
+  RobotStep undecided_now(std::size_t i) const {
+    RobotStep step = undecided(positions_[i], velocities_[i]);
+    if (wheels_[i]) step.wheels = on_wheels_[i].state;
+    return step;
+  }
+
   // --- The end ---
 
   bool stays(std::size_t i) const {
@@ -317,7 +372,7 @@ class KinematicSteps final : public Stepper {
     Step row;
     row.time = time;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
-      row.robots.push_back(undecided(positions_[i], velocities_[i]));
+      row.robots.push_back(undecided_now(i));
       if (journeys_.at_goal(i)) row.robots.back().mode = Mode::arrived;
     }
     return row;
@@ -344,6 +399,8 @@ class KinematicSteps final : public Stepper {
   RobotsOfRun& robots_;
   std::vector<Vec2>&positions_, &velocities_;
   Journeys& journeys_;
+  std::vector<std::optional<WheelLimits>> wheels_;
+  std::vector<WheelsNow> on_wheels_;  ///< of robots that have some
   std::vector<OwnWay> ways_;
   std::vector<Vec2> steered_;                      ///< m/s, by the user
   std::vector<std::vector<OwnConstraint>> asked_;  ///< by the user, of each robot

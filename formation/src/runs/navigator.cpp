@@ -140,6 +140,7 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
     refuse(Problem::out_of_range, "robot", std::to_string(robot),
            "less than the number of robots, " + std::to_string(scenario.robots.size()));
   const Robot& r = scenario.robots[robot];
+  if (r.drive) refuse(Problem::out_of_range, "robot", r.id + ", on wheels", "a robot that moves in any direction");
   NavigatorSetup setup;
   setup.radius = r.radius;
   setup.max_speed = r.max_speed;
@@ -217,7 +218,7 @@ class Navigator::Core {
     decision_.side = 0;
     head_for_goal();
     own_.look(*way_.field, here());
-    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived()}, decision_);
+    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived(), rules_.acceleration}, decision_);
     own_.choose(preferred, here(), others_, decision_, kept_);
     if (rules_.has_brakes()) keep_braking_possible(neighbours);
     return decision_;

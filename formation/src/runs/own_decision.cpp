@@ -31,7 +31,7 @@ DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const st
 Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
   const Viewpoint& here = errand.here;
   const Vec2 preferred =
-      straight_for(here.position, here.max_speed, errand.goal, rules_.time_step, rules_.acceleration);
+      straight_for(here.position, here.max_speed, errand.goal, rules_.time_step, errand.acceleration);
   if (errand.has_arrived) {
     decision.mode = Mode::arrived;
     return preferred;

@@ -36,6 +36,7 @@ struct Errand {
   Viewpoint here;
   Vec2 goal;  ///< m
   bool has_arrived = false;
+  double acceleration = geometry::kInfinity;  ///< m/s^2
 };
 
 /// That it heads for goal number `next` (from 0) from now on.

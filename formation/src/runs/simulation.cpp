@@ -68,7 +68,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
-  const bool is_without = options.steering || options.half_planes || scenario.separate || scenario.acceleration;
+  const bool is_without =
+      options.steering || options.half_planes || scenario.separate || braking_time_of(scenario) > 0.0;
   return wanted == Liveness::plan && (!is_guided || is_without) ? Liveness::bias : wanted;
 }
 
@@ -98,9 +99,11 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
                   std::string("method ") + name(options.method) + " of a formation");
-  EXACTVO_REQUIRE(!(scenario.acceleration || scenario.separate) || promises_between_robots(options.method),
-                  std::string("method ") + name(options.method) + " with an acceleration, or with robots that part");
-  EXACTVO_REQUIRE(!scenario.acceleration || !options.half_planes, "half-planes of a user, with an acceleration");
+  EXACTVO_REQUIRE(
+      !(braking_time_of(scenario) > 0.0 || scenario.separate) || promises_between_robots(options.method),
+      std::string("method ") + name(options.method) + " with an acceleration, wheels, or robots that part");
+  EXACTVO_REQUIRE(!(braking_time_of(scenario) > 0.0 && options.half_planes),
+                  "half-planes of a user, with an acceleration or wheels");
   EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),
                   "steering or half-planes of a user, in a formation");
   EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");

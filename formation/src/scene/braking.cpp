@@ -48,7 +48,7 @@ auto with_room_left(const Make& make, const Holds& holds) {
 
 void acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<HalfPlane>& out) {
   out.clear();
-  if (!rules.has_brakes()) return;
+  if (!(rules.acceleration < geometry::kInfinity)) return;
   constexpr double kSide = 2.0 * geometry::kPi / kSidesOfLimit;
   const double reach = kAimedAt * rules.acceleration * rules.time_step * std::cos(0.5 * kSide);
   const double braking = velocity == Vec2{} ? 0.0 : std::atan2(-velocity.y, -velocity.x);

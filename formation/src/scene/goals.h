@@ -32,8 +32,10 @@ inline double reach_of(const Robot& robot, std::size_t goal, double tolerance) {
   return goal + 1 == robot.goals.size() ? tolerance : std::max(tolerance, robot.radius);
 }
 
-/// m/s^2, of a robot's velocity; infinite where that may jump.
-inline double acceleration_of(const Scenario& scenario) {
+/// m/s^2, of a robot's velocity, or of its wheels; infinite where the velocity may jump.
+inline double acceleration_of(const Scenario& scenario, std::size_t robot) {
+  const std::optional<DifferentialDrive>& drive = scenario.robots[robot].drive;
+  if (drive) return drive->max_wheel_acceleration;
   return scenario.acceleration ? scenario.acceleration->max : geometry::kInfinity;
 }
 

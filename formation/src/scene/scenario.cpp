@@ -14,6 +14,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/round_polygon.h"
 #include "exactvo/geometry/told_apart.h"
+#include "motion/differential.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
 #include "scene/number_text.h"
@@ -209,11 +210,11 @@ void check_times(const detail::DecisionRules& s, double arrival_tolerance, std::
   c.not_negative(s.margins.robot, "/margins/robot", "m");
 }
 
-/// What the proof of braking needs of the numbers of a decision (braking.h). `fastest`: m/s, of all robots. `is_given`:
-/// the braking time is not the usual one.
-void check_brakes(const detail::DecisionRules& rules, double fastest, bool is_given, Checker& c) {
+/// What the proof of braking needs of the numbers of a decision (braking.h). `stops`: s, within which the slowest robot
+/// to stop does. `is_given`: the braking time is not the usual one.
+void check_brakes(const detail::DecisionRules& rules, double stops, bool is_given, Checker& c) {
   constexpr double kRounding = 1.0 + 1e-9;
-  const double tau = rules.braking_time, stops = fastest / rules.acceleration;
+  const double tau = rules.braking_time;
   c.require(
       tau >= kRounding * stops, "/braking_time", show(tau),
       "more than the fastest robot needs to stop, its speed divided by its acceleration: " + show(stops) + " (s)");
@@ -237,19 +238,52 @@ void check_separate(const Scenario& s, Checker& c) {
     c.require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true with /separate");
 }
 
-/// Robots with an acceleration.
+std::optional<std::size_t> first_drive(const Scenario& s) {
+  for (std::size_t i = 0; i < s.robots.size(); ++i)
+    if (s.robots[i].drive) return i;
+  return std::nullopt;
+}
+
+void check_drive(const Scenario& s, std::size_t i, Checker& c) {
+  const Robot& r = s.robots[i];
+  const DifferentialDrive& d = *r.drive;
+  const std::string robot = "/robots/" + std::to_string(i), at = robot + "/kinematics/";
+  c.positive(d.wheel_separation, at + "wheel_separation", "m");
+  c.positive(d.max_wheel_speed, at + "max_wheel_speed", "m/s");
+  c.positive(d.max_wheel_acceleration, at + "max_wheel_acceleration", "m/s^2");
+  c.require(d.max_angular_speed > 0.0, at + "max_angular_speed", show(d.max_angular_speed), "above 0 (rad/s)");
+  c.require(d.max_backward_speed >= 0.0, at + "max_backward_speed", show(d.max_backward_speed), "0 or more (m/s)");
+  c.positive(d.reference, at + "reference", "m");
+  c.positive(d.body_radius, robot + "/radius", "m");
+  c.require(std::isfinite(d.heading), robot + "/heading", show(d.heading), "a finite number (degrees)");
+  c.require(r.velocity == Vec2{}, robot + "/velocity", show(r.velocity), "none: robots on wheels start at rest");
+  if (!c.problems.empty()) return;
+  c.require(d.max_wheel_speed * s.time_step < d.reference, at + "reference", show(d.reference),
+            "more than a step of max_wheel_speed, " + show(d.max_wheel_speed * s.time_step) + " (m)");
+  Robot made = r;
+  if (c.problems.empty()) put_on_wheels(made, d, s.time_step);
+  c.require(made.position == r.position && made.radius == r.radius && made.max_speed == r.max_speed, robot,
+            "a position, radius or max_speed of another reference point", "those that `put_on_wheels` makes");
+}
+
+/// Robots with an acceleration, of their velocity or of their wheels.
 void check_acceleration(const Scenario& s, Checker& c) {
-  const std::string at = "/acceleration", with_it = " with /acceleration";
-  if (!s.acceleration) {
+  const std::optional<std::size_t> driven = first_drive(s);
+  const std::string with_it = s.acceleration ? " with /acceleration" : " with robots on wheels";
+  if (!s.acceleration && !driven) {
     if (s.braking_time)
-      c.require(false, "/braking_time", show(*s.braking_time), "no braking time without /acceleration");
+      c.require(false, "/braking_time", show(*s.braking_time),
+                "no braking time without /acceleration or robots on wheels");
     return;
   }
-  const double most = s.acceleration->max;
-  c.positive(most, at + "/max", "m/s^2");
+  if (s.acceleration) c.positive(s.acceleration->max, "/acceleration/max", "m/s^2");
   if (s.braking_time) c.positive(*s.braking_time, "/braking_time", "s");
-  c.require(!s.formation, at, "an acceleration of robots of a formation",
-            "robots with goals; a formation has /formation/controller_options/acceleration_bound");
+  if (driven)
+    c.require(!s.formation, "/robots/" + std::to_string(*driven) + "/kinematics", "a robot on wheels in a formation",
+              "robots that move in any direction");
+  else
+    c.require(!s.formation, "/acceleration", "an acceleration of robots of a formation",
+              "robots with goals; a formation has /formation/controller_options/acceleration_bound");
   c.require(s.moving_obstacles.empty(), "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
             "none" + with_it + ": no braking is proven to evade what moves by itself");
   c.require(!s.separate, "/separate", "true",
@@ -261,14 +295,24 @@ void check_acceleration(const Scenario& s, Checker& c) {
               "at most its max_speed, " + show(s.robots[i].max_speed) + " m/s," + with_it);
   }
   if (!c.problems.empty()) return;  // tau is made of these numbers
-  double speed = 0.0;
-  for (const Robot& r : s.robots) speed = std::max(speed, fastest(s.speed_bound, r.max_speed));
-  check_brakes(detail::rules_of(s, {}), speed, s.braking_time.has_value(), c);
+  double stops = 0.0;
+  for (const Robot& r : s.robots) {
+    if (s.acceleration && !r.drive) stops = std::max(stops, fastest(s.speed_bound, r.max_speed) / s.acceleration->max);
+    if (r.drive) stops = std::max(stops, r.drive->max_wheel_speed / r.drive->max_wheel_acceleration);
+  }
+  check_brakes(detail::rules_of(s, {}), stops, s.braking_time.has_value(), c);
+  const double tau = braking_time_of(s);
+  for (std::size_t i = 0; c.problems.empty() && i < s.robots.size(); ++i)
+    if (s.robots[i].drive)
+      c.require(detail::WheelLimits(*s.robots[i].drive, s.time_step, tau).side_speed() > 0.0,
+                "/robots/" + std::to_string(i) + "/kinematics/max_wheel_acceleration",
+                show(s.robots[i].drive->max_wheel_acceleration),
+                "enough to brake within " + show(tau) + " s while turning, or a longer /braking_time");
 }
 
 /// Every robot must be able to brake from its start.
 void check_braking(const Scenario& s, Checker& c) {
-  if (!s.acceleration) return;
+  if (!(braking_time_of(s) > 0.0)) return;
   const double left = braking_time_of(s) - s.time_step;
   const detail::ObstacleSpace space(s.obstacles);
   const auto require_way = [&](bool holds, std::size_t i, const std::string& meets) {
@@ -352,6 +396,9 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 
 std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i)
+    if (scenario.robots[i].drive) check_drive(scenario, i, c);
+  if (!c.problems.empty()) return std::move(c.problems);  // positions and radii are made of these numbers
   check_robots(scenario, c);
   for (std::size_t k = 0; k < scenario.obstacles.size(); ++k)
     check_disc(scenario.obstacles[k], "/obstacles/" + std::to_string(k), c);
@@ -371,7 +418,7 @@ std::vector<ScenarioProblem> detail::field_problems(const DecisionRules& rules, 
 
 std::vector<ScenarioProblem> detail::braking_problems(const DecisionRules& rules, double fastest, bool is_given) {
   Checker c;
-  check_brakes(rules, fastest, is_given, c);
+  check_brakes(rules, fastest / rules.acceleration, is_given, c);
   return std::move(c.problems);
 }
 

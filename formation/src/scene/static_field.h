@@ -29,6 +29,8 @@ inline constexpr auto comes_before = [](const Constraint& a, const Constraint& b
   return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
 };
 
+struct WheelsNow;
+
 /// How a half-plane is asked for: the point it is built at and the velocity it is built round.
 struct Viewpoint {
   Vec2 position;         ///< m
@@ -41,8 +43,9 @@ struct Viewpoint {
   /// only `StaticField::constraints` of these.
   bool brakes = false;
   // Which its own limits are named after:
-  std::size_t robot = 0;           ///< its number
-  vo::BodyTable::Number body = 0;  ///< that stands for it
+  std::size_t robot = 0;              ///< its number
+  const WheelsNow* wheels = nullptr;  ///< where it has some
+  vo::BodyTable::Number body = 0;     ///< that stands for it
   /// s: the robot goes straight on so long, along a way that is clear, and turns then: horizons are not longer, unless
   /// the least one is.
   double turns_after = std::numeric_limits<double>::infinity();

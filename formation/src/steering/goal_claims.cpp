@@ -124,7 +124,7 @@ std::optional<Vec2> GoalClaims::way_out(std::size_t i) const {
 Vec2 GoalClaims::beside_taken_place(std::size_t i, Vec2 preferred) const {
   const double max_speed = scenario_.robots[i].max_speed;
   if (const std::optional<Vec2> out = way_out(i))
-    return straight_for(now_[i].position, max_speed, *out, scenario_.time_step, acceleration_of(scenario_));
+    return straight_for(now_[i].position, max_speed, *out, scenario_.time_step, acceleration_of(scenario_, i));
   if (rests(i)) return {};
   const double gap = gap_to_taken(i) - room_.margin;
   // The half-planes of the next step look ahead for this velocity, from one step nearer.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The points of an audit, each by the forgery that it is there for. Braking: tests/formation/acceleration_test.cpp.
+// The points of an audit, each by the forgery that it is there for. Braking: tests/formation/acceleration_test.cpp;
+// wheels: tests/formation/wheels_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,8 +110,10 @@ TEST(AuditPoints, AreAllAskedAndProvenOfARunAsItWasMade) {
     EXPECT_TRUE(report.clean()) << to_json(report);
     for (std::size_t p = 0; p < kAuditPoints; ++p) {
       const PointCount& point = report.points[p];
-      const auto which = static_cast<AuditPoint>(p);  // it has no plans and no acceleration
-      EXPECT_EQ(point.proven > 0, which != AuditPoint::plans && which != AuditPoint::braking) << name(method);
+      const auto which = static_cast<AuditPoint>(p);  // it has no plans, no acceleration and no wheels
+      const bool is_absent =
+          which == AuditPoint::plans || which == AuditPoint::braking || which == AuditPoint::kinematics;
+      EXPECT_EQ(point.proven > 0, !is_absent) << name(method);
       EXPECT_EQ(point.asked(), point.proven) << name(method);
     }
     EXPECT_EQ(report.largest_violation, 0.0) << "choices are rounded inward";

@@ -182,7 +182,8 @@ class Run {
       certified: (flags & 1) !== 0, hard: (flags & 2) !== 0, active: (flags & 4) !== 0, fellBack: (flags & 8) !== 0,
       radius: this.robots[robot].radius,
     };
-    h.isOwnLimit = h.kind === 'robot' && h.hard;  // of its acceleration
+    h.isOwnLimit = h.kind === 'robot' && h.hard;  // of what follows
+    h.limited = this.robots[robot].on_wheels ? 'wheels' : 'acceleration';
     Object.assign(h, this.placed(h, row));
     return h;
   }
@@ -204,7 +205,7 @@ class Run {
   // In words, as the program has them.
   nameOf(h) {
     const owners = this.bodies[h.body].owners;
-    if (h.kind === 'robot') return `${h.isOwnLimit ? 'acceleration of ' : ''}robot ${this.robots[h.index].id}`;
+    if (h.kind === 'robot') return `${h.isOwnLimit ? `${h.limited} of ` : ''}robot ${this.robots[h.index].id}`;
     if (h.kind === 'moving') return `moving obstacle ${this.moving[h.index].id}`;
     const ids = owners.map((o) => this.obstacles[o].id);
     const some = ids.length > 3 ? [...ids.slice(0, 3), `${ids.length - 3} more`] : ids;

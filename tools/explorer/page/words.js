@@ -49,7 +49,7 @@ function statusWords(d) {
 }
 
 function contactWords(d, h) {
-  if (h.isOwnLimit) return 'a side of the polygon within what its acceleration allows';
+  if (h.isOwnLimit) return `a side of the polygon within what its ${h.limited === 'wheels' ? 'wheels allow' : 'acceleration allows'}`;
   const distance = distanceOf(h, d.anchor);
   if (distance < 0) return `the robot overlaps it by ${number(-distance)} m: no cone exists`;
   const contact = timeToContact(h, d.anchor, d.preferred[0] - h.ux, d.preferred[1] - h.uy);

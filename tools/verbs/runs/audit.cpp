@@ -63,7 +63,8 @@ const char* words_of(datasets::AuditPoint point) {
                                     "rows follow from one another",
                                     "motions keep clear of everything",
                                     "joint plans begin where their robots are, and their moves are clear",
-                                    "robots could brake in every row, alone and together"};
+                                    "robots could brake in every row, alone and together",
+                                    "wheels and headings follow from choices"};
   return kWords[static_cast<std::size_t>(point)];
 }
 
@@ -83,7 +84,7 @@ std::string summary(const datasets::AuditReport& report) {
   std::string text = report.cut_off.empty() ? "" : "a recording ends early: what follows is of the rows there are\n";
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     const datasets::PointCount& n = report.points[p];
-    if (static_cast<datasets::AuditPoint>(p) == datasets::AuditPoint::braking && n.asked() == 0) continue;
+    if (p >= static_cast<std::size_t>(datasets::AuditPoint::braking) && n.asked() == 0) continue;
     text += fmt::format("{}: {} asked, {} proven", words_of(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
     if (n.refuted > 0) text += fmt::format(", {} refuted", n.refuted);
     if (n.open > 0) text += fmt::format(", {} left open", n.open);

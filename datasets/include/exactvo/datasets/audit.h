@@ -3,7 +3,7 @@
 
 /// \file
 /// Verifies a recording in exact rational arithmetic (GMP), with none of the filters that made it and sharing no code
-/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Nine points:
+/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Ten points:
 ///
 ///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
 ///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
@@ -28,6 +28,11 @@
 ///                    long enough to stop, nothing is relaxed, and in every row every robot could have braked from its
 ///                    choice on without touching anything: its way [x, x + tau v] keeps clear of obstacles, and so do
 ///                    the ways of two robots that brake alike, of each other.
+///  (10) kinematics   robots on wheels: in each step the heading turns, and the wheels run, as the constant twist has
+///  it
+///                    that takes the reference point where it was to go; wheels keep their speed and its change, the
+///                    axle its greatest angular and backward speed; the disc about the reference point holds the body
+///                    and what the point strays from its straight way, so that (7) is about the body too.
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
@@ -49,7 +54,7 @@
 
 namespace exactvo::datasets {
 
-/// The nine points, numbered in the head of this file.
+/// The ten points, numbered in the head of this file.
 enum class AuditPoint {
   scenario,      ///< (1)
   bodies,        ///< (2)
@@ -59,10 +64,11 @@ enum class AuditPoint {
   sequence,      ///< (6)
   motions,       ///< (7)
   plans,         ///< (8)
-  braking        ///< (9)
+  braking,       ///< (9)
+  kinematics     ///< (10)
 };
 /// How many points there are.
-inline constexpr std::size_t kAuditPoints = 9;
+inline constexpr std::size_t kAuditPoints = 10;
 
 /// "scenario", "bodies" and so on, as in JSON.
 const char* name(AuditPoint point);

@@ -82,10 +82,22 @@ struct Decision {
 /// user's give, those against robots do not. Without the bound and the preferred velocity.
 std::vector<lp::Constraint> problem_of(const Decision& decision, const std::vector<DecisionConstraint>& constraints);
 
+/// m/s: how fast the wheels of a robot run over the ground.
+struct WheelSpeeds {
+  double left = 0.0, right = 0.0;  ///< above 0: forward
+};
+
+/// What a robot on wheels has beside its reference point, at the start of a step.
+struct OnWheels {
+  Vec2 heading;        ///< of length 1, up to rounding
+  WheelSpeeds speeds;  ///< m/s, during the step that led here; 0 at the start
+};
+
 /// One robot's state at the start of a step, and its decision.
 struct RobotStep : Decision {
   Vec2 position;  ///< m, at the step's start
-  Vec2 velocity;  ///< m/s, at the step's start
+  Vec2 velocity;  ///< m/s, at the step's start; both are those of the reference point where it has wheels
+  std::optional<OnWheels> wheels;  ///< of a robot with a drive
   /// Where half-planes are built, and round which velocity: the robot's own, or the brake point x + v / k3 and what the
   /// robot tracked before.
   Vec2 anchor;           ///< m

@@ -16,11 +16,27 @@
 #include <vector>
 
 #include "exactvo/formation/controller_options.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::formation {
 
 using geometry::Vec2;
+
+/// Two wheels on one axle. What keeps clear is a disc about the reference point, which is ahead of the axle's centre
+/// and moves in any direction (`put_on_wheels`).
+struct DifferentialDrive {
+  double wheel_separation = 0.0;                    ///< m, > 0
+  double max_wheel_speed = 0.0;                     ///< m/s, > 0, on the ground
+  double max_wheel_acceleration = 0.0;              ///< m/s^2, > 0: in a step a wheel's speed changes by this
+                                                    ///< times the time step
+  double max_angular_speed = geometry::kInfinity;   ///< rad/s, > 0
+  double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre
+  double reference = 0.0;                           ///< m, > 0: how far ahead the reference point is
+  double heading = 0.0;                             ///< degrees, at t = 0: 0 along x, 90 along y
+  Vec2 axle = {};                                   ///< m, the axle's centre at t = 0
+  double body_radius = 0.0;                         ///< m, > 0: of the disc about the axle that holds the body
+};
 
 /// A disc that moves.
 struct Robot {
@@ -31,6 +47,9 @@ struct Robot {
   double max_speed = 3.0;   ///< m/s, > 0
   std::vector<Vec2> goals;  ///< m, visited in order; empty for a robot of a formation
   bool cooperates = true;   ///< false: it ignores other robots, and they take the whole responsibility
+  /// None: it moves in any direction. Else `position`, `radius`, `max_speed` and goals are those of the reference point
+  /// and the disc about it, as `put_on_wheels` makes them.
+  std::optional<DifferentialDrive> drive = {};
 };
 
 /// An obstacle that stands still.
@@ -186,14 +205,30 @@ inline double usual_braking_time(double fastest, double acceleration, double tim
   return std::max(kSpare * (fastest / acceleration), time_step);
 }
 
+/// The unit vector of a heading (degrees); exact for multiples of 90.
+Vec2 heading_vector(double degrees);
+
+/// m: within this of its straight way the reference point stays in a step (theorem 2 of the guide, wheels).
+double stray_of(const DifferentialDrive& drive, double time_step);
+
+/// A robot on wheels: its reference point and the disc about it that holds the body, whatever the heading, and the
+/// stray of a step. REQUIRES: max_wheel_speed * time_step < reference.
+void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step);
+
 /// s: tau of braking, one for all robots. A robot that brakes keeps the share 1 - time_step / tau of its velocity in
-/// each step, and drives on for tau times its velocity at most. `braking_time`, or the usual one; 0 without
-/// `acceleration`.
+/// each step, and drives on for tau times its velocity at most. `braking_time`, or the usual one; 0 where
+/// nothing has an acceleration, neither the scenario nor the wheels of a robot.
 inline double braking_time_of(const Scenario& scenario) {
-  if (!scenario.acceleration) return 0.0;
-  double speed = 0.0;
-  for (const Robot& robot : scenario.robots) speed = std::max(speed, fastest(scenario.speed_bound, robot.max_speed));
-  return scenario.braking_time.value_or(usual_braking_time(speed, scenario.acceleration->max, scenario.time_step));
+  double usual = 0.0;
+  for (const Robot& robot : scenario.robots) {
+    const double speed = fastest(scenario.speed_bound, robot.max_speed);
+    if (scenario.acceleration)
+      usual = std::max(usual, usual_braking_time(speed, scenario.acceleration->max, scenario.time_step));
+    if (robot.drive)
+      usual = std::max(usual, usual_braking_time(robot.drive->max_wheel_speed, robot.drive->max_wheel_acceleration,
+                                                 scenario.time_step));
+  }
+  return usual > 0.0 ? scenario.braking_time.value_or(usual) : 0.0;
 }
 
 }  // namespace exactvo::formation
