@@ -61,6 +61,21 @@ inline void expect_same(const formation::Robot& a, const formation::Robot& b) {
   EXPECT_TRUE(same_bits(a.radius, b.radius)) << a.id;
   EXPECT_TRUE(same_bits(a.max_speed, b.max_speed)) << a.id;
   EXPECT_TRUE(same_bits(a.goals, b.goals)) << a.id;
+  ASSERT_EQ(a.drive.has_value(), b.drive.has_value()) << a.id;
+  if (!a.drive) return;
+  const auto numbers = [](const formation::DifferentialDrive& d) {
+    return std::vector<double>{d.wheel_separation,
+                               d.max_wheel_speed,
+                               d.max_wheel_acceleration,
+                               d.max_angular_speed,
+                               d.max_backward_speed,
+                               d.reference,
+                               d.heading,
+                               d.axle.x,
+                               d.axle.y,
+                               d.body_radius};
+  };
+  EXPECT_TRUE(same_bits(numbers(*a.drive), numbers(*b.drive))) << a.id;
 }
 
 inline bool same_bits(const std::optional<geometry::Disc>& a, const std::optional<geometry::Disc>& b) {

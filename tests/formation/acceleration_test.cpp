@@ -471,7 +471,7 @@ TEST(Acceleration, NavigatorsRefuseWhatTheirProofLacks) {
     return "";
   };
   EXPECT_EQ(words_of([](NavigatorSetup&) {}),
-            "neighbour 0 cooperates: found false, expected true with an acceleration");
+            "neighbour 0 cooperates: found false, expected true with an acceleration, a braking_time or a drive");
   EXPECT_NE(words_of([](NavigatorSetup& n) { n.acceleration = -1.0; }).find("acceleration: found -1"),
             std::string::npos);
   EXPECT_NE(words_of([](NavigatorSetup& n) { n.braking_time = 1.4; }).find("braking_time: found 1.4"),

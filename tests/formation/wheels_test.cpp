@@ -12,31 +12,22 @@
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/recording_file.h"
-#include "exactvo/datasets/run_info.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/navigator.h"
 #include "exactvo/formation/simulation.h"
-#include "exactvo/geometry/pi.h"
+#include "exactvo/vo/lp/solve.h"
 #include "motion/differential.h"
+#include "scene/braking.h"
 #include "support/seeded_random.h"
+#include "wheels_scenes.h"
 
 namespace exactvo::formation {
 namespace {
 
 using detail::TwistOfStep;
 using detail::WheelLimits;
-using geometry::kPi;
-
-DifferentialDrive burger() {
-  DifferentialDrive d;
-  d.wheel_separation = 0.16;
-  d.max_wheel_speed = 0.22;
-  d.max_wheel_acceleration = 1.0;
-  d.reference = 0.08;
-  d.body_radius = 0.105;
-  return d;
-}
+using namespace test_scenes;
 
 DifferentialDrive some_drive(test::SeededRandom& random) {
   DifferentialDrive d = burger();
@@ -44,10 +35,6 @@ DifferentialDrive some_drive(test::SeededRandom& random) {
   d.reference = random.uniform(0.05, 0.4);
   d.max_wheel_speed = random.uniform(0.1, 0.5);
   return d;
-}
-
-Vec2 polar(double length, double angle) {
-  return length * Vec2{std::cos(angle), std::sin(angle)};
 }
 
 /// m/s: the greatest that keeps both wheels within W for ever, by theorem 1.
@@ -75,6 +62,39 @@ TEST(Wheels, Theorem1_TheSetIsTheHullOfADiscAndAPoint) {
     later += most > at_start * (1.0 + 1e-6);
   }
   EXPECT_GT(later, 2000) << "the greatest speed is inside the way more often than at its start";
+}
+
+/// Corners of the polygon that stands in the linear program, in rationals: below the lines from the apex, or in the
+/// disc.
+TEST(Wheels, Theorem1_ThePolygonLiesInTheSet) {
+  using Rational = mpq_class;
+  test::SeededRandom random(test::seed_of_run(11));
+  int corners = 0, beyond_disc = 0;
+  std::vector<geometry::HalfPlane> set;
+  for (int k = 0; k < 200; ++k) {
+    DifferentialDrive d = some_drive(random);
+    d.max_wheel_acceleration = 1000.0;  // no change of the wheels cuts anything off
+    const WheelLimits limits(d, 0.05, 0.5);
+    ASSERT_GT(limits.side_speed(), 0.0);
+    limits.half_planes({1.0, 0.0}, {}, {}, set);
+    const std::size_t sides = set.size() - 4;
+    const Rational beta = Rational(d.wheel_separation) / (2 * Rational(d.reference)), most(d.max_wheel_speed);
+    Rational farthest(0);
+    for (std::size_t i = 0; i < sides; ++i) {
+      const geometry::HalfPlane &one = set[i], &next = set[(i + 1) % sides];
+      const Rational ax(one.normal.x), ay(one.normal.y), bx(next.normal.x), by(next.normal.y);
+      const Rational det = ax * by - ay * bx, c(one.offset), e(next.offset);
+      const Rational x = (c * by - e * ay) / det, y = abs(Rational((ax * e - bx * c) / det));
+      const bool is_in_disc = (x * x + y * y) * (1 + beta * beta) <= most * most;
+      EXPECT_TRUE(is_in_disc || (y <= beta * x && x + beta * y <= most)) << k << " corner " << i;
+      beyond_disc += !is_in_disc;
+      if (x > farthest) farthest = x;
+      ++corners;
+    }
+    EXPECT_GT(farthest, Rational(0.98) * most) << k << ": ahead it is as fast as its wheels";
+  }
+  EXPECT_GT(corners, 5000);
+  EXPECT_GE(beyond_disc, 200);
 }
 
 /// End point, heading, stray and wheels of a constant twist.
@@ -194,48 +214,6 @@ TEST(Wheels, Lemmas2And3_BrakingStaysAllowed) {
 
 // --- Runs ---
 
-Scenario on_circle(int robots, double radius, bool turned, double first = 0.0) {
-  Scenario s;
-  s.name = "burgers";
-  s.time_limit = 90.0;
-  s.arrival_tolerance = 0.02;
-  s.braking_time = 0.5;
-  s.margins.robot = 0.0;
-  test::SeededRandom random(5);
-  for (int k = 0; k < robots; ++k) {
-    const double angle = 2.0 * kPi * k / robots + first;
-    Robot r;
-    r.id = "R" + std::to_string(k + 1);
-    DifferentialDrive d = burger();
-    d.heading = 180.0 / kPi * (angle + kPi + (turned ? random.uniform(-3.1, 3.1) : 0.0));
-    d.axle = polar(radius, angle) - d.reference * heading_vector(d.heading);
-    put_on_wheels(r, d, s.time_step);
-    r.goals = {polar(-radius, angle)};
-    s.robots.push_back(r);
-  }
-  return s;
-}
-
-datasets::RecordingFile recorded(const Scenario& s) {
-  return {datasets::run_info(s, {}, {}), s, simulate(s)};
-}
-
-double last_arrival(const datasets::RecordingFile& file) {
-  double last = 0.0;
-  for (const Step& row : file.recording.steps)
-    for (std::size_t i = 0; i < row.robots.size(); ++i)
-      if (norm(row.robots[i].position - file.scenario.robots[i].goals.back()) > file.scenario.arrival_tolerance)
-        last = row.time + file.scenario.time_step;
-  return last;
-}
-
-std::size_t relaxed_in(const Recording& run) {
-  std::size_t relaxed = 0;
-  for (std::size_t k = 0; k + 1 < run.steps.size(); ++k)
-    for (const RobotStep& r : run.steps[k].robots) relaxed += r.status != lp::Status::optimal;
-  return relaxed;
-}
-
 /// TurtleBot3 Burgers on a circle of 2.2 m (4: 1.5 m): wheels 0.22 m/s and 1 m/s^2. The times are the prototype's,
 /// whose straight ways take 20 s and 13.6 s.
 TEST(Wheels, BurgersOnACircleArriveWithNothingRelaxed) {
@@ -246,7 +224,7 @@ TEST(Wheels, BurgersOnACircleArriveWithNothingRelaxed) {
     double last;
   };
   for (const Case c : {Case{4, 1.5, false, 15.6}, Case{12, 2.2, false, 26.7}, Case{12, 2.2, true, 25.95}}) {
-    const datasets::RecordingFile file = recorded(on_circle(c.robots, c.radius, c.turned));
+    const datasets::RecordingFile file = recorded(burgers_on_circle(c.robots, c.radius, c.turned));
     const datasets::AuditReport report = datasets::audit(file);
     EXPECT_EQ(file.recording.outcome, "all robots arrived") << c.robots;
     EXPECT_EQ(relaxed_in(file.recording), 0u);
@@ -260,7 +238,7 @@ TEST(Wheels, BurgersOnACircleArriveWithNothingRelaxed) {
 /// One robot that is to go straight back turns round.
 TEST(Wheels, ARobotTurnsRoundAtItsPlace) {
   for (const double backward : {geometry::kInfinity, 0.05}) {
-    Scenario s = on_circle(1, 1.0, false);
+    Scenario s = burgers_on_circle(1, 1.0, false);
     DifferentialDrive d = *s.robots[0].drive;
     d.heading = 0.0;
     d.max_backward_speed = backward;
@@ -277,7 +255,7 @@ TEST(Wheels, ARobotTurnsRoundAtItsPlace) {
 /// The limit at the start of the step in place of theorem 1, |u.e| + beta |u.n| <= W: such a recording is refused,
 /// since a wheel runs faster while the heading comes round.
 TEST(Wheels, TheRhombusIsRefused) {
-  Scenario s = on_circle(1, 1.0, false);
+  Scenario s = burgers_on_circle(1, 1.0, false);
   DifferentialDrive d = *s.robots[0].drive;
   d.heading = 0.0;
   d.axle = {};
@@ -306,7 +284,7 @@ TEST(Wheels, TheRhombusIsRefused) {
 }
 
 TEST(Wheels, ForgeriesAreRefuted) {
-  const datasets::RecordingFile file = recorded(on_circle(2, 1.0, true));
+  const datasets::RecordingFile file = recorded(burgers_on_circle(2, 1.0, true));
   ASSERT_TRUE(datasets::audit(file).clean());
   using datasets::AuditPoint;
   const auto refuted = [&](const auto& forge) {
@@ -325,40 +303,225 @@ TEST(Wheels, ForgeriesAreRefuted) {
   EXPECT_GT(refuted([&](auto& f) { f.recording.steps[30].robots[0].chosen.x += 1e-6; }), 0u);
 }
 
-/// Random edits of headings, wheels and choices, from a millionth of their size on.
+/// 10^4 of them: `formation_wheels_campaign edits 10000`.
 TEST(Wheels, RandomEditsAreRefuted) {
-  Scenario s = on_circle(2, 1.0, true);
+  Scenario s = burgers_on_circle(2, 1.0, true);
   s.time_limit = 1.0;
   const datasets::RecordingFile file = recorded(s);
   ASSERT_TRUE(datasets::audit(file).clean());
   test::SeededRandom random(test::seed_of_run(9));
-  const int last = static_cast<int>(file.recording.steps.size()) - 1;
   int edited = 0;
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 350; ++k) {
     datasets::RecordingFile forged = file;
-    const auto row = static_cast<std::size_t>(random.integer(0, last - 1));
-    RobotStep& robot = forged.recording.steps[row].robots[k % 2];
-    const double by = std::pow(10.0, random.uniform(-6.0, 0.0)) * (random.integer(0, 1) == 0 ? -1.0 : 1.0);
-    const int what = k / 2 % 6;
-    if (what == 0) robot.wheels->heading = geometry::rotated(robot.wheels->heading, by);
-    if (what == 1) robot.wheels->heading.y += by;
-    if (what == 2) robot.wheels->speeds.left += by;
-    if (what == 3) robot.wheels->speeds.right += by;
-    if (what == 4) robot.chosen.x += by;
-    if (what == 5) robot.chosen.y += by;
-    EXPECT_FALSE(datasets::audit(forged).clean()) << k << " row " << row << " by " << by;
+    const std::string what = edit_wheels(forged, k % kKindsOfEdit, random);
+    EXPECT_FALSE(datasets::audit(forged).clean()) << k << ": " << what;
     ++edited;
   }
-  EXPECT_EQ(edited, 400);
+  EXPECT_EQ(edited, 350);
 }
 
-// --- Files, and what cannot be run ---
+/// The half-planes of every pair made at the velocities themselves instead of those after a step of braking: decisions
+/// have nothing left, and the audit finds ways that do not end in time.
+TEST(Wheels, HalfPlanesMadeAtTheVelocitiesThemselvesAreRefused) {
+  const Scenario s = burgers_on_circle(12, 1.0, false);
+  const double tau = *s.braking_time;
+  std::vector<WheelLimits> limits;
+  datasets::RecordingFile file{datasets::run_info(s, {}, {}), s, {}};
+  Recording& run = file.recording;
+  run.time_step = s.time_step;
+  Step row;
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const Robot& robot = s.robots[i];
+    limits.emplace_back(*robot.drive, s.time_step, tau);
+    run.bodies.push_back({vo::BodyKind::robot, geometry::Disc{robot.position, robot.radius}, {}, {i}});
+    RobotStep step;
+    step.position = step.anchor = robot.position;
+    step.wheels = OnWheels{heading_vector(robot.drive->heading), {}};
+    row.robots.push_back(step);
+  }
+  constexpr int kRows = 160;
+  std::size_t nothing_left = 0;
+  std::vector<geometry::HalfPlane> set;
+  for (int k = 0; k < kRows; ++k) {
+    row.time = k * s.time_step;
+    Step next = row;
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      RobotStep& me = row.robots[i];
+      const Robot& robot = s.robots[i];
+      lp::Problem problem;
+      problem.bound.disc = robot.max_speed;
+      const Vec2 way = robot.goals[0] - me.position;
+      me.preferred = problem.preferred =
+          geometry::rotated(std::min(0.2, norm(way)) / norm(way) * way, -0.1 * static_cast<double>(1 + i % 3));
+      for (std::size_t j = 0; j < s.robots.size(); ++j) {
+        if (j == i) continue;
+        const RobotStep& other = row.robots[j];
+        const vo::ReciprocalHalfPlanes pair = detail::braking_half_planes(
+            {me.position, me.velocity, robot.radius}, {other.position, other.velocity, s.robots[j].radius}, tau);
+        problem.constraints.push_back({pair.a, lp::Priority::soft});
+      }
+      limits[i].half_planes(me.wheels->heading, me.wheels->speeds, (1.0 - s.time_step / tau) * me.velocity, set);
+      for (const geometry::HalfPlane& h : set) problem.constraints.push_back({h, lp::Priority::hard});
+      const lp::Solution solution = lp::solve(problem);
+      nothing_left += solution.status != lp::Status::optimal;
+      me.chosen = solution.velocity;
+      me.status = solution.status;
+      RobotStep& then = next.robots[i];
+      const TwistOfStep twist = detail::twist_of(*robot.drive, s.time_step, me.wheels->heading, me.chosen);
+      then.wheels = OnWheels{detail::turned(me.wheels->heading, twist.turn), twist.wheels};
+      then.position = then.anchor = me.position + s.time_step * me.chosen;
+      then.velocity = then.anchor_velocity = me.chosen;
+    }
+    run.steps.push_back(row);
+    row.robots = next.robots;
+  }
+  row.time = kRows * s.time_step;
+  run.steps.push_back(row);
+  EXPECT_GT(nothing_left, 50u);
+  const datasets::AuditReport report = datasets::audit(file);
+  EXPECT_GT(report[datasets::AuditPoint::braking].refuted, nothing_left) << "ways that do not end in time as well";
+  EXPECT_TRUE(std::any_of(report.findings.begin(), report.findings.end(), [](const std::string& f) {
+    return f.find("could not brake without touching each other") != std::string::npos ||
+           f.find("relaxes a half-plane") != std::string::npos;
+  }));
+}
+
+// --- Navigators ---
+
+/// What the wheels did says what was chosen.
+TEST(Wheels, Theorem2_TheTwistTellsTheVelocityBefore) {
+  test::SeededRandom random(test::seed_of_run(22));
+  for (int k = 0; k < 5000; ++k) {
+    const DifferentialDrive d = some_drive(random);
+    const Vec2 heading = random.direction(), u = random.uniform(0.0, 0.9) * d.max_wheel_speed * random.direction();
+    if (norm(u) * 0.05 >= d.reference) continue;
+    const TwistOfStep twist = detail::twist_of(d, 0.05, heading, u);
+    const Vec2 told = detail::velocity_before(d, 0.05, {detail::turned(heading, twist.turn), twist.wheels});
+    EXPECT_LT(norm(told - u), 1e-13) << k;
+  }
+}
+
+struct Driven {
+  Vec2 axle;
+  OnWheels wheels;
+};
+
+/// By the twist, whatever it is, along its arc.
+Driven driven_by(const Twist& twist, const Driven& from, double step) {
+  const double half = 0.5 * twist.angular * step;
+  const double chord = twist.linear * step * (std::fabs(half) < 1e-9 ? 1.0 : std::sin(half) / half);
+  return {from.axle + chord * geometry::rotated(from.wheels.heading, half),
+          {geometry::rotated(from.wheels.heading, 2.0 * half), twist.wheels}};
+}
+
+/// Eight of them in a ring with a post, each by itself, told the poses and wheels of the others: nothing is relaxed, no
+/// wheel breaks a limit, no bodies overlap.
+TEST(Wheels, NavigatorsDriveByPosesAndTwists) {
+  Scenario s = burgers_on_circle(8, 1.3, true);
+  s.obstacles.push_back({"post", geometry::Polygon{{{-0.1, -0.1}, {0.1, -0.1}, {0.0, 0.1}}, {}}});
+  std::vector<Navigator> navigators;
+  std::vector<Driven> now;
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    // Aside of the opposite place, so that they need not wait for each other for ever.
+    navigators.emplace_back(navigator_setup(s, i), std::vector<Vec2>{geometry::rotated(s.robots[i].goals[0], 0.6)});
+    now.push_back({s.robots[i].drive->axle, {heading_vector(s.robots[i].drive->heading), {}}});
+  }
+  std::size_t decisions = 0, wishes_changed = 0, turning = 0, arrived = 0;
+  for (int k = 0; k < 900; ++k) {
+    std::vector<Driven> next;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const DifferentialDrive& drive = *s.robots[i].drive;
+      std::vector<Neighbour> others;
+      for (std::size_t j = 0; j < now.size(); ++j)
+        if (j != i)
+          others.push_back(neighbour_on_wheels(j, *s.robots[j].drive, s.time_step, now[j].axle, now[j].wheels));
+      const Decision& d = navigators[i].decide({k * s.time_step, now[i].axle, {}, now[i].wheels}, others);
+      EXPECT_EQ(d.status, lp::Status::optimal) << k << " " << i;
+      EXPECT_EQ(d.uncertified, 0u);
+      wishes_changed += d.preferred != d.chosen;
+      ++decisions;
+      const Twist twist = navigators[i].twist();
+      const WheelSpeeds was = now[i].wheels.speeds, is = twist.wheels;
+      turning += std::fabs(twist.angular) > 0.1;
+      EXPECT_NEAR(is.left, twist.linear - 0.5 * drive.wheel_separation * twist.angular, 1e-12);
+      EXPECT_LE(std::max(std::fabs(is.left), std::fabs(is.right)), drive.max_wheel_speed);
+      EXPECT_LE(std::max(std::fabs(is.left - was.left), std::fabs(is.right - was.right)),
+                drive.max_wheel_acceleration * s.time_step);
+      next.push_back(driven_by(twist, now[i], s.time_step));
+      const Vec2 before = now[i].axle + drive.reference * now[i].wheels.heading;
+      const Vec2 after = next[i].axle + drive.reference * next[i].wheels.heading;
+      EXPECT_LT(norm(after - before - s.time_step * d.chosen), 1e-13);
+    }
+    now = next;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GT(norm(now[i].axle - now[j].axle), 0.21) << k;
+  }
+  for (const Navigator& n : navigators) arrived += n.has_arrived();
+  EXPECT_EQ(decisions, 900u * navigators.size());
+  EXPECT_GT(wishes_changed, 100u);
+  EXPECT_GT(turning, 100u);
+  EXPECT_GE(arrived, navigators.size() / 2);
+}
+
+TEST(Wheels, NavigatorsRefuseWhatTheirProofLacks) {
+  const auto words_of = [](const auto& change) -> std::string {
+    NavigatorSetup setup;
+    setup.drive = burger();
+    NavigatorState now{0.0, {0, 0}, {}, {{1, 0}, {}}};
+    change(setup, now);
+    try {
+      Navigator navigator(setup, {{6, 0}});
+      navigator.decide(now);
+    } catch (const NavigatorError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  using Setup = NavigatorSetup;
+  using State = NavigatorState;
+  EXPECT_EQ(words_of([](Setup&, State&) {}), "");
+  EXPECT_EQ(words_of([](Setup&, State& n) { n.wheels.heading = {}; }),
+            "heading: found 0, 0, expected a vector of length 1");
+  EXPECT_NE(
+      words_of([](Setup&, State& n) { n.wheels.speeds.left = -0.5; }).find("wheels: found -0.5, 0, expected speeds"),
+      std::string::npos);
+  EXPECT_NE(words_of([](Setup&, State& n) { n.wheels.heading.x = std::nan(""); }).find("heading: found nan"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) { s.drive->reference = 0.0; }).find("kinematics/reference: found 0"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) { s.drive->reference = 0.01; }).find("kinematics/reference: found 0.01"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) { s.braking_time = 0.2; }).find("braking_time: found 0.2"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) { s.horizons.robots = 0.2; }).find("horizons/robots: found 0.2"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) { s.cooperates = false; }).find("cooperates: found false"),
+            std::string::npos);
+  EXPECT_NE(words_of([](Setup& s, State&) {
+              s.obstacles = {{"box", geometry::Polygon{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}}}};
+            }).find("position: found"),
+            std::string::npos);
+}
 
 constexpr const char* kText = R"({"name": "pair", "braking_time": 0.5, "robots": [
   {"id": "R1", "position": [0, 0], "heading": 90, "radius": 0.105, "goal": [0, 2],
    "kinematics": {"type": "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1.0}},
   {"id": "R2", "position": [1, 0], "goal": [1, 2], "radius": 0.2, "max_speed": 0.3,
    "kinematics": {"type": "omnidirectional"}}]})";
+
+/// A robot that moves in any direction brakes for those on wheels.
+TEST(Wheels, NavigatorsBesideRobotsOnWheelsBrakeAsTheyDo) {
+  const Scenario s = datasets::parse_scenario(kText, "pair.json", {});
+  const NavigatorSetup setup = navigator_setup(s, 1);
+  EXPECT_FALSE(setup.drive);
+  EXPECT_FALSE(setup.acceleration);
+  EXPECT_EQ(setup.braking_time, 0.5);
+  Navigator navigator(setup, {{1, 2}});
+  EXPECT_GT(norm(navigator.decide({0.0, {1, 0}, {}, {}}).chosen), 0.29);
+  EXPECT_THROW(navigator.decide({0.05, {1, 0}, {}, {}}, {{0, {3, 0}, {}, 0.2, 0.3, false}}), NavigatorError);
+}
+
+// --- Files, and what cannot be run ---
 
 TEST(Wheels, ScenariosSayWhereTheAxleIs) {
   const Scenario s = datasets::parse_scenario(kText, "pair.json", {});
@@ -406,7 +569,6 @@ TEST(Wheels, WhatAFileSaysWrongIsRefusedByACode) {
 TEST(Wheels, OtherRunsAreRefused) {
   Scenario s = datasets::parse_scenario(kText, "pair.json", {});
   EXPECT_EQ(crowd_problems(s).at(0).pointer, "/robots/0/kinematics");
-  EXPECT_THROW(navigator_setup(s, 0), NavigatorError);
   SimulationOptions options;
   options.method = Method::rvo;
   EXPECT_THROW(simulate(s, options), std::logic_error);
@@ -417,7 +579,7 @@ TEST(Wheels, OtherRunsAreRefused) {
 }
 
 TEST(Wheels, RecordingsKeepHeadings) {
-  const datasets::RecordingFile file = recorded(on_circle(2, 0.6, true));
+  const datasets::RecordingFile file = recorded(burgers_on_circle(2, 0.6, true));
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("exactvo_wheels_" + std::to_string(::getpid()) + ".jsonl");
   datasets::write_recording(path, file);

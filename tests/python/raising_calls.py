@@ -115,6 +115,7 @@ def raising_calls(folder):
         ("navigator.Navigator", "ArgumentError", wrong("navigator.Navigator", method="x")),
         ("navigator.Navigator.of_scenario", "ArgumentError", wrong("navigator.Navigator.of_scenario", robot=9)),
         ("navigator.Navigator.set_goals", "ArgumentError", wrong("navigator.Navigator.set_goals", goals=[])),
+        ("navigator.neighbours_on_wheels", "ArgumentError", wrong("navigator.neighbours_on_wheels", headings=[])),
         ("navigator.Navigator.decide", "ArgumentError", wrong("navigator.Navigator.decide", positions=[(0, 0)])),
         ("collisions.check", "ArgumentError", lambda: collisions.check({"A": [(0, 0, 0)]}, radius=-1)),
         ("collisions.check", "DataError", lambda: collisions.check({"A": [(0, 0, 0), (0, 1, 0)]}, radius=1)),

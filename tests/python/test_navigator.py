@@ -120,3 +120,49 @@ def test_of_scenario_asks_for_a_robot_with_goals(source):
         exactvo.Navigator.of_scenario(exactvo.Scenario(TWO), 2)
     with pytest.raises(exactvo.ArgumentError):
         exactvo.Navigator.of_scenario(exactvo.Scenario(source / "datasets/data/paper/B1.json"), 0)
+
+
+BURGER = {"wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1.0}
+
+
+def test_robots_on_wheels_change_places_by_poses_and_twists():
+    """The loop of docs/guide/wheels.md, of two."""
+    step = 0.05
+    axle, heading, wheels = np.array([[0.0, 0.0], [2.0, 0.1]]), np.array([0.0, np.pi]), np.zeros((2, 2))
+    navigators = [
+        exactvo.Navigator([goal], id=k, radius=0.105, kinematics=BURGER, time_step=step, arrival_tolerance=0.02)
+        for k, goal in enumerate([(2, 0), (0, 0.1)])
+    ]
+    time, nearest, turned = 0.0, np.inf, 0.0
+    while time < 40 and not all(n.has_arrived for n in navigators):
+        decisions = [
+            n.decide(
+                time, axle[k], heading=heading[k], wheels=wheels[k],
+                **exactvo.neighbours_on_wheels(axle[[1 - k]], heading[[1 - k]], wheels[[1 - k]], kinematics=BURGER, radius=0.105, time_step=step),
+            )
+            for k, n in enumerate(navigators)
+        ]  # fmt: skip
+        for k, decision in enumerate(decisions):
+            assert decision.status == "optimal" and decision.uncertified == 0
+            linear, angular = decision.twist
+            assert np.abs(np.array(decision.wheels) - wheels[k]).max() <= 1.0 * step and np.abs(decision.wheels).max() <= 0.22
+            half = 0.5 * angular * step
+            axle[k] += linear * step * np.sinc(half / np.pi) * np.array([np.cos(heading[k] + half), np.sin(heading[k] + half)])
+            heading[k] += 2 * half
+            wheels[k] = decision.wheels
+            turned = max(turned, abs(angular))
+        time += step
+        nearest = min(nearest, np.linalg.norm(axle[0] - axle[1]) - 0.21)
+    assert all(n.has_arrived for n in navigators) and nearest > 0 and turned > 0.1
+
+
+def test_wheels_without_a_number_are_refused():
+    for change in ({"wheel_separation": 0}, {"wheel_axis": 0.16}, {"max_wheel_speed": 4.0}, {"type": "bicycle"}, {"reference": -1}):
+        with pytest.raises(exactvo.ArgumentError):
+            exactvo.Navigator([(1, 0)], radius=0.105, kinematics={**BURGER, **change})
+    navigator = exactvo.Navigator([(1, 0)], radius=0.105, kinematics={"type": "differential", **BURGER})
+    for bad in ({"heading": np.nan}, {"wheels": (0.5, 0)}):
+        with pytest.raises(exactvo.ArgumentError):
+            navigator.decide(0.0, (0, 0), **bad)
+    with pytest.raises(exactvo.ArgumentError, match="headings"):
+        exactvo.neighbours_on_wheels([(1, 0)], [], [(0, 0)], kinematics=BURGER, radius=0.1)

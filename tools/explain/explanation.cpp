@@ -99,19 +99,32 @@ std::string mode_words(const Decision& d) {
   return name(d.step.mode) + side + note;
 }
 
+/// A line, of a robot on wheels.
+std::string wheel_words(const Decision& d) {
+  if (!d.step.wheels || !d.who().drive) return "";
+  constexpr double kDegree = 180.0 / geometry::kPi;
+  const formation::OnWheels& now = *d.step.wheels;
+  return fmt::format(
+      "  wheels     heading {} degrees, left wheel {} m/s, right wheel {} m/s; the position is {:g} m ahead of the "
+      "axle\n",
+      number(kDegree * std::atan2(now.heading.y, now.heading.x)), number(now.speeds.left), number(now.speeds.right),
+      d.who().drive->reference);
+}
+
 std::string head(const Decision& d) {
   const double shift = norm(d.step.chosen - d.step.preferred);
   return fmt::format(
       "{} of {} at t = {} s, {}\n"
       "  position   {} m, moving at {}\n"
+      "{}"
       "  mode       {}\n"
       "{}"
       "  preferred  {}\n"
       "  chosen     {}: {}\n"
       "  status     {}\n",
       d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
-      mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n", velocity(d.step.preferred),
-      velocity(d.step.chosen),
+      wheel_words(d), mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n",
+      velocity(d.step.preferred), velocity(d.step.chosen),
       shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
 }
 

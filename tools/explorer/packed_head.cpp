@@ -75,7 +75,10 @@ Json robots_json(const formation::Scenario& scenario) {
                       {"max_speed", robot.max_speed},
                       {"goals", flat(robot.goals)},
                       {"cooperates", robot.cooperates}});
-    if (robot.drive) robots.back()["on_wheels"] = true;
+    if (const std::optional<formation::DifferentialDrive>& drive = robot.drive)
+      robots.back()["on_wheels"] = {{"reference", drive->reference},
+                                    {"wheel_separation", drive->wheel_separation},
+                                    {"body_radius", drive->body_radius}};
   }
   return robots;
 }

@@ -83,6 +83,8 @@ constexpr const char* kMagic = "EXVIEW01";
 constexpr std::size_t kMostEvents = 2000;
 /// m and m/s: what a picture does not show.
 constexpr double kFinestQuantum = 0x1p-13;
+/// Radians, of a heading.
+constexpr double kHeadingQuantum = 0x1p-16;
 /// Doubles of a decision beside its half-planes, and of a half-plane.
 constexpr std::size_t kNumbersOfDecision = 14, kNumbersOfHalfPlane = 6;
 
@@ -267,9 +269,13 @@ void RunPacker::keep_row(const Step& row) {
   // The final row has none: they stay where they were.
   kept.moving = row.moving.empty() && rows_.size() > 1 ? rows_[rows_.size() - 2].moving : row.moving;
   kept.states.reserve(row.robots.size());
-  for (const RobotStep& r : row.robots)
-    kept.states.push_back({r.position.x, r.position.y, r.velocity.x, r.velocity.y, static_cast<std::uint8_t>(r.mode),
-                           static_cast<std::uint8_t>(r.status), static_cast<std::int8_t>(r.side)});
+  for (const RobotStep& r : row.robots) {
+    has_wheels_ = has_wheels_ || r.wheels;
+    kept.states.push_back({r.position.x, r.position.y, r.velocity.x, r.velocity.y,
+                           r.wheels ? std::atan2(r.wheels->heading.y, r.wheels->heading.x) : 0.0,
+                           static_cast<std::uint8_t>(r.mode), static_cast<std::uint8_t>(r.status),
+                           static_cast<std::int8_t>(r.side)});
+  }
   last_row_is_extra_ = count_ % every_row_ != 0;
 }
 
@@ -323,12 +329,13 @@ Json RunPacker::add_rows(std::size_t robots, PackedColumns& columns) const {
   columns.add("y", in_quanta_of(metres, &State::y), robots);
   columns.add("vx", in_quanta_of(per_second, &State::vx), robots);
   columns.add("vy", in_quanta_of(per_second, &State::vy), robots);
+  if (has_wheels_) columns.add("heading", in_quanta_of(kHeadingQuantum, &State::heading), robots);
   columns.add("mode", each<std::uint8_t>(states, &State::mode), robots);
   columns.add("status", each<std::uint8_t>(states, &State::status), robots);
   columns.add("side", each<std::uint8_t>(states, [](const State& s) { return s.side + 1; }), robots);
   columns.add("leader", leader, 2);
   columns.add("moving", moving, 0);
-  return {{"position", metres}, {"velocity", per_second}};
+  return {{"position", metres}, {"velocity", per_second}, {"heading", kHeadingQuantum}};
 }
 
 /// The final row of a run has no decisions.

@@ -64,6 +64,7 @@ class RunPacker {
  private:
   struct State {
     double x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;
+    double heading = 0.0;  ///< of a robot on wheels, radians
     std::uint8_t mode = 0, status = 0;
     std::int8_t side = 0;
   };
@@ -82,7 +83,8 @@ class RunPacker {
   void keep_decisions(const formation::Step& row);
 
   PackedRunLimits limits_;
-  std::size_t count_ = 0;  ///< rows so far
+  std::size_t count_ = 0;    ///< rows so far
+  bool has_wheels_ = false;  ///< some robot
   std::vector<Row> rows_;
   std::size_t every_row_ = 1;
   bool last_row_is_extra_ = false;

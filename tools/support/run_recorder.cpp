@@ -22,6 +22,7 @@ Step without_half_planes(const Step& row) {
     formation::RobotStep& robot = shown.robots.emplace_back();
     robot.position = r.position;
     robot.velocity = r.velocity;
+    robot.wheels = r.wheels;
   }
   return shown;
 }

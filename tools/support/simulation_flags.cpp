@@ -174,8 +174,8 @@ void note_liveness(const SimulationFlags& flags, const formation::Scenario& scen
   const bool may_have_guidance = options.method != formation::Method::ivo_edge;
   if (!scenario.formation && used == formation::Liveness::bias && (is_asked_for || may_have_guidance))
     message(std::string("note: liveness is bias, not plan: ") +
-            (scenario.acceleration || scenario.separate ? "joint plans rely on robots that can stand at once"
-                                                        : "among obstacles joint plans need guidance") +
+            (braking_time_of(scenario) > 0.0 || scenario.separate ? "joint plans rely on robots that can stand at once"
+                                                                  : "among obstacles joint plans need guidance") +
             ", so that robots only turn to the right for each other");
 }
 

@@ -120,7 +120,7 @@ class DecisionAudit : public RowAudit {
     formation::Method method = formation::Method::ivo;
     if (parse(run.file.info.method, method) && !promises_between_robots(method))
       cone_ = method == formation::Method::rvo ? vo::Variant::rvo : vo::Variant::hrvo;
-    if (cone_ && (run.scenario.acceleration || run.scenario.separate || run.scenario.formation)) {
+    if (cone_ && (formation::braking_time_of(run.scenario) > 0.0 || run.scenario.separate || run.scenario.formation)) {
       run.tally.refuted(AuditPoint::scenario, "no run of this scenario has this method");
       cone_.reset();
     }

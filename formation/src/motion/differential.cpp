@@ -65,6 +65,21 @@ Vec2 turned(Vec2 heading, double turn) {
   return next / norm(next);
 }
 
+Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnWheels& now) {
+  const double half = 0.5 * (now.speeds.right - now.speeds.left) * time_step / drive.wheel_separation;
+  const double t = std::tan(half), middle = 0.5 * (now.speeds.left + now.speeds.right) * time_step / arc_of(t);
+  const double ahead = 2.0 * drive.reference, x = (middle - ahead * t * t) / (1.0 + t * t), y = t * (ahead + x);
+  const Vec2 before = turned(now.heading, -t);
+  return (x * before + y * left_of(before)) / time_step;
+}
+
+Vec2 turned_aside(Vec2 heading, Vec2 preferred) {
+  constexpr double kBehind = -0.9998;  // cos of 179 degrees
+  if (dot(heading, preferred) > kBehind * norm(preferred)) return preferred;
+  constexpr double kDegree = 0.0174533;
+  return geometry::rotated(preferred, cross(heading, preferred) >= 0.0 ? -kDegree : kDegree);
+}
+
 WheelLimits::WheelLimits(const DifferentialDrive& drive, double time_step, double braking_time)
     : drive_(drive), step_(time_step), beta_(drive.wheel_separation / (2.0 * drive.reference)) {
   const double q = drive.max_wheel_speed * time_step / (2.0 * drive.reference);

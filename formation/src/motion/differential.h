@@ -32,6 +32,12 @@ struct TwistOfStep {
 TwistOfStep twist_of(const DifferentialDrive& drive, double time_step, Vec2 heading, Vec2 u);
 /// The heading after it, of length 1 up to rounding.
 Vec2 turned(Vec2 heading, double turn);
+/// The velocity u of the twist that led to this heading with these wheels, up to rounding. REQUIRES: the wheels turn
+/// the robot by less than a half turn in a step.
+Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnWheels& now);
+/// What is preferred to drive straight back would be braked to a stand: it is turned aside by a degree, to where it
+/// points already or else to the left, until the heading has come round.
+Vec2 turned_aside(Vec2 heading, Vec2 preferred);
 
 /// A robot on wheels in a run: what it may do.
 class WheelLimits {
@@ -64,5 +70,23 @@ struct WheelsNow {
   const WheelLimits* limits;
   OnWheels state;
 };
+
+/// Half-planes say what wheels do at the beginning of a twist. Where the whole twist of what `decision` chose breaks a
+/// limit, what is preferred is drawn towards `braked` until it does not; `choose` decides again for what is preferred.
+/// Where half-planes are in the way of that, they count as contradictory: those that it falls back to hold for braking,
+/// whose twist keeps all limits.
+template <class Choose>
+void keep_wheels_within_limits(const WheelsNow& wheels, Vec2 braked, Decision& decision, const Choose& choose) {
+  const Vec2 wish = decision.chosen;
+  const auto is_done = [&] {
+    return decision.status != lp::Status::optimal ||
+           wheels.limits->allows(wheels.state.heading, wheels.state.speeds, decision.chosen);
+  };
+  for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
+    if (is_done()) return;
+    choose(wish + share * (braked - wish));
+  }
+  if (!is_done()) decision.status = lp::Status::relaxed;
+}
 
 }  // namespace exactvo::formation::detail

@@ -236,7 +236,8 @@ class KinematicSteps final : public Stepper {
     const Vec2 preferred = apart               ? scenario_.robots[i].max_speed * *apart
                            : options_.steering ? steered(i, step)
                                                : journeys_.beside_taken(i, steer(i, step));
-    choose(i, turned_round(i, liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step)), step);
+    const Vec2 wish = liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step);
+    choose(i, wheels_[i] ? turned_aside(on_wheels_[i].state.heading, wish) : wish, step);
     return step;
   }
 
@@ -260,36 +261,11 @@ class KinematicSteps final : public Stepper {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
-    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
-    if (wheels_[i]) keep_wheels_within_limits(i, step);
-  }
-
-  /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist breaks a limit, what is
-  /// preferred is drawn towards braking until it does not. Where half-planes are in the way of that, they count as
-  /// contradictory: those that it falls back to hold for braking, whose twist keeps all limits.
-  void keep_wheels_within_limits(std::size_t i, RobotStep& step) {
-    const OnWheels& now = on_wheels_[i].state;
-    const Vec2 braked = rules_.braked(velocities_[i]), wish = step.chosen;
-    const auto is_done = [&] {
-      return step.status != lp::Status::optimal || wheels_[i]->allows(now.heading, now.speeds, step.chosen);
+    const auto decide = [&](Vec2 wish) {
+      own_.choose(wish, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
     };
-    for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
-      if (is_done()) return;
-      own_.choose(wish + share * (braked - wish), viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i],
-                  step);
-    }
-    if (!is_done()) step.status = lp::Status::relaxed;
-  }
-
-  /// What is preferred to drive straight back would be braked to a stand: it is turned aside, to the left, until the
-  /// heading has come round.
-  Vec2 turned_round(std::size_t i, Vec2 preferred) const {
-    if (!wheels_[i]) return preferred;
-    constexpr double kBehind = -0.9998;  // cos of 179 degrees
-    const Vec2 heading = on_wheels_[i].state.heading;
-    if (dot(heading, preferred) > kBehind * norm(preferred)) return preferred;
-    constexpr double kDegree = 0.0174533;
-    return geometry::rotated(preferred, cross(heading, preferred) >= 0.0 ? -kDegree : kDegree);
+    decide(preferred);
+    if (wheels_[i]) keep_wheels_within_limits(on_wheels_[i], rules_.braked(velocities_[i]), step, decide);
   }
 
   /// Rule R1, for robots that others may hold up.

@@ -9,6 +9,7 @@
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/excerpt.h"
+#include "motion/differential.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
 #include "scene/field_problems.h"
@@ -32,6 +33,8 @@ constexpr std::size_t kMostShapes = 1000;
 constexpr std::size_t kMostNeighbours = std::size_t{1} << 20;
 /// Characters of a note, which are written into memory that is there.
 constexpr std::size_t kNoteLength = 512;
+/// What is refused with it: robots that brake rely on each other.
+constexpr const char* kWithBrakes = "true with an acceleration, a braking_time or a drive";
 
 std::string number(double x) {
   return number_text(x, 17);
@@ -74,10 +77,13 @@ void require_goals(const std::vector<Vec2>& goals) {
 DecisionRules rules_of(const NavigatorSetup& setup) {
   DecisionRules rules{setup.method,  Guidance::none,  setup.speed_bound,       setup.horizons,
                       setup.margins, setup.time_step, setup.neighbour_distance};
-  if (!setup.acceleration) return rules;
-  rules.acceleration = *setup.acceleration;
+  if (setup.acceleration) rules.acceleration = *setup.acceleration;
   const double speed = fastest(setup.speed_bound, setup.max_speed);
-  rules.braking_time = setup.braking_time.value_or(usual_braking_time(speed, rules.acceleration, rules.time_step));
+  const double usual = setup.drive          ? usual_braking_time(setup.drive->max_wheel_speed,
+                                                                 setup.drive->max_wheel_acceleration, rules.time_step)
+                       : setup.acceleration ? usual_braking_time(speed, rules.acceleration, rules.time_step)
+                                            : 0.0;
+  rules.braking_time = setup.braking_time.value_or(usual);
   return rules;
 }
 
@@ -87,6 +93,7 @@ Robot robot_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
   robot.max_speed = setup.max_speed;
   robot.cooperates = setup.cooperates;
   robot.goals = std::move(goals);
+  if (setup.drive) put_on_wheels(robot, DifferentialDrive(*setup.drive), setup.time_step);
   return robot;
 }
 
@@ -96,6 +103,23 @@ void require_none(const std::vector<ScenarioProblem>& problems) {
   const ScenarioProblem& first = problems.front();
   const bool is_number = first.found.find("nan") == std::string::npos && first.found.find("inf") == std::string::npos;
   refuse(is_number ? Problem::out_of_range : Problem::not_finite, first.pointer.substr(1), first.found, first.expected);
+}
+
+/// As a scenario of this robot alone, at rest, is validated.
+void require_drive(const NavigatorSetup& setup) {
+  Scenario s;
+  s.time_step = setup.time_step;
+  s.horizons = setup.horizons;
+  s.braking_time = setup.braking_time;
+  s.robots = {robot_of(setup, {Vec2{}})};
+  s.robots[0].drive->heading = 0.0;
+  s.robots[0].drive->axle = {};
+  put_on_wheels(s.robots[0], DifferentialDrive(*s.robots[0].drive), s.time_step);
+  std::vector<ScenarioProblem> problems = detail::field_problems(s);
+  const std::string of_robot = "/robots/0";
+  for (ScenarioProblem& p : problems)
+    if (p.pointer.rfind(of_robot, 0) == 0) p.pointer.erase(0, of_robot.size());
+  require_none(problems);
 }
 
 /// Of Method::ivo_edge, as in `simulate` by default.
@@ -113,15 +137,15 @@ const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec
     refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
   for (std::size_t k = 0; k < setup.obstacles.size(); ++k)
     for (const Vec2 v : geometry::vertices_of(setup.obstacles[k].shape)) require_vector(v, "obstacle", k, "vertex");
-  require_none(field_problems(setup.radius, setup.max_speed));
+  if (!setup.drive) require_none(field_problems(setup.radius, setup.max_speed));
   require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
   if (setup.acceleration) require_positive(*setup.acceleration, nullptr, 0, "acceleration");
   if (setup.braking_time) require_positive(*setup.braking_time, nullptr, 0, "braking_time");
-  if (setup.braking_time && !setup.acceleration)
-    refuse(Problem::out_of_range, "braking_time", number(*setup.braking_time), "none without an acceleration");
-  if (setup.acceleration && !setup.cooperates)
-    refuse(Problem::out_of_range, "cooperates", "false", "true with an acceleration");
-  if (setup.acceleration)
+  if (rules_of(setup).has_brakes() && !setup.cooperates)
+    refuse(Problem::out_of_range, "cooperates", "false", kWithBrakes);
+  if (setup.drive)
+    require_drive(setup);
+  else if (rules_of(setup).has_brakes())
     require_none(
         braking_problems(rules_of(setup), fastest(setup.speed_bound, setup.max_speed), setup.braking_time.has_value()));
   return setup;
@@ -140,7 +164,6 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
     refuse(Problem::out_of_range, "robot", std::to_string(robot),
            "less than the number of robots, " + std::to_string(scenario.robots.size()));
   const Robot& r = scenario.robots[robot];
-  if (r.drive) refuse(Problem::out_of_range, "robot", r.id + ", on wheels", "a robot that moves in any direction");
   NavigatorSetup setup;
   setup.radius = r.radius;
   setup.max_speed = r.max_speed;
@@ -154,11 +177,18 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
   setup.time_step = scenario.time_step;
   setup.arrival_tolerance = scenario.arrival_tolerance;
   setup.neighbour_distance = scenario.neighbour_distance;
-  if (scenario.acceleration) {
-    setup.acceleration = scenario.acceleration->max;
-    setup.braking_time = braking_time_of(scenario);  // of all robots
-  }
+  setup.drive = r.drive;
+  if (scenario.acceleration) setup.acceleration = scenario.acceleration->max;
+  if (const double tau = braking_time_of(scenario); tau > 0.0) setup.braking_time = tau;  // of all robots
   return setup;
+}
+
+Neighbour neighbour_on_wheels(std::size_t id, const DifferentialDrive& drive, double time_step, Vec2 axle,
+                              const OnWheels& wheels) {
+  Robot robot;
+  put_on_wheels(robot, drive, time_step);
+  return {id, axle + drive.reference * wheels.heading, velocity_before(drive, time_step, wheels), robot.radius,
+          robot.max_speed};
 }
 
 std::vector<SceneObstacle> solids_of(const std::vector<SceneObstacle>& obstacles) {
@@ -180,6 +210,7 @@ class Navigator::Core {
         own_(rules_, scene_.bodies()),
         rule_(pair_rule(rules_)),
         solids_(solids_of(obstacles_)) {
+    if (robot_.drive) limits_.emplace(*robot_.drive, rules_.time_step, rules_.braking_time);
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
                                scene_.edges_by_place().size() + obstacles_.size();
     const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
@@ -205,8 +236,9 @@ class Navigator::Core {
     way_.field.reset();
   }
 
-  const Decision& decide(const NavigatorState& now, const std::vector<Neighbour>& neighbours,
+  const Decision& decide(const NavigatorState& given, const std::vector<Neighbour>& neighbours,
                          const std::vector<MovingBody>& moving) {
+    const NavigatorState now = robot_.drive ? of_reference_point(given) : given;
     require_state(now);
     require_neighbours(now, neighbours);
     require_moving(moving);
@@ -218,7 +250,9 @@ class Navigator::Core {
     decision_.side = 0;
     head_for_goal();
     own_.look(*way_.field, here());
-    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived(), rules_.acceleration}, decision_);
+    const double most = robot_.drive ? robot_.drive->max_wheel_acceleration : rules_.acceleration;
+    const Vec2 straight = own_.steer(way_, {now.time, here(), goal(), has_arrived(), most}, decision_);
+    const Vec2 preferred = robot_.drive ? turned_aside(now.wheels.heading, straight) : straight;
     own_.choose(preferred, here(), others_, decision_, kept_);
     if (rules_.has_brakes()) keep_braking_possible(neighbours);
     return decision_;
@@ -227,10 +261,16 @@ class Navigator::Core {
   const std::vector<DecisionConstraint>& constraints() const { return kept_; }
   const vo::BodyTable& bodies() const { return scene_.bodies(); }
   std::size_t goal_number() const { return goal_; }
+  Twist twist() const {
+    if (!robot_.drive || !has_decided_) return {};
+    const WheelSpeeds w = twist_of(*robot_.drive, rules_.time_step, now_.wheels.heading, decision_.chosen).wheels;
+    return {0.5 * (w.left + w.right), (w.right - w.left) / robot_.drive->wheel_separation, w};
+  }
   bool has_arrived() const { return has_decided_ && is_last_goal() && is_within_reach(); }
 
   RobotStep recorded() const {
     RobotStep step = undecided(now_.position, now_.velocity);
+    if (robot_.drive) step.wheels = now_.wheels;
     static_cast<Decision&>(step) = decision_;
     step.constraints = kept_;
     return step;
@@ -246,6 +286,7 @@ class Navigator::Core {
     Viewpoint here{now_.position, now_.velocity, robot_.radius, robot_.max_speed};
     here.robot = id_;
     here.body = scene_.robot(0);
+    if (limits_) here.wheels = &on_wheels_;
     return here;
   }
   /// What was chosen is the wish.
@@ -262,9 +303,11 @@ class Navigator::Core {
     }
     nearest_first_.sort(scene_.bodies(), now_.position, others_);
     const Vec2 wish = decision_.chosen;
-    own_.choose(wish, here(), others_, decision_, kept_);
+    const auto choose = [&](Vec2 preferred) { own_.choose(preferred, here(), others_, decision_, kept_); };
+    choose(wish);
+    if (limits_) keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose);
     // Within less room than there is between doubles: braking satisfies all of them.
-    if (decision_.status != lp::Status::optimal) own_.choose(braked.velocity, here(), others_, decision_, kept_);
+    if (decision_.status != lp::Status::optimal) choose(braked.velocity);
   }
   bool is_in_sight(const Neighbour& n) const {
     return norm(n.position - now_.position) <=
@@ -272,6 +315,26 @@ class Navigator::Core {
   }
   bool is_last_goal() const { return goal_ + 1 == robot_.goals.size(); }
   bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(robot_, goal_, arrival_tolerance_); }
+
+  NavigatorState of_reference_point(const NavigatorState& given) {
+    constexpr double kUnit = 1e-6, kRounding = 1.0 + 1e-9;
+    const DifferentialDrive& drive = *robot_.drive;
+    require_vector(given.position, nullptr, 0, "position");
+    require_vector(given.wheels.heading, nullptr, 0, "heading");
+    if (std::fabs(norm(given.wheels.heading) - 1.0) > kUnit)
+      refuse(Problem::out_of_range, "heading", number(given.wheels.heading), "a vector of length 1");
+    const Vec2 wheels{given.wheels.speeds.left, given.wheels.speeds.right};
+    require_vector(wheels, nullptr, 0, "wheels");
+    if (std::max(std::fabs(wheels.x), std::fabs(wheels.y)) > kRounding * drive.max_wheel_speed)
+      refuse(Problem::out_of_range, "wheels", number(wheels),
+             "speeds within max_wheel_speed, " + number(drive.max_wheel_speed));
+    NavigatorState now = given;
+    now.wheels.heading = given.wheels.heading / norm(given.wheels.heading);
+    now.position = given.position + drive.reference * now.wheels.heading;
+    now.velocity = velocity_before(drive, rules_.time_step, now.wheels);
+    on_wheels_ = {&*limits_, now.wheels};
+    return now;
+  }
 
   void require_state(const NavigatorState& now) {
     if (!std::isfinite(now.time)) refuse(Problem::not_finite, "time", number(now.time), "a finite number");
@@ -306,7 +369,7 @@ class Navigator::Core {
       require_positive(n.radius, "neighbour", k, "radius");
       require_positive(n.max_speed, "neighbour", k, "max_speed");
       if (rules_.has_brakes() && !n.cooperates)
-        refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", "true with an acceleration");
+        refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", kWithBrakes);
       if (n.position == now.position)
         refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
                "another place than the robot's own");
@@ -315,7 +378,8 @@ class Navigator::Core {
 
   void require_moving(const std::vector<MovingBody>& moving) const {
     if (rules_.has_brakes() && !moving.empty())
-      refuse(Problem::out_of_range, "moving bodies", std::to_string(moving.size()), "none with an acceleration");
+      refuse(Problem::out_of_range, "moving bodies", std::to_string(moving.size()),
+             "none with an acceleration, a braking_time or a drive");
     for (std::size_t k = 0; k < moving.size(); ++k) {
       require_vector(moving[k].velocity, "moving body", k, "velocity");
       if (!geometry::is_valid(moving[k].shape))
@@ -365,7 +429,9 @@ class Navigator::Core {
   DecisionRules rules_;
   std::vector<SceneObstacle> obstacles_;
   Robot robot_;
-  double arrival_tolerance_;  ///< m
+  std::optional<WheelLimits> limits_;  ///< of its drive
+  WheelsNow on_wheels_{};              ///< with a drive
+  double arrival_tolerance_;           ///< m
   std::size_t id_;
   Scene scene_;
   OwnDecision own_;
@@ -419,6 +485,10 @@ bool Navigator::has_arrived() const {
 
 RobotStep Navigator::recorded() const {
   return core_->recorded();
+}
+
+Twist Navigator::twist() const {
+  return core_->twist();
 }
 
 GoalBodies Navigator::goal_bodies() const {

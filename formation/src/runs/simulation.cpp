@@ -99,9 +99,8 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
                   std::string("method ") + name(options.method) + " of a formation");
-  EXACTVO_REQUIRE(
-      !(braking_time_of(scenario) > 0.0 || scenario.separate) || promises_between_robots(options.method),
-      std::string("method ") + name(options.method) + " with an acceleration, wheels, or robots that part");
+  EXACTVO_REQUIRE(!(braking_time_of(scenario) > 0.0 || scenario.separate) || promises_between_robots(options.method),
+                  std::string("method ") + name(options.method) + " with an acceleration, wheels, or robots that part");
   EXACTVO_REQUIRE(!(braking_time_of(scenario) > 0.0 && options.half_planes),
                   "half-planes of a user, with an acceleration or wheels");
   EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),

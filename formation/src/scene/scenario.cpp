@@ -97,6 +97,12 @@ void check_body(double radius, double max_speed, const At& at, Checker& c) {
   c.positive(max_speed, at("/max_speed"), "m/s");
 }
 
+/// Where it starts, as the scenario says.
+std::string start_of(const Robot& r) {
+  if (!r.drive) return show(r.position);
+  return show(r.drive->axle) + ", with a disc of " + detail::metres(r.radius) + " about its reference point";
+}
+
 void check_robots(const Scenario& s, Checker& c) {
   c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
   const std::vector<std::vector<std::size_t>> near = near_each_other(s.robots);
@@ -113,7 +119,7 @@ void check_robots(const Scenario& s, Checker& c) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0) || s.separate) continue;  // words are made for what is wrong only: a crowd has very many pairs
       c.require(false, at("/position")(),
-                show(r.position) + ", overlapping robot '" + s.robots[j].id + "' by " + detail::metres(-gap),
+                start_of(r) + ", overlapping robot '" + s.robots[j].id + "' by " + detail::metres(-gap),
                 "robots that do not overlap at the start");
     }
   }
@@ -126,10 +132,9 @@ void check_starts(const Scenario& s, Checker& c) {
     const auto require_clear = [&](const auto& obstacle, const char* kind) {
       const double gap = signed_distance(obstacle, s.robots[i].position) - s.robots[i].radius;
       if (!(gap < 0.0)) return;
-      c.require(
-          false, "/robots/" + std::to_string(i) + "/position",
-          show(s.robots[i].position) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
-          "a start that is clear of every obstacle");
+      c.require(false, "/robots/" + std::to_string(i) + "/position",
+                start_of(s.robots[i]) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
+                "a start that is clear of every obstacle");
     };
     for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))
       require_clear(s.obstacles[k], "obstacle");

@@ -16,8 +16,12 @@ const HANDLE_LEAD = 3;  // px; a handle is taken before a robot's centre that is
 const live = {edit: null, isAsking: false, isAgain: false, freeTimer: 0, made: 0, server: window.exactvoServer || null, keys: new Map()};
 
 // Recordings of crowds have positions alone: neither goals nor decisions.
+function hasWheels() {
+  return page.run !== null && page.run.robots.some((r) => r.on_wheels);
+}
+
 function canEdit() {
-  return live.server !== null && page.run !== null && Boolean(page.run.head.scenario) && page.run.decisionTime.length > 0;
+  return live.server !== null && page.run !== null && Boolean(page.run.head.scenario) && page.run.decisionTime.length > 0 && !hasWheels();
 }
 
 function liveMessage(text, isBad) {
@@ -123,7 +127,9 @@ function showLive() {
   $('live').hidden = live.server === null;
   for (const e of document.querySelectorAll('.of-server')) e.hidden = live.server === null;
   for (const e of $('live').querySelectorAll('input, select, button')) e.disabled = !canEdit();
-  if (live.server && !canEdit()) liveMessage('This recording has neither goals nor decisions: nothing can be computed from it.', true);
+  if (live.server && !canEdit())
+    liveMessage(hasWheels() ? 'A run of robots on wheels begins at rest: nothing can be computed from a moment of it.'
+      : 'This recording has neither goals nor decisions: nothing can be computed from it.', true);
   fillLive();
 }
 

@@ -135,6 +135,10 @@ class Run {
   vy(row, robot) {
     return this.columns['vy'][row * this.n + robot] * this.head.quantum.velocity;
   }
+  // Radians, of a robot on wheels.
+  heading(row, robot) {
+    return this.columns['heading'][row * this.n + robot] * this.head.quantum.heading;
+  }
   mode(row, robot) {
     return this.head.modes[this.columns['mode'][row * this.n + robot]];
   }

@@ -54,11 +54,20 @@ function animatedSvg(run, view, colours, still) {
   const duration = `${(span + pause).toFixed(2)}s`;
   const animate = (attribute, values) =>
     `<animate attributeName="${attribute}" dur="${duration}" repeatCount="indefinite" keyTimes="${times}" values="${values}"/>`;
+  // On wheels, within the disc: the body about the axle, and a line from there to the reference point.
+  const addBody = (i, {reference, body_radius: radius}) => {
+    const x = (row) => view.px(run.x(row, i)), y = (row) => view.py(run.y(row, i));
+    const axleX = (row) => view.px(run.x(row, i) - reference * Math.cos(run.heading(row, i)));
+    const axleY = (row) => view.py(run.y(row, i) - reference * Math.sin(run.heading(row, i)));
+    svg.parts.push(`<circle r="${(radius * view.scale).toFixed(1)}" fill="${colourOf(colours, i)}">${animate('cx', list(axleX))}${animate('cy', list(axleY))}</circle>`,
+      `<line stroke="${colours.text}" stroke-width="2">${animate('x1', list(axleX))}${animate('y1', list(axleY))}${animate('x2', list(x))}${animate('y2', list(y))}</line>`);
+  };
   for (let i = 0; i < run.n; ++i) {
     const r = Math.max(2.5, run.robots[i].radius * view.scale).toFixed(1);
     svg.parts.push(`<circle r="${r}" cx="${view.px(run.x(0, i)).toFixed(1)}" cy="${view.py(run.y(0, i)).toFixed(1)}" ` +
-      `fill="${colourOf(colours, i)}" fill-opacity="0.9"><title>${escapeXml(shortName(run.robots[i].id, 40))}</title>` +
+      `fill="${colourOf(colours, i)}" fill-opacity="${run.robots[i].on_wheels ? 0.3 : 0.9}"><title>${escapeXml(shortName(run.robots[i].id, 40))}</title>` +
       animate('cx', list((row) => view.px(run.x(row, i)))) + animate('cy', list((row) => view.py(run.y(row, i)))) + '</circle>');
+    if (run.robots[i].on_wheels) addBody(i, run.robots[i].on_wheels);
   }
   for (let k = 0; k < run.moving.length; ++k) {
     const moved = run.columns['moving'], at = (row) => 2 * (row * run.moving.length + k);

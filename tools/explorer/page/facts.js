@@ -51,6 +51,7 @@ function fillWords() {
   fact(facts, 'time', `${number(live.edit && page.live ? live.edit.time : d.time)} s`, 'time');
   fact(facts, 'position', `${pair(d.position)} m`, 'position');
   fact(facts, 'moving at', speedWords(d.velocity), 'velocity');
+  if (run.robots[ui.robot].on_wheels) fact(facts, 'heading', `${number(run.heading(row, ui.robot) * 180 / Math.PI)} degrees`, 'heading');
   fact(facts, 'mode', modeWords(run, row, ui.robot), 'mode');
   fact(facts, 'preferred', speedWords(d.preferred), 'preferred');
   fact(facts, 'chosen', speedWords(d.chosen), 'chosen');

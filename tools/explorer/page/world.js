@@ -14,6 +14,7 @@ class Positions {
     this.run = run;
     this.x = new Float64Array(run.n);
     this.y = new Float64Array(run.n);
+    this.heading = new Float64Array(run.n);  // radians, of robots on wheels
     this.row = 0;
   }
   at(t) {
@@ -24,6 +25,10 @@ class Positions {
     for (let i = 0; i < run.n; ++i) {
       this.x[i] = ((1 - f) * xs[a + i] + f * xs[b + i]) * run.scale;
       this.y[i] = ((1 - f) * ys[a + i] + f * ys[b + i]) * run.scale;
+    }
+    for (let i = 0; i < run.n && run.columns['heading']; ++i) {
+      const turn = run.heading(next, i) - run.heading(row, i);
+      this.heading[i] = run.heading(row, i) + f * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
     }
     this.row = row;
     return this;
@@ -279,14 +284,32 @@ function drawCrowd(ctx, view, colours, run, positions) {
   }
 }
 
+// Within its disc: the body's disc about the axle, both wheels, and a line from the axle to the reference point.
+function drawOnWheels(ctx, view, colours, wheels, positions, i) {
+  const c = Math.cos(positions.heading[i]), s = Math.sin(positions.heading[i]);
+  const axle = [positions.x[i] - wheels.reference * c, positions.y[i] - wheels.reference * s];
+  const at = (ahead, left) => [view.px(axle[0] + ahead * c - left * s), view.py(axle[1] + ahead * s + left * c)];
+  const r = wheels.body_radius, half = wheels.wheel_separation / 2;
+  ctx.beginPath();
+  ctx.arc(...at(0, 0), r * view.scale, 0, 2 * Math.PI);
+  ctx.fill();
+  ctx.strokeStyle = colours.text;
+  ctx.lineWidth = Math.max(2, 0.2 * r * view.scale);
+  for (const left of [half, -half]) line(ctx, ...at(-r / 3, left), ...at(r / 3, left));
+  ctx.lineWidth = 1.6;
+  line(ctx, ...at(0, 0), ...at(wheels.reference, 0));
+}
+
 function drawRobot(ctx, view, colours, run, ui, positions, i) {
   const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale);
+  const wheels = run.robots[i].on_wheels;
   ctx.fillStyle = colourOf(colours, i);
-  ctx.globalAlpha = 0.85;
+  ctx.globalAlpha = wheels ? 0.3 : 0.85;
   ctx.beginPath();
   ctx.arc(x, y, r, 0, 2 * Math.PI);
   ctx.fill();
   ctx.globalAlpha = 1;
+  if (wheels) drawOnWheels(ctx, view, colours, wheels, positions, i);
   if (i === ui.robot) {
     ctx.strokeStyle = colours.selected;
     ctx.lineWidth = 2.5;

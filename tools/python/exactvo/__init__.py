@@ -28,7 +28,7 @@ from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError, ScenarioWarning
 from .explorer import ExplorerPage, view
 from .monitor import Monitor, MonitorVerdict, MonitorWitness
-from .navigator import Navigator, NavigatorDecision
+from .navigator import Navigator, NavigatorDecision, neighbours_on_wheels
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
 from .simulation import METHODS, OwnHalfPlane, Recording, RobotsNow, Scenario, read_recording, simulate
@@ -76,6 +76,7 @@ __all__ = [
     "free_velocities",
     "hull",
     "lp",
+    "neighbours_on_wheels",
     "obstacles",
     "read_recording",
     "routes",

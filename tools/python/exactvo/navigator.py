@@ -25,7 +25,7 @@ from .errors import ArgumentError
 from .shapes import Floats, Obstacles, Point, ShapeLike, _native_shape, obstacles as _obstacles
 from .simulation import RecordedHalfPlane, Scenario, _half_plane_of, _STATUSES
 
-__all__ = ["Navigator", "NavigatorDecision"]
+__all__ = ["Navigator", "NavigatorDecision", "neighbours_on_wheels"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,8 @@ class NavigatorDecision:
     side: int  #: 1 left, -1 right, 0 none: the side kept while blocked
     note: str  #: why a mode began or ended; empty otherwise
     half_planes: tuple[RecordedHalfPlane, ...]  #: those that bind, and those against what could be met within a step
+    twist: tuple[float, float]  #: of a robot on wheels: m/s forward and rad/s to the left, to hold until the next decision
+    wheels: tuple[float, float]  #: the same as speeds of the left and right wheel, m/s
 
 
 class Navigator:
@@ -59,7 +61,11 @@ class Navigator:
     arrival_tolerance   m: within this of the last goal it has arrived
     neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
-    braking_time        s, with an acceleration, the same of all: None: 1.1 max_speed / acceleration
+    braking_time        s, the same of all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
+                        max_wheel_acceleration
+    kinematics          two wheels on one axle, by the names of a scenario (docs/guide/wheels.md): {"wheel_separation": 0.16,
+                        "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}. `radius` is then that of the body about the
+                        centre of the axle, `max_speed` is not used, and goals are of the reference point
 
     Raises `ArgumentError`.
     """
@@ -84,6 +90,7 @@ class Navigator:
         neighbour_distance: float = 15.0,
         acceleration: float | None = None,
         braking_time: float | None = None,
+        kinematics: Mapping[str, Any] | None = None,
     ) -> None:
         self._native = _exactvo.navigator(
             goals,
@@ -101,6 +108,7 @@ class Navigator:
             neighbour_distance,
             acceleration,
             braking_time,
+            None if kinematics is None else _mapping(kinematics, "kinematics"),
         )
 
     @staticmethod
@@ -121,8 +129,10 @@ class Navigator:
         self,
         time: float,
         position: Point,
-        velocity: Point,
+        velocity: Point = (0.0, 0.0),
         *,
+        heading: float = 0.0,
+        wheels: Point = (0.0, 0.0),
         positions: npt.ArrayLike = (),
         velocities: npt.ArrayLike | None = None,
         radii: npt.ArrayLike = 0.5,
@@ -133,6 +143,8 @@ class Navigator:
     ) -> NavigatorDecision:
         """What to do from `time` (s) on, at `position` (m) with `velocity` (m/s). Releases the interpreter's lock.
 
+        heading, wheels  of a robot with `kinematics`: radians, and the speeds of its left and right wheel since the last
+                         decision, m/s. `position` is then the centre of its axle, and `velocity` is not used
         positions   n x 2, m, of the neighbours; none by default
         velocities  n x 2, m/s; at rest by default
         radii       m, one for all neighbours or one for each; so `max_speeds` (m/s) and `cooperate` (False: it does not give
@@ -150,6 +162,8 @@ class Navigator:
             time,
             position,
             velocity,
+            heading,
+            wheels,
             listed,
             at,
             np.zeros((count, 2)) if velocities is None else velocities,
@@ -158,7 +172,7 @@ class Navigator:
             _one_each(cooperate, count, "cooperate"),
             [(_native_shape(shape, "bodies"), moves) for shape, moves in _pairs(bodies)],
         )
-        chosen, preferred, status, violation, uncertified, mode, side, note, half_planes = fields
+        chosen, preferred, status, violation, uncertified, mode, side, note, half_planes, twist, speeds = fields
         return NavigatorDecision(
             np.array(chosen),
             np.array(preferred),
@@ -169,6 +183,8 @@ class Navigator:
             side,
             note,
             tuple(_half_plane_of(h) for h in half_planes),
+            twist,
+            speeds,
         )
 
     @property
@@ -183,6 +199,49 @@ class Navigator:
 
     def __repr__(self) -> str:
         return f"Navigator(goal {self.goal}{', arrived' if self.has_arrived else ''})"
+
+
+def neighbours_on_wheels(
+    positions: npt.ArrayLike,
+    headings: npt.ArrayLike,
+    wheels: npt.ArrayLike,
+    *,
+    kinematics: Mapping[str, Any],
+    radius: float,
+    time_step: float = 0.05,
+) -> dict[str, Any]:
+    """Other robots on wheels, all of one kind, as arguments of `Navigator.decide`:
+    ``decide(..., **neighbours_on_wheels(...))``. Their reference points keep clear, each with a disc that holds the body.
+
+    positions   n x 2, m, of the centres of their axles
+    headings    n, radians
+    wheels      n x 2, m/s: the left and right wheel of each since the last decision
+    kinematics, radius, time_step  as of a `Navigator`
+
+    Raises `ArgumentError`."""
+    at, towards, speeds = _numbers(positions, "positions", 2), _numbers(headings, "headings", 1), _numbers(wheels, "wheels", 2)
+    if not len(at) == len(towards) == len(speeds):
+        raise ArgumentError("headings", f"{len(towards)} and wheels {len(speeds)}", f"one for each of {len(at)} positions")
+    drive = _mapping(kinematics, "kinematics")
+    seen = [_exactvo.neighbour_on_wheels(p, h, w, drive, radius, time_step) for p, h, w in zip(at, towards, speeds)]
+    return {
+        "positions": np.array([s[0] for s in seen]).reshape(-1, 2),
+        "velocities": np.array([s[1] for s in seen]).reshape(-1, 2),
+        "radii": np.array([s[2] for s in seen]),
+        "max_speeds": np.array([s[3] for s in seen]),
+    }
+
+
+def _numbers(value: Any, name: str, width: int) -> Floats:
+    """A list of rows of numbers, or of single ones where `width` is 1."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(())
+    shape = array.shape[1:] if array.size or array.ndim != 1 else (width,) * (width > 1)
+    if array.ndim == 0 or shape != (width,) * (width > 1):
+        raise ArgumentError(name, repr(value)[:60], f"rows of {width} numbers" if width > 1 else "numbers")
+    return array.reshape((-1, width) if width > 1 else -1)
 
 
 def _whole(value: Any, name: str) -> int:

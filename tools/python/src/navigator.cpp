@@ -38,15 +38,48 @@ void take_numbers(const py::dict& given, const char* name, Struct& out,
   }
 }
 
+/// What stands in `kinematics` of a scenario, but for its type; `radius`: m, of the body about the axle.
+formation::DifferentialDrive drive_of(const py::dict& kinematics, double radius) {
+  using Drive = formation::DifferentialDrive;
+  Drive drive;
+  py::dict numbers;
+  for (const auto& [key, value] : kinematics)
+    if (const std::string word = py::str(key); word != "type")
+      numbers[key] = value;
+    else
+      require_word(py::str(value), "kinematics", {"differential"});
+  take_numbers<Drive>(numbers, "kinematics", drive,
+                      {{"wheel_separation", &Drive::wheel_separation},
+                       {"max_wheel_speed", &Drive::max_wheel_speed},
+                       {"max_wheel_acceleration", &Drive::max_wheel_acceleration},
+                       {"max_angular_speed", &Drive::max_angular_speed},
+                       {"max_backward_speed", &Drive::max_backward_speed},
+                       {"reference", &Drive::reference}});
+  for (const auto& [name, number] : {std::pair{"wheel_separation", drive.wheel_separation},
+                                     {"max_wheel_speed", drive.max_wheel_speed},
+                                     {"max_wheel_acceleration", drive.max_wheel_acceleration}})
+    if (!(number > 0.0)) throw ArgumentError(name, std::to_string(number), "a number above 0");
+  if (drive.reference == 0.0) drive.reference = 0.5 * drive.wheel_separation;
+  drive.body_radius = radius;
+  return drive;
+}
+
+/// `heading`: radians.
+formation::OnWheels on_wheels(py::handle heading, py::handle wheels) {
+  const double angle = finite(heading, "heading");
+  const Vec2 speeds = vector(wheels, "wheels");
+  return {{std::cos(angle), std::sin(angle)}, {speeds.x, speeds.y}};
+}
+
 /// A navigator for one thread at a time: another that calls meanwhile, while the interpreter's lock is released, is
 /// refused.
 class PythonNavigator {
  public:
   PythonNavigator(const NavigatorSetup& setup, std::vector<Vec2> goals) : navigator_(setup, std::move(goals)) {}
 
-  py::tuple decide(py::handle time, py::handle position, py::handle velocity, const std::vector<std::size_t>& ids,
-                   py::handle positions, py::handle velocities, py::handle radii, py::handle max_speeds,
-                   py::handle cooperate, const py::list& bodies) {
+  py::tuple decide(py::handle time, py::handle position, py::handle velocity, py::handle heading, py::handle wheels,
+                   const std::vector<std::size_t>& ids, py::handle positions, py::handle velocities, py::handle radii,
+                   py::handle max_speeds, py::handle cooperate, const py::list& bodies) {
     if (busy_.exchange(true))
       throw ArgumentError("navigator", "a navigator that another thread is using", "one thread at a time for each");
     struct Free {
@@ -54,7 +87,7 @@ class PythonNavigator {
       ~Free() { busy = false; }
     } const free{busy_};
     const formation::NavigatorState now{finite(time, "time"), vector(position, "position"),
-                                        vector(velocity, "velocity")};
+                                        vector(velocity, "velocity"), on_wheels(heading, wheels)};
     take_neighbours(ids, positions, velocities, radii, max_speeds, cooperate);
     moving_.clear();
     for (const py::handle body : bodies) {
@@ -62,8 +95,11 @@ class PythonNavigator {
       moving_.push_back({convex_shape(fields[0], "bodies"), vector(fields[1], "bodies")});
     }
     const formation::Decision& d = *without_gil([&] { return &navigator_.decide(now, neighbours_, moving_); });
+    const formation::Twist twist = navigator_.twist();
     return py::make_tuple(as_tuple(d.chosen), as_tuple(d.preferred), static_cast<int>(d.status), d.violation,
-                          d.uncertified, std::string(formation::name(d.mode)), d.side, d.note, constraints());
+                          d.uncertified, std::string(formation::name(d.mode)), d.side, d.note, constraints(),
+                          py::make_tuple(twist.linear, twist.angular),
+                          py::make_tuple(twist.wheels.left, twist.wheels.right));
   }
 
   void set_goals(std::vector<Vec2> goals) { navigator_.set_goals(std::move(goals)); }
@@ -109,7 +145,7 @@ std::unique_ptr<PythonNavigator> navigator(py::handle goals, const Obstacles& ob
                                            const std::string& method, const std::string& speed_bound,
                                            const py::dict& horizons, const py::dict& margins, py::handle time_step,
                                            py::handle arrival_tolerance, py::handle neighbour_distance,
-                                           py::handle acceleration, py::handle braking_time) {
+                                           py::handle acceleration, py::handle braking_time, py::handle kinematics) {
   NavigatorSetup setup;
   setup.radius = positive(radius, "radius");
   setup.max_speed = positive(max_speed, "max_speed");
@@ -134,7 +170,16 @@ std::unique_ptr<PythonNavigator> navigator(py::handle goals, const Obstacles& ob
   setup.neighbour_distance = positive(neighbour_distance, "neighbour_distance");
   if (!acceleration.is_none()) setup.acceleration = positive(acceleration, "acceleration");
   if (!braking_time.is_none()) setup.braking_time = positive(braking_time, "braking_time");
+  if (!kinematics.is_none()) setup.drive = drive_of(py::cast<py::dict>(kinematics), setup.radius);
   return std::make_unique<PythonNavigator>(setup, points(goals, "goals"));
+}
+
+py::tuple neighbour_on_wheels(py::handle position, py::handle heading, py::handle wheels, const py::dict& kinematics,
+                              py::handle radius, py::handle time_step) {
+  const formation::Neighbour seen = formation::neighbour_on_wheels(
+      0, drive_of(kinematics, positive(radius, "radius")), positive(time_step, "time_step"),
+      vector(position, "positions"), on_wheels(heading, wheels));
+  return py::make_tuple(as_tuple(seen.position), as_tuple(seen.velocity), seen.radius, seen.max_speed);
 }
 
 std::unique_ptr<PythonNavigator> navigator_of(const datasets::LoadedScenario& loaded, std::size_t robot,
@@ -161,6 +206,7 @@ void bind_navigator(py::module_& module) {
       .def("has_arrived", &PythonNavigator::has_arrived);
   module.def("navigator", &navigator);
   module.def("navigator_of", &navigator_of);
+  module.def("neighbour_on_wheels", &neighbour_on_wheels);
 }
 
 }  // namespace exactvo::python

@@ -21,6 +21,9 @@
 /// the second, which takes the velocity nearest to it that leaves every robot its way to brake (guide, accelerations).
 /// That one is never relaxed while all robots decide so; where data were wrong it may be.
 ///
+/// With a drive the robot has two wheels: its pose and its wheels go in, the twist to hold comes out (guide, wheels).
+/// Half-planes are then about its reference point, and so is what other robots know of it (`neighbour_on_wheels`).
+///
 /// See also: simulation.h runs scenarios, crowd.h is for very many robots, vo/constraint.h is one half-plane by
 /// itself.
 
@@ -40,8 +43,8 @@ namespace exactvo::formation {
 
 /// The robot, and what does not change while it drives. The fields that a Robot or a Scenario has too mean the same.
 struct NavigatorSetup {
-  double radius = 0.5;                                ///< m, > 0
-  double max_speed = 3.0;                             ///< m/s, > 0
+  double radius = 0.5;                                ///< m, > 0; not used with a drive
+  double max_speed = 3.0;                             ///< m/s, > 0; not used with a drive
   bool cooperates = true;                             ///< false: it ignores its neighbours
   std::size_t id = 0;                                 ///< its number among robots; settles ties
   std::vector<SceneObstacle> obstacles;               ///< what stands still
@@ -55,7 +58,12 @@ struct NavigatorSetup {
   /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
   /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
   std::optional<double> acceleration = {};
-  std::optional<double> braking_time = {};  ///< s, with an acceleration: as of a Scenario; else the usual one
+  /// s: as of a Scenario; by default the usual one with an acceleration or a drive. Given without either, the velocity
+  /// jumps, and half-planes are those that robots which brake rely on.
+  std::optional<double> braking_time = {};
+  /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
+  /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds.
+  std::optional<DifferentialDrive> drive = {};
   std::size_t neighbours = 32;  ///< memory is there from the beginning for so many neighbours and moving bodies
 };
 
@@ -66,8 +74,17 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
 /// Where the robot is.
 struct NavigatorState {
   double time = 0.0;  ///< s, by any clock that does not go back
-  Vec2 position;      ///< m
-  Vec2 velocity;      ///< m/s
+  Vec2 position;      ///< m; with a drive of the axle's centre
+  Vec2 velocity;      ///< m/s; not used with a drive
+  OnWheels wheels{};  ///< with a drive: where it heads, of length 1 within 1e-6, and how its wheels ran since the last
+                      ///< decision, 0 at rest
+};
+
+/// What a drive is to hold until the next decision: `cmd_vel`, or the speeds of its wheels.
+struct Twist {
+  double linear = 0.0;   ///< m/s, of the axle's centre, > 0 forward
+  double angular = 0.0;  ///< rad/s, > 0 to the left
+  WheelSpeeds wheels{};
 };
 
 /// Another robot.
@@ -79,6 +96,10 @@ struct Neighbour {
   double max_speed = 3.0;  ///< m/s, > 0
   bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole responsibility
 };
+
+/// A robot on wheels as others have to know it: its reference point, with a disc that holds the body. `axle`: m.
+Neighbour neighbour_on_wheels(std::size_t id, const DifferentialDrive& drive, double time_step, Vec2 axle,
+                              const OnWheels& wheels);
 
 /// Something else that moves: nobody expects it to yield.
 struct MovingBody {
@@ -139,6 +160,9 @@ class Navigator {
                          const std::vector<MovingBody>& moving = {});
 
   // Of the last decision, or before any of none:
+
+  /// With a drive: takes the reference point on by `chosen` times the time step, and keeps the limits of the wheels.
+  Twist twist() const;
 
   /// The half-planes that bind, with their multipliers, and those against what could be met within a step: with
   /// `Decision::bound` the proof of the choice. `body` is a number of `bodies`.

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robots on wheels in the program: the page docs/guide/wheels.md as it stands there, the scenes of
+// datasets/data/robots.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The blocks of code of the page, without their fences.
+std::vector<std::string> blocks_of_the_page() {
+  std::ifstream page(EXACTVO_SOURCE_DIR "/docs/guide/wheels.md");
+  std::vector<std::string> blocks;
+  bool is_inside = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("```", 0) == 0) {
+      is_inside = !is_inside;
+      if (is_inside) blocks.emplace_back();
+    } else if (is_inside) {
+      blocks.back() += line + "\n";
+    }
+  }
+  return blocks;
+}
+
+const std::string& burgers() {
+  static const std::string text = blocks_of_the_page().at(0);
+  return text;
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(WheelsPage, ItsScenarioAndCommandsRunAsTheyStand) {
+  const Workplace here;
+  here.write("burgers.json", burgers());
+  std::istringstream commands(blocks_of_the_page().at(1));
+  std::size_t ran = 0;
+  for (std::string line; std::getline(commands, line); ++ran) {
+    ASSERT_EQ(line.rfind("exactvo ", 0), 0u) << line;
+    const Outcome outcome = here.run(line.substr(8));
+    EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
+    const auto names = [&](const char* verb) { return line.find(verb) != std::string::npos; };
+    if (names("simulate")) {
+      EXPECT_THAT(outcome.out, HasSubstr("all robots arrived"));
+    } else if (names("audit")) {
+      EXPECT_THAT(outcome.out, AllOf(HasSubstr("wheels and headings follow from choices: "), HasSubstr("0 collisions"),
+                                     Not(HasSubstr("refuted")), Not(HasSubstr("left open"))));
+    } else if (names("explain")) {
+      EXPECT_THAT(outcome.out, AllOf(HasSubstr("wheels of robot R1"), HasSubstr("heading "), HasSubstr("left wheel ")));
+    }
+  }
+  EXPECT_GE(ran, 4u);
+  for (const char* file : {"recording.jsonl", "trajectory.csv", "explorer.html", "figures/paths.svg"})
+    EXPECT_TRUE(here.has(std::string("out/burgers/") + file)) << file;
+  EXPECT_THAT(here.read("out/burgers/trajectory.csv"), HasSubstr("heading_x,heading_y,left_wheel_m_s,right_wheel_m_s"));
+}
+
+TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
+  const Workplace here;
+  std::size_t scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(data_file("robots"))) {
+    if (entry.path().extension() != ".json") continue;
+    ++scenes;
+    const std::string name = entry.path().stem().string();
+    const Outcome run = here.run("simulate " + entry.path().string() + " --no-figures --out " + name);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(run.out, AllOf(HasSubstr("all robots arrived"), HasSubstr(", 0 relaxed"))) << name;
+    EXPECT_THAT(run.err, HasSubstr("joint plans rely on robots that can stand at once"));
+    const Outcome audit = here.run("audit " + name + " --scenario " + entry.path().string() + " --json");
+    EXPECT_EQ(audit.status, 0) << audit.out;
+    const nlohmann::json points = nlohmann::json::parse(audit.out).at("points");
+    for (const char* point : {"kinematics", "braking", "motions", "choices", "half_planes"}) {
+      EXPECT_GT(points.at(point).at("proven"), 100) << name << " " << point;
+      EXPECT_EQ(points.at(point).at("asked"), points.at(point).at("proven")) << name << " " << point;
+    }
+  }
+  EXPECT_GE(scenes, 4u);
+}
+
+/// The drawing has each body, and the page its headings.
+TEST(WheelsVerb, FiguresAndPagesShowBodiesAndHeadings) {
+  const Workplace here;
+  here.write("burgers.json", burgers());
+  ASSERT_EQ(here.run("simulate burgers.json --out run").status, 0);
+  const std::string drawn = here.read("run/figures/paths.dat"), bodies = "bodies of R1\n# x [m], y [m]\n";
+  const std::size_t at = drawn.find(bodies);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_NE(drawn.compare(at + bodies.size(), 3, "NaN"), 0) << "no body is drawn";
+  EXPECT_EQ(here.run("draw run").status, 0);
+  EXPECT_EQ(here.run("view run --out page.html").status, 0);
+  EXPECT_THAT(here.read("page.html"), HasSubstr("drawOnWheels"));
+}
+
+TEST(WheelsVerb, RunsThatCannotKeepThePromiseAreRefused) {
+  const Workplace here;
+  here.write("burgers.json", burgers());
+  EXPECT_THAT(here.run("simulate burgers.json --method hrvo").err, HasSubstr("with robots on wheels"));
+  const Outcome none = here.run("simulate burgers.json --decisions none --record a.evr");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("/robots/0/kinematics"));
+}
+
+struct BadWheels {
+  const char* from;
+  const char* to;
+  const char* pointer;
+  const char* code;
+  const char* advice;
+};
+
+void PrintTo(const BadWheels& bad, std::ostream* out) {
+  *out << bad.pointer << " " << bad.code;
+}
+
+class RefusedWheels : public testing::TestWithParam<BadWheels> {};
+
+TEST_P(RefusedWheels, SaysWhatToChange) {
+  const BadWheels& bad = GetParam();
+  const Workplace here;
+  here.write("bad.json", with(burgers(), bad.from, bad.to));
+  for (const char* verb : {"simulate bad.json --out out", "validate bad.json"}) {
+    const Outcome outcome = here.run(verb);
+    EXPECT_NE(outcome.status, 0) << verb;
+    EXPECT_THAT(outcome.err + outcome.out,
+                AllOf(HasSubstr("bad.json"), HasSubstr(bad.pointer), HasSubstr(bad.code), HasSubstr(bad.advice)))
+        << verb;
+  }
+  EXPECT_FALSE(here.has("out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Wheels, RefusedWheels,
+    testing::Values(
+        BadWheels{"\"time_limit\": 60", "\"time_limit\": 60, \"braking_time\": 0.2", "/braking_time", "E_SCENARIO",
+                  "more than the fastest robot needs to stop"},
+        BadWheels{"\"time_limit\": 60", "\"time_limit\": 60, \"horizons\": {\"robots\": 0.1}", "/horizons/robots",
+                  "E_SCENARIO", "needs to stop"},
+        BadWheels{"\"time_limit\": 60", "\"time_limit\": 60, \"time_step\": 0.5, \"horizons\": {\"least\": 1}",
+                  "/robots/0/kinematics/reference", "E_SCENARIO", "more than a step of max_wheel_speed"},
+        BadWheels{"\"heading\": 180", "\"heading\": \"west\"", "/robots/1/heading", "E_TYPE", "number"},
+        BadWheels{"\"heading\": 180", "\"heading\": 1e300", "/robots/1/heading", "E_RANGE", "1000000"},
+        BadWheels{"\"wheel_separation\": 0.16", "\"wheel_axis\": 0.16", "/robots/0/kinematics", "E_KEY_UNKNOWN",
+                  "wheel_separation"},
+        BadWheels{"\"radius\": 0.105", "\"radius\": 0", "/robots/0/radius", "E_RANGE", "0"},
+        BadWheels{"\"position\": [2, 0.1]", "\"position\": [0.3, 0.1]", "/robots/1/position", "E_SCENARIO", "overlap"},
+        BadWheels{"\"differential\"", "\"ackermann\"", "/robots/0/kinematics/type", "E_OPTION", "differential"}));
+
+}  // namespace
+}  // namespace exactvo::test
