@@ -11,6 +11,7 @@
 #include <iterator>
 #include <utility>
 
+#include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/datasets/trajectory_file.h"
 #include "exactvo/formation/crowd_run.h"
@@ -71,6 +72,27 @@ std::pair<std::size_t, bool> rows_of(const std::filesystem::path& path) {
   return {rows, reader.is_cut_off()};
 }
 
+/// How many findings have these words.
+std::size_t found(const AuditReport& audit, const std::string& words) {
+  return static_cast<std::size_t>(std::count_if(audit.findings.begin(), audit.findings.end(), [&](const auto& finding) {
+    return finding.find(words) != std::string::npos;
+  }));
+}
+
+/// Whether the robot of "row 7: R overlaps ..." kept its half-planes from that row to the next.
+bool was_kept(const std::filesystem::path& path, const std::string& finding) {
+  std::size_t colon = 0;
+  const std::size_t from = std::stoul(finding.substr(4), &colon);
+  const std::size_t begin = 4 + colon + 2;
+  const std::string id = finding.substr(begin, finding.find(' ', begin) - begin);
+  CrowdRecordingReader reader(path);
+  CrowdRow row;
+  for (std::size_t k = 0; k <= from + 1; ++k) EXPECT_TRUE(reader.next(row));
+  std::size_t robot = 0;
+  while (reader.head().name_of(robot) != id) ++robot;
+  return row.kept[robot] != 0;
+}
+
 /// Keeps what a run shows.
 struct Kept : formation::RunSink {
   void add_state(const formation::RunState& now) override {
@@ -124,9 +146,12 @@ TEST_F(CrowdRecordings, MovingObstaclesGoAlongTheirPathsAndAnAuditJudgesThem) {
         EXPECT_NEAR(q * static_cast<double>(row.body_x[k]), at.x, 0.51 * q) << row.step;
         EXPECT_NEAR(q * static_cast<double>(row.body_y[k]), at.y, 0.51 * q) << row.step;
       }
-    const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
-    EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
-    EXPECT_GT(audit.near_bodies, 20U);
+    const AuditReport audit = audit_recording(folder_ / "c.evr");
+    EXPECT_EQ(audit.moving_questions, 2 * audit.steps);
+    EXPECT_EQ(audit[AuditPoint::sequence].refuted + audit.unproven, 0U);
+    EXPECT_GT(audit.collisions, 0U) << "robots that others hem in are run over";
+    EXPECT_EQ(found(audit, " overlaps moving obstacle "), audit.findings.size());
+    for (const std::string& finding : audit.findings) EXPECT_FALSE(was_kept(folder_ / "c.evr", finding)) << finding;
   }
   const RunReport one = record(scenario, 1), two = record(scenario, 1, 2);
   EXPECT_EQ(one.digest, two.digest);
@@ -146,9 +171,10 @@ TEST_F(CrowdRecordings, DiscsAreBodiesAndAnAuditJudgesThem) {
   EXPECT_EQ(std::get<geometry::Disc>(reader.head().bodies[0].shape).radius, 1.5);
   EXPECT_EQ(std::get<geometry::Disc>(reader.head().bodies[1].shape).radius, 0.75);
   EXPECT_EQ(reader.head().edges.size(), 1U) << "those of the wall";
-  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
   EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
-  EXPECT_GT(audit.near_bodies, 20U);
+  EXPECT_EQ(audit.moving_questions, audit.steps);
+  EXPECT_EQ(audit.obstacle_questions, 2 * audit.steps);
 }
 
 TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
@@ -156,16 +182,17 @@ TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
   EXPECT_GT(run.relaxed, 0U);
   EXPECT_GT(run.cut_short, 0U);
   EXPECT_EQ(run.overlapping, 0U);
-  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
   EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
   EXPECT_EQ(audit.rows, run.steps + 1);
-  EXPECT_EQ(audit.motions, run.steps * 120);
-  EXPECT_GT(audit.pairs, 1000U);
-  EXPECT_GT(audit.near_edges, 100U);
-  const CrowdAuditReport some = audit_crowd_recording(folder_ / "c.evr", 2000);
+  EXPECT_EQ(audit.steps, run.steps * 120);
+  EXPECT_EQ(audit[AuditPoint::sequence].proven, run.steps * 120);
+  EXPECT_EQ(audit.robot_questions, run.steps * 120 * 119);
+  EXPECT_EQ(audit.obstacle_questions, run.steps * 120 * 2) << "the block, and the wall";
+  const AuditReport some = audit_recording(folder_ / "c.evr", nullptr, 2000);
   EXPECT_TRUE(some.clean());
-  EXPECT_GT(some.motions, 1000U);
-  EXPECT_LT(some.motions, 4000U);
+  EXPECT_GT(some.steps, 1000U);
+  EXPECT_LT(some.steps, 4000U);
 }
 
 /// The state of a crowd that no run has made.
@@ -207,12 +234,11 @@ TEST_F(CrowdRecordings, AnAuditFindsOverlapsSpeedAndWalls) {
   Moved sink(recorder);
   run_crowd(scenario, {}, &sink);
   recorder.finish();
-  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
-  EXPECT_GT(audit.too_fast, 0U);
-  EXPECT_GT(audit.pairs_met, 0U);
-  EXPECT_GT(audit.edges_met, 0U);
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
   EXPECT_FALSE(audit.clean());
-  EXPECT_FALSE(audit.findings.empty());
+  EXPECT_GT(found(audit, "b moves 0.1"), 0U) << "too fast";
+  EXPECT_GT(found(audit, "a overlaps robot 'b'"), 0U);
+  EXPECT_GT(found(audit, "overlaps obstacle 'wall 1'"), 0U);
 }
 
 /// Two robots that are where they are put, with marks as if they had kept everything.
@@ -231,7 +257,7 @@ struct Put : formation::RunSink {
 class PutRobots : public CrowdRecordings {
  protected:
   /// A wall at x = 2, robots of radius 0.5.
-  CrowdAuditReport audit_of(const Put::Places& places, std::uint32_t every = 1) {
+  AuditReport audit_of(const Put::Places& places, std::uint32_t every = 1) {
     const Scenario scenario = parse_scenario(R"({"name": "two", "time_step": 0.25, "time_limit": 5, "guidance": "none",
         "horizons": {"least": 0.5}, "obstacles": [{"polyline": [[2, -3], [2, 3]]}],
         "robots": [{"id": "a", "position": [0, 0], "goal": [-300, 0], "max_speed": 20},
@@ -241,55 +267,50 @@ class PutRobots : public CrowdRecordings {
     Put sink(recorder, places);
     run_crowd(scenario, {}, &sink);
     recorder.finish();
-    return audit_crowd_recording(folder_ / "c.evr");
+    return audit_recording(folder_ / "c.evr");
   }
 };
 
 TEST_F(PutRobots, AnOverlapFailsWhateverWasPromised) {
   for (const std::uint32_t every : {1U, 4U}) {
-    const CrowdAuditReport stay = audit_of([](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.2, 0}); }, every);
-    EXPECT_GT(stay.pairs_overlapping, 2U);
+    const AuditReport stay = audit_of([](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.2, 0}); }, every);
+    EXPECT_GT(stay.collisions, 2U);
     EXPECT_FALSE(stay.clean());
-    ASSERT_FALSE(stay.findings.empty());
-    EXPECT_NE(stay.findings.back().find("overlaps robot b already at the row before"), std::string::npos);
+    EXPECT_GT(found(stay, "b overlaps robot 'a'"), 2U);
   }
   // In turns overlapping and apart.
-  const CrowdAuditReport turns = audit_of([](double k) {
+  const AuditReport turns = audit_of([](double k) {
     return std::pair(Vec2{-5, 0}, Vec2{std::fmod(k, 2.0) > 0.0 ? -4.2 : -3.9, 0});
   });
-  EXPECT_GT(turns.pairs_overlapping, 5U);
-  EXPECT_GT(turns.pairs_met, 5U);
+  EXPECT_GT(turns.collisions, 10U);
 }
 
 TEST_F(PutRobots, ExactContactIsClear) {
   for (const double gap : {0.0, -0x1p-18, 0x1p-18}) {
-    const CrowdAuditReport audit = audit_of([&](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.0 + gap, 0}); });
-    EXPECT_GT(audit.pairs, gap > 0.0 ? 0U : 2U);  // one step of the lattice apart they are not near
-    EXPECT_EQ(audit.pairs_overlapping + audit.pairs_met > 0, gap < 0.0) << gap;
+    const AuditReport audit = audit_of([&](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.0 + gap, 0}); });
+    EXPECT_GT(audit.robot_questions, 2U);
+    EXPECT_EQ(found(audit, "overlaps robot") > 0, gap < 0.0) << gap;
   }
 }
 
 TEST_F(PutRobots, AnAuditFindsRobotsThatComeNearerToAnEdgeThatTheyTouched) {
   for (const std::uint32_t every : {1U, 4U}) {
     const auto far = [](double x) { return std::pair(Vec2{x, 0}, Vec2{30, 0}); };
-    const CrowdAuditReport nearer = audit_of([&](double k) { return far(1.7 + 0.01 * k); }, every);
-    EXPECT_GT(nearer.edges_neared, 2U);
+    const AuditReport nearer = audit_of([&](double k) { return far(1.7 + 0.01 * k); }, every);
+    EXPECT_GT(found(nearer, "a overlaps obstacle 'wall 1'"), 2U);
     EXPECT_FALSE(nearer.clean());
-    EXPECT_NE(nearer.findings.back().find("comes nearer to edge 0, which it touched"), std::string::npos);
-    const CrowdAuditReport rests = audit_of([&](double) { return far(1.7); }, every);
-    EXPECT_GT(rests.touching_edges, 3U);
-    EXPECT_EQ(rests.edges_neared, 0U);
-    const CrowdAuditReport leaves = audit_of([&](double k) { return far(1.7 - 0.01 * k); }, every);
-    EXPECT_GT(leaves.touching_edges, 3U);
-    EXPECT_EQ(leaves.edges_neared, 0U);
-    const CrowdAuditReport on_it = audit_of([&](double) { return far(2.0); }, every);
-    EXPECT_GT(on_it.touching_edges_open, 3U);
+    const AuditReport rests = audit_of([&](double) { return far(1.7); }, every);
+    EXPECT_EQ(found(rests, "'wall 1'"), 1U) << "the step that leads there: " << rests.findings.front();
+    const AuditReport leaves = audit_of([&](double k) { return far(1.7 - 0.01 * k); }, every);
+    EXPECT_EQ(found(leaves, "'wall 1'"), 1U);
+    const AuditReport on_it = audit_of([&](double) { return far(2.0); }, every);
+    EXPECT_GT(on_it.unproven, 3U);
   }
 }
 
 /// A disc of 1 m at (0, 0) that rests, one at (9, 0) that may move, and a robot of 0.5 m that is put anywhere, with
 /// marks as if it had kept everything.
-CrowdAuditReport audit_beside_bodies(const std::filesystem::path& path, const std::function<Vec2(double)>& place) {
+AuditReport audit_beside_bodies(const std::filesystem::path& path, const std::function<Vec2(double)>& place) {
   const auto crowd_at = [&](double radius, std::size_t step) {
     formation::Crowd crowd;
     crowd.add_kind({radius, 20.0, 5.0, 15.0, 10});
@@ -304,7 +325,7 @@ CrowdAuditReport audit_beside_bodies(const std::filesystem::path& path, const st
   add_state_of(crowd_at(0.5, 0), 0, recorder);
   for (std::size_t step = 1; step <= 10; ++step) add_state_of(crowd_at(0.01, step), step, recorder);  // touches nothing
   recorder.finish();
-  return audit_crowd_recording(path);
+  return audit_recording(path);
 }
 
 TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
@@ -312,21 +333,16 @@ TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
   const auto along_x = [&](double from, double by) {
     return audit_beside_bodies(path, [=](double k) { return Vec2{from + by * k, 0.0}; });
   };
-  const CrowdAuditReport through = audit_beside_bodies(path, [](double k) { return Vec2{0.0, -3.0 + 0.49 * k}; });
-  EXPECT_EQ(through.bodies_met, 1U);
-  EXPECT_GT(through.bodies_not_parted, 0U);
-  EXPECT_FALSE(through.clean());
-  const CrowdAuditReport nearer = along_x(1.4, -0.01), rests = along_x(1.4, 0.0), leaves = along_x(1.3, 0.01);
-  EXPECT_GT(nearer.bodies_not_parted, 5U);
-  EXPECT_NE(nearer.findings.back().find("comes nearer to body 0, which it touched"), std::string::npos);
-  EXPECT_GT(rests.touching_bodies, 5U);
-  EXPECT_EQ(rests.bodies_not_parted, 0U) << rests.findings.front();
-  EXPECT_EQ(leaves.bodies_not_parted, 0U) << leaves.findings.front();
-  const CrowdAuditReport still_there = along_x(7.6, 0.0), apart = along_x(7.4, 0.0);
-  EXPECT_GT(still_there.bodies_not_parted, 5U);
-  EXPECT_NE(still_there.findings.back().find("touched body 1, and still overlaps it"), std::string::npos);
+  const AuditReport through = audit_beside_bodies(path, [](double k) { return Vec2{0.0, -3.0 + 0.49 * k}; });
+  EXPECT_GT(through.collisions, 1U);
+  EXPECT_GT(found(through, "#1 overlaps obstacle 'body 1'"), 1U);
+  const AuditReport nearer = along_x(1.4, -0.01), rests = along_x(1.4, 0.0), leaves = along_x(1.3, 0.01);
+  EXPECT_GT(found(nearer, "#1 overlaps obstacle 'body 1'"), 5U);
+  EXPECT_EQ(rests.collisions, 0U) << rests.findings.front();
+  EXPECT_EQ(leaves.collisions, 0U) << leaves.findings.front();
+  const AuditReport still_there = along_x(7.6, 0.0), apart = along_x(7.4, 0.0);
+  EXPECT_GT(found(still_there, "#1 overlaps moving obstacle 'body 2'"), 5U);
   EXPECT_TRUE(apart.clean());
-  EXPECT_EQ(apart.touching_bodies, 0U);
 }
 
 TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {
@@ -381,12 +397,11 @@ TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefus
   }
   expect_refusal(refusal_of([&] { rows_of(put("longer.evr", whole + "x")); }), DataCode::format_syntax,
                  "byte " + std::to_string(whole.size() - 16));
-  expect_refusal(refusal_of([&] { audit_crowd_recording(put("head.evr", whole.substr(0, 40))); }),
-                 DataCode::format_syntax, "byte 24");
-  expect_refusal(refusal_of([&] { audit_crowd_recording(folder_ / "none.evr"); }), DataCode::file_missing, "");
-  expect_refusal(refusal_of([&] { audit_crowd_recording(put("short.evr", "EXA")); }), DataCode::format_syntax,
-                 "byte 0");
-  const DataError empty = refusal_of([&] { audit_crowd_recording(put("empty.evr", "")); });
+  expect_refusal(refusal_of([&] { audit_recording(put("head.evr", whole.substr(0, 40))); }), DataCode::format_syntax,
+                 "byte 24");
+  expect_refusal(refusal_of([&] { audit_recording(folder_ / "none.evr"); }), DataCode::file_missing, "");
+  expect_refusal(refusal_of([&] { audit_recording(put("short.evr", "EXA")); }), DataCode::format_syntax, "byte 0");
+  const DataError empty = refusal_of([&] { audit_recording(put("empty.evr", "")); });
   EXPECT_EQ(empty.code(), DataCode::cut_off);
   EXPECT_EQ(empty.found(), "an empty file");
 }
@@ -417,6 +432,27 @@ std::uint64_t fnv1a(const std::string& bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   return hash;
+}
+
+TEST_F(CrowdRecordings, ABodyThatMovesAndIsSaidToRestIsRefuted) {
+  record(traffic(), 1);
+  const std::string whole = content_of(folder_ / "c.evr");
+  const std::size_t size = number_at(whole, 8);
+  std::string head = whole.substr(24, size);
+  // Name, three numbers, a kind, thirty robots, two edges, how many bodies there are.
+  const std::size_t moves = 4 + 7 + 8 + 8 + 4 + 4 + 16 + 4 + 30 * 2 + 4 + 2 * 32 + 4;
+  ASSERT_EQ(head.at(moves), 1);
+  head[moves] = 0;
+  const std::string first = whole.substr(0, 16) + in_bytes(fnv1a(head)) + head;
+  std::uint64_t sum = fnv1a(head);
+  std::size_t at = 24 + size;
+  for (; whole.at(at) == 'R'; at += 17 + number_at(whole, at + 1))
+    sum = fnv1a(in_bytes(sum) + in_bytes(number_at(whole, at + 9)));
+  const std::string seal = whole.substr(at + 17, 8) + in_bytes(sum);
+  const std::string forged =
+      first + whole.substr(24 + size, at - 24 - size) + "E" + in_bytes(seal.size()) + in_bytes(fnv1a(seal)) + seal;
+  const AuditReport audit = audit_recording(put("forged.evr", forged));
+  EXPECT_GT(found(audit, "body 1 has moved, and stands still"), 10U);
 }
 
 /// The same recording as an earlier version wrote it: the first `head_size` bytes of the head, and another mark.
@@ -493,7 +529,7 @@ TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {
     EXPECT_EQ(then.head().name_of(3), "#4");
     CrowdRow a, b;
     while (then.next(a) && now.next(b)) EXPECT_TRUE(a.x == b.x && a.y == b.y && a.kept == b.kept);
-    EXPECT_TRUE(audit_crowd_recording(old).clean());
+    EXPECT_TRUE(audit_recording(old).clean());
     AtomicFile table(folder_ / "old.csv");
     write_crowd_csv(old, table);
     table.commit();

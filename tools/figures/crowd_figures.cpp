@@ -28,10 +28,6 @@ constexpr std::size_t kMostPieces = 16;
 /// m: robots that stand in one place are seen in a view of this size.
 constexpr double kLeastView = 1.0;
 
-Vec2 place(const CrowdRow& row, const CrowdRecordingHead& head, std::size_t i) {
-  return {head.position_step * row.x[i], head.position_step * row.y[i]};
-}
-
 /// 1, 2 or 5 times a power of ten, not below.
 double round_size(double least) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -61,7 +57,7 @@ std::size_t look_over(const std::filesystem::path& recording, CrowdCourse& cours
   std::size_t rows = 0;
   for (; reader.next(row); ++rows) {
     course.duration = head.time_step * row.step;
-    for (std::size_t i = 0; i < course.robots; ++i) course.view.add(place(row, head, i));
+    for (std::size_t i = 0; i < course.robots; ++i) course.view.add(head.place(row, i));
   }
   course.cut_off = reader.is_cut_off();
   if (course.view.is_empty()) course.view.add(Vec2{});
@@ -284,12 +280,12 @@ CrowdCourse course_of(const std::filesystem::path& recording) {
   std::vector<double> speeds;
   for (std::size_t k = 0; k < rows && reader.next(now); ++k) {
     if (k % stride == 0 || k + 1 == rows)
-      for (std::size_t p = 0; p < course.paths.size(); ++p) course.paths[p].push_back(place(now, head, shown(p)));
+      for (std::size_t p = 0; p < course.paths.size(); ++p) course.paths[p].push_back(head.place(now, shown(p)));
     if (k > 0) {
       const double time = head.time_step * (now.step - before.step);
       speeds.clear();
       for (std::size_t i = 0; i < course.robots; ++i) {
-        const Vec2 from = place(before, head, i), to = place(now, head, i);
+        const Vec2 from = head.place(before, i), to = head.place(now, i);
         add_way(from, to, time, course.grid, course.cells);
         speeds.push_back(norm(to - from) / time);
       }

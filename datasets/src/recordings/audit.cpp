@@ -5,10 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
 #include "files/sha256.h"
+#include "generators/counter_random.h"
 #include "json/json_text.h"
 #include "recordings/audit_points.h"
 #include "recordings/recording_lines.h"
@@ -268,10 +270,8 @@ void drop_what_follows(std::size_t rows, const Step* last, formation::Recording&
   while (!run.plans.empty() && run.plans.back().row >= rows) run.plans.pop_back();
 }
 
-/// Of a recording that ends early, as `why` says.
-AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError& why) {
-  drop_what_follows(audit.rows(), audit.last_row(), run.recording);
-  AuditReport report = finished(audit.finish_early());
+/// Says of a recording that it ends early, as `why` has it.
+AuditReport audited_so_far(AuditReport report, const DataError& why) {
   PointCount all;
   for (const PointCount& point : report.points) add(all, point);
   const std::string found = "; audited so far: " + geometry::counted(report.rows, "row") + ", " +
@@ -282,7 +282,61 @@ AuditReport audited_so_far(RunAudit& audit, RecordingFile& run, const DataError&
   return report;
 }
 
+/// Robots and moving obstacles of a row of a crowd.
+RowStates states_of(const CrowdRecordingHead& head, const CrowdRow& row) {
+  RowStates states{row.step, row.step * head.time_step, {}, {}};
+  states.robots.reserve(row.x.size());
+  for (std::size_t i = 0; i < row.x.size(); ++i) states.robots.push_back({head.place(row, i), {}});
+  for (std::size_t k = 0; k < head.bodies.size(); ++k)
+    if (head.bodies[k].moves) states.moved.push_back(head.displacement(row, k));
+  return states;
+}
+
+std::size_t motions_in(const std::filesystem::path& path) {
+  CrowdRecordingReader reader(path);
+  std::size_t rows = 0;
+  for (CrowdRow row; reader.next(row);) ++rows;
+  return rows > 0 ? (rows - 1) * reader.head().kind_of.size() : 0;
+}
+
+/// A recording of places: how robots move, by the points that need no decisions.
+AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) {
+  const std::size_t one_of = sample == 0 ? 1 : std::max<std::size_t>(1, motions_in(path) / sample);
+  CrowdRecordingReader reader(path);
+  const RecordingFile file = scene_of(reader.head());
+  AuditTally tally;
+  AuditedRun run(file, tally);
+  run.has_places_only = true;
+  run.one_of = one_of;
+  const std::unique_ptr<RowAudit> points[] = {audit_sequence(run), audit_motions(run)};
+  RowStates before;
+  for (CrowdRow row; reader.next(row); ++tally.report.rows) {
+    call_wait_hook();
+    RowStates now = states_of(reader.head(), row);
+    for (std::size_t k = 0; k < reader.head().bodies.size(); ++k)
+      if (!reader.head().bodies[k].moves && reader.head().displacement(row, k) != geometry::Vec2{})
+        tally.refuted(AuditPoint::sequence,
+                      at_row(tally.report.rows, "body " + std::to_string(k + 1) + " has moved, and stands still"));
+    if (tally.report.rows > 0 && now.step <= before.step)
+      throw DataError(DataCode::format_syntax, path.string(), "step " + std::to_string(now.step),
+                      "a row after that of step " + std::to_string(before.step), "rows in the order of time");
+    if (tally.report.rows > 0)
+      for (const auto& point : points) point->check_states(tally.report.rows - 1, before, now);
+    before = std::move(now);
+  }
+  AuditReport report = finished(std::move(tally));
+  report.has_places = true;
+  if (!reader.is_cut_off()) return report;
+  const std::string found = "the end of the file after " + geometry::counted(report.rows, "row");
+  return audited_so_far(std::move(report),
+                        {DataCode::cut_off, path.string(), "", found, "an end of the recording: it was cut off"});
+}
+
 }  // namespace
+
+bool AuditedRun::is_asked(std::size_t row, std::size_t robot) const {
+  return one_of == 1 || mixed(row * kRandomStride + robot) % one_of == 0;
+}
 
 AuditedRun::AuditedRun(const RecordingFile& recorded, AuditTally& counts)
     : file(recorded), scenario(file.scenario), duration(file.recording.time_step), places(file), tally(counts) {
@@ -308,7 +362,9 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
   return finished(audit.finish());
 }
 
-AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario) {
+AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario,
+                            std::size_t sample) {
+  if (is_crowd_recording(path)) return audit_places(path, sample);
   SealedLines lines(path);
   RecordingFile run;
   RunAudit audit(run, scenario);
@@ -320,7 +376,8 @@ AuditReport audit_recording(const std::filesystem::path& path, const formation::
                          run);
   } catch (const DataError& error) {
     if (error.code() != DataCode::cut_off || audit.rows() == 0) throw;
-    return audited_so_far(audit, run, error);
+    drop_what_follows(audit.rows(), audit.last_row(), run.recording);
+    return audited_so_far(finished(audit.finish_early()), error);
   }
   AuditTally tally = audit.finish();
   tally.ask(AuditPoint::scenario, lines.are_sealed(),
@@ -336,7 +393,7 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
   for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
-                                  &AuditReport::without_pairs})
+                                  &AuditReport::without_pairs, &AuditReport::has_places})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -356,6 +413,8 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   words.emplace_back(
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");
+  if (report.has_places)
+    words.emplace_back("decisions and half-planes of recordings without them, and whether their runs are whole");
   if (report.without_pairs)
     words.emplace_back(
         "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");

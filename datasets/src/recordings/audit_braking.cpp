@@ -80,14 +80,9 @@ class BrakingAudit : public RowAudit {
   }
 
   static bool is_clear(const Way& w, const RationalObstacle& o, double radius, const Rational& r) {
-    if (o.disc) {
-      const Rational reach = r + o.disc->radius;
-      return exact::squared_distance(o.disc->center, w.way) >= reach * reach;
-    }
-    const std::vector<std::size_t> edges = o.near(w.box, radius);
-    return !exact::is_inside(w.way.from, *o.obstacle) && std::none_of(edges.begin(), edges.end(), [&](std::size_t e) {
-      return exact::come_nearer_than(w.way, o.edges[e], r);
-    });
+    std::vector<NearEdge> edges;
+    for (const std::size_t edge : o.near(w.box, radius)) edges.push_back({edge, r});
+    return against({w.way, Rational(0)}, o, edges, r) == exact::Verdict::clear;
   }
 
   void brake_together(const Way& a, std::size_t i, const Way& b, std::size_t j, const RowInRun& at) {
@@ -96,8 +91,8 @@ class BrakingAudit : public RowAudit {
     if (are_apart(a.box, b.box, kRounding * (radius + other))) return run_.tally.proven(AuditPoint::braking);
     const Rational reach = Rational(radius) + Rational(other);
     const Straight apart{a.way.from - b.way.from, a.way.to - b.way.to};
-    const bool holds = exact::squared_distance({Rational(0), Rational(0)}, apart) >= reach * reach;
-    ask(holds, at, i, " and " + id(j) + " could not brake without touching each other");
+    const exact::Verdict verdict = against_point({apart, Rational(0)}, {Rational(0), Rational(0)}, reach);
+    ask(verdict == exact::Verdict::clear, at, i, " and " + id(j) + " could not brake without touching each other");
   }
 
   const AuditedRun& run_;

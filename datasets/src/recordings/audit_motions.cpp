@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is plainly apart is told by distances in doubles and the bound of their rounding (geometry/distance.h); all else
+// is decided in rationals. Contact is clear.
 #include "recordings/audit_points.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/told_apart.h"
 
 namespace exactvo::datasets {
-namespace {
 
 using exact::Chord;
 using exact::ExactWay;
@@ -19,9 +24,11 @@ using exact::StepMotion;
 using exact::Straight;
 using exact::Verdict;
 using formation::MotionLaw;
+using geometry::Box;
+using geometry::Segment;
+using geometry::Vec2;
 
-/// Whether what follows the chord comes nearer than `reach` to the point.
-Verdict against_point(const Chord& chord, const exact::Point& point, const Rational& reach) {
+Verdict against_point(const Chord& chord, const Point& point, const Rational& reach) {
   const Rational squared = exact::squared_distance(point, chord.way);
   if (chord.stray < reach) {
     const Rational surely = reach - chord.stray;
@@ -31,64 +38,97 @@ Verdict against_point(const Chord& chord, const exact::Point& point, const Ratio
   return squared >= possibly * possibly ? Verdict::clear : Verdict::unknown;
 }
 
-/// Whether what follows the chord comes nearer than r to an edge or is inside, or comes nearer than r to the disc.
-Verdict against(const Chord& chord, const RationalObstacle& obstacle, const std::vector<std::size_t>& edges,
-                const Rational& r) {
-  if (obstacle.disc) return against_point(chord, obstacle.disc->center, r + obstacle.disc->radius);
-  const auto some_nearer_than = [&](const Rational& reach) {
-    return std::any_of(edges.begin(), edges.end(), [&](std::size_t edge) {
-      return exact::come_nearer_than(chord.way, obstacle.edges[edge], reach);
+Verdict against(const Chord& chord, const RationalObstacle& obstacle, const std::vector<NearEdge>& edges,
+                const Rational& reach) {
+  if (obstacle.disc) return against_point(chord, obstacle.disc->center, reach + obstacle.disc->radius);
+  const auto some_nearer = [&](const Rational& by) {
+    return std::any_of(edges.begin(), edges.end(), [&](const NearEdge& near) {
+      const Rational r = near.reach + by;
+      return sgn(r) > 0 && exact::come_nearer_than(chord.way, obstacle.edges[near.edge], r);
     });
   };
-  if (chord.stray < r && some_nearer_than(r - chord.stray)) return Verdict::meets;
-  if (sgn(chord.stray) > 0 && some_nearer_than(r + chord.stray)) return Verdict::unknown;
+  if (some_nearer(-chord.stray)) return Verdict::meets;
+  if (sgn(chord.stray) > 0 && some_nearer(chord.stray)) return Verdict::unknown;
   return exact::is_inside(chord.way.from, *obstacle.obstacle) ? Verdict::meets : Verdict::clear;
+}
+
+namespace {
+
+constexpr double kRoundedUp = 1.0 + 0x1p-50;  // of a sum of radii
+
+/// Nearer than this share of the numbers involved, a crowd may take a robot and an obstacle for touching
+/// (formation/crowd.h: 40 u in float). Of such an obstacle it promises less: the robot comes no nearer to one at rest,
+/// up to this share again, and is apart from one that moves at the end of the step.
+constexpr double kTouches = 40.0 * 0x1p-24;
+
+double one_norm(Vec2 v) {
+  return std::fabs(v.x) + std::fabs(v.y);
+}
+
+double largest(const Box& b) {
+  return std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y)});
+}
+
+/// Holds what is nearer to the box than r.
+Box round_box(const Box& box, double r) {
+  return box.grown(kRoundedUp * r + geometry::rounding_of_distance(largest(box) + r));
+}
+
+/// `distance`: of things in these boxes, rounded.
+bool is_surely_more(double distance, const Box& a, const Box& b, double r) {
+  return distance - geometry::rounding_of_distance(largest(a) + largest(b)) > kRoundedUp * r;
 }
 
 class MotionAudit : public RowAudit {
  public:
-  explicit MotionAudit(const AuditedRun& run) : run_(run) {
+  explicit MotionAudit(const AuditedRun& run)
+      : run_(run),
+        is_straight_(run.file.recording.motion == MotionLaw::straight),
+        has_places_only_(run.has_places_only) {
+    std::vector<Box> boxes;
+    for (const RationalObstacle& o : run.obstacles) boxes.push_back(o.box);
+    obstacles_by_place_ = geometry::BoxGrid(std::move(boxes));
     for (const formation::MovingObstacle& o : run.scenario.moving_obstacles) moving_.emplace_back(o);
+    for (const formation::Robot& robot : run.scenario.robots) largest_ = std::max(largest_, robot.radius);
   }
 
   void check_step(const RowInRun& at) override {
-    const formation::Step &from = at.row, &to = *at.next;
-    if (!(from.time >= 0.0 && from.time < to.time)) return;
-    const exact::ExponentialLaw* law = run_.law ? &*run_.law : nullptr;
+    if (!(at.row.time >= 0.0 && at.row.time < at.next->time)) return;
+    const auto states = [&](const formation::Step& row, std::size_t number) {
+      RowStates out{number, row.time, {}, {}};
+      for (const formation::RobotStep& robot : row.robots) out.robots.push_back({robot.position, robot.velocity});
+      return out;
+    };
+    check_states(at.number, states(at.row, at.number), states(*at.next, at.number + 1));
+  }
+
+  void check_states(std::size_t row, const RowStates& from, const RowStates& to) override {
+    from_ = &from;
+    to_ = &to;
+    lay_out();
+    lay_out_moving();
+    if (run_.scenario.separate) part(row);
     AuditReport& report = run_.tally.report;
-    std::vector<Driven> driven;
-    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
-      const StepMotion motion(run_.file.recording.motion, law, run_.duration, from.robots[i], to.robots[i]);
-      const Chord whole = motion.over(Rational(0), Rational(1));
-      report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
-      driven.push_back({motion, box_of(whole)});
-    }
-    if (run_.scenario.separate) part(at, driven);
-    const Moved moved = displacements(from, to);
-    for (std::size_t i = 0; i < driven.size(); ++i) {
-      if (run_.file.recording.motion != MotionLaw::straight) ++report.curved_steps;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (!run_.is_asked(row, i)) continue;
+      if (!is_straight_) ++report.curved_steps;
       Answer answer;
-      meet_obstacles(driven[i], i, answer);
-      meet_moving(driven[i], i, moved, answer);
-      meet_robots(driven, i, answer);
+      meet_obstacles(i, answer);
+      meet_moving(i, answer);
+      meet_robots(i, answer);
       const std::string& robot = run_.scenario.robots[i].id;
       if (!answer.met.empty())
-        run_.tally.refuted(AuditPoint::motions, at_row(at.number, robot + " overlaps " + answer.met));
+        run_.tally.refuted(AuditPoint::motions, at_row(row, robot + " overlaps " + answer.met));
       else if (!answer.open.empty())
         run_.tally.open(AuditPoint::motions,
-                        at_row(at.number, robot + " comes too near to " + answer.open + " to be proven clear of it"));
+                        at_row(row, robot + " comes too near to " + answer.open + " to be proven clear of it"));
       else
         run_.tally.proven(AuditPoint::motions);
     }
   }
 
  private:
-  /// A row's time step as one robot drives it.
-  struct Driven {
-    StepMotion motion;
-    geometry::Box box;
-  };
-  /// Of one robot and step: whom it meets, and from whom it cannot be told apart; empty where there is nobody.
+  /// What a robot meets in a step, and what it cannot be told apart from; empty where there is nothing.
   struct Answer {
     std::string met, open;
     void take(Verdict verdict, const char* kind, const std::string& id) {
@@ -97,89 +137,190 @@ class MotionAudit : public RowAudit {
       if (where.empty()) where = std::string(kind) + " '" + id + "'";
     }
   };
-  /// What moving obstacles do between two rows.
-  struct Moved {
-    Rational start, passed;  ///< s
-    std::vector<std::vector<ExactWay::TimedChord>> ways;
+  /// A moving obstacle from one share of the step to another.
+  struct Piece {
+    Rational start, end;
+    Chord chord;
   };
 
-  Moved displacements(const formation::Step& from, const formation::Step& to) const {
-    const Rational start(from.time), end(to.time);
-    Moved moved{start, end - start, {}};
-    for (const ExactWay& way : run_.ways) moved.ways.push_back(way.over(start, end));
-    return moved;
+  double radius(std::size_t i) const { return run_.scenario.robots[i].radius; }
+  Segment way(std::size_t i) const { return {from_->robots[i].position, to_->robots[i].position}; }
+
+  /// Made when it is asked for: of most robots nothing is near.
+  const StepMotion& motion(std::size_t i) {
+    std::unique_ptr<StepMotion>& found = motions_[i];
+    if (!found)
+      found = std::make_unique<StepMotion>(run_.file.recording.motion, run_.law ? &*run_.law : nullptr, run_.duration,
+                                           from_->robots[i], to_->robots[i]);
+    return *found;
   }
 
-  void meet_obstacles(const Driven& d, std::size_t i, Answer& answer) {
-    const double radius = run_.scenario.robots[i].radius;
-    const Rational r(radius);
-    for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
-      ++run_.tally.report.obstacle_questions;
-      if (are_apart(d.box, run_.obstacles[k].box, radius)) continue;
-      const std::vector<std::size_t> edges = run_.obstacles[k].near(d.box, radius);
-      const auto over = [&](const Rational& s, const Rational& e) { return d.motion.over(s, e); };
-      const auto test = [&](const Chord& chord) { return against(chord, run_.obstacles[k], edges, r); };
-      answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle", run_.scenario.obstacles[k].id);
+  void lay_out() {
+    const std::size_t robots = from_->robots.size();
+    motions_.clear();
+    motions_.resize(robots);
+    boxes_.clear();
+    for (std::size_t i = 0; i < robots; ++i) {
+      if (is_straight_) {
+        boxes_.push_back(box_of(way(i)));
+        continue;
+      }
+      const Chord whole = motion(i).over(Rational(0), Rational(1));
+      boxes_.push_back(box_of(whole));
+      double& bulge = run_.tally.report.largest_bulge;
+      bulge = std::max(bulge, exact::at_least(whole.stray));
     }
+    robots_by_place_ = geometry::BoxGrid(boxes_);
+  }
+
+  void lay_out_moving() {
+    pieces_.assign(moving_.size(), {});
+    swept_.assign(moving_.size(), {});
+    carried_.clear();
+    start_ = Rational(from_->time);
+    passed_ = Rational(to_->time) - start_;
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      if (has_places_only_) {
+        carried_.emplace_back(MotionLaw::straight, nullptr, run_.duration, exact::State{from_->moved[k], {}},
+                              exact::State{to_->moved[k], {}});
+        pieces_[k].push_back({Rational(0), Rational(1), carried_[k].over(Rational(0), Rational(1))});
+      } else {
+        for (const ExactWay::TimedChord& p : run_.ways[k].over(start_, Rational(to_->time)))
+          pieces_[k].push_back({(p.start - start_) / passed_, (p.end - start_) / passed_, p.chord});
+      }
+      for (const Piece& piece : pieces_[k]) {
+        const Box by = box_of(piece.chord);
+        swept_[k].add(Box{moving_[k].box.low + by.low, moving_[k].box.high + by.high});
+      }
+      swept_[k] = round_box(swept_[k], 0.0);
+    }
+  }
+
+  Chord carried(std::size_t k, const Rational& s, const Rational& e) const {
+    return has_places_only_ ? carried_[k].over(s, e) : run_.ways[k].within(start_ + s * passed_, start_ + e * passed_);
+  }
+
+  /// Rows that are several steps apart do not say how robots came from one to the next: only their ends are judged.
+  template <class Over, class Test>
+  Verdict decided(const Over& over, const Test& test, const Rational& start, const Rational& end) const {
+    if (to_->step == from_->step + 1) return exact::decide(over, test, start, end);
+    const Verdict first = test(over(start, start));
+    return first == Verdict::clear ? test(over(end, end)) : first;
+  }
+
+  /// m: how near the robot may come to what is that far away, in this box, both as it sees them.
+  double allowed(std::size_t i, double distance, const Box& seen) const {
+    const double lengths = one_norm(seen.low) + one_norm(seen.high) + radius(i);
+    if (!has_places_only_ || distance >= radius(i) + kTouches * lengths) return radius(i);
+    const double way = (to_->time - from_->time) * run_.scenario.robots[i].max_speed;
+    const auto steps = static_cast<double>(to_->step - from_->step);
+    return std::min(distance, radius(i)) - kTouches * steps * (lengths + 4.0 * way);
+  }
+  /// The same of an obstacle as a whole, seen from `at`.
+  double allowed(std::size_t i, const RationalObstacle& o, Vec2 at) const {
+    const double distance = !has_places_only_ ? 0.0
+                            : o.disc          ? norm(at - o.disc->disc.center) - o.disc->disc.radius
+                                              : geometry::signed_distance(*o.obstacle, at);
+    return allowed(i, distance, {o.box.low - at, o.box.high - at});
+  }
+
+  void meet_obstacles(std::size_t i, Answer& answer) {
+    run_.tally.report.obstacle_questions += run_.obstacles.size();
+    obstacles_by_place_.for_each_meeting(round_box(boxes_[i], radius(i)), [&](std::size_t k) {
+      answer.take(meet_obstacle(i, run_.obstacles[k]), "obstacle", run_.scenario.obstacles[k].id);
+    });
+  }
+
+  Verdict meet_obstacle(std::size_t i, const RationalObstacle& o) {
+    if (are_apart(boxes_[i], o.box, radius(i))) return Verdict::clear;
+    const Vec2 at = from_->robots[i].position;
+    const bool is_solid = geometry::has_interior(*o.obstacle);
+    const double reach = is_solid ? allowed(i, o, at) : radius(i);
+    if (!(reach > 0.0)) return Verdict::unknown;
+    if (o.disc && is_straight_ &&
+        is_surely_more(geometry::distance(way(i), o.disc->disc.center), o.box, boxes_[i],
+                       radius(i) + o.disc->disc.radius))
+      return Verdict::clear;
+    std::vector<NearEdge> edges;
+    for (const std::size_t k : o.near(boxes_[i], radius(i))) {
+      const Segment& edge = o.segments[k];
+      const bool is_apart =
+          is_straight_ && !o.disc && is_surely_more(geometry::distance(edge, way(i)), o.boxes[k], boxes_[i], radius(i));
+      if (is_apart) continue;
+      const double near = is_solid ? reach
+                                   : allowed(i, has_places_only_ ? geometry::distance(edge, at) : 0.0,
+                                             {o.boxes[k].low - at, o.boxes[k].high - at});
+      if (!(near > 0.0)) return Verdict::unknown;
+      edges.push_back({k, Rational(near)});
+    }
+    if (edges.empty() && !is_solid) return Verdict::clear;
+    const Rational r(reach);
+    return decided([&](const Rational& s, const Rational& e) { return motion(i).over(s, e); },
+                   [&](const Chord& chord) { return against(chord, o, edges, r); }, Rational(0), Rational(1));
   }
 
   /// Piece after piece of the obstacle's way, seen from the obstacle.
-  void meet_moving(const Driven& d, std::size_t i, const Moved& moved, Answer& answer) {
-    const double radius = run_.scenario.robots[i].radius;
-    const Rational r(radius);
-    const Rational &from = moved.start, &passed = moved.passed;
+  void meet_moving(std::size_t i, Answer& answer) {
+    run_.tally.report.moving_questions += moving_.size();
     for (std::size_t k = 0; k < moving_.size(); ++k) {
-      ++run_.tally.report.moving_questions;
-      for (const ExactWay::TimedChord& piece : moved.ways[k]) {
-        const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
-        const geometry::Box seen = box_of(d.motion.over(start, end) - piece.chord);
-        if (are_apart(seen, moving_[k].box, radius)) continue;
-        const std::vector<std::size_t> edges = moving_[k].near(seen, radius);
-        const auto over = [&](const Rational& s, const Rational& e) {
-          return d.motion.over(s, e) - run_.ways[k].within(from + s * passed, from + e * passed);
-        };
-        const auto test = [&](const Chord& chord) { return against(chord, moving_[k], edges, r); };
-        answer.take(exact::decide(over, test, start, end), "moving obstacle", run_.scenario.moving_obstacles[k].id);
-      }
+      if (are_apart(boxes_[i], swept_[k], radius(i))) continue;
+      for (const Piece& piece : pieces_[k])
+        answer.take(meet_piece(i, k, piece), "moving obstacle", run_.scenario.moving_obstacles[k].id);
     }
   }
 
-  void meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer) {
-    constexpr double kRounding = 1.0 + 0x1p-50;
-    for (std::size_t j = 0; j < driven.size(); ++j) {
-      if (j == i) continue;
-      ++run_.tally.report.robot_questions;
-      const double radius = run_.scenario.robots[i].radius, other = run_.scenario.robots[j].radius;
-      if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
-      if (parting_.count(std::minmax(i, j)) > 0) {
-        if (comes_nearer(driven[i], driven[j])) answer.take(Verdict::meets, "robot", run_.scenario.robots[j].id);
-        continue;
-      }
-      const Rational reach = Rational(radius) + Rational(other);
-      const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
-      const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
-      const auto test = [&](const Chord& chord) { return against_point(chord, {Rational(0), Rational(0)}, reach); };
-      answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot", run_.scenario.robots[j].id);
-    }
+  Verdict meet_piece(std::size_t i, std::size_t k, const Piece& piece) {
+    const RationalObstacle& o = moving_[k];
+    const Box seen = box_of(motion(i).over(piece.start, piece.end) - piece.chord);
+    if (are_apart(seen, o.box, radius(i))) return Verdict::clear;
+    const Rational r(radius(i));
+    std::vector<NearEdge> edges;
+    for (const std::size_t edge : o.near(seen, radius(i))) edges.push_back({edge, r});
+    const auto over = [&](const Rational& s, const Rational& e) { return motion(i).over(s, e) - carried(k, s, e); };
+    const auto test = [&](const Chord& chord) { return against(chord, o, edges, r); };
+    const bool touches = has_places_only_ && allowed(i, o, from_->robots[i].position - from_->moved[k]) != radius(i);
+    return decided(over, test, touches ? piece.end : piece.start, piece.end);
+  }
+
+  void meet_robots(std::size_t i, Answer& answer) {
+    run_.tally.report.robot_questions += boxes_.size() - 1;
+    robots_by_place_.for_each_meeting(round_box(boxes_[i], radius(i) + largest_), [&](std::size_t j) {
+      const double radii = radius(i) + radius(j);
+      if (j == i || are_apart(boxes_[i], boxes_[j], kRoundedUp * radii)) return;
+      answer.take(meet_robot(i, j, radii), "robot", run_.scenario.robots[j].id);
+    });
+  }
+
+  Verdict meet_robot(std::size_t i, std::size_t j, double radii) {
+    if (parting_.count(std::minmax(i, j)) > 0) return comes_nearer(i, j) ? Verdict::meets : Verdict::clear;
+    if (is_straight_ && is_surely_more(geometry::swept_distance(way(i), way(j)), boxes_[i], boxes_[j], radii))
+      return Verdict::clear;
+    const Rational reach = Rational(radius(i)) + Rational(radius(j));
+    const StepMotion seen = motion(i).seen_from(motion(j));
+    return decided([&](const Rational& s, const Rational& e) { return seen.over(s, e); },
+                   [&](const Chord& chord) {
+                     return against_point(chord, {Rational(0), Rational(0)}, reach);
+                   },
+                   Rational(0), Rational(1));
   }
 
   // --- Pairs that started in overlap ---
 
-  static Straight relative(const Driven& a, const Driven& b) {
-    return a.motion.seen_from(b.motion).over(Rational(0), Rational(1)).way;
+  Straight relative(std::size_t i, std::size_t j) {
+    return motion(i).seen_from(motion(j)).over(Rational(0), Rational(1)).way;
   }
 
   /// Pairs that overlap in the first row, and of these the ones that still do.
-  void part(const RowInRun& at, const std::vector<Driven>& driven) {
+  void part(std::size_t row) {
     const std::vector<formation::Robot>& robots = run_.scenario.robots;
     const auto overlap = [&](std::size_t i, std::size_t j) {
-      const Point d = relative(driven[i], driven[j]).from;
+      const Point d = relative(i, j).from;
       const Rational reach = Rational(robots[i].radius) + Rational(robots[j].radius);
       return exact::dot(d, d) < reach * reach;
     };
-    if (at.number == 0)
-      for (std::size_t i = 0; i < driven.size(); ++i)
-        for (std::size_t j = i + 1; j < driven.size(); ++j)
+    if (row == 0)
+      for (std::size_t i = 0; i < robots.size(); ++i)
+        for (std::size_t j = i + 1; j < robots.size(); ++j)
           if (overlap(i, j)) {
             parting_.emplace(i, j);
             told_[{i, j}] = run_.tally.report.started_overlapping.size();
@@ -193,26 +334,38 @@ class MotionAudit : public RowAudit {
         continue;
       }
       run_.tally.report.started_overlapping[told_.at(*pair)] =
-          robots[i].id + " and " + robots[j].id + ", apart from " + geometry::lossless(at.row.time) + " s on";
+          robots[i].id + " and " + robots[j].id + ", apart from " + geometry::lossless(from_->time) + " s on";
       pair = parting_.erase(pair);
     }
   }
 
   /// By more than the rounding of places and motions. Straight motions: the distance is convex, so that it grows all
   /// the way if it does at the start.
-  bool comes_nearer(const Driven& a, const Driven& b) const {
-    const Straight seen = relative(a, b), of_a = a.motion.over(Rational(0), Rational(1)).way;
+  bool comes_nearer(std::size_t i, std::size_t j) {
+    const Straight seen = relative(i, j), of_i = motion(i).over(Rational(0), Rational(1)).way;
     const Point m = seen.to - seen.from;
     const auto size = [](const Point& p) { return Rational(abs(p.x) + abs(p.y)); };
-    const Rational rounding = kRoundingOfPlaces * (size(of_a.from) + size(seen.from) + size(m));
+    const Rational rounding = kRoundingOfPlaces * (size(of_i.from) + size(seen.from) + size(m));
     return exact::dot(seen.from, m) < -size(seen.from) * rounding;
   }
 
   static constexpr double kRoundingOfPlaces = 0x1p-44;  ///< of the coordinates, in a step
   const AuditedRun& run_;
+  bool is_straight_, has_places_only_;
+  geometry::BoxGrid obstacles_by_place_;
   std::vector<RationalObstacle> moving_;
+  double largest_ = 0.0;  ///< m, of the radii
   std::set<std::pair<std::size_t, std::size_t>> parting_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> told_;  ///< where in the report each pair stands
+  // Of a step.
+  const RowStates *from_ = nullptr, *to_ = nullptr;
+  std::vector<std::unique_ptr<StepMotion>> motions_;
+  std::vector<Box> boxes_;  ///< round the robots' ways
+  geometry::BoxGrid robots_by_place_;
+  Rational start_, passed_;  ///< s
+  std::vector<std::vector<Piece>> pieces_;
+  std::vector<StepMotion> carried_;  ///< moving obstacles, of places
+  std::vector<Box> swept_;           ///< round what each moving obstacle covers
 };
 
 }  // namespace

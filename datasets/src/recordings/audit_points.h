@@ -110,10 +110,25 @@ struct RationalObstacle {
   geometry::Box box;  ///< of the whole, its inside too
 };
 
+/// An edge of an obstacle, and how near something may come to it, m.
+struct NearEdge {
+  std::size_t edge;
+  exact::Rational reach;
+};
+
+/// Whether what follows the chord comes nearer than `reach` to the point.
+exact::Verdict against_point(const exact::Chord& chord, const exact::Point& point, const exact::Rational& reach);
+/// Whether it comes too near to one of these edges or is inside, or comes nearer than `reach` to the disc.
+exact::Verdict against(const exact::Chord& chord, const RationalObstacle& obstacle, const std::vector<NearEdge>& edges,
+                       const exact::Rational& reach);
+
 /// What is audited. Points refer to it.
 struct AuditedRun {
   /// Once the header is known: `recorded` grows while rows are taken.
   AuditedRun(const RecordingFile& recorded, AuditTally& counts);
+
+  /// Whether a robot's motion is looked at.
+  bool is_asked(std::size_t row, std::size_t robot) const;
 
   const RecordingFile& file;
   const formation::Scenario& scenario;
@@ -123,6 +138,16 @@ struct AuditedRun {
   std::optional<exact::ExponentialLaw> law;  ///< where the motion is exponential
   PlacesInRows places;
   AuditTally& tally;
+  bool has_places_only = false;  ///< its rows are places of a crowd, on a lattice, without decisions
+  std::size_t one_of = 1;        ///< of its motions one in about so many is looked at
+};
+
+/// Where robots are in a row, and how they move.
+struct RowStates {
+  std::size_t step = 0;               ///< time steps from the start
+  double time = 0.0;                  ///< s
+  std::vector<exact::State> robots;   ///< of places without velocities
+  std::vector<geometry::Vec2> moved;  ///< m, of places: how far each moving obstacle has come
 };
 
 /// Points that are asked of each row as it comes.
@@ -133,6 +158,8 @@ class RowAudit {
   virtual void check_row(const RowInRun&) {}
   /// What is decided in it, and how it leads to the next. REQUIRES: there is one.
   virtual void check_step(const RowInRun& at) = 0;
+  /// How a row leads to the next, of a recording of places.
+  virtual void check_states(std::size_t /*row*/, const RowStates& /*from*/, const RowStates& /*to*/) {}
 };
 
 /// (3), (4) and (5): nothing is missing in a row, its half-planes are true, its choices satisfy them and are optimal.

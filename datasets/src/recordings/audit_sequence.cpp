@@ -5,6 +5,7 @@
 //     explicit Euler  P = 1 - kT                               Q = T
 //     rk4             P = 1 - z + z^2/2 - z^3/6 + z^4/24       Q = T (1 - z/2 + z^2/6 - z^3/24), z = kT
 // (the adaptive ones solve the law to their tolerance, which is no proof). A kinematic robot goes x + T v, bit for bit.
+#include "exactvo/geometry/told_apart.h"
 #include "recordings/audit_points.h"
 
 namespace exactvo::datasets {
@@ -33,6 +34,9 @@ constexpr double kSubnormal = 0x1p-1050;
 constexpr double kShareOfWay = 0x1p-37;
 constexpr double kRestsEarlier = 0x1p-12;
 constexpr double kShareOfSpeed = 0x1p-44;
+
+/// A limit of speed times a time, rounded twice, and a length, rounded four times.
+constexpr double kRoundingOfSpeed = 8.0 * 0x1p-53;
 
 Rational length_of(const TimedPath& motion) {
   Rational length(0);
@@ -136,6 +140,22 @@ class SequenceAudit : public RowAudit {
   bool tracks_its_choice() const {
     const std::optional<formation::ControllerOptions>& options = run_.file.recording.controller_options;
     return options && options->filter_last && options->absolute_frame && !(options->acceleration_bound > 0.0);
+  }
+
+  /// No robot moves farther than its speed allows.
+  void check_states(std::size_t row, const RowStates& from, const RowStates& to) override {
+    const double time = static_cast<double>(to.step - from.step) * run_.scenario.time_step;
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
+      if (!run_.is_asked(row, i)) continue;
+      const formation::Robot& robot = run_.scenario.robots[i];
+      const double way = norm(to.robots[i].position - from.robots[i].position), most = time * robot.max_speed;
+      if (way <= most * (1.0 + kRoundingOfSpeed)) {
+        run_.tally.proven(AuditPoint::sequence);
+        continue;
+      }
+      const auto [allowed, moved] = geometry::told_apart(most, way);
+      ask(false, row, robot.id + " moves " + moved + " m, farther than the " + allowed + " m that its speed allows");
+    }
   }
 
   void check_step(const RowInRun& at) override {

@@ -130,10 +130,6 @@ void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
 
 }  // namespace
 
-std::string CrowdRecordingHead::name_of(std::size_t robot) const {
-  return ids.empty() ? "#" + std::to_string(robot + 1) : ids[robot];
-}
-
 CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
   CrowdRecordingHead head;
   const auto length = in.get<std::uint32_t>();

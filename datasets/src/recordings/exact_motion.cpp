@@ -41,8 +41,8 @@ Rational ExponentialLaw::bend(const Rational& share) const {
 
 // --- Robots ---
 
-StepMotion::StepMotion(MotionLaw kind, const ExponentialLaw* law, const Rational& duration,
-                       const formation::RobotStep& from, const formation::RobotStep& to)
+StepMotion::StepMotion(MotionLaw kind, const ExponentialLaw* law, const Rational& duration, const State& from,
+                       const State& to)
     : kind_(kind), law_(law), from_(exactly(from.position)), to_(exactly(to.position)) {
   const Point before = exactly(from.velocity), after = exactly(to.velocity);
   if (kind == MotionLaw::exponential) first_ = before - after;

@@ -48,12 +48,18 @@ class ExponentialLaw {
   mutable std::map<Rational, Interval> decayed_, bulges_;
 };
 
+/// A robot in a row.
+struct State {
+  geometry::Vec2 position;  ///< m
+  geometry::Vec2 velocity;  ///< m/s
+};
+
 /// A robot over one step, or one robot as seen from another.
 class StepMotion {
  public:
   /// REQUIRES: `law` where the motion is exponential.
-  StepMotion(formation::MotionLaw kind, const ExponentialLaw* law, const Rational& duration,
-             const formation::RobotStep& from, const formation::RobotStep& to);
+  StepMotion(formation::MotionLaw kind, const ExponentialLaw* law, const Rational& duration, const State& from,
+             const State& to);
 
   /// From one share of the step to another.
   Chord over(const Rational& start, const Rational& end) const;

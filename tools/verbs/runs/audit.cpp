@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "exactvo/datasets/audit.h"
@@ -34,10 +33,6 @@ struct AuditFlags {
 
 // --- Recordings ---
 
-bool is_crowd_recording(const fs::path& path) {
-  return path.extension() == ".evr";
-}
-
 /// The file itself, or every recording.jsonl and recording of a crowd below the folder, in the order of their names.
 std::vector<fs::path> recordings_in(const std::string& path) {
   refuse_part_of_run(path);
@@ -45,7 +40,7 @@ std::vector<fs::path> recordings_in(const std::string& path) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
     const fs::path& file = entry.path();
-    if (entry.is_regular_file() && (file.filename() == "recording.jsonl" || is_crowd_recording(file)))
+    if (entry.is_regular_file() && (file.filename() == "recording.jsonl" || datasets::is_crowd_recording(file)))
       found.push_back(file);
   }
   std::sort(found.begin(), found.end());
@@ -84,7 +79,8 @@ std::string summary(const datasets::AuditReport& report) {
   std::string text = report.cut_off.empty() ? "" : "a recording ends early: what follows is of the rows there are\n";
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     const datasets::PointCount& n = report.points[p];
-    if (p >= static_cast<std::size_t>(datasets::AuditPoint::braking) && n.asked() == 0) continue;
+    const bool is_rare = report.has_places || p >= static_cast<std::size_t>(datasets::AuditPoint::braking);
+    if (is_rare && n.asked() == 0) continue;
     text += fmt::format("{}: {} asked, {} proven", words_of(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
     if (n.refuted > 0) text += fmt::format(", {} refuted", n.refuted);
     if (n.open > 0) text += fmt::format(", {} left open", n.open);
@@ -106,103 +102,34 @@ std::string summary(const datasets::AuditReport& report) {
   return text;
 }
 
-// --- Recordings of crowds ---
-
-std::string summary(const datasets::CrowdAuditReport& r) {
-  std::string text = fmt::format(
-      "{} of {}, {} checked: {} too fast\n"
-      "pairs of robots near each other: {}, {} came to overlap, {} overlapped already at the row before\n"
-      "robots near edges that they did not touch at the row before: {}, {} overlapped\n"
-      "robots that touched an edge at the row before: {}, {} came nearer; {} more stand on the edge, not proven\n"
-      "robots near bodies that they did not touch at the row before: {}, {} overlapped; of those that touched {}, {} "
-      "still overlap or came nearer; {} more did not satisfy their half-planes or were inside (no guarantee)\n",
-      counted(r.rows, "row"), counted(r.robots, "robot"), counted(r.motions, "motion"), r.too_fast, r.pairs,
-      r.pairs_met, r.pairs_overlapping, r.near_edges, r.edges_met, r.touching_edges, r.edges_neared,
-      r.touching_edges_open, r.near_bodies, r.bodies_met, r.touching_bodies, r.bodies_not_parted, r.bodies_open);
-  for (const std::string& finding : r.findings) text += "  " + finding + "\n";
-  return text;
-}
-
-nlohmann::ordered_json as_json(const datasets::CrowdAuditReport& r) {
-  nlohmann::ordered_json json;
-  for (const auto& [name, count] : datasets::kCrowdAuditCounts) json[name] = r.*count;
-  json["cut_off"] = r.cut_off;
-  json["clean"] = r.clean();
-  json["findings"] = r.findings;
-  return json;
-}
-
-// --- All of them ---
-
-struct Audited {
-  std::optional<datasets::AuditReport> runs;
-  std::optional<datasets::CrowdAuditReport> crowds;
-  std::vector<std::string> cut_off;  ///< recordings of crowds
-};
-
-template <class Report>
-void take(std::optional<Report>& sum, Report report, const std::string& file) {
-  for (std::string& finding : report.findings) finding = file + ": " + finding;
-  if (!sum) sum.emplace();
-  add(*sum, report);
-}
-
-Audited audited(const AuditFlags& flags, const std::vector<fs::path>& files, const formation::Scenario* scenario) {
-  Audited all;
+datasets::AuditReport audited(const AuditFlags& flags, const std::vector<fs::path>& files,
+                              const formation::Scenario* scenario) {
+  datasets::AuditReport all;
   for (const fs::path& file : files) {
-    if (is_crowd_recording(file)) {
-      const datasets::CrowdAuditReport report = datasets::audit_crowd_recording(file, flags.sample);
-      if (report.cut_off) all.cut_off.push_back(file.string());
-      take(all.crowds, report, file.string());
-    } else {
-      take(all.runs, datasets::audit_recording(file, scenario), file.string());
-    }
+    datasets::AuditReport report = datasets::audit_recording(file, scenario, flags.sample);
+    for (std::string& finding : report.findings) finding = file.string() + ": " + finding;
+    add(all, report);
     if (interrupted()) throw Interrupted();
   }
   return all;
-}
-
-std::string summary(const Audited& all) {
-  std::string text;
-  if (all.runs) text += summary(*all.runs);
-  if (all.crowds) text += summary(*all.crowds);
-  for (const std::string& file : all.cut_off) text += file + ": the file was cut off after the last row\n";
-  return text;
-}
-
-/// Names of files are bytes, and JSON is UTF-8.
-std::string text_of(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-/// The object of recordings, of crowds, or of recordings with a member "crowds".
-std::string to_json(const Audited& all) {
-  if (!all.crowds) return datasets::to_json(*all.runs) + "\n";
-  if (!all.runs) return text_of(as_json(*all.crowds), -1);
-  auto both = nlohmann::ordered_json::parse(datasets::to_json(*all.runs));
-  both["crowds"] = as_json(*all.crowds);
-  return text_of(both, 2);
 }
 
 ExitCode audit_recordings(const AuditFlags& flags) {
   std::optional<formation::Scenario> scenario;
   if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
   const std::vector<fs::path> files = recordings_in(flags.path);
-  const auto crowds = static_cast<std::size_t>(std::count_if(files.begin(), files.end(), is_crowd_recording));
-  if (crowds > 0 && !flags.scenario.empty())
+  const bool has_crowds = std::any_of(files.begin(), files.end(), datasets::is_crowd_recording);
+  if (has_crowds && !flags.scenario.empty())
     throw UsageError("--scenario", flags.scenario, "a recording.jsonl to compare it with, not one of a crowd");
-  if (crowds == 0 && flags.sample > 0)
+  if (!has_crowds && flags.sample > 0)
     throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
-  const Audited all = audited(flags, files, scenario ? &*scenario : nullptr);
-  print(flags.json ? to_json(all) : summary(all));
-  if (all.runs && !all.runs->cut_off.empty()) {
-    for (const std::string& words : all.runs->cut_off) error_message(words);
-    const bool is_refuted = std::any_of(all.runs->points.begin(), all.runs->points.end(),
-                                        [](const datasets::PointCount& n) { return n.refuted > 0; });
-    return is_refuted ? ExitCode::negative : ExitCode::bad_input;
-  }
-  const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
-  return clean ? ExitCode::success : ExitCode::negative;
+  const datasets::AuditReport all = audited(flags, files, scenario ? &*scenario : nullptr);
+  print(flags.json ? datasets::to_json(all) + "\n" : summary(all));
+  for (const std::string& words : all.cut_off) error_message(words);
+  const bool is_refuted =
+      std::any_of(all.points.begin(), all.points.end(), [](const datasets::PointCount& n) { return n.refuted > 0; });
+  if (!all.cut_off.empty() && !is_refuted) return ExitCode::bad_input;
+  return all.clean() ? ExitCode::success : ExitCode::negative;
 }
 
 // --- Certificates ---

@@ -50,7 +50,7 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
 /// Whether the recording was cut off.
 bool draw_into(const fs::path& folder, const fs::path& recording) {
   const TerminateOnSignal terminate_on_signal;
-  if (recording.extension() != ".evr") {
+  if (!datasets::is_crowd_recording(recording)) {
     draw_figures_of(read_shown(recording), folder);
     return false;
   }

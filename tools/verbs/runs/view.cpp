@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
@@ -230,7 +231,7 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
   std::vector<MadeRun> runs;
   for (const std::string& path : flags.runs) {
     if (const auto recording = recording_at(path)) {
-      const bool is_crowd = recording->extension() == ".evr";
+      const bool is_crowd = datasets::is_crowd_recording(*recording);
       runs.push_back(is_crowd ? recorded_crowd(flags, *recording, metrics_beside(*recording))
                               : recorded(flags, *recording));
     } else {

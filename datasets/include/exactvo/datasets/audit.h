@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// Verifies a recording in exact rational arithmetic (GMP), with none of the filters that made it and sharing no code
-/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Ten points:
+/// Verifies a recording in exact rational arithmetic (GMP), sharing no code with the run but plain types, two checkers
+/// of certificates (vo/certificate.h, lp/certificate.h), and for what is plainly apart the distances of
+/// geometry/distance.h with their bound. Ten points:
 ///
 ///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
 ///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
@@ -117,6 +118,7 @@ struct AuditReport {
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
   bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
+  bool has_places = false;          ///< of a crowd: decisions are not recorded
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 
   /// Nothing is refuted, no motion open, and no recording ends early.
@@ -133,7 +135,14 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 /// pipe into which a run writes; "-" is standard input. Memory does not grow with the rows, but for where robots were:
 /// 16 bytes a robot and row, of the last 2^23 of these. Of one that ends early (`cut_off`) the rows that are there are
 /// audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
-AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr);
+///
+/// Of a recording of a crowd, FILE.evr (crowd_recording.h), there are places alone: (6) is that no robot moves farther
+/// than its speed allows, (7) is asked as it stands between rows of consecutive steps, and else of the rows. An
+/// obstacle at rest that a robot touches at a row, to within 40 u of the numbers involved (u = 2^-24), it must not come
+/// nearer to, by more than that; a moving one must be apart at the next row. `sample`: about so many motions, spread
+/// evenly over robots and rows; 0: all.
+AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr,
+                            std::size_t sample = 0);
 
 /// Counts added up, findings joined.
 void add(AuditReport& sum, const AuditReport& other);

@@ -16,11 +16,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/crowd.h"
 #include "exactvo/formation/run_sink.h"
 #include "exactvo/geometry/shapes.h"
@@ -39,6 +39,8 @@ struct CrowdBodyRecord {
   bool moves = false;           ///< what is promised of one that moves is promised of kept robots
 };
 
+struct CrowdRow;
+
 /// What stands before the rows.
 struct CrowdRecordingHead {
   std::string scenario;                  ///< its name
@@ -53,6 +55,10 @@ struct CrowdRecordingHead {
 
   /// A robot's id; "#1" and so on where there are none. REQUIRES: a robot of the recording.
   std::string name_of(std::size_t robot) const;
+  /// m, where it is. Exact.
+  geometry::Vec2 place(const CrowdRow& row, std::size_t robot) const;
+  /// m, how far a body has come. Exact.
+  geometry::Vec2 displacement(const CrowdRow& row, std::size_t body) const;
 };
 
 /// The robots at a time, in the order of the scenario.
@@ -125,64 +131,6 @@ class CrowdRecordingReader {
   std::unique_ptr<Parts> parts_;
 };
 
-/// The most findings that the audit of one recording lists.
-inline constexpr std::size_t kMostCrowdFindings = 20;
-
-/// What an audit found. Everything is exact. To touch is to be nearer than the radii and a rounding error
-/// (formation/crowd.h).
-struct CrowdAuditReport {
-  std::size_t rows = 0;                 ///< of the file
-  std::size_t robots = 0;               ///< of the file
-  std::size_t motions = 0;              ///< of robots from row to row that were looked at
-  std::size_t too_fast = 0;             ///< longer than the speed limit allows
-  std::size_t pairs = 0;                ///< that were near enough to meet
-  std::size_t pairs_met = 0;            ///< of these: that overlap on the way (of consecutive steps) or at its end
-  std::size_t pairs_overlapping = 0;    ///< of these: that overlap already at the row before
-  std::size_t near_edges = 0;           ///< robots and edges near enough to ask, that did not touch at the row before
-  std::size_t edges_met = 0;            ///< of these: that overlap on the way or at its end
-  std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer
-  std::size_t edges_neared = 0;         ///< of these: that come nearer, by more than rounding
-  std::size_t touching_edges_open = 0;  ///< whose centre is on the edge up to rounding: nothing is promised
-  std::size_t near_bodies = 0;          ///< robots and bodies near enough to ask, that did not touch at the row before
-  std::size_t bodies_met = 0;           ///< of these, if the body is at rest or the robot kept: that overlap
-  std::size_t bodies_open = 0;          ///< of these: the body moves and the robot is not kept, nothing is promised
-  std::size_t touching_bodies = 0;    ///< that touched: apart at the end from one that moves, not nearer to one at rest
-  std::size_t bodies_not_parted = 0;  ///< of these: that overlap, or came nearer
-  bool cut_off = false;               ///< the file has no proper end
-  std::vector<std::string> findings;  ///< the first few of what is wrong, in words
-  /// Nothing is wrong with what was judged.
-  bool clean() const {
-    return too_fast + pairs_met + pairs_overlapping + edges_met + edges_neared + bodies_met + bodies_not_parted == 0;
-  }
-};
-
-/// The counts of a report under their names, in its order.
-inline constexpr std::pair<const char*, std::size_t CrowdAuditReport::*> kCrowdAuditCounts[] = {
-    {"rows", &CrowdAuditReport::rows},
-    {"robots", &CrowdAuditReport::robots},
-    {"motions", &CrowdAuditReport::motions},
-    {"too_fast", &CrowdAuditReport::too_fast},
-    {"pairs", &CrowdAuditReport::pairs},
-    {"pairs_met", &CrowdAuditReport::pairs_met},
-    {"pairs_overlapping", &CrowdAuditReport::pairs_overlapping},
-    {"near_edges", &CrowdAuditReport::near_edges},
-    {"edges_met", &CrowdAuditReport::edges_met},
-    {"touching_edges", &CrowdAuditReport::touching_edges},
-    {"edges_neared", &CrowdAuditReport::edges_neared},
-    {"touching_edges_open", &CrowdAuditReport::touching_edges_open},
-    {"near_bodies", &CrowdAuditReport::near_bodies},
-    {"bodies_met", &CrowdAuditReport::bodies_met},
-    {"bodies_open", &CrowdAuditReport::bodies_open},
-    {"touching_bodies", &CrowdAuditReport::touching_bodies},
-    {"bodies_not_parted", &CrowdAuditReport::bodies_not_parted}};
-
-/// Counts added up, findings joined.
-void add(CrowdAuditReport& sum, const CrowdAuditReport& other);
-
-/// Judges positions and motions from the file alone, in exact predicates. Of rows of consecutive steps the straight
-/// motion is judged, of others its ends. `sample`: about so many motions, spread evenly over robots and rows; 0: all.
-CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::size_t sample = 0);
-
 /// What was written as a table.
 struct CrowdTable {
   std::size_t rows = 0;  ///< of the recording
@@ -192,6 +140,13 @@ struct CrowdTable {
 /// "step,time,robot,x,y,kept,id", one line per robot and row; `robot` counts from 0, and `id` is left out where the
 /// recording has none.
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
+
+/// The scene as other recordings have it, without what is not recorded: goals, motions of bodies, rows. Edges that
+/// follow one another are a wall; an ellipse is the polygon of 48 corners round it.
+RecordingFile scene_of(const CrowdRecordingHead& head);
+
+/// Whether a file is one by its name, FILE.evr.
+bool is_crowd_recording(const std::filesystem::path& path);
 
 /// Whether these are the first bytes of a recording of a crowd.
 bool begins_crowd_recording(std::string_view bytes);
