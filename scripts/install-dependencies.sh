@@ -15,7 +15,7 @@ for_program=(
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libcpp-httplib-dev pkg-config                                     # exactvo serve
   gnuplot-nox fonts-dejavu-core                                     # figures
-  libbenchmark-dev                                                  # benchmarks
+  libbenchmark-dev libglpk-dev                                      # benchmarks, and a solver to compare with
 )
 for_python=(
   python3-dev pybind11-dev python3-numpy python3-matplotlib         # the package, and what its plots are drawn with

@@ -82,7 +82,7 @@ nlohmann::json run_adversarial(std::size_t count, std::uint64_t seed, bool& wron
   nlohmann::json out = nlohmann::json::array();
   std::vector<Entry> solvers;
   for (Entry& e : entries())
-    if (!e.feasible_only && e.target.empty()) solvers.push_back(std::move(e));
+    if (!e.rules.feasible_only && e.target.empty()) solvers.push_back(std::move(e));
   std::printf("%-12s %-18s %8s %8s %8s %12s %12s\n", "family", "solver", "problems", "false i%", "false f%",
               "violation", "speed - 1");
   for (const std::string& family : lp::adversarial_families()) {
@@ -98,7 +98,7 @@ nlohmann::json run_adversarial(std::size_t count, std::uint64_t seed, bool& wron
     }
     for (std::size_t k = 0; k < solvers.size(); ++k) {
       print(family, solvers[k].name, sums[k]);
-      wrong = wrong || (solvers[k].exact && sums[k].false_infeasible + sums[k].false_feasible > 0);
+      wrong = wrong || (solvers[k].rules.exact && sums[k].false_infeasible + sums[k].false_feasible > 0);
     }
   }
   return out;

@@ -15,6 +15,7 @@
 #include "cpu_time.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo_commit.h"
+#include "interval.h"
 #include "lp/sets/generated_sets.h"
 #include "lp/sets/target.h"
 #include "options/program_options.h"
@@ -179,7 +180,7 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
     const Answer answer = run.competitor->answer(i);
     const bool feasible = is_feasible(truth.solutions[i]);
     run.wrong += answer.feasible != feasible;
-    if (!feasible || !answer.feasible || run.entry.feasible_only) continue;
+    if (!feasible || !answer.feasible || run.entry.rules.feasible_only) continue;
     run.inaccurate += norm(answer.velocity - truth.solutions[i].velocity) > kInaccurate;
     run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i].constraints, answer.velocity));
   }
@@ -200,14 +201,21 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
+/// How many times as fast as the textbook, round by round: what slows a round down slows both.
+std::vector<double> ratios_of(const Run& run, const Run& textbook) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < run.times.size(); ++k) ratios.push_back(textbook.times[k] / run.times[k]);
+  return ratios;
+}
+
 std::vector<Run> enter(const Set& set, const Truth& truth) {
   std::vector<Run> runs;
   const bool all_feasible =
       std::all_of(truth.solutions.begin(), truth.solutions.end(), [](const auto& s) { return is_feasible(s); });
   for (Entry& entry : entries()) {
-    if ((entry.feasible_only && !all_feasible) || !limit_target(entry)) continue;
+    if ((entry.rules.feasible_only && !all_feasible) || !limit_target(entry)) continue;
     std::vector<lp::Problem> given = set.problems;
-    if (given.size() > entry.most) given.resize(entry.most);
+    if (given.size() > entry.rules.most) given.resize(entry.rules.most);
     Run run{entry, entry.build(given), {}, 0, 0.0, 0};
     runs.push_back(std::move(run));
   }
@@ -218,22 +226,22 @@ void print(const Set& set, const Truth& truth, const std::vector<Run>& runs) {
   const auto feasible = std::count_if(truth.solutions.begin(), truth.solutions.end(), is_feasible);
   std::printf("\n%s: %zu problems, %td feasible, %zu by the exact stage\n", set.name.c_str(), set.problems.size(),
               feasible, truth.exact_stage);
-  std::printf("  %-20s %10s %16s %9s %7s %10s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "wrong",
-              "inaccurate", "violation");
-  const double textbook = quantile(runs.front().times, 0.5);
+  std::printf("  %-20s %10s %16s %9s %13s %7s %10s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "95 %",
+              "wrong", "inaccurate", "violation");
   for (const Run& run : runs) {
-    const double median = quantile(run.times, 0.5);
-    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %7zu %10zu %11.2g\n", run.entry.name.c_str(), median,
-                quantile(run.times, 0.1), quantile(run.times, 0.9), textbook / median, run.wrong, run.inaccurate,
-                run.worst_violation);
+    const std::vector<double> ratios = ratios_of(run, runs.front());
+    const Interval interval = interval_of_median(ratios);
+    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %6.2f-%6.2f %7zu %10zu %11.2g\n", run.entry.name.c_str(),
+                quantile(run.times, 0.5), quantile(run.times, 0.1), quantile(run.times, 0.9), quantile(ratios, 0.5),
+                interval.low, interval.high, run.wrong, run.inaccurate, run.worst_violation);
   }
   std::fflush(stdout);
 }
 
 void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out) {
-  const double textbook = quantile(runs.front().times, 0.5);
   for (const Run& run : runs) {
     const double median = quantile(run.times, 0.5);
+    const std::vector<double> ratios = ratios_of(run, runs.front());
     out["benchmarks"].push_back({{"name", set.name + "/" + run.entry.name},
                                  {"run_name", set.name + "/" + run.entry.name},
                                  {"run_type", "iteration"},
@@ -246,7 +254,8 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"time_unit", "ns"},
                                  {"p10", quantile(run.times, 0.1)},
                                  {"p90", quantile(run.times, 0.9)},
-                                 {"ratio_to_textbook", textbook / median},
+                                 {"ratio_to_textbook", quantile(ratios, 0.5)},
+                                 {"ratios", ratios},
                                  {"problems", run.competitor->count()},
                                  {"wrong_verdicts", run.wrong},
                                  {"inaccurate", run.inaccurate},
@@ -297,7 +306,7 @@ nlohmann::json context(const Flags& flags) {
 }
 
 bool disagrees(const std::vector<Run>& runs) {
-  return std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.entry.exact && r.wrong > 0; });
+  return std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.entry.rules.exact && r.wrong > 0; });
 }
 
 void add_results(const Set& set, const Truth& truth, const std::vector<Run>& runs, Results& results) {

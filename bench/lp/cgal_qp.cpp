@@ -31,34 +31,15 @@ Program program_of(const lp::Problem& problem) {
   return program;
 }
 
-class CgalQp : public Competitor {
- public:
-  explicit CgalQp(const std::vector<lp::Problem>& problems) : answers_(problems.size()) {
-    for (const lp::Problem& p : problems) programs_.push_back(program_of(p));
-  }
-  std::size_t count() const override { return answers_.size(); }
-  Answer answer(std::size_t i) const override { return answers_[i]; }
-  void run() override {
-    for (std::size_t i = 0; i < programs_.size(); ++i) answers_[i] = solve(programs_[i]);
-  }
-
- private:
-  static Answer solve(const Program& program) {
-    const Result result = CGAL::solve_quadratic_program(program, CGAL::Gmpzf());
-    if (result.is_infeasible()) return {};
-    auto value = result.variable_values_begin();
-    const double x = CGAL::to_double(*value++);
-    return {{x, CGAL::to_double(*value)}, true};
-  }
-
-  std::vector<Program> programs_;
-  std::vector<Answer> answers_;
-};
-
-}  // namespace
-
-std::unique_ptr<Competitor> make_cgal_qp(const std::vector<lp::Problem>& problems) {
-  return std::make_unique<CgalQp>(problems);
+Answer cgal_qp(const lp::Problem& problem) {
+  const Result result = CGAL::solve_quadratic_program(program_of(problem), CGAL::Gmpzf());
+  if (result.is_infeasible()) return {};
+  auto value = result.variable_values_begin();
+  const double x = CGAL::to_double(*value++);
+  return {{x, CGAL::to_double(*value)}, true};
 }
 
+const Join joins("cgal-qp-Gmpzf", cgal_qp, {true, false, 256});
+
+}  // namespace
 }  // namespace exactvo::bench

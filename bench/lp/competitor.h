@@ -2,8 +2,16 @@
 #pragma once
 
 /// \file
-/// A solver in the arena: built on a set (in its own layout, not timed), run as often as wanted, then asked for
-/// answers.
+/// The arena's entries. A solver joins with a file of one function and a line in CMakeLists.txt:
+///
+///     #include "competitor.h"
+///     namespace exactvo::bench {
+///     Answer mine(const lp::Problem& problem) { ... return {velocity, is_feasible}; }
+///     const Join joins("mine", mine);
+///     }
+///
+/// It gets problems with a disc and normals of unit length, hard constraints first, and is timed with its own set-up.
+/// docs/guide/linear-program.md has a whole example.
 
 #include <functional>
 #include <memory>
@@ -15,10 +23,12 @@
 namespace exactvo::bench {
 
 struct Answer {
-  lp::Vec2 velocity;
-  bool feasible = false;
+  lp::Vec2 velocity;      ///< m/s; of a problem that is not feasible, the least violation's, or anything
+  bool feasible = false;  ///< whether all half-planes can hold within the disc
 };
 
+/// A solver with a layout of its own: built on a set, which is not timed, run as often as wanted, then asked for
+/// answers.
 class Competitor {
  public:
   virtual ~Competitor() = default;
@@ -27,21 +37,27 @@ class Competitor {
   virtual Answer answer(std::size_t i) const = 0;
 };
 
+/// What the arena must know of a solver.
+struct Rules {
+  bool feasible_only = false;  ///< knows no relaxation: it enters sets whose problems are all feasible
+  bool exact = false;          ///< a verdict that is not the exact one ends the arena with status 1
+  std::size_t most = 4096;     ///< problems it is given at most: slow ones get fewer
+};
+
 struct Entry {
   std::string name;
-  bool feasible_only = false;  ///< knows no relaxation
-  bool exact = false;          ///< must agree with the exact verdict everywhere
-  std::size_t most = 0;        ///< problems it is given at most: slow ones get fewer
-  std::string target;          ///< SIMD target to force, "" for the best
+  Rules rules;
+  std::string target;  ///< SIMD target to force, "" for the best
   std::function<std::unique_ptr<Competitor>(const std::vector<lp::Problem>&)> build;
 };
 
-/// Every solver and every competitor, `textbook` first.
-std::vector<Entry> entries();
+/// Enters a solver when the program starts: a constant in the solver's file.
+class Join {
+ public:
+  Join(std::string name, Answer (*solve)(const lp::Problem&), Rules rules = {});
+};
 
-std::unique_ptr<Competitor> make_cgal_qp(const std::vector<lp::Problem>& problems);
-#ifdef EXACTVO_HAVE_GLPK
-std::unique_ptr<Competitor> make_glpk(const std::vector<lp::Problem>& problems);
-#endif
+/// `textbook`, this project's solvers, then those that joined, by name.
+std::vector<Entry> entries();
 
 }  // namespace exactvo::bench

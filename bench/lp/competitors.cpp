@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/single.h"
 #include "exactvo/vo/lp/solve.h"
 
 namespace exactvo::bench {
@@ -76,9 +75,9 @@ class Single : public Competitor {
   void run() override {
     for (std::size_t i = 0; i < problems_.size(); ++i) {
       if (kProve)
-        lp::solve_single_certified(problems_[i], answers_[i]);
+        lp::solve_certified(problems_[i], answers_[i]);
       else
-        lp::solve_single(problems_[i], answers_[i]);
+        lp::solve(problems_[i], answers_[i]);
     }
   }
 
@@ -92,65 +91,78 @@ class Single : public Competitor {
   std::vector<lp::Solution> answers_;
 };
 
-/// The solvers that take a Problem; `Solve` gives a Solution.
+/// The solvers that take a Problem; `Solve` gives an Answer.
 template <class Solve>
 class OneByOne : public Competitor {
  public:
   OneByOne(const std::vector<lp::Problem>& problems, Solve solve)
       : problems_(problems), answers_(problems.size()), solve_(solve) {}
   std::size_t count() const override { return answers_.size(); }
-  Answer answer(std::size_t i) const override { return {answers_[i].velocity, feasible(answers_[i])}; }
+  Answer answer(std::size_t i) const override { return answers_[i]; }
   void run() override {
     for (std::size_t i = 0; i < problems_.size(); ++i) answers_[i] = solve_(problems_[i]);
   }
 
  private:
   std::vector<lp::Problem> problems_;
-  std::vector<lp::Solution> answers_;
+  std::vector<Answer> answers_;
   Solve solve_;
 };
 
 template <class Solve>
-std::unique_ptr<Competitor> one_by_one(const std::vector<lp::Problem>& problems, Solve solve) {
-  return std::make_unique<OneByOne<Solve>>(problems, solve);
+Entry one_by_one(std::string name, Rules rules, Solve solve) {
+  return {std::move(name), rules, "", [solve](const std::vector<lp::Problem>& problems) {
+            return std::make_unique<OneByOne<Solve>>(problems, solve);
+          }};
+}
+
+template <class Kind>
+Entry own_entry(std::string name, Rules rules) {
+  return {std::move(name), rules, "", [](const std::vector<lp::Problem>& p) { return std::make_unique<Kind>(p); }};
 }
 
 constexpr std::size_t kAll = static_cast<std::size_t>(-1);
-constexpr std::size_t kSome = 4096;
-constexpr std::size_t kFew = 256;
 
 template <class T>
 Entry batch_entry(std::string name, std::string target, bool prove = false) {
-  return {std::move(name), false, prove, kAll, std::move(target), [prove](const std::vector<lp::Problem>& p) {
+  return {std::move(name), {false, prove, kAll}, std::move(target), [prove](const std::vector<lp::Problem>& p) {
             return std::make_unique<Batch<T>>(p, prove);
           }};
 }
 
+Answer answer_of(const lp::Solution& s) {
+  return {s.velocity, feasible(s)};
+}
+
+std::vector<Entry>& joined() {
+  static std::vector<Entry> all;
+  return all;
+}
+
 }  // namespace
+
+Join::Join(std::string name, Answer (*solve)(const lp::Problem&), Rules rules) {
+  joined().push_back(one_by_one(std::move(name), rules, solve));
+}
 
 std::vector<Entry> entries() {
   std::vector<Entry> all;
-  all.push_back({"textbook", false, false, kAll, "", [](const auto& p) { return std::make_unique<Textbook>(p); }});
+  all.push_back(own_entry<Textbook>("textbook", {false, false, kAll}));
   all.push_back(batch_entry<double>("batch-double", ""));
   all.push_back(batch_entry<double>("batch-certified", "", true));
   all.push_back(batch_entry<float>("batch-float", ""));
   all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
   all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));
-  all.push_back({"single", false, false, kAll, "", [](const auto& p) { return std::make_unique<Single<false>>(p); }});
+  all.push_back(own_entry<Single<false>>("single", {false, false, kAll}));
+  all.push_back(own_entry<Single<true>>("single-certified", {false, true, kAll}));
+  all.push_back(one_by_one("solve", {false, true, kAll}, [](const lp::Problem& p) { return answer_of(lp::solve(p)); }));
+  all.push_back(one_by_one("certified", {false, true},
+                           [](const lp::Problem& p) { return answer_of(lp::solve_certified(p).solution); }));
   all.push_back(
-      {"single-certified", false, true, kAll, "", [](const auto& p) { return std::make_unique<Single<true>>(p); }});
-  all.push_back({"incremental", false, false, kAll, "",
-                 [](const auto& p) { return one_by_one(p, [](const lp::Problem& q) { return lp::solve(q); }); }});
-  all.push_back({"certified", false, true, kSome, "", [](const auto& p) {
-                   return one_by_one(p, [](const lp::Problem& q) { return lp::solve_certified(q).solution; });
-                 }});
-  all.push_back({"exact", false, true, kSome, "", [](const auto& p) {
-                   return one_by_one(p, [](const lp::Problem& q) { return lp::solve_exact(q).solution; });
-                 }});
-  all.push_back({"cgal-qp-Gmpzf", true, false, kFew, "", make_cgal_qp});
-#ifdef EXACTVO_HAVE_GLPK
-  all.push_back({"glpk", true, false, kSome, "", make_glpk});
-#endif
+      one_by_one("exact", {false, true}, [](const lp::Problem& p) { return answer_of(lp::solve_exact(p).solution); }));
+  std::vector<Entry> others = joined();
+  std::sort(others.begin(), others.end(), [](const Entry& a, const Entry& b) { return a.name < b.name; });
+  all.insert(all.end(), others.begin(), others.end());
   return all;
 }
 

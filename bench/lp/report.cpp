@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lp_report ARENA.json ADVERSARIAL.json FOLDER: what `bench_lp --json` wrote, as a page: the figures to reach, how long
-// each solver takes and how often it is wrong, time against the number of lines, wrong verdicts against the
-// perturbation, and a performance profile (Dolan and More 2002). A solver has one colour and dash in every picture.
+// lp_report ARENA.json ADVERSARIAL.json FOLDER: what `bench_lp --json` wrote, as a page: the ranking with its
+// confidence intervals and the machine, the figures to reach, how long each solver takes and how often it is wrong,
+// time against the number of lines, wrong verdicts against the perturbation, and a performance profile (Dolan and More
+// 2002). A solver has one colour and dash in every picture.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 #include "figures/figure.h"
 #include "figures/gnuplot.h"
+#include "interval.h"
 #include "options/program_options.h"
 
 namespace exactvo::bench {
@@ -93,10 +95,10 @@ struct Look {
   const char* dash;
 };
 constexpr Look kLooks[] = {
-    {"textbook", "#555555", ""},        {"batch-double", "#0072B2", ""},     {"batch-double-AVX2", "#0072B2", " dt 2"},
-    {"batch-certified", "#009E73", ""}, {"batch-float", "#E69F00", ""},      {"batch-float-AVX2", "#E69F00", " dt 2"},
-    {"single", "#56B4E9", ""},          {"incremental", "#56B4E9", " dt 2"}, {"certified", "#CC79A7", ""},
-    {"exact", "#CC79A7", " dt 2"},      {"cgal-qp-Gmpzf", "#D55E00", ""},    {"glpk", "#D55E00", " dt 2"}};
+    {"textbook", "#555555", ""},        {"batch-double", "#0072B2", ""},  {"batch-double-AVX2", "#0072B2", " dt 2"},
+    {"batch-certified", "#009E73", ""}, {"batch-float", "#E69F00", ""},   {"batch-float-AVX2", "#E69F00", " dt 2"},
+    {"single", "#56B4E9", ""},          {"solve", "#56B4E9", " dt 2"},    {"certified", "#CC79A7", ""},
+    {"exact", "#CC79A7", " dt 2"},      {"cgal-qp-Gmpzf", "#D55E00", ""}, {"glpk", "#D55E00", " dt 2"}};
 
 Look look_of(const std::string& solver) {
   for (const Look& look : kLooks)
@@ -230,6 +232,84 @@ void write_context(std::ostream& page, const json& context) {
           "are too high.</p>\n";
 }
 
+/// How fast an entry is over all sets, and how often wrong.
+struct Standing {
+  std::string solver;
+  std::size_t sets = 0;
+  double wrong = 0.0, ratio = 0.0;
+  Interval interval;  ///< of `ratio`
+};
+
+/// Round by round the geometric mean over the sets, of how many times as fast as the textbook's solver.
+std::vector<double> mean_ratios(const std::vector<std::vector<double>>& of_sets) {
+  std::size_t rounds = of_sets.front().size();
+  for (const auto& ratios : of_sets) rounds = std::min(rounds, ratios.size());
+  std::vector<double> means;
+  for (std::size_t k = 0; k < rounds; ++k) {
+    double sum = 0.0;
+    for (const auto& ratios : of_sets) sum += std::log(ratios[k]);
+    means.push_back(std::exp(sum / static_cast<double>(of_sets.size())));
+  }
+  return means;
+}
+
+/// Those that took part in most sets first, the fastest first among them.
+std::vector<Standing> standings_of(const json& arena) {
+  std::map<std::string, std::vector<std::vector<double>>> ratios;
+  std::map<std::string, double> wrong;
+  for (const json& row : arena.at("benchmarks")) {
+    const std::string name = row.at("name"), solver = name.substr(name.find('/') + 1);
+    const auto of_rounds = row.at("ratios").get<std::vector<double>>();
+    if (of_rounds.empty()) throw std::runtime_error("\"ratios\" of " + name + ": found none, expected one a round");
+    ratios[solver].push_back(of_rounds);
+    wrong[solver] += row.at("wrong_verdicts").get<double>();
+  }
+  std::vector<Standing> standings;
+  for (const auto& [solver, of_sets] : ratios) {
+    std::vector<double> means = mean_ratios(of_sets);
+    const Interval interval = interval_of_median(means);
+    std::sort(means.begin(), means.end());
+    standings.push_back({solver, of_sets.size(), wrong[solver], means[means.size() / 2], interval});
+  }
+  std::sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
+    return a.sets != b.sets ? a.sets > b.sets : a.ratio > b.ratio;
+  });
+  return standings;
+}
+
+std::string of_context(const json& context, const char* key) {
+  const auto found = context.find(key);
+  if (found == context.end()) return "unknown";
+  return escaped(found->is_string() ? found->get<std::string>() : found->dump());
+}
+
+/// An entry shares the rank of the one before where their intervals overlap.
+void write_ranking(std::ostream& page, const json& arena) {
+  const json& context = arena.at("context");
+  page
+      << "<h2>Ranking</h2>\n<p>Processor " << of_context(context, "cpu") << ", SIMD target "
+      << of_context(context, "simd_target") << ", compiler " << of_context(context, "compiler")
+      << ". Times as fast as the textbook float solver: the geometric mean over the sets, its median over the rounds "
+         "and "
+         "the interval that holds that median with 95 % certainty. Entries whose intervals overlap share a rank; those "
+         "that took part in fewer sets follow, and are ranked among themselves.</p>\n"
+      << "<table><tr><th>rank</th><th class=\"words\">solver</th><th>sets</th><th>times as fast</th><th>95 %</th>"
+         "<th>wrong verdicts</th></tr>\n";
+  const std::vector<Standing> standings = standings_of(arena);
+  std::size_t rank = 0, place = 0;
+  for (std::size_t k = 0; k < standings.size(); ++k) {
+    const Standing& s = standings[k];
+    const bool is_first = k == 0 || standings[k - 1].sets != s.sets;
+    place = is_first ? 1 : place + 1;
+    if (is_first || s.interval.high < standings[k - 1].interval.low) rank = place;
+    page << "<tr><td>" << rank << "</td><td class=\"words\">" << escaped(s.solver) << "</td><td>" << s.sets
+         << "</td><td>" << number("%.3g", s.ratio) << "</td><td>" << number("%.3g", s.interval.low)
+         << number(" to %.3g", s.interval.high) << "</td><td class=\"" << (s.wrong > 0.0 ? "bad" : "good") << "\">"
+         << number("%.0f", s.wrong) << "</td></tr>\n";
+  }
+  page << "</table>\n";
+}
+
 void write_figures(std::ostream& page, const json& arena) {
   if (!arena.contains("figures")) {
     page << "<p>Without the figures to reach: <code>bench_lp --table --json</code> writes them.</p>\n";
@@ -329,6 +409,7 @@ void write_page(const fs::path& folder, const json& arena, const Times& times) {
           "compared "
           "with the certified one, then all solvers were timed in turns on the same problems. A solver has one colour "
           "throughout; dashes are its narrower or slower kin.</p>\n";
+  write_ranking(page, arena);
   write_figures(page, arena);
   write_times(page, times, solvers);
   write_accuracies(page, accuracies_of(arena), solvers);

@@ -70,7 +70,7 @@ Status verdict(const Proven& p) {
 
 void examine(const Problem& problem) {
   const Proven exact = solve_exact(problem);
-  for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact}) {
+  for (const Solver solver : {Solver::batch, Solver::certified, Solver::exact}) {
     Proven answer = solve_all(solver, {problem}).front();
     prove(problem, answer);
     if (!answer.certificate) fail("no certificate", problem);
@@ -86,10 +86,8 @@ constexpr double kAlike = 1e-8;
 
 void examine_plain(const Problem& problem) {
   const Solution right = solve_exact(problem).solution;
-  for (const Solver solver : {Solver::incremental, Solver::batch}) {
-    const Solution s = solve_all(solver, {problem}).front().solution;
-    if (!why_worse(problem, s, right, kAlike).empty()) fail("a plain answer that is worse than the exact one", problem);
-  }
+  const Solution s = solve_all(Solver::batch, {problem}).front().solution;
+  if (!why_worse(problem, s, right, kAlike).empty()) fail("a plain answer that is worse than the exact one", problem);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // Every solver against exact arithmetic: `lp_against_exact [PROBLEMS = 1000000] [SEED = 1]` draws problems of every
 // kind in turn (bound, objective, priorities), half of them at random, half from small integers, where lines are
 // parallel and meet in one point. `certified` and `exact` have to be right, each with a certificate that `check`
-// accepts. `incremental` and `batch` may err where the region is as thin as a rounding error, but then nothing must
-// prove their answer. Exit status 1 otherwise, and where a pair of kind and solver was not drawn.
+// accepts. `batch` may err where the region is as thin as a rounding error, but then nothing must prove its answer.
+// Exit status 1 otherwise, and where a pair of kind and solver was not drawn.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -72,7 +72,7 @@ int run(std::size_t wanted, std::uint64_t seed) {
   for (std::size_t first = 0; first < wanted; first += kAtOnce) {
     const std::vector<Problem> problems = draw(first, std::min(kAtOnce, wanted - first), random);
     const std::vector<Proven> exact = solve_all(Solver::exact, problems);
-    for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact}) {
+    for (const Solver solver : {Solver::batch, Solver::certified, Solver::exact}) {
       const std::vector<Proven> answers = solver == Solver::exact ? exact : solve_all(solver, problems);
       for (std::size_t k = 0; k < problems.size(); ++k) {
         judge(problems[k], answers[k], exact[k].solution, solver, counts);

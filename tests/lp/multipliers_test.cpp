@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/single.h"
 #include "exactvo/vo/lp/solve.h"
 #include "problem_kinds.h"
 #include "problem_text.h"
@@ -63,7 +62,7 @@ void for_each_kind(std::uint64_t seed, Check check) {
 
 TEST(Multipliers, MakeTheVelocityStationaryForEveryKind) {
   for_each_kind(81, [](const Problem& problem) {
-    for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact}) {
+    for (const Solver solver : {Solver::batch, Solver::certified, Solver::exact}) {
       const Solution s = solve_all(solver, {problem}).front().solution;
       EXPECT_LE(missed(problem, s), kStationary) << name(solver) << ' ' << name(s.status) << '\n' << text_of(problem);
       for (std::size_t k = 0; k < s.active_count; ++k) EXPECT_GE(s.active[k].multiplier, 0.0) << text_of(problem);
@@ -108,7 +107,8 @@ TEST(Multipliers, AloneProveTheAnswer) {
     EXPECT_STREQ(name(check(problem, claim)), "none") << name(claim.status) << '\n' << text_of(problem);
     proven += check(problem, claim_of(problem, solve(problem))) == CertificateError::none;
   });
-  EXPECT_GT(problems, 90U * well_formed_kinds().size());
+  EXPECT_GT(problems, 80U * well_formed_kinds().size())
+      << "normals of different lengths that give, and violations without a speed bound, are the exact stage's";
   EXPECT_GE(1000 * proven, 999 * problems) << "plain answers: their multipliers are rounded, not chosen";
 }
 
@@ -196,7 +196,7 @@ TEST(Multipliers, OfOneProblemInArraysAreThoseOfSolve) {
       x[j] = h.normal.x, y[j] = h.normal.y, c[j] = h.offset;
     }
     Solution s;
-    solve_single({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc}, s);
+    solve({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc}, s);
     EXPECT_LE(missed(p, s), kStationary) << text_of(p);
     EXPECT_EQ(check(p, claim_of(p, s)), CertificateError::none) << name(s.status) << '\n' << text_of(p);
   }
@@ -281,7 +281,7 @@ TEST(Multipliers, AreFiniteAndNotNegativeAtTangency) {
     for (const Objective objective : {Objective::nearest, Objective::farthest}) {
       for (const double length : {1.0, 0.37, 1e-170, 1e170}) {
         for (const Problem& problem : tangent_problems({bound, objective, length}))
-          for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact})
+          for (const Solver solver : {Solver::batch, Solver::certified, Solver::exact})
             expect_usable_multipliers(solve_all(solver, {problem}).front().solution, name(solver), problem);
       }
     }
@@ -301,10 +301,10 @@ TEST(Multipliers, OfOneProblemInArraysAreFiniteAndNotNegativeAtTangency) {
     const SingleProblem single{x.data(), y.data(),          c.data(),          problem.constraints.size(),
                                hard,     problem.preferred, problem.bound.disc};
     Solution plain, certified;
-    solve_single(single, plain);
-    expect_usable_multipliers(plain, "solve_single", problem);
-    solve_single_certified(single, certified);
-    expect_usable_multipliers(certified, "solve_single_certified", problem);
+    solve(single, plain);
+    expect_usable_multipliers(plain, "solve of arrays", problem);
+    solve_certified(single, certified);
+    expect_usable_multipliers(certified, "solve_certified of arrays", problem);
   }
 }
 

@@ -19,7 +19,7 @@ constexpr const char* kBoundNames[] = {"no bound", "disc",       "box x",      "
 constexpr PriorityKind kPriorities[] = {PriorityKind::no_constraint, PriorityKind::hard, PriorityKind::soft,
                                         PriorityKind::mixed};
 constexpr const char* kPriorityNames[] = {"no constraint", "hard", "soft", "mixed"};
-constexpr Solver kEverySolver[] = {Solver::incremental, Solver::batch, Solver::certified, Solver::exact};
+constexpr Solver kEverySolver[] = {Solver::batch, Solver::certified, Solver::exact};
 
 bool has_disc(BoundKind kind) {
   return kind == BoundKind::disc || kind >= BoundKind::disc_box_x;

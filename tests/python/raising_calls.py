@@ -61,7 +61,7 @@ def raising_calls(folder):
     cone = exactvo.VelocityObstacle(WALL, position=(0, 0), radius=0.5, time_horizon=2)
     ellipse = exactvo.VelocityObstacle(exactvo.Ellipse((4, 0), 1, 0, 2), position=(0, 0), radius=0.5, time_horizon=2)
     free = exactvo.free_velocities([cone], max_speed=2)
-    uncertified = lp.solve([(-1, 0)], [-0.5], (2, 0), max_speed=2, solver="incremental")
+    uncertified = lp.solve([(-1, 0)], [-0.5], (2, 0), max_speed=2, solver="batch")
     plan = exactvo.RouteMap(DOOR, 0.4).plan(0.4)
     far = (1e9, 0)
     run = exactvo.simulate(ONE)

@@ -139,7 +139,7 @@ TEST(LpCheck, EverySolverPassesAndItsAnswersMovedDoNot) {
   ASSERT_EQ(written.status, 0) << written.err;
   EXPECT_EQ(here.run("lp out/recording.jsonl --out again.jsonl").status, 0);
   EXPECT_EQ(here.read("problems.jsonl"), here.read("again.jsonl"));
-  for (const char* solver : {"incremental", "batch", "certified"}) {
+  for (const char* solver : {"batch", "certified"}) {
     here.write("answers.jsonl", here.run(std::string("lp problems.jsonl --json --solver ") + solver).out);
     const Outcome outcome = here.run("lp problems.jsonl --check answers.jsonl --json");
     EXPECT_EQ(outcome.status, 0) << solver << outcome.out.substr(0, 500);
@@ -321,8 +321,8 @@ TEST(Lp, WhoAsksForProofsIsToldHowManyThereAreNot) {
   const Workplace here;
   here.write("p.jsonl", on_one_line(kGood));
   EXPECT_EQ(summary_of(here.run("lp p.jsonl --json")).at("unproven"), 0);
-  EXPECT_EQ(summary_of(here.run("lp p.jsonl --json --solver incremental --certify")).at("unproven"), 0);
-  EXPECT_TRUE(summary_of(here.run("lp p.jsonl --json --solver incremental")).at("unproven").is_null());
+  EXPECT_EQ(summary_of(here.run("lp p.jsonl --json --solver batch --certify")).at("unproven"), 0);
+  EXPECT_TRUE(summary_of(here.run("lp p.jsonl --json --solver batch")).at("unproven").is_null());
 }
 
 // The tip of this needle is no double: what lies inside is far from the best velocity, and was called proven.
@@ -367,7 +367,7 @@ TEST(Lp, TheWorstViolationIsTheLargestOfTheAnswers) {
       {on_one_line(kGood), 0.0}, {on_one_line(kGood) + on_one_line(kApart), 0.25}, {on_one_line(kTooFast), 1e60}};
   for (const auto& [lines, worst] : cases) {
     here.write("p.jsonl", lines);
-    for (const char* solver : {"incremental", "batch", "certified", "exact"}) {
+    for (const char* solver : {"batch", "certified", "exact"}) {
       const json summary = summary_of(here.run(std::string("lp p.jsonl --json --solver ") + solver));
       EXPECT_NEAR(summary.at("worst_violation"), worst, 1e-12 * worst) << solver << lines;
       EXPECT_LE(summary.at("worst_breach"), 1e-15) << solver << lines;

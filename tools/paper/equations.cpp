@@ -70,9 +70,8 @@ const std::vector<Equation>& equations() {
       {"(12)",
        "v_new = argmin over IVOA of |v - v_pref|",
        "called a linear program; it is the closest point of a convex set, a small quadratic program",
-       "solved in double precision by an incremental method, the constraints moved inward by the rounding; whether it "
-       "is "
-       "feasible is decided heuristically",
+       "solved in double precision by an active-set method, the constraints moved inward by the rounding; multipliers "
+       "prove the answer, or exact arithmetic finds it",
        {{"vo/include/exactvo/vo/lp/solve.h", "solve"}}},
       {"(13)",
        "IVOA+ = IVOA cut by every ORCA half-plane against another robot",

@@ -14,10 +14,10 @@ namespace exactvo::bench {
 namespace {
 
 using geometry::dot;
-using geometry::Vec2;
-using lp::SingleProblem;
 using geometry::perp;
 using geometry::squared_norm;
+using geometry::Vec2;
+using lp::SingleProblem;
 
 /// Up to here the search below was faster than looking at a register of lines at a time.
 constexpr std::size_t kFewLines = 16;
@@ -94,7 +94,7 @@ bool squares_are_in_range(const SingleProblem& p) {
 bool search(const SingleProblem& problem, Vec2& v) {
   if (problem.count <= kFewLines && squares_are_in_range(problem)) return FewLines(problem).run(v);
   lp::Solution answer;
-  solve_single(problem, answer);
+  solve(problem, answer);
   v = answer.velocity;
   return answer.status == lp::Status::optimal;
 }

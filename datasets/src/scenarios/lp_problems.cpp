@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -12,6 +14,7 @@
 #include "exactvo/vo/lp/instances.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
+#include "readers/line_reader.h"
 #include "scenarios/schema_check.h"
 
 namespace exactvo::datasets {
@@ -123,13 +126,113 @@ std::vector<lp::Problem> read_lines(const std::string& bytes, const std::string&
     at = end + 1;
     ++number;
     if (is_blank(line)) continue;
-    const bool is_whole = !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) ||
-                          Json::accept(line);
+    const bool is_whole =
+        !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) || Json::accept(line);
     if (!is_whole) return {parse_document(bytes, file)};
     problems.push_back(parse_line(line, number, file));
   }
   return problems;
 }
+
+/// CSV: a row per half-plane; the rows of a problem follow each other and repeat what belongs to the whole.
+class Table {
+ public:
+  Table(const std::string& bytes, const std::string& file) : rows_(bytes, file) {}
+
+  std::vector<lp::Problem> read() {
+    rows_.next_filled();
+    read_names();
+    std::vector<lp::Problem> problems;
+    while (rows_.next_filled()) {
+      read_fields();
+      if (problems.empty() || field("problem") != number_) {
+        number_ = field("problem");
+        problems.push_back(whole());
+      } else {
+        require_same(problems.back());
+      }
+      if (!field("normal_x").empty() || !field("normal_y").empty() || !field("offset").empty())
+        problems.back().constraints.push_back(constraint());
+    }
+    return problems;
+  }
+
+ private:
+  static constexpr const char* kNames[] = {"problem",  "disc",     "preferred_x", "preferred_y",
+                                           "normal_x", "normal_y", "offset"};
+  static constexpr const char* kColumns =
+      "a header with the columns problem, disc, preferred_x, preferred_y, normal_x, normal_y, offset and, where "
+      "wanted, "
+      "priority";
+
+  std::vector<std::string> fields_of_row() const {
+    std::optional<std::vector<std::string>> fields = csv_fields_of(rows_.line());
+    if (!fields) rows_.refuse(DataCode::format_syntax, std::string(rows_.line()), "quotation marks in pairs");
+    return std::move(*fields);
+  }
+
+  void read_names() {
+    const std::vector<std::string> names = fields_of_row();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (!column_.emplace(names[k], k).second)
+        rows_.refuse(DataCode::format_syntax, "two columns " + names[k], kColumns);
+    for (const char* name : kNames)
+      if (column_.count(name) == 0) rows_.refuse(DataCode::key_missing, "no column " + std::string(name), kColumns);
+    const std::size_t known = std::size(kNames) + column_.count("priority");
+    if (column_.size() != known) rows_.refuse(DataCode::key_unknown, std::string(rows_.line()), kColumns);
+  }
+
+  void read_fields() {
+    fields_ = fields_of_row();
+    if (fields_.size() != column_.size())
+      rows_.refuse(DataCode::wrong_count, std::to_string(fields_.size()) + " fields",
+                   std::to_string(column_.size()) + ", as many as the header has");
+  }
+
+  const std::string& field(const char* name) const { return fields_[column_.at(name)]; }
+
+  double number(const char* name, double least = -kMost) const {
+    const double value = rows_.to_number(field(name));
+    if (!(value >= least && value <= kMost))
+      rows_.refuse(DataCode::out_of_range, std::string(name) + " " + field(name),
+                   least < 0.0 ? "-1e90 to 1e90" : "0 to 1e90");
+    return value;
+  }
+
+  lp::Problem whole() const {
+    lp::Problem problem;
+    if (!field("disc").empty()) problem.bound.disc = number("disc", 0.0);
+    problem.preferred = {number("preferred_x"), number("preferred_y")};
+    return problem;
+  }
+
+  void require_same(const lp::Problem& before) const {
+    const lp::Problem now = whole();
+    if (now.preferred != before.preferred || now.bound.disc != before.bound.disc)
+      rows_.refuse(DataCode::format_syntax, "another disc or preferred velocity in problem " + number_,
+                   "the same in all rows of a problem");
+  }
+
+  lp::Constraint constraint() const {
+    lp::Constraint c;
+    c.half_plane = {{number("normal_x"), number("normal_y")}, number("offset")};
+    if (c.half_plane.normal == Vec2{})
+      rows_.refuse(DataCode::out_of_range, "the normal 0, 0", "a normal that is not 0");
+    if (column_.count("priority") == 0) return c;
+    const std::string& priority = field("priority");
+    if (priority == "soft") c.priority = lp::Priority::soft;
+    if (priority != "soft" && priority != "hard" && !priority.empty())
+      rows_.refuse(DataCode::not_an_option, priority, "hard or soft");
+    return c;
+  }
+
+  static constexpr double kMost = 1e90;  // as in the schema
+
+  LineReader rows_;
+  std::map<std::string, std::size_t> column_;
+  std::vector<std::string> fields_;
+  std::string number_;
+};
 
 std::vector<lp::Problem> read_binary(const std::string& bytes, const std::string& file) {
   std::istringstream in(bytes);
@@ -140,9 +243,9 @@ std::vector<lp::Problem> read_binary(const std::string& bytes, const std::string
   }
 }
 
-constexpr const char* kBothFormats =
-    "lines of JSON, an object each, or binary instances: their count (int32, little endian), then 20 bytes or more "
-    "each";
+constexpr const char* kFormats =
+    "lines of JSON, an object each, or CSV with a column preferred_x, or binary instances: their count (int32, little "
+    "endian), then 20 bytes or more each";
 
 /// Of a binary file; none where there are no four bytes.
 std::optional<std::int32_t> count_of(const std::string& bytes) {
@@ -163,6 +266,14 @@ bool looks_like_lines(const std::string& bytes) {
   return first != std::string::npos && begins_as_text(bytes) && std::strchr("{[\"", bytes[first]) != nullptr;
 }
 
+/// The first line names the columns.
+bool looks_like_a_table(const std::string& bytes) {
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first == std::string::npos || !begins_as_text(bytes)) return false;
+  return std::string_view(bytes).substr(first, bytes.find('\n', first) - first).find("preferred_x") !=
+         std::string::npos;
+}
+
 bool holds_its_count(const std::string& bytes) {
   constexpr std::uint64_t kLeastInstance = 20;  // m, m_hard, v_max, v_pref
   const std::optional<std::int32_t> count = count_of(bytes);
@@ -171,20 +282,21 @@ bool holds_its_count(const std::string& bytes) {
 
 DataError neither_format(const std::string& bytes, const std::string& file) {
   if (is_blank(bytes))
-    return {DataCode::format_unknown, file, "", bytes.empty() ? "an empty file" : "blank lines alone", kBothFormats};
+    return {DataCode::format_unknown, file, "", bytes.empty() ? "an empty file" : "blank lines alone", kFormats};
   const bool is_text = begins_as_text(bytes) || bytes.size() < 4;
   const std::size_t at = is_text ? std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()) : 0;
   return {DataCode::format_unknown, file, is_text ? line_and_column(bytes, at) : "byte 0",
           is_text ? excerpt(bytes, at)
                   : "a count of " + std::to_string(*count_of(bytes)) + " and " + std::to_string(bytes.size() - 4) +
                         " bytes after it",
-          kBothFormats};
+          kFormats};
 }
 
 }  // namespace
 
 std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name) {
   if (looks_like_lines(bytes)) return read_lines(bytes, file_name);
+  if (looks_like_a_table(bytes)) return Table(bytes, file_name).read();
   if (holds_its_count(bytes)) return read_binary(bytes, file_name);
   throw neither_format(bytes, file_name);
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/vo/lp/single.h"
+#include "exactvo/vo/lp/solve.h"
 
 namespace exactvo::formation {
 
@@ -226,7 +226,7 @@ Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, 
   const Motion wish = wish_of(robot);
   problem.preferred = {unit * wish.x, unit * wish.y};
   problem.disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]);
-  lp::solve_single(problem, b.answer);
+  lp::solve(problem, b.answer);
   return rounded(robot, safe, obstacles, b, one);
 }
 

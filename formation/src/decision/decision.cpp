@@ -299,7 +299,6 @@ void Decider::reserve(std::size_t constraints) {
     limits_.reserve(kSidesOfLimit);
   }
   problem_.constraints.reserve(constraints);
-  pricing_.at.reserve(constraints);  // a search of more rounds than there are lines was never seen
   memory_.reserve(constraints);
   kept_.reserve(constraints);
 }
@@ -333,23 +332,22 @@ void Decider::state_problem(const DecisionInput& in) {
     for (const OwnConstraint& c : *in.own) problem_.constraints.push_back({c.half_plane, priority_of_own(stage_, c)});
 }
 
-lp::Solution Decider::rounded_solution(const DecisionInput& in) {
+/// Whether multipliers prove the solution. An optimum needs the half-planes that it leaves no room to spare; any other
+/// answer, and one that only exact numbers find, needs all.
+bool Decider::is_solved(const DecisionInput& in, lp::Solution& solution) {
   for (;;) {
     state_problem(in);
-    const lp::Solution solution = lp::solve(problem_, pricing_, memory_);
-    if (!in.more || !in.more->need_for(solution, pricing_)) return solution;
+    const bool is_proven = lp::solve(problem_, memory_, solution);
+    if (!in.more) return is_proven;
+    const bool is_optimal = is_proven && solution.status == lp::Status::optimal;
+    if (!(is_optimal ? in.more->need_at(solution.velocity) : in.more->need_all())) return is_proven;
   }
 }
 
-/// What the rounded solution lacks in proof the exact one has, which needs all half-planes.
 lp::Proven Decider::proven_solution(const DecisionInput& in) {
   if (in.more && in.keep_all) in.more->need_all();
   lp::Proven proven;
-  proven.solution = rounded_solution(in);
-  if (lp::is_proven_by_multipliers(problem_, proven.solution)) return proven;
-  if (!in.more || !in.more->need_all()) return lp::certified(problem_, proven.solution);
-  state_problem(in);
-  return lp::solve_certified(problem_);
+  return is_solved(in, proven.solution) ? proven : lp::solve_exact(problem_);
 }
 
 /// The first stage that has an answer. What shows that an earlier one has none is in all half-planes.

@@ -156,7 +156,7 @@ class Decider {
   Proof proof_of(const lp::Proven& proven) const;
   void limit_change(const Viewpoint& from);
   void state_problem(const DecisionInput& in);
-  lp::Solution rounded_solution(const DecisionInput& in);
+  bool is_solved(const DecisionInput& in, lp::Solution& solution);
   lp::Proven proven_solution(const DecisionInput& in);
   lp::Proven solution_in_stages(DecisionInput& in);
   double reach_of(const Constraint& c, const Viewpoint& from) const;
@@ -168,7 +168,6 @@ class Decider {
   std::vector<Constraint> limits_;  ///< of the robot's acceleration, as half-planes of its own
   OwnStage stage_ = OwnStage::none;
   lp::Problem problem_;
-  lp::Pricing pricing_;
   lp::SolveMemory memory_;
   lp::Solution solution_;   ///< of one decision, as the next two
   std::vector<Kept> kept_;  ///< with what binds in `solution_`

@@ -66,13 +66,6 @@ bool NeededConstraints::need_at(Vec2 v) {
   }
 }
 
-bool NeededConstraints::need_for(const lp::Solution& solution, const lp::Pricing& pricing) {
-  if (solution.status != lp::Status::optimal || !pricing.is_all) return need_all();
-  bool added = false;
-  for (const Vec2 v : pricing.at) added = need_at(v) || added;
-  return added;
-}
-
 bool NeededConstraints::need_all() {
   if (has_all_) return false;
   const std::size_t before = lines_.size();

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "exactvo/vo/lp/solve.h"
 #include "scene/static_field.h"
 
 namespace exactvo::formation::detail {
@@ -37,8 +36,6 @@ class NeededConstraints {
 
   /// The one that v violates most, and any that it might violate as much; with a normal of unit length or as it is.
   bool need_at(Vec2 v);
-  /// All that the answer rests on.
-  bool need_for(const lp::Solution& solution, const lp::Pricing& pricing);
   bool need_all();
 
  private:

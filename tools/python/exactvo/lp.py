@@ -145,7 +145,7 @@ def solve(
     soft          m truth values: which constraints may give where all contradict each other; none unless said
     objective     "nearest" preferred, or "farthest" along it (a direction; needs a finite bound)
     solver        "certified": with a certificate, never wrong; "exact": every branch in exact arithmetic;
-                  "incremental", "batch": doubles alone, no certificate
+                  "batch": doubles alone, no certificate
 
     Raises `ArgumentError`. Released from the interpreter's lock while it works.
     """

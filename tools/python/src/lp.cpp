@@ -99,8 +99,6 @@ lp::Proven solved(const lp::Problem& problem, lp::Solver solver) {
       return solve_certified(problem);
     case lp::Solver::exact:
       return solve_exact(problem);
-    case lp::Solver::incremental:
-      return {solve(problem), std::nullopt, false};
     case lp::Solver::batch:
       break;
   }

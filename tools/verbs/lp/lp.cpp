@@ -383,8 +383,7 @@ void declare_lp(CLI::App& app, LpFlags& flags) {
          "Problems: JSON Lines, one JSON document or a binary instance file, - for stdin; or a run (its folder or "
          "recording.jsonl), whose decisions are the problems")
       ->required();
-  flags.solver_option =
-      app.add_option("--solver", flags.solver, "incremental, batch, certified or exact")->capture_default_str();
+  flags.solver_option = app.add_option("--solver", flags.solver, "batch, certified or exact")->capture_default_str();
   app.add_flag("--certify", flags.certify, "Certify every answer; those that cannot be certified are solved exactly");
   app.add_flag("--json", flags.json, "One JSON result per line, then a summary");
   app.add_option(

@@ -6,13 +6,13 @@
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/solve.h"
 #include "lp/exact/exact_search.h"
+#include "lp/exact/inward.h"
+#include "lp/kernel.h"
 #include "lp/problem/exact_sign.h"
 #include "lp/proof/certify.h"
 #include "lp/proof/duality.h"
 #include "lp/proof/multipliers.h"
-#include "lp/scalar/inward.h"
 
 namespace exactvo::lp {
 namespace {
@@ -135,18 +135,7 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   return answer;
 }
 
-/// The proof of a solution, which then has its multipliers.
-std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, Solution& solution) {
-  require_well_formed(problem);
-  std::optional<ProofInDoubles> proof = proof_in_doubles(problem, solution);
-  if (proof && !has_multipliers_of(problem, proof->bound, solution)) set_multipliers(problem, proof->bound, solution);
-  return proof;
-}
-
-}  // namespace
-
-Proven solve_exact(const Problem& problem) {
-  require_well_formed(problem);
+Proven solve_exact_in_range(const Problem& problem) {
   const ExactRegion region = exact_region(problem);
   const Aim aim = aim_of(problem);
   const ExactOptimum best = exact_best(region, aim);
@@ -165,8 +154,67 @@ Proven solve_exact(const Problem& problem) {
   return rounded_inward(problem, Status::infeasible, soft, soft, least, contradiction);
 }
 
+/// Of the longest normal. 0 without constraints.
+int exponent_of_normals(const Problem& problem) {
+  double longest = 0.0;
+  for (const Constraint& c : problem.constraints)
+    longest = std::max({longest, std::abs(c.half_plane.normal.x), std::abs(c.half_plane.normal.y)});
+  return longest > 0.0 ? std::ilogb(longest) : 0;
+}
+
+/// Up to here the squares and products of normals and offsets are far inside the range of doubles.
+constexpr int kPlainExponent = 100;
+
+/// Every constraint multiplied by 2^-exponent: exact but for underflow.
+Problem scaled(Problem problem, int exponent) {
+  for (Constraint& c : problem.constraints) {
+    HalfPlane& h = c.half_plane;
+    h = {{std::ldexp(h.normal.x, -exponent), std::ldexp(h.normal.y, -exponent)}, std::ldexp(h.offset, -exponent)};
+  }
+  return problem;
+}
+
+/// The answer to `problem` of the one to `scaled` of it; without a certificate where numbers leave the range of double.
+Proven scaled_back(const Problem& problem, Proven answer, int exponent) {
+  for (ActiveConstraint& a : answer.solution.active)
+    if (!is_speed_bound(a.binding)) a.multiplier = std::ldexp(a.multiplier, -exponent);
+  answer.solution.violation = std::ldexp(answer.solution.violation, exponent);
+  if (!answer.certificate) return answer;
+  Certificate& c = *answer.certificate;
+  for (std::vector<Term>* terms : {&c.bound, &c.contradiction})
+    for (Term& term : *terms)
+      for (double& part : term.multiplier)
+        if (!is_speed_bound(term.binding)) part = std::ldexp(part, -exponent);
+  c.violation = std::ldexp(c.violation, exponent);
+  if (c.status != Status::optimal) c.gap = std::ldexp(c.gap, exponent);
+  if (check(problem, c) != CertificateError::none) answer.certificate.reset();
+  return answer;
+}
+
+/// The proof of a solution, which then has its multipliers.
+std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, Solution& solution) {
+  require_well_formed(problem);
+  std::optional<ProofInDoubles> proof = proof_in_doubles(problem, solution);
+  if (proof && !has_multipliers_of(problem, proof->bound, solution)) set_multipliers(problem, proof->bound, solution);
+  return proof;
+}
+
+}  // namespace
+
+Proven solve_exact(const Problem& problem) {
+  require_well_formed(problem);
+  const int exponent = exponent_of_normals(problem);
+  if (std::abs(exponent) <= kPlainExponent) return solve_exact_in_range(problem);
+  const Problem in_range = scaled(problem, exponent);
+  const bool vanish = std::any_of(in_range.constraints.begin(), in_range.constraints.end(),
+                                  [](const Constraint& c) { return c.half_plane.normal == Vec2{}; });
+  return vanish ? solve_exact_in_range(problem) : scaled_back(problem, solve_exact_in_range(in_range), exponent);
+}
+
 Proven solve_certified(const Problem& problem) {
-  return certified(problem, solve(problem));
+  require_well_formed(problem);
+  Solution solution;
+  return find(problem, memory_of_thread(), solution) ? certified(problem, solution) : solve_exact(problem);
 }
 
 Proven certified(const Problem& problem, const Solution& solution) {

@@ -9,22 +9,19 @@
 #include "exactvo/geometry/names.h"
 #include "exactvo/vo/lp/solve.h"
 #include "lp/lanes/layout.h"
+#include "lp/problem/region.h"
 #include "lp/proof/multipliers.h"
 
 namespace exactvo::lp {
 namespace {
 
-constexpr geometry::Names<Solver, 4> kSolvers{{{Solver::incremental, "incremental"},
-                                               {Solver::batch, "batch"},
-                                               {Solver::certified, "certified"},
-                                               {Solver::exact, "exact"}}};
+constexpr geometry::Names<Solver, 3> kSolvers{
+    {{Solver::batch, "batch"}, {Solver::certified, "certified"}, {Solver::exact, "exact"}}};
 
 /// Padding that always holds (batch.h).
 constexpr double kAlwaysHolds = -1e30;
 /// Offsets must stay clear of the padding, and their squares of overflow.
 constexpr double kMostOffset = 1e29;
-/// batch.h: | |normal| - 1 | <= 2^-10.
-constexpr double kUnitLength = 0x1p-10;
 
 /// A register's worth of problems, transposed; those that the lockstep search takes.
 class Batch {
@@ -115,11 +112,8 @@ class Batch {
 };
 
 Proven solve_one(Solver solver, const Problem& problem) {
-  if (solver == Solver::certified) return solve_certified(problem);
-  if (solver == Solver::exact) return solve_exact(problem);
-  Proven answer;
-  answer.solution = solve(problem);
-  return answer;
+  if (solver == Solver::batch) return {lp::solve(problem), std::nullopt, false};
+  return solver == Solver::exact ? solve_exact(problem) : solve_certified(problem);
 }
 
 }  // namespace

@@ -11,6 +11,10 @@
 namespace exactvo::lp {
 namespace {
 
+/// In the place of a line's position: the disc, and nothing.
+constexpr std::size_t kDiscPosition = static_cast<std::size_t>(-1);
+constexpr std::size_t kNoPosition = static_cast<std::size_t>(-2);
+
 using geometry::kInfinity;
 
 /// Two conversions of long numbers to double (2 u each: the leading words are truncated), a root, a product, a quotient

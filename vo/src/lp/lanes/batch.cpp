@@ -11,8 +11,8 @@
 #include "exactvo/geometry/seen_by_tsan.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
+#include "lp/exact/inward.h"
 #include "lp/lanes/layout.h"
-#include "lp/scalar/inward.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lp/lanes/batch.cpp"

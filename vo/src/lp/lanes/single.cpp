@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exactvo/vo/lp/single.h"
+#include "lp/kernel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/solve.h"
 #include "lp/lanes/layout.h"
 #include "lp/problem/exact_sign.h"
 #include "lp/proof/multipliers.h"
@@ -531,11 +530,15 @@ HWY_NOINLINE bool certify_copied(const SingleProblem& problem, Solution& answer)
 
 }  // namespace
 
-void solve_single(const SingleProblem& problem, Solution& answer) {
-  if (!HWY_DYNAMIC_DISPATCH(run_single)(problem, answer)) solve_copied(problem, answer);
+bool run_kernel(const SingleProblem& problem, Solution& answer) {
+  return HWY_DYNAMIC_DISPATCH(run_single)(problem, answer);
 }
 
-bool solve_single_certified(const SingleProblem& problem, Solution& answer) {
+void solve(const SingleProblem& problem, Solution& answer) {
+  if (!run_kernel(problem, answer)) solve_copied(problem, answer);
+}
+
+bool solve_certified(const SingleProblem& problem, Solution& answer) {
   return HWY_DYNAMIC_DISPATCH(run_single_proven)(problem, answer) || certify_copied(problem, answer);
 }
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "exactvo/geometry/require.h"
+#include "exactvo/vo/lp/solution.h"
 
 namespace exactvo::lp {
 namespace {
@@ -25,18 +27,6 @@ std::string words(double x, double y) {
 std::string words(std::size_t index, const HalfPlane& h) {
   return "constraint " + std::to_string(index) + " with normal " + words(h.normal.x, h.normal.y) + " and offset " +
          std::to_string(h.offset);
-}
-
-Line line_of(const HalfPlane& h, double slack_of_unit, Binding binding, bool soft) {
-  const double slack = slack_of_unit * (std::abs(h.normal.x) + std::abs(h.normal.y));
-  return {h.normal, h.offset + slack, squared_norm(h.normal), slack, binding, soft};
-}
-
-void add_box(const SpeedBound& b, Region& region) {
-  for (const Binding side : kBoxSides) {
-    const HalfPlane h = side_of_box(b, side.kind);
-    if (std::isfinite(h.offset)) region.lines.push_back({h.normal, h.offset, 1.0, 0.0, side, false});
-  }
 }
 
 }  // namespace
@@ -87,25 +77,6 @@ double largest_speed(const Problem& problem) {
   for (const Constraint& c : problem.constraints)
     speed = std::max(speed, std::abs(c.half_plane.offset) / norm(c.half_plane.normal));
   return speed;
-}
-
-Region region_of(const Problem& problem, double slack_units) {
-  Region region;
-  set_region_of(problem, slack_units, region);
-  return region;
-}
-
-void set_region_of(const Problem& problem, double slack_units, Region& region) {
-  region.lines.clear();
-  region.speed = largest_speed(problem);
-  region.disc = problem.bound.disc * (1.0 - 0.5 * slack_units * kInwardSlack);
-  region.lines.reserve(problem.constraints.size() + 4);
-  const double slack = slack_units * kInwardSlack * region.speed;
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    const Constraint& c = problem.constraints[i];
-    region.lines.push_back(line_of(c.half_plane, slack, constraint_at(i), c.priority == Priority::soft));
-  }
-  add_box(problem.bound, region);
 }
 
 }  // namespace exactvo::lp

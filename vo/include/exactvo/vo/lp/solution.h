@@ -38,8 +38,8 @@ struct ActiveConstraint {
 ///
 /// These are the terms of Certificate::bound and, where half-planes contradict each other and doubles can show it, of
 /// its witness. An answer of `solve_certified` can be checked from its problem and these numbers alone (inequalities
-/// (1) to (4) of certificate.h); those of `solve` and `solve_single` are rounded and prove nothing until `certify` has
-/// checked them. The multipliers of a `no_interior` answer are 0.
+/// (1) to (4) of certificate.h); those of a batch are rounded and prove nothing until `certify` has checked them. The
+/// multipliers of a `no_interior` answer are 0.
 struct Solution {
   geometry::Vec2 velocity;                   ///< m/s
   Status status = Status::optimal;           ///< how `velocity` is to be read

@@ -14,13 +14,12 @@ namespace exactvo::lp {
 
 /// A method of solution.
 enum class Solver {
-  incremental,  ///< one problem at a time, double (solve.h)
-  batch,        ///< a problem a SIMD lane, double (batch.h); problems it does not take go to `incremental`
-  certified,    ///< incremental, proven, the exact stage behind it (certificate.h)
-  exact         ///< every branch in exact arithmetic (certificate.h)
+  batch,      ///< a problem a SIMD lane, double (batch.h); problems it does not take go to `solve` (solve.h)
+  certified,  ///< one problem at a time in doubles, proven; the exact stage behind it (certificate.h)
+  exact       ///< every branch in exact arithmetic (certificate.h)
 };
 
-/// "incremental" and so on.
+/// "batch" and so on.
 const char* name(Solver solver);
 /// Every name, in the order of Solver.
 std::vector<std::string> solver_names();

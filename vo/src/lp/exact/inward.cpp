@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lp/scalar/inward.h"
+#include "lp/exact/inward.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "lp/kernel.h"
 #include "lp/problem/exact_sign.h"
-#include "lp/scalar/active_set.h"
+#include "lp/problem/region.h"
 
 namespace exactvo::lp {
 namespace {
@@ -91,9 +92,8 @@ std::optional<Vec2> nearest_double_inside(const Problem& problem, Status status,
   if (const auto neighbour = neighbour_inside(problem, status, target)) return neighbour;
   const Problem mandatory = mandatory_near(problem, status, target);
   for (const double slack : kSlacks) {
-    const Found found = best_velocity(region_of(mandatory, slack), Objective::nearest, target);
-    const Vec2 v = into_box(found.velocity, problem.bound);
-    if (found.feasible && holds(problem, status, v)) return brought_nearer(problem, status, target, v);
+    const std::optional<Vec2> v = optimum_inside(mandatory, slack);
+    if (v && holds(problem, status, *v)) return brought_nearer(problem, status, target, *v);
   }
   return std::nullopt;
 }
