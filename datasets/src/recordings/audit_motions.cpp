@@ -12,6 +12,7 @@ namespace exactvo::datasets {
 namespace {
 
 using exact::Chord;
+using exact::exactly;
 using exact::ExactWay;
 using exact::Point;
 using exact::Rational;
@@ -51,6 +52,11 @@ class MotionAudit : public RowAudit {
     for (const formation::MovingObstacle& o : run.scenario.moving_obstacles) moving_.emplace_back(o);
   }
 
+  void check_row(const RowInRun& at) override {
+    row_ = at.number;
+    if (run_.scenario.separate) part(at);
+  }
+
   void check_step(const RowInRun& at) override {
     const formation::Step &from = at.row, &to = *at.next;
     if (!(from.time >= 0.0 && from.time < to.time)) return;
@@ -63,7 +69,6 @@ class MotionAudit : public RowAudit {
       report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
       driven.push_back({motion, box_of(whole)});
     }
-    if (run_.scenario.separate) part(at, driven);
     const Moved moved = displacements(from, to);
     for (std::size_t i = 0; i < driven.size(); ++i) {
       if (run_.file.recording.motion != MotionLaw::straight) ++report.curved_steps;
@@ -152,7 +157,10 @@ class MotionAudit : public RowAudit {
       const double radius = run_.scenario.robots[i].radius, other = run_.scenario.robots[j].radius;
       if (are_apart(driven[i].box, driven[j].box, kRounding * (radius + other))) continue;
       if (parting_.count(std::minmax(i, j)) > 0) {
-        if (comes_nearer(driven[i], driven[j])) answer.take(Verdict::meets, "robot", run_.scenario.robots[j].id);
+        if (!comes_nearer(driven[i], driven[j])) continue;
+        answer.take(Verdict::meets, "robot", run_.scenario.robots[j].id);
+        if (nearer_.emplace(std::minmax(i, j)).second)
+          tell(std::minmax(i, j), "came nearer after row " + std::to_string(row_));
         continue;
       }
       const Rational reach = Rational(radius) + Rational(other);
@@ -170,16 +178,16 @@ class MotionAudit : public RowAudit {
   }
 
   /// Pairs that overlap in the first row, and of these the ones that still do.
-  void part(const RowInRun& at, const std::vector<Driven>& driven) {
+  void part(const RowInRun& at) {
     const std::vector<formation::Robot>& robots = run_.scenario.robots;
     const auto overlap = [&](std::size_t i, std::size_t j) {
-      const Point d = relative(driven[i], driven[j]).from;
+      const Point d = exactly(at.row.robots[i].position) - exactly(at.row.robots[j].position);
       const Rational reach = Rational(robots[i].radius) + Rational(robots[j].radius);
       return exact::dot(d, d) < reach * reach;
     };
     if (at.number == 0)
-      for (std::size_t i = 0; i < driven.size(); ++i)
-        for (std::size_t j = i + 1; j < driven.size(); ++j)
+      for (std::size_t i = 0; i < robots.size(); ++i)
+        for (std::size_t j = i + 1; j < robots.size(); ++j)
           if (overlap(i, j)) {
             parting_.emplace(i, j);
             told_[{i, j}] = run_.tally.report.started_overlapping.size();
@@ -192,10 +200,16 @@ class MotionAudit : public RowAudit {
         ++pair;
         continue;
       }
-      run_.tally.report.started_overlapping[told_.at(*pair)] =
-          robots[i].id + " and " + robots[j].id + ", apart from " + geometry::lossless(at.row.time) + " s on";
+      if (nearer_.count(*pair) == 0) tell(*pair, "apart from " + geometry::lossless(at.row.time) + " s on");
       pair = parting_.erase(pair);
     }
+  }
+
+  /// What became of a pair.
+  void tell(const std::pair<std::size_t, std::size_t>& pair, const std::string& words) {
+    const std::vector<formation::Robot>& robots = run_.scenario.robots;
+    run_.tally.report.started_overlapping[told_.at(pair)] =
+        robots[pair.first].id + " and " + robots[pair.second].id + ", " + words;
   }
 
   /// By more than the rounding of places and motions. Straight motions: the distance is convex, so that it grows all
@@ -211,7 +225,8 @@ class MotionAudit : public RowAudit {
   static constexpr double kRoundingOfPlaces = 0x1p-44;  ///< of the coordinates, in a step
   const AuditedRun& run_;
   std::vector<RationalObstacle> moving_;
-  std::set<std::pair<std::size_t, std::size_t>> parting_;
+  std::size_t row_ = 0;
+  std::set<std::pair<std::size_t, std::size_t>> parting_, nearer_;   ///< nearer_: pairs that came nearer while parting
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> told_;  ///< where in the report each pair stands
 };
 

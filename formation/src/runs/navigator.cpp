@@ -78,6 +78,10 @@ DecisionRules rules_of(const NavigatorSetup& setup) {
   rules.acceleration = *setup.acceleration;
   const double speed = fastest(setup.speed_bound, setup.max_speed);
   rules.braking_time = setup.braking_time.value_or(usual_braking_time(speed, rules.acceleration, rules.time_step));
+  const Horizons usual;
+  for (double Horizons::*horizon : {&Horizons::most, &Horizons::orca, &Horizons::robots})
+    if (rules.horizons.*horizon == usual.*horizon)
+      rules.horizons.*horizon = std::max(usual.*horizon, rules.braking_time);
   return rules;
 }
 
@@ -175,6 +179,7 @@ class Navigator::Core {
         obstacles_(setup.obstacles),
         robot_(robot_of(setup, std::move(goals))),
         arrival_tolerance_(setup.arrival_tolerance),
+        has_usual_braking_(setup.acceleration && !setup.braking_time),
         id_(setup.id),
         scene_(rules_.method, obstacles_, {robot_}, {}, facade_ellipses(rules_.margins)),
         own_(rules_, scene_.bodies()),
@@ -307,10 +312,22 @@ class Navigator::Core {
       require_positive(n.max_speed, "neighbour", k, "max_speed");
       if (rules_.has_brakes() && !n.cooperates)
         refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", "true with an acceleration");
+      if (rules_.has_brakes()) require_same_braking(n.max_speed, k);
       if (n.position == now.position)
         refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
                "another place than the robot's own");
     }
+  }
+
+  /// One braking time for all is what the promise rests on.
+  void require_same_braking(double max_speed, std::size_t k) const {
+    const double speed = fastest(rules_.speed_bound, max_speed), tau = rules_.braking_time;
+    const bool has_another =
+        has_usual_braking_ && usual_braking_time(speed, rules_.acceleration, rules_.time_step) != tau;
+    if (!has_another && speed < tau * rules_.acceleration) return;
+    refuse(Problem::out_of_range, field_of("neighbour", k, "max_speed"), number(max_speed),
+           has_another ? "the robot's own, or the same braking_time given to all robots"
+                       : "less than braking_time times acceleration, " + number(tau * rules_.acceleration) + " m/s");
   }
 
   void require_moving(const std::vector<MovingBody>& moving) const {
@@ -366,6 +383,7 @@ class Navigator::Core {
   std::vector<SceneObstacle> obstacles_;
   Robot robot_;
   double arrival_tolerance_;  ///< m
+  bool has_usual_braking_;    ///< an acceleration, and no braking time was given
   std::size_t id_;
   Scene scene_;
   OwnDecision own_;

@@ -47,15 +47,18 @@ struct NavigatorSetup {
   std::vector<SceneObstacle> obstacles;               ///< what stands still
   Method method = Method::ivo;                        ///< how it avoids obstacles
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how `max_speed` is meant
-  Horizons horizons;                                  ///< of the velocity obstacles
-  Margins margins;                                    ///< beside radii and facades
-  double time_step = 0.05;                            ///< s, > 0: the longest time from a decision to the next
-  double arrival_tolerance = 0.1;                     ///< m: within this of the last goal it has arrived
+  /// Of the velocity obstacles. With an acceleration those that have their default are at least the braking time.
+  Horizons horizons;
+  Margins margins;                   ///< beside radii and facades
+  double time_step = 0.05;           ///< s, > 0: the longest time from a decision to the next
+  double arrival_tolerance = 0.1;    ///< m: within this of the last goal it has arrived
   double neighbour_distance = 15.0;  ///< m: who is farther away, and cannot be met within a time step, is ignored
   /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
   /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
   std::optional<double> acceleration = {};
-  std::optional<double> braking_time = {};  ///< s, with an acceleration: as of a Scenario; else the usual one
+  /// s, with an acceleration: as of a Scenario. By default the usual one of this robot; neighbours of another
+  /// max_speed are refused then, since theirs would be another.
+  std::optional<double> braking_time = {};
   std::size_t neighbours = 32;  ///< memory is there from the beginning for so many neighbours and moving bodies
 };
 
