@@ -428,6 +428,8 @@ TEST_F(Shapefile, RingsWoundAsTheFormatDemandsAreRight) {
       EXPECT_EQ(codes_of(file), "");
       EXPECT_EQ(file.counts.done, 1u);
       EXPECT_TRUE(file.repairs.empty());
+      for (const DataNote& note : file.notes)
+        EXPECT_EQ(note.text.find("Simple Geometry"), std::string::npos) << "GDAL, that it kept the rings apart";
       EXPECT_EQ(area_of(file), rings.size() == 1 ? 400.0 : 300.0);
     }
   }

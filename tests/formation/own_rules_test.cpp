@@ -238,8 +238,46 @@ TEST(OwnHalfPlanes, SoftOnesGiveBeforeHardOnesDo) {
     EXPECT_EQ(run.steps[k].robots[0].status, lp::Status::relaxed);
     EXPECT_NEAR(run.steps[k].robots[0].violation, 0.7, 1e-9);
   }
+  EXPECT_EQ(measure(s, run).relaxed_steps, 0U) << "no half-plane against a body gave";
   const datasets::AuditReport report = audit_of(s, options, run);
   EXPECT_TRUE(report.clean()) << first(report);
+}
+
+/// A lane that is a line through velocities no double lies on: half-planes with opposite normals and no width.
+TEST(OwnHalfPlanes, ALaneWithoutWidthIsKept) {
+  Scenario s = circle(3);
+  s.time_limit = 3.0;
+  const Vec2 normal{0.6123724356957945, 0.7905694150420949};
+  for (const bool hard : {true, false}) {
+    SimulationOptions options;
+    options.half_planes = [&](const RobotSlice& robots, const std::vector<Vec2>&, std::vector<OwnHalfPlane>& out) {
+      for (std::size_t i = robots.first; i < robots.last; ++i) {
+        out.push_back({i, {normal, 0.1}, hard});
+        out.push_back({i, {-normal, -0.1}, hard});
+      }
+    };
+    Recording run = simulate(s, options);
+    const std::size_t decisions = 3 * (run.steps.size() - 1);
+    EXPECT_EQ(count(run, OwnStage::held), decisions) << hard;
+    for (std::size_t k = 0; k + 1 < run.steps.size(); ++k)
+      for (const RobotStep& r : run.steps[k].robots) {
+        EXPECT_NEAR(dot(normal, r.chosen), 0.1, 1e-8);
+        for (const OwnConstraint& c : r.own) EXPECT_NEAR(std::fabs(c.half_plane.offset), 0.1, 1e-8);
+      }
+    const datasets::AuditReport report = audit_of(s, options, run);
+    EXPECT_TRUE(report.clean()) << first(report);
+    EXPECT_EQ(report[datasets::AuditPoint::choices].open, 0U);
+    // Left out although bodies leave all the room there is: as decisions with lines were recorded once.
+    RobotStep& forged = run.steps[0].robots[0];
+    forged.own_stage = OwnStage::left_out;
+    forged.chosen = forged.preferred;
+    forged.status = lp::Status::optimal;
+    forged.bound.clear();
+    forged.violation = 0.0;
+    for (DecisionConstraint& c : forged.constraints) c.active = false, c.multiplier = 0.0;
+    for (std::size_t k : {0U, 1U}) forged.own[k] = {{k == 0 ? normal : -normal, k == 0 ? 0.1 : -0.1}, hard, false, 0.0};
+    EXPECT_THAT(first(audit_of(s, options, run)), HasSubstr("gives up half-planes of a user that can be held")) << hard;
+  }
 }
 
 /// Half-planes that robots cannot hold never make two of them overlap, and the audit can tell.
@@ -289,6 +327,28 @@ TEST(OwnRules, AnswersThatAreNoneAreRefused) {
   EXPECT_THAT(refusal(asking({1, {{1, 0}, INFINITY}, true})), HasSubstr("one of R2 is not finite"));
 }
 
+/// What to change stands in the message, by the option's name.
+TEST(OwnRules, OptionsThatAScenarioCannotHaveAreNamed) {
+  Scenario braking = circle(2), formation = circle(2);
+  braking.acceleration = Acceleration{1.0};
+  formation.formation.emplace();
+  SimulationOptions steered, asks, rvo;
+  steered.steering = [](const RobotSlice&, std::vector<Vec2>&) {};
+  asks.half_planes = [](const RobotSlice&, const std::vector<Vec2>&, std::vector<OwnHalfPlane>&) {};
+  rvo.method = Method::rvo;
+  const auto problem = [](const Scenario& s, const SimulationOptions& options) {
+    const std::vector<ScenarioProblem> all = option_problems(s, options);
+    return all.size() == 1 ? all[0].pointer + ": " + all[0].found + "; " + all[0].expected : std::to_string(all.size());
+  };
+  EXPECT_EQ(problem(braking, steered), "0");
+  EXPECT_THAT(problem(braking, asks), HasSubstr("half_planes: a function, with an acceleration; none, since braking"));
+  EXPECT_THAT(problem(formation, asks), HasSubstr("half_planes: a function, in a formation; none"));
+  EXPECT_THAT(problem(formation, steered), HasSubstr("steering: a function, in a formation; none"));
+  EXPECT_THAT(problem(formation, rvo), HasSubstr("method: rvo, which formations do not have; another method"));
+  EXPECT_THAT(problem(braking, rvo), HasSubstr("cannot promise to brake in time, with an acceleration"));
+  EXPECT_THROW(simulate(braking, asks), std::logic_error);
+}
+
 struct Places final : RunSink {
   std::vector<std::vector<Vec2>> rows;
   void add_state(const RunState& now) override { rows.push_back(now.positions); }
@@ -327,6 +387,11 @@ TEST(OwnRules, ARunOnACrowdTakesSteering) {
   SimulationOptions asks;
   asks.half_planes = [](const RobotSlice&, const std::vector<Vec2>&, std::vector<OwnHalfPlane>&) {};
   EXPECT_THROW(run_crowd(s, asks), std::logic_error);
+  for (const Method method : {Method::rvo, Method::hrvo}) {
+    SimulationOptions other;
+    other.method = method;
+    EXPECT_THROW(run_crowd(s, other), std::logic_error) << "it would be driven by orca";
+  }
 }
 
 }  // namespace

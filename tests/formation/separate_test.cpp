@@ -116,13 +116,25 @@ TEST(Separate, AnAuditRefutesRobotsThatComeNearerOrMeetLater) {
   ASSERT_TRUE(audit_of(s, run).clean());
   Recording nearer = run;
   nearer.steps[1].robots[0].position = nearer.steps[1].robots[1].position - Vec2{0.1, 0.0};
-  EXPECT_GT(audit_of(s, nearer)[datasets::AuditPoint::motions].refuted, 0U);
+  const datasets::AuditReport refuting = audit_of(s, nearer);
+  EXPECT_GT(refuting[datasets::AuditPoint::motions].refuted, 0U);
+  EXPECT_EQ(refuting.started_overlapping.at(0), "R1 and R2, came nearer after row 0");
   Recording later = run;
   later.steps[60].robots[0].position = later.steps[60].robots[1].position;
   EXPECT_GT(audit_of(s, later)[datasets::AuditPoint::motions].refuted, 0U);
   Scenario without = s;
   without.separate = false;
   EXPECT_GT(audit_of(without, run)[datasets::AuditPoint::motions].refuted, 0U);
+}
+
+/// The last row has no step of its own, and counts all the same.
+TEST(Separate, APairThatPartsInTheLastRowIsApart) {
+  Scenario s = heap({{0.0, 0.0}, {0.55, 0.0}});
+  s.time_limit = s.time_step;
+  const Recording run = simulate(s);
+  ASSERT_EQ(run.steps.size(), 2U);
+  ASSERT_GT(norm(run.steps[1].robots[0].position - run.steps[1].robots[1].position), 0.6);
+  EXPECT_EQ(audit_of(s, run).started_overlapping.at(0), "R1 and R2, apart from 0.1 s on");
 }
 
 TEST(Separate, IsReadAndWritten) {

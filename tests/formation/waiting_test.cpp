@@ -46,24 +46,6 @@ TEST(Waiting, ACycleIsADeadlockThatEachOfItsRobotsNames) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(is_dead(row.scenario, row.graph(), row.step, i));
 }
 
-TEST(Waiting, APairThatFellBackIsKnownByItsHorizon) {
-  Row row({{1}, {0}});
-  DecisionConstraint& c = row.step.robots[0].constraints[0];
-  const auto fell = [&] { return fell_back(row.scenario, row.step, 0, c); };
-  c.time_horizon = row.scenario.horizons.robots;
-  EXPECT_FALSE(fell());
-  c.time_horizon = 0.1;
-  EXPECT_TRUE(fell());
-  // A step that is as long: half-planes of plans look ahead so far too.
-  row.scenario.time_step = 0.1;
-  EXPECT_TRUE(fell());
-  row.step.robots[1].mode = Mode::by_plan;
-  EXPECT_FALSE(fell());
-  row.step.robots[1].mode = Mode::direct;
-  c.source = ConstraintSource::moving_obstacle;
-  EXPECT_FALSE(fell());
-}
-
 TEST(Waiting, TheRobotThatPressesMostComesFirst) {
   Row row({{1, 2}, {0}, {}});
   row.step.robots[0].constraints[1].multiplier = 0.5;

@@ -307,6 +307,21 @@ def test_answers_that_are_none_end_the_run(rules, where):
     assert refused.value.where == where
 
 
+def test_options_that_a_scenario_cannot_have_are_named(source):
+    braking = exactvo.Scenario.build([[-3, 0]], [[3, 0]], acceleration={"max": 2.0})
+    calls = [
+        (braking, {"half_planes": lambda now: []}, "half_planes", "with an acceleration", "steering"),
+        (braking, {"method": "rvo"}, "method", "cannot promise to brake in time", "another method"),
+        (exactvo.Scenario(source / "datasets/data/paper/B1.json"), {"steering": lambda now: None}, "steering", "in a formation", "controller"),
+    ]
+    for scenario, options, where, found, expected in calls:
+        with pytest.raises(exactvo.ArgumentError) as refused:
+            exactvo.simulate(scenario, **options)
+        assert refused.value.code == "E_ARGUMENT" and refused.value.where == where
+        assert found in refused.value.found and expected in refused.value.expected
+        assert "requires" not in str(refused.value)
+
+
 def test_what_steering_raises_ends_the_run():
     def steering(now):
         raise ZeroDivisionError("mine")

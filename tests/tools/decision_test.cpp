@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
@@ -111,6 +112,7 @@ TEST(Decision, NamesWhatAConstraintStandsFor) {
   DecisionConstraint robot = d.step.constraints[0];
   robot.source = ConstraintSource::robot;
   EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "acceleration of robot R1");
+  EXPECT_EQ(formation::name_of(std::vector{robot, robot}, d.scenario, d.bodies), "acceleration of robot R1");
   robot.hard = false;
   EXPECT_EQ(formation::name_of(robot, d.scenario, d.bodies), "robot R1");
 }
@@ -169,7 +171,7 @@ TEST(Explanation, SaysForWhomARobotWaitsAndWhichPairsFellBack) {
   d.step.constraints[1].hard = false;
   d.step.constraints[1].index = 0;
   d.step.constraints[1].time_horizon = 0.1;
-  d.fell_back = {0, 1};
+  d.step.constraints[1].fell_back = true;
   EXPECT_THAT(explanation(d), HasSubstr("  waiting    R1 waits for R2, which moves\n"));
   EXPECT_THAT(explanation(d), HasSubstr("[2] robot R1 (the pair fell back), binding"));
   EXPECT_THAT(explanation(d), HasSubstr("looking 0.1 s ahead"));
@@ -198,6 +200,35 @@ TEST(VelocitySpace, SaysWhereHalfPlanesWereNotRecorded) {
   d.has_all_half_planes = false;
   EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("title 'allowed by the half-planes recorded'"));
   EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("Others may forbid more.'\n"));
+}
+
+/// What an acceleration forbids is forbidden in the figure too, whether its half-planes were recorded or not.
+TEST(VelocitySpace, AllowedVelocitiesAreWithinTheAcceleration) {
+  Decision d = with_two_walls();
+  d.step.velocity = {-1.0, 0.5};
+  const auto most_from_velocity = [&] {
+    std::istringstream rows(velocity_space_figure(d).data);
+    std::string line;
+    double most = 0.0;
+    bool is_allowed = false;
+    while (std::getline(rows, line)) {
+      if (line.rfind("#", 0) == 0)
+        is_allowed = line.find("allowed velocities") != std::string::npos ||
+                     (is_allowed && line.find("v_x") != std::string::npos);
+      geometry::Vec2 v;
+      std::istringstream numbers(line);
+      if (is_allowed && numbers >> v.x >> v.y) most = std::max(most, norm(v - d.step.velocity));
+    }
+    return most;
+  };
+  EXPECT_GT(most_from_velocity(), 2.0);
+  d.scenario.acceleration = formation::Acceleration{2.0};
+  d.scenario.time_step = 0.1;
+  EXPECT_NEAR(most_from_velocity(), 0.2, 1e-8);  // nine digits
+  d.scenario.acceleration.reset();
+  d.step.own_stage = formation::OwnStage::held;
+  d.step.own = {{{{-1.0, 0.0}, 0.9}, true}};
+  EXPECT_LT(most_from_velocity(), 3.5) << "half-planes of a user that hold";
 }
 
 // What the robot overlaps has no cone; its shape stood in the legend without the heading that it belongs to.

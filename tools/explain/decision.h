@@ -32,12 +32,8 @@ struct Decision {
   std::vector<std::size_t> waits_for = {};     ///< robots (formation/waiting.h)
   std::string waiting = {};                    ///< the same in words; empty where it waits for nobody
   std::vector<formation::SeenBody> seen = {};  ///< of each half-plane, what it keeps clear of
-  std::vector<char> fell_back = {};            ///< of each half-plane, whether it is of a pair that fell back
 
   const formation::Robot& who() const { return scenario.robots[robot]; }
-  bool is_of_fallen_pair(std::size_t half_plane) const {
-    return half_plane < fell_back.size() && fell_back[half_plane] != 0;
-  }
 };
 
 /// The decision of one robot in a row of a run that has these bodies.

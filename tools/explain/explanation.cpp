@@ -179,7 +179,7 @@ std::string effect_words(const Decision& d, const DecisionConstraint& c) {
 std::string constraint_words(const Decision& d, std::size_t i) {
   const DecisionConstraint& c = d.step.constraints[i];
   return fmt::format("  [{}] {}{}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies),
-                     d.is_of_fallen_pair(i) ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, i),
+                     c.fell_back ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, i),
                      line_words(c));
 }
 
@@ -311,20 +311,20 @@ std::string relaxed_words(const Decision& d) {
 }
 
 std::string fallen_words(const Decision& d) {
-  const auto fallen = std::find(d.fell_back.begin(), d.fell_back.end(), 1);
-  if (fallen == d.fell_back.end()) return "";
-  const auto first = static_cast<std::size_t>(fallen - d.fell_back.begin());
+  const std::vector<DecisionConstraint>& all = d.step.constraints;
+  const auto fallen = std::find_if(all.begin(), all.end(), [](const DecisionConstraint& c) { return c.fell_back; });
+  if (fallen == all.end()) return "";
   if (formation::braking_time_of(d.scenario) > 0.0)
     return fmt::format(
         "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots that "
         "brake,\n"
         "     looking {:g} s ahead, which braking satisfies.\n",
-        d.step.constraints[first].time_horizon);
+        fallen->time_horizon);
   return fmt::format(
       "Fell back: half-planes of one robot of the pair contradicted each other. Both have those of two robots at "
       "rest,\n"
       "     looking {:g} s ahead, which standing still satisfies.\n",
-      d.step.constraints[first].time_horizon);
+      fallen->time_horizon);
 }
 
 /// What the user has asked for in this step.
@@ -357,10 +357,8 @@ Decision decision_of(const formation::Scenario& scenario, const std::string& met
   const formation::WaitForGraph waits = formation::waiting_in(scenario, row);
   d.waits_for = waits[robot];
   d.waiting = formation::waiting_words(scenario, row, waits, robot);
-  for (const DecisionConstraint& c : d.step.constraints) {
+  for (const DecisionConstraint& c : d.step.constraints)
     d.seen.push_back(formation::seen_body(scenario, bodies, row, robot, c));
-    d.fell_back.push_back(formation::fell_back(scenario, row, robot, c));
-  }
   return d;
 }
 

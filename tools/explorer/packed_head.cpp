@@ -108,6 +108,7 @@ Json about_json(const datasets::RecordingFile& file) {
                {"straight", run.motion == formation::MotionLaw::straight},
                {"relative_frame", run.relative_frame},
                {"all_half_planes", run.all_half_planes},
+               {"change", scenario.acceleration ? scenario.acceleration->max * scenario.time_step : 0.0},
                {"speed_bound", scenario.speed_bound == formation::SpeedBoundKind::disc ? "disc" : "box"},
                {"arrival_tolerance", scenario.arrival_tolerance},
                {"version", file.info.provenance.version},

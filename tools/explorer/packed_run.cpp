@@ -132,8 +132,9 @@ std::size_t numbers_in(const Step& row) {
   return count;
 }
 
-std::uint8_t flags_of(const DecisionConstraint& c, bool fell_back) {
-  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0) | (fell_back ? 8 : 0));
+std::uint8_t flags_of(const DecisionConstraint& c) {
+  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0) |
+                                   (c.fell_back ? 8 : 0));
 }
 
 void append(std::vector<double>& numbers, Vec2 v) {
@@ -169,7 +170,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
       for (const lp::ActiveConstraint& part : r.bound) parts.push_back(&part);
       for (const DecisionConstraint& c : r.constraints) {
         half_planes.push_back(&c);
-        flags.push_back(flags_of(c, formation::fell_back(scenario, row, i, c)));
+        flags.push_back(flags_of(c));
         append(line, c.half_plane.normal);
         line.push_back(c.half_plane.offset);
       }
@@ -241,7 +242,7 @@ void RunPacker::note_events(const Step& row) {
   is_relaxed_.resize(row.robots.size());
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     const RobotStep& r = row.robots[i];
-    const bool relaxed = r.status != lp::Status::optimal;
+    const bool relaxed = bodies_gave(r);
     if (!r.note.empty()) add_event(row.time, i, kind_of_note(r.note), r.note);
     if (!first && r.mode != modes_[i]) {
       if (is_of_plan(r.mode))

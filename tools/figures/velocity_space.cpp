@@ -94,6 +94,9 @@ class VelocitySpace {
   void add_allowed() {
     Points ring = speed_bound_ring();
     for (const DecisionConstraint& c : constraints()) ring = clipped(ring, c.half_plane);
+    for (const geometry::HalfPlane& h : formation::own_limits(d_.scenario, d_.step, d_.robot)) ring = clipped(ring, h);
+    for (const formation::OwnConstraint& c : d_.step.own)
+      if (c.hard && d_.step.own_stage == formation::OwnStage::held) ring = clipped(ring, c.half_plane);
     if (ring.size() < 3) return;
     const int index = data_.begin("allowed velocities", "v_x [m/s], v_y [m/s]");
     data_.ring(ring);

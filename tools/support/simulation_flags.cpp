@@ -144,17 +144,10 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 }  // namespace
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
-  formation::Method method = formation::Method::ivo;
-  const bool brakes = braking_time_of(scenario) > 0.0;
-  if ((scenario.formation || brakes || scenario.separate) && parse(flags.method, method) &&
-      !promises_between_robots(method))
-    throw UsageError(
-        "--method",
-        flags.method + (scenario.formation      ? ", which formations do not have"
-                        : scenario.acceleration ? ", which cannot promise to brake in time, with an acceleration"
-                        : brakes                ? ", which cannot promise to brake in time, with robots on wheels"
-                                                : ", which promises nothing between robots that part"),
-        "another method: orca, ivo-edge, ivo-cluster or ivo");
+  formation::SimulationOptions options;
+  parse(flags.method, options.method);
+  for (const formation::ScenarioProblem& p : option_problems(scenario, options))
+    throw UsageError("--" + p.pointer, p.found, p.expected);
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
   if (scenario.formation && flags.liveness == "bias")

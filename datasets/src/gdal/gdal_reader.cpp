@@ -48,7 +48,8 @@ class VectorReader {
       for_each_feature([this](const Item& item) { add(item); });
     }
     plane_.note_extent();
-    for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
+    for (const std::string& words : complaints_.take_warnings())
+      if (!is_of_rings_as_they_stand(words)) out_.note("", words);
   }
 
  private:

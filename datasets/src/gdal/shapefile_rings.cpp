@@ -105,6 +105,10 @@ RingsAsTheyStand::~RingsAsTheyStand() {
   CPLSetThreadLocalConfigOption(kOption, nullptr);
 }
 
+bool is_of_rings_as_they_stand(const std::string& warning) {
+  return warning.find("cannot be translated to Simple Geometry") != std::string::npos;
+}
+
 std::vector<std::vector<Ring>> polygons_of_rings(const std::vector<Ring>& rings) {
   const Nesting nesting(rings);
   std::vector<std::size_t> outer, holes, stray;

@@ -8,6 +8,7 @@
 
 #include <ogr_feature.h>
 
+#include <string>
 #include <vector>
 
 #include "exactvo/geometry/shapes.h"
@@ -22,6 +23,9 @@ class RingsAsTheyStand {
   RingsAsTheyStand(const RingsAsTheyStand&) = delete;
   RingsAsTheyStand& operator=(const RingsAsTheyStand&) = delete;
 };
+
+/// Whether GDAL warns that it did not group the rings of a record, as it was asked.
+bool is_of_rings_as_they_stand(const std::string& warning);
 
 /// The outer ring first, then its holes; in the order of the outer rings. A counter-clockwise ring is a hole of the
 /// smallest clockwise one round it. One that is in none is wound wrongly: it is an outer ring unless an odd number of

@@ -408,11 +408,14 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
   words.emplace_back(
-      "why a velocity was preferred, and what is said beside the numbers: mode, side, note, clearance, "
+      "why a velocity was preferred, and what is said beside the numbers: mode, side, note, clearance, fell_back, "
       "method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall time");
   words.emplace_back(
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");
+  words.emplace_back(
+      "that recorded half-planes forbid no more than they must, and that a user asked for those of a user: a choice is "
+      "the best, and its stage the first, of the half-planes that its row has");
   if (report.has_places)
     words.emplace_back("decisions and half-planes of recordings without them, and whether their runs are whole");
   if (report.without_pairs)

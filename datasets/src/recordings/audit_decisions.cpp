@@ -98,10 +98,6 @@ bool is_beyond_proof(const lp::Problem& problem, const lp::Solution& chosen) {
          norm(chosen.velocity - problem.preferred) <= kRounding * norm(exact.solution.velocity - problem.preferred);
 }
 
-/// While half-planes of a user give, no other does.
-bool holds_bodies(OwnStage stage) {
-  return stage == OwnStage::held || stage == OwnStage::gave;
-}
 bool is_hard_in(OwnStage stage, const DecisionConstraint& c) {
   return c.hard || holds_bodies(stage);
 }
@@ -475,7 +471,8 @@ class DecisionAudit : public RowAudit {
            false);
   }
 
-  /// A decision with half-planes of a user counts in the first stage that has an answer: the one before has none.
+  /// A decision with half-planes of a user counts in the first stage that has an answer. Where they gave, they cannot
+  /// be held; where they are left out, those against bodies alone leave no room.
   std::string earlier_stage(const Seen& s) const {
     const RobotStep& r = *s.state;
     if (r.own.empty() != (r.own_stage == OwnStage::none))
@@ -484,14 +481,14 @@ class DecisionAudit : public RowAudit {
     if (holds_bodies(r.own_stage) && !has_answer) return " is made in a stage that has no answer";
     if (r.own_stage == OwnStage::none || r.own_stage == OwnStage::held) return "";
     lp::Problem before;
-    state(s, r.own_stage == OwnStage::gave ? OwnStage::held : OwnStage::gave, before);
+    state(s, OwnStage::held, r.own_stage == OwnStage::gave ? r.own : std::vector<OwnConstraint>(), before);
     const lp::Status status = lp::solve_exact(before).solution.status;
     if (status == lp::Status::infeasible || status == lp::Status::no_interior) return "";
     return " gives up half-planes of a user that can be held";
   }
 
   /// The linear program of a stage.
-  void state(const Seen& s, OwnStage stage, lp::Problem& problem) const {
+  void state(const Seen& s, OwnStage stage, const std::vector<OwnConstraint>& own, lp::Problem& problem) const {
     const auto take = [&](const auto& some) {
       for (const auto& c : some)
         problem.constraints.push_back({c.half_plane, is_hard_in(stage, c) ? lp::Priority::hard : lp::Priority::soft});
@@ -503,7 +500,7 @@ class DecisionAudit : public RowAudit {
       problem.bound.box_x = problem.bound.box_y = speed;
     problem.preferred = s.state->preferred;
     take(s.state->constraints);
-    if (holds_bodies(stage)) take(s.state->own);
+    if (holds_bodies(stage)) take(own);
   }
 
   /// m/s
@@ -563,7 +560,7 @@ class DecisionAudit : public RowAudit {
   /// The decision as a problem of the recorded half-planes, and its answer. Says what is wrong with its terms.
   std::string stated(const Seen& s, lp::Problem& problem, lp::Solution& solution) const {
     const RobotStep& r = *s.state;
-    state(s, r.own_stage, problem);
+    state(s, r.own_stage, r.own, problem);
     solution.velocity = r.chosen;
     solution.status = r.status;
     solution.violation = r.violation;

@@ -17,6 +17,7 @@
 namespace exactvo::datasets {
 
 using exact::Chord;
+using exact::exactly;
 using exact::ExactWay;
 using exact::Point;
 using exact::Rational;
@@ -92,6 +93,13 @@ class MotionAudit : public RowAudit {
     for (const formation::Robot& robot : run.scenario.robots) largest_ = std::max(largest_, robot.radius);
   }
 
+  void check_row(const RowInRun& at) override {
+    if (!run_.scenario.separate) return;
+    std::vector<Vec2> places;
+    for (const formation::RobotStep& robot : at.row.robots) places.push_back(robot.position);
+    part(at.number, at.row.time, places);
+  }
+
   void check_step(const RowInRun& at) override {
     if (!(at.row.time >= 0.0 && at.row.time < at.next->time)) return;
     const auto states = [&](const formation::Step& row, std::size_t number) {
@@ -107,7 +115,9 @@ class MotionAudit : public RowAudit {
     to_ = &to;
     lay_out();
     lay_out_moving();
-    if (run_.scenario.separate) part(row);
+    row_ = row;
+    const bool are_parting = run_.scenario.separate && has_places_only_;
+    if (are_parting && row == 0) part(0, from);
     AuditReport& report = run_.tally.report;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       if (!run_.is_asked(row, i)) continue;
@@ -125,6 +135,7 @@ class MotionAudit : public RowAudit {
       else
         run_.tally.proven(AuditPoint::motions);
     }
+    if (are_parting) part(row + 1, to);
   }
 
  private:
@@ -292,7 +303,11 @@ class MotionAudit : public RowAudit {
   }
 
   Verdict meet_robot(std::size_t i, std::size_t j, double radii) {
-    if (parting_.count(std::minmax(i, j)) > 0) return comes_nearer(i, j) ? Verdict::meets : Verdict::clear;
+    if (const std::pair<std::size_t, std::size_t> pair = std::minmax(i, j); parting_.count(pair) > 0) {
+      if (!comes_nearer(i, j)) return Verdict::clear;
+      if (nearer_.insert(pair).second) tell(pair, "came nearer after row " + std::to_string(row_));
+      return Verdict::meets;
+    }
     if (is_straight_ && is_surely_more(geometry::swept_distance(way(i), way(j)), boxes_[i], boxes_[j], radii))
       return Verdict::clear;
     const Rational reach = Rational(radius(i)) + Rational(radius(j));
@@ -310,11 +325,17 @@ class MotionAudit : public RowAudit {
     return motion(i).seen_from(motion(j)).over(Rational(0), Rational(1)).way;
   }
 
+  void part(std::size_t row, const RowStates& states) {
+    std::vector<Vec2> places;
+    for (const auto& robot : states.robots) places.push_back(robot.position);
+    part(row, states.time, places);
+  }
+
   /// Pairs that overlap in the first row, and of these the ones that still do.
-  void part(std::size_t row) {
+  void part(std::size_t row, double time, const std::vector<Vec2>& places) {
     const std::vector<formation::Robot>& robots = run_.scenario.robots;
     const auto overlap = [&](std::size_t i, std::size_t j) {
-      const Point d = relative(i, j).from;
+      const Point d = exactly(places[i]) - exactly(places[j]);
       const Rational reach = Rational(robots[i].radius) + Rational(robots[j].radius);
       return exact::dot(d, d) < reach * reach;
     };
@@ -333,10 +354,16 @@ class MotionAudit : public RowAudit {
         ++pair;
         continue;
       }
-      run_.tally.report.started_overlapping[told_.at(*pair)] =
-          robots[i].id + " and " + robots[j].id + ", apart from " + geometry::lossless(from_->time) + " s on";
+      if (nearer_.count(*pair) == 0) tell(*pair, "apart from " + geometry::lossless(time) + " s on");
       pair = parting_.erase(pair);
     }
+  }
+
+  /// What became of a pair.
+  void tell(const std::pair<std::size_t, std::size_t>& pair, const std::string& words) {
+    const std::vector<formation::Robot>& robots = run_.scenario.robots;
+    run_.tally.report.started_overlapping[told_.at(pair)] =
+        robots[pair.first].id + " and " + robots[pair.second].id + ", " + words;
   }
 
   /// By more than the rounding of places and motions. Straight motions: the distance is convex, so that it grows all
@@ -355,7 +382,8 @@ class MotionAudit : public RowAudit {
   geometry::BoxGrid obstacles_by_place_;
   std::vector<RationalObstacle> moving_;
   double largest_ = 0.0;  ///< m, of the radii
-  std::set<std::pair<std::size_t, std::size_t>> parting_;
+  std::size_t row_ = 0;
+  std::set<std::pair<std::size_t, std::size_t>> parting_, nearer_;   ///< nearer_: pairs that came nearer while parting
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> told_;  ///< where in the report each pair stands
   // Of a step.
   const RowStates *from_ = nullptr, *to_ = nullptr;

@@ -59,7 +59,7 @@ void members(Codec& json, For<Codec, formation::DecisionConstraint>& c) {
   json.member("body", c.body).member("index", c.index).member_if(c.piece != 0, "piece", c.piece);
   json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
   json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
-  json.member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
+  json.member_if(c.fell_back, "fell_back", c.fell_back).member_if(c.multiplier != 0.0, "multiplier", c.multiplier);
   json.member("clearance", c.clearance).member("time_horizon", c.time_horizon);
 }
 

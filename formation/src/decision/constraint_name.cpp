@@ -58,7 +58,7 @@ std::string name_of(const std::vector<DecisionConstraint>& constraints, const Sc
                                    [&](const Named& g) { return g.kind == item.kind && g.owner == item.owner; });
     if (same == groups.end())
       groups.push_back(std::move(item));
-    else
+    else if (std::find(same->which.begin(), same->which.end(), item.which.front()) == same->which.end())
       same->which.push_back(item.which.front());
   }
   std::vector<std::string> words;

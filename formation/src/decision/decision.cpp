@@ -2,6 +2,7 @@
 #include "decision/decision.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "exactvo/vo/lp/solve.h"
@@ -39,8 +40,7 @@ const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t 
 
 /// Of a half-plane against a body: where a user has asked for others, none of these gives.
 lp::Priority priority_in(OwnStage stage, bool is_hard) {
-  const bool holds = is_hard || stage == OwnStage::held || stage == OwnStage::gave;
-  return holds ? lp::Priority::hard : lp::Priority::soft;
+  return is_hard || holds_bodies(stage) ? lp::Priority::hard : lp::Priority::soft;
 }
 
 lp::Priority priority_of_own(OwnStage stage, const OwnConstraint& c) {
@@ -196,6 +196,7 @@ void fall_back(const RobotsAt& now, std::size_t i, std::size_t j, std::vector<st
                                    : at_rest(now, i, j, contact_time(now.rules.time_step, now.rules.horizons), gap);
   *mine = pair.of_a;
   *theirs = pair.of_b;
+  mine->fell_back = theirs->fell_back = true;
 }
 
 void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& planned,
@@ -286,6 +287,7 @@ DecisionConstraint Decider::named(const Kept& kept) const {
   r.certified = c.proof != vo::Proof::none;
   r.hard = c.priority == lp::Priority::hard;
   r.active = kept.second != nullptr;
+  r.fell_back = c.fell_back;
   r.multiplier = kept.second ? kept.second->multiplier : 0.0;
   r.time_horizon = c.time_horizon;
   r.clearance = c.clearance;
@@ -328,8 +330,8 @@ void Decider::state_problem(const DecisionInput& in) {
     for (const Constraint& c : *some)
       problem_.constraints.push_back({c.half_plane, priority_in(stage_, c.priority == lp::Priority::hard)});
   for (const Constraint& c : limits_) problem_.constraints.push_back({c.half_plane, lp::Priority::hard});
-  if (stage_ == OwnStage::held || stage_ == OwnStage::gave)
-    for (const OwnConstraint& c : *in.own) problem_.constraints.push_back({c.half_plane, priority_of_own(stage_, c)});
+  if (holds_bodies(stage_))
+    for (const OwnConstraint& c : own_) problem_.constraints.push_back({c.half_plane, priority_of_own(stage_, c)});
 }
 
 /// Whether multipliers prove the solution. An optimum needs the half-planes that it leaves no room to spare; any other
@@ -350,16 +352,33 @@ lp::Proven Decider::proven_solution(const DecisionInput& in) {
   return is_solved(in, proven.solution) ? proven : lp::solve_exact(problem_);
 }
 
-/// The first stage that has an answer. What shows that an earlier one has none is in all half-planes.
+/// The first stage that has an answer. What shows that an earlier one has none is in all half-planes. Where there is
+/// room, but less than between doubles, the user's half-planes move outward until a double fits: a nanometre per second
+/// mostly does, and the last step is wider than the speed bound, so that only bodies are a reason to leave them out.
 lp::Proven Decider::solution_in_stages(DecisionInput& in) {
   stage_ = OwnStage::none;
   if (!in.own || in.own->empty()) return proven_solution(in);
-  for (stage_ = OwnStage::held;; stage_ = stage_ == OwnStage::held ? OwnStage::gave : OwnStage::left_out) {
-    lp::Proven proven = proven_solution(in);
-    const lp::Status status = proven.solution.status;
-    if (stage_ == OwnStage::left_out || status == lp::Status::optimal || status == lp::Status::relaxed) return proven;
-    in.keep_all = true;
+  constexpr double kOutward[] = {0.0, 0x1p-30, 0x1p-20, 0x1p-10, 4.0};  // of the numbers in play
+  for (const double outward : kOutward) {
+    own_ = *in.own;
+    for (OwnConstraint& c : own_) {
+      geometry::HalfPlane& h = c.half_plane;
+      h.offset -= outward * (in.from.max_speed * norm(h.normal) + std::fabs(h.offset));
+    }
+    lp::Status status = lp::Status::infeasible;
+    for (const OwnStage stage : {OwnStage::held, OwnStage::gave}) {
+      if (status != lp::Status::infeasible) break;
+      stage_ = stage;
+      lp::Proven proven = proven_solution(in);
+      status = proven.solution.status;
+      if (status == lp::Status::optimal || status == lp::Status::relaxed) return proven;
+      in.keep_all = true;
+    }
+    if (status == lp::Status::infeasible) break;
   }
+  stage_ = OwnStage::left_out;
+  own_ = *in.own;
+  return proven_solution(in);
 }
 
 Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
@@ -406,7 +425,7 @@ void Decider::decide(const DecisionInput& of_user, Decision& decision) {
   decision.own_stage = stage_;
   decision.own.clear();
   if (stage_ == OwnStage::none) return;
-  for (OwnConstraint c : *in.own) {
+  for (OwnConstraint c : own_) {
     const lp::ActiveConstraint* active = stage_ == OwnStage::left_out ? nullptr : active_at(solution_, number++);
     c.active = active != nullptr;
     c.multiplier = active ? active->multiplier : 0.0;
@@ -433,10 +452,22 @@ std::vector<lp::Constraint> problem_of(const Decision& decision, const std::vect
   std::vector<lp::Constraint> problem;
   for (const DecisionConstraint& c : constraints)
     problem.push_back({c.half_plane, detail::priority_in(decision.own_stage, c.hard)});
-  if (decision.own_stage == OwnStage::held || decision.own_stage == OwnStage::gave)
+  if (holds_bodies(decision.own_stage))
     for (const OwnConstraint& c : decision.own)
       problem.push_back({c.half_plane, detail::priority_of_own(decision.own_stage, c)});
   return problem;
+}
+
+std::vector<geometry::HalfPlane> own_limits(const Scenario& scenario, const RobotStep& step, std::size_t robot) {
+  std::vector<geometry::HalfPlane> limits;
+  const detail::DecisionRules rules = detail::rules_of(scenario, {});
+  const std::optional<DifferentialDrive>& drive = scenario.robots[robot].drive;
+  if (drive && step.wheels)
+    detail::WheelLimits(*drive, rules.time_step, rules.braking_time)
+        .half_planes(step.wheels->heading, step.wheels->speeds, rules.braked(step.velocity), limits);
+  else
+    detail::acceleration_limits(rules, step.velocity, limits);
+  return limits;
 }
 
 }  // namespace exactvo::formation

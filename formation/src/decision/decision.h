@@ -167,6 +167,7 @@ class Decider {
   std::vector<geometry::HalfPlane> limit_;
   std::vector<Constraint> limits_;  ///< of the robot's acceleration, as half-planes of its own
   OwnStage stage_ = OwnStage::none;
+  std::vector<OwnConstraint> own_;  ///< what the user asks for, moved outward where no double fits
   lp::Problem problem_;
   lp::SolveMemory memory_;
   lp::Solution solution_;   ///< of one decision, as the next two

@@ -170,19 +170,6 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
   return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
 }
 
-bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const DecisionConstraint& constraint) {
-  const double at_rest = detail::contact_time(scenario.time_step, scenario.horizons);
-  if (constraint.source != ConstraintSource::robot || is_own_limit(constraint)) return false;
-  if (const double tau = braking_time_of(scenario); tau > 0.0)
-    return constraint.time_horizon == tau && tau != scenario.horizons.robots;
-  if (constraint.time_horizon != at_rest) return false;
-  const auto has_plan = [&](std::size_t i) {
-    return row.robots[i].mode == Mode::by_plan || row.robots[i].mode == Mode::going_back;
-  };
-  const bool is_of_plan = at_rest == scenario.time_step && (has_plan(robot) || has_plan(constraint.index));
-  return !is_of_plan && at_rest != scenario.horizons.robots && at_rest != scenario.horizons.orca;
-}
-
 /// Of those about their goals who could have taken its own, the one that is nearest to its goal has. Where robots end
 /// elsewhere, only who is at its goal.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {

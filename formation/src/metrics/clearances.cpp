@@ -485,8 +485,7 @@ void ClearanceSweep::add(const Step& row) {
   RowState state;
   state.time = row.time;
   state.robots.reserve(row.robots.size());
-  for (const RobotStep& r : row.robots)
-    state.robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+  for (const RobotStep& r : row.robots) state.robots.push_back({r.position, r.velocity, bodies_gave(r)});
   sweep_->add(std::move(state));
 }
 

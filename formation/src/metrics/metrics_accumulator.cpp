@@ -53,7 +53,7 @@ MetricsAccumulator::ActiveSet MetricsAccumulator::active_set(const RobotStep& st
 }
 
 void MetricsAccumulator::add_decision(OfRobot& r, const RobotStep& step) {
-  if (step.status != lp::Status::optimal) ++of_last_row_.relaxed;
+  if (bodies_gave(step)) ++of_last_row_.relaxed;
   of_last_row_.uncertified += step.uncertified;
   ActiveSet active = active_set(step);
   if (rows_ > 0 && active != r.active) ++of_last_row_.switches;

@@ -493,7 +493,10 @@ RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, 
   RunSchedule schedule(scenario, options, std::chrono::milliseconds{0});
   std::optional<Guide> guide;
   if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide.emplace(scenario, 0.0);
-  EXACTVO_REQUIRE(!options.half_planes, "half-planes of a user, in a run on a crowd");
+  EXACTVO_REQUIRE(!options.half_planes, "half_planes: a function, expected none on a crowd; `simulate` takes them");
+  EXACTVO_REQUIRE(promises_between_robots(options.method), std::string("method: ") + name(options.method) +
+                                                               ", expected orca, which a crowd drives by; `simulate` "
+                                                               "has the other methods");
   Liveness liveness = options.liveness.value_or(scenario.liveness);
   if (options.steering && liveness == Liveness::plan) liveness = Liveness::bias;
   RobotsOfRun robots(scenario, guide ? &*guide : nullptr, liveness, room_at_ends_of(scenario, liveness),

@@ -66,9 +66,7 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 /// a robot keeps to what braking satisfies, against static obstacles too (braking.h).
 void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
-    const OwnStage stage = row.robots[i].own_stage;  // where the user's give, no others do
-    const bool holds = stage == OwnStage::held || stage == OwnStage::gave;
-    return (row.robots[i].status != lp::Status::optimal && !holds) || (groups.is_member(i) && held_by_all_[i]);
+    return bodies_gave(row.robots[i]) || (groups.is_member(i) && held_by_all_[i]);
   };
   std::set<std::size_t> contradicted;
   for (std::size_t i = 0; i < others.size(); ++i)

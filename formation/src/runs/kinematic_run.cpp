@@ -58,6 +58,7 @@ class KinematicSteps final : public Stepper {
     for (const Robot& robot : scenario_.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
+      before_.push_back(robot.velocity);
       wheels_.push_back(
           robot.drive ? std::optional<WheelLimits>(std::in_place, *robot.drive, rules_.time_step, rules_.braking_time)
                       : std::nullopt);
@@ -81,6 +82,7 @@ class KinematicSteps final : public Stepper {
   void move() override {
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       if (wheels_[i]) drive(i, row_.robots[i].chosen);
+      before_[i] = velocities_[i];
       velocities_[i] = row_.robots[i].chosen;
       positions_[i] += scenario_.time_step * row_.robots[i].chosen;
     }
@@ -272,10 +274,20 @@ class KinematicSteps final : public Stepper {
   Vec2 kept_right(std::size_t i, Vec2 preferred, RobotStep& step) {
     const bool is_free = step.mode == Mode::direct || step.mode == Mode::guided;
     if (!is_free || preferred == Vec2{}) return preferred;
-    const Vec2 turned =
-        journeys_.kept_right(i, preferred, velocities_[i], KeepRight::kLeast, 0.0, meets_robots(i, preferred));
+    const Vec2 turned = journeys_.kept_right(i, preferred, unhindered(i, preferred), KeepRight::kLeast, 0.0,
+                                             meets_robots(i, preferred));
     step.turned_right = std::atan2(cross(turned, preferred), dot(turned, preferred));
     return turned;
+  }
+
+  /// Its velocity, and as much of what it lacks to the preferred one as it lacks for its acceleration alone: of what
+  /// was within its reach in the last step, the share that it took.
+  Vec2 unhindered(std::size_t i, Vec2 preferred) const {
+    const double most = acceleration_of(scenario_, i) * scenario_.time_step, wanted = norm(preferred - before_[i]);
+    if (!(wanted > most)) return velocities_[i];
+    const Vec2 within_reach = (most / wanted) * (preferred - before_[i]);
+    const double taken = dot(velocities_[i] - before_[i], within_reach) / (most * most);
+    return velocities_[i] + std::clamp(taken, 0.0, 1.0) * (preferred - velocities_[i]);
   }
 
   /// Whether it sees another robot that may be in its way: one whose half-plane excludes the preferred velocity, or
@@ -374,6 +386,7 @@ class KinematicSteps final : public Stepper {
   OwnDecision own_;
   RobotsOfRun& robots_;
   std::vector<Vec2>&positions_, &velocities_;
+  std::vector<Vec2> before_;  ///< m/s, at the beginning of the last step
   Journeys& journeys_;
   std::vector<std::optional<WheelLimits>> wheels_;
   std::vector<WheelsNow> on_wheels_;  ///< of robots that have some

@@ -79,11 +79,15 @@ DecisionRules rules_of(const NavigatorSetup& setup) {
                       setup.margins, setup.time_step, setup.neighbour_distance};
   if (setup.acceleration) rules.acceleration = *setup.acceleration;
   const double speed = fastest(setup.speed_bound, setup.max_speed);
-  const double usual = setup.drive          ? usual_braking_time(setup.drive->max_wheel_speed,
-                                                                 setup.drive->max_wheel_acceleration, rules.time_step)
-                       : setup.acceleration ? usual_braking_time(speed, rules.acceleration, rules.time_step)
-                                            : 0.0;
-  rules.braking_time = setup.braking_time.value_or(usual);
+  const double usual_time = setup.drive          ? usual_braking_time(setup.drive->max_wheel_speed,
+                                                                      setup.drive->max_wheel_acceleration, rules.time_step)
+                            : setup.acceleration ? usual_braking_time(speed, rules.acceleration, rules.time_step)
+                                                 : 0.0;
+  rules.braking_time = setup.braking_time.value_or(usual_time);
+  const Horizons usual;
+  for (double Horizons::*horizon : {&Horizons::most, &Horizons::orca, &Horizons::robots})
+    if (rules.horizons.*horizon == usual.*horizon)
+      rules.horizons.*horizon = std::max(usual.*horizon, rules.braking_time);
   return rules;
 }
 
@@ -205,6 +209,7 @@ class Navigator::Core {
         obstacles_(setup.obstacles),
         robot_(robot_of(setup, std::move(goals))),
         arrival_tolerance_(setup.arrival_tolerance),
+        has_usual_braking_(setup.acceleration && !setup.braking_time),
         id_(setup.id),
         scene_(rules_.method, obstacles_, {robot_}, {}, facade_ellipses(rules_.margins)),
         own_(rules_, scene_.bodies()),
@@ -370,10 +375,22 @@ class Navigator::Core {
       require_positive(n.max_speed, "neighbour", k, "max_speed");
       if (rules_.has_brakes() && !n.cooperates)
         refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", kWithBrakes);
+      if (rules_.acceleration < geometry::kInfinity) require_same_braking(n.max_speed, k);
       if (n.position == now.position)
         refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
                "another place than the robot's own");
     }
+  }
+
+  /// One braking time for all is what the promise rests on.
+  void require_same_braking(double max_speed, std::size_t k) const {
+    const double speed = fastest(rules_.speed_bound, max_speed), tau = rules_.braking_time;
+    const bool has_another =
+        has_usual_braking_ && usual_braking_time(speed, rules_.acceleration, rules_.time_step) != tau;
+    if (!has_another && speed < tau * rules_.acceleration) return;
+    refuse(Problem::out_of_range, field_of("neighbour", k, "max_speed"), number(max_speed),
+           has_another ? "the robot's own, or the same braking_time given to all robots"
+                       : "less than braking_time times acceleration, " + number(tau * rules_.acceleration) + " m/s");
   }
 
   void require_moving(const std::vector<MovingBody>& moving) const {
@@ -432,6 +449,7 @@ class Navigator::Core {
   std::optional<WheelLimits> limits_;  ///< of its drive
   WheelsNow on_wheels_{};              ///< with a drive
   double arrival_tolerance_;           ///< m
+  bool has_usual_braking_;             ///< an acceleration, and no braking time was given
   std::size_t id_;
   Scene scene_;
   OwnDecision own_;

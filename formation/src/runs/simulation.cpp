@@ -73,6 +73,29 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
   return wanted == Liveness::plan && (!is_guided || is_without) ? Liveness::bias : wanted;
 }
 
+std::vector<ScenarioProblem> option_problems(const Scenario& scenario, const SimulationOptions& options) {
+  std::vector<ScenarioProblem> problems;
+  const bool brakes = braking_time_of(scenario) > 0.0;
+  const std::string braking = scenario.acceleration ? "with an acceleration" : "with robots on wheels";
+  if (!promises_between_robots(options.method) && (scenario.formation || brakes || scenario.separate))
+    problems.push_back({"method",
+                        name(options.method) + (scenario.formation ? ", which formations do not have"
+                                                : brakes ? ", which cannot promise to brake in time, " + braking
+                                                         : ", which promises nothing between robots that part"),
+                        "another method: orca, ivo-edge, ivo-cluster or ivo"});
+  if (options.threads < 0 || options.threads > 1024)
+    problems.push_back({"threads", std::to_string(options.threads), "0 to 1024"});
+  if (scenario.formation && options.steering)
+    problems.push_back({"steering", "a function, in a formation", "none: its controller says where robots go"});
+  if (scenario.formation && options.half_planes)
+    problems.push_back({"half_planes", "a function, in a formation", "none: its controller has its own laws"});
+  else if (brakes && options.half_planes)
+    problems.push_back(
+        {"half_planes", "a function, " + braking,
+         "none, since braking might not satisfy them: use steering, or a scenario whose velocities jump"});
+  return problems;
+}
+
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {
   if (!scenario.formation || scenario.formation->offsets.empty()) return "";
   const Vec2 moved = offsets_in_use(scenario, options).front() - scenario.formation->offsets.front();
@@ -97,15 +120,9 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
-  EXACTVO_REQUIRE(!scenario.formation || promises_between_robots(options.method),
-                  std::string("method ") + name(options.method) + " of a formation");
-  EXACTVO_REQUIRE(!(braking_time_of(scenario) > 0.0 || scenario.separate) || promises_between_robots(options.method),
-                  std::string("method ") + name(options.method) + " with an acceleration, wheels, or robots that part");
-  EXACTVO_REQUIRE(!(braking_time_of(scenario) > 0.0 && options.half_planes),
-                  "half-planes of a user, with an acceleration or wheels");
-  EXACTVO_REQUIRE(!scenario.formation || !(options.steering || options.half_planes),
-                  "steering or half-planes of a user, in a formation");
-  EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");
+  const std::vector<ScenarioProblem> unfit = option_problems(scenario, options);
+  EXACTVO_REQUIRE(unfit.empty(),
+                  unfit.front().pointer + ": " + unfit.front().found + ", expected " + unfit.front().expected);
   const Clock::time_point start = Clock::now();
   Recording recording;
   std::optional<Guide> guide = guide_for(scenario, options);

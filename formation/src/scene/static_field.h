@@ -20,6 +20,7 @@ namespace exactvo::formation::detail {
 struct Constraint : vo::Constraint {
   std::size_t index = 0;   ///< of the enclosure, edge, robot or moving obstacle
   std::size_t piece = 0;   ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
+  bool fell_back = false;  ///< of a pair of robots that fell back (liveness, rule R0)
   bool trap_free = false;  ///< the shape carries the certificate for this robot's goal
   double speed = 0.0;      ///< m/s, at most, of what it keeps clear of
 };

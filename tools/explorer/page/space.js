@@ -10,8 +10,21 @@ function spaceOf(run, decision) {
   const obstacles = decision.halfPlanes.map((h) => velocityObstacle(h, decision.anchor));
   let allowed = speedRing(run, decision.robot);
   for (const h of decision.halfPlanes) if (allowed.length) allowed = clipped(allowed, h.nx, h.ny, h.c);
+  allowed = withinChange(run, decision, allowed);
   return {run, decision, obstacles, allowed, bound: speedRing(run, decision.robot), isWhole: run.about.all_half_planes,
     effects: decision.halfPlanes.map((h) => effectOf(decision, h))};
+}
+
+// What the acceleration leaves: a polygon of 24 sides within the disc about the present velocity, with a corner towards
+// rest.
+function withinChange(run, decision, ring) {
+  const [x, y] = decision.velocity, side = Math.PI / 12, reach = run.about.change * Math.cos(side / 2);
+  if (!(run.about.change > 0) || run.robots[decision.robot].on_wheels) return ring;
+  for (let k = 0; k < 24 && ring.length; ++k) {
+    const angle = Math.atan2(-y, -x) + (k + 0.5) * side, nx = -Math.cos(angle), ny = -Math.sin(angle);
+    ring = clipped(ring, nx, ny, nx * x + ny * y - reach);
+  }
+  return ring;
 }
 
 // The half-width of the square that shows all of it.

@@ -140,7 +140,7 @@ function whyWords(run, d, mode) {
   if (turned) words.push(`Before that, ${turned}.`);
   const limit = 0.05 * run.robots[d.robot].max_speed;
   if (Math.hypot(...d.chosen) < limit && Math.hypot(...d.preferred) > limit) {
-    const by = d.halfPlanes.filter((h) => h.multiplier >= NOT_SEEN).map((h) => run.nameOf(h));
+    const by = [...new Set(d.halfPlanes.filter((h) => h.multiplier >= NOT_SEEN).map((h) => run.nameOf(h)))];
     if (by.length) words.push(`The robot is held by ${enumerated(by)}: no allowed velocity has a component towards the preferred one.`);
   }
   return words;

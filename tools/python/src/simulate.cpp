@@ -112,6 +112,8 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
     return progress.is_none() || py::bool_(!progress(time).equal(py::bool_(false)));
   };
   take_own_rules(steering, asks, options);
+  for (const ScenarioProblem& p : option_problems(handle.scenario, options))
+    throw ArgumentError(p.pointer, p.found, p.expected);
   auto run = std::make_unique<Run>();
   run->file.scenario = handle.scenario;
   if (const std::string moved = recentring_notice(handle.scenario, options); !moved.empty()) warn(moved);

@@ -88,8 +88,7 @@ std::string summary(const datasets::AuditReport& report) {
   }
   text += fmt::format("{} of obstacles, {} unsafe; {}, {}\n", counted(report.half_planes, "half-plane"), report.unsafe,
                       counted(report.steps, "step"), counted(report.collisions, "collision"));
-  for (const std::string& pair : report.started_overlapping)
-    text += fmt::format("started in overlap, and came no nearer: {}\n", pair);
+  for (const std::string& pair : report.started_overlapping) text += fmt::format("started in overlap: {}\n", pair);
   if (report.largest_violation > 0.0)
     text += fmt::format("largest violation of a half-plane: {:.3g} m/s\n", report.largest_violation);
   if (report.curved_steps > 0)

@@ -351,7 +351,7 @@ OrderedJson json_of(const Decision& d, std::size_t half_plane) {
           {"offset", c.half_plane.offset},
           {"hard", c.hard},
           {"certified", c.certified},
-          {"fell_back", d.is_of_fallen_pair(half_plane)},
+          {"fell_back", c.fell_back},
           {"time_horizon", c.time_horizon},
           {"clearance", c.clearance},
           {"multiplier", c.multiplier}};

@@ -111,8 +111,8 @@ struct AuditReport {
   double largest_bulge = 0.0;          ///< m: no curve strays farther from the straight way between its rows
   double largest_violation = 0.0;      ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
 
-  /// Pairs of robots that overlapped in the first row of a scenario with `separate`: "R1 and R2, apart from 1.5 s on".
-  /// None came nearer before, or (7) is refuted.
+  /// Pairs of robots that overlapped in the first row of a scenario with `separate`: "R1 and R2, apart from 1.5 s on",
+  /// "still in overlap at the end", or "came nearer after row 7", which refutes (7).
   std::vector<std::string> started_overlapping;
 
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file

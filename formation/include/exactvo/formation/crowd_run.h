@@ -47,7 +47,7 @@ class RanksDiffer : public std::runtime_error {
 /// `SimulationOptions::resume_from`; RanksDiffer; AnotherRankFailed. What ranks other than the first return of arrivals
 /// and routes is not known there. Of `options` it reads guidance, liveness, threads, progress, steering and those of a
 /// crowd. With a user's steering robots reserve no places and do not turn to the right for each other. REQUIRES: no
-/// half-planes of a user.
+/// half-planes of a user, and neither rvo nor hrvo; the other methods are taken for orca.
 RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, RunSink* sink = nullptr);
 
 }  // namespace exactvo::formation

@@ -50,16 +50,18 @@ struct NavigatorSetup {
   std::vector<SceneObstacle> obstacles;               ///< what stands still
   Method method = Method::ivo;                        ///< how it avoids obstacles
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how `max_speed` is meant
-  Horizons horizons;                                  ///< of the velocity obstacles
-  Margins margins;                                    ///< beside radii and facades
-  double time_step = 0.05;                            ///< s, > 0: the longest time from a decision to the next
-  double arrival_tolerance = 0.1;                     ///< m: within this of the last goal it has arrived
+  /// Of the velocity obstacles. With an acceleration those that have their default are at least the braking time.
+  Horizons horizons;
+  Margins margins;                   ///< beside radii and facades
+  double time_step = 0.05;           ///< s, > 0: the longest time from a decision to the next
+  double arrival_tolerance = 0.1;    ///< m: within this of the last goal it has arrived
   double neighbour_distance = 15.0;  ///< m: who is farther away, and cannot be met within a time step, is ignored
   /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
   /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
   std::optional<double> acceleration = {};
-  /// s: as of a Scenario; by default the usual one with an acceleration or a drive. Given without either, the velocity
-  /// jumps, and half-planes are those that robots which brake rely on.
+  /// s: as of a Scenario; by default the usual one with an acceleration or a drive, and then neighbours of another
+  /// max_speed are refused, since theirs would be another. Given without either, the velocity jumps, and half-planes
+  /// are those that robots which brake rely on.
   std::optional<double> braking_time = {};
   /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
   /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds.

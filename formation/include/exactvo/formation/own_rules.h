@@ -56,7 +56,13 @@ enum class OwnStage {
   left_out  ///< the others alone leave no room: the decision is made as if the user had asked for nothing
 };
 
-/// A half-plane of a user in a decision.
+/// Whether half-planes against obstacles and robots all hold in a decision of the stage: only the user's may give.
+constexpr bool holds_bodies(OwnStage stage) {
+  return stage == OwnStage::held || stage == OwnStage::gave;
+}
+
+/// A half-plane of a user in a decision. One that no double satisfies together with the others is recorded moved
+/// outward: by some nanometres per second, or by more if that does not make room.
 struct OwnConstraint {
   geometry::HalfPlane half_plane;  ///< of velocities, m/s
   bool hard = true;                ///< as the user stated it

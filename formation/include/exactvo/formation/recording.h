@@ -30,6 +30,7 @@ struct DecisionConstraint {
   bool certified = false;     ///< proven to exclude the velocity obstacle's interior
   bool hard = true;           ///< false: against a robot, and may give where half-planes contradict each other
   bool active = false;        ///< binds the chosen velocity
+  bool fell_back = false;     ///< of a pair that fell back: as if both rested, or with an acceleration braked (rule R0)
   double time_horizon = 0.0;  ///< s
   std::size_t body = 0;       ///< of `Recording::bodies`
   double clearance = 0.0;     ///< m, robot's rim to the body; negative in overlap. Rounded
@@ -82,6 +83,11 @@ struct Decision {
 /// user's give, those against robots do not. Without the bound and the preferred velocity.
 std::vector<lp::Constraint> problem_of(const Decision& decision, const std::vector<DecisionConstraint>& constraints);
 
+/// Whether half-planes against obstacles or robots contradicted each other in it, or left no room.
+inline bool bodies_gave(const Decision& decision) {
+  return decision.status != lp::Status::optimal && !holds_bodies(decision.own_stage);
+}
+
 /// m/s: how fast the wheels of a robot run over the ground.
 struct WheelSpeeds {
   double left = 0.0;   ///< above 0: forward
@@ -131,6 +137,10 @@ enum class MotionLaw {
 
 /// The convex hull of a moving obstacle that was carried so far, or its disc: the shape that robots keep clear of.
 geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement);
+
+/// The limits of the robot's own in its decision, recorded or not: of its acceleration or its wheels. Empty where
+/// velocities jump. REQUIRES: a row of a run of this scenario.
+std::vector<geometry::HalfPlane> own_limits(const Scenario& scenario, const RobotStep& step, std::size_t robot);
 
 /// What a half-plane keeps clear of, as its robot saw it: enough to prove it again. The half-plane excludes the
 /// velocity obstacle of `shape`, grown by `radius`, seen from `position` and shifted by `velocity`, within its

@@ -176,7 +176,7 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
 /// that cannot be reached, or not within the time limit. The run's recording has the same. REQUIRES: a valid scenario.
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options = {});
 
-/// REQUIRES: a valid scenario (`validate`).
+/// REQUIRES: a valid scenario (`validate`), and options that it can be run with (`option_problems`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
 
 /// The same run into a sink; the recording that is returned has all but the rows.
@@ -191,5 +191,9 @@ struct ScenarioProblem {
 };
 /// Every problem, in the order of the fields. Empty: `simulate` takes the scenario.
 std::vector<ScenarioProblem> validate(const Scenario& scenario);
+
+/// Which options a scenario cannot be run with; `pointer` is the option's name, such as "method". Empty: `simulate`
+/// takes both.
+std::vector<ScenarioProblem> option_problems(const Scenario& scenario, const SimulationOptions& options);
 
 }  // namespace exactvo::formation

@@ -46,11 +46,6 @@ std::string deadlock_words(const Scenario& scenario, const std::vector<std::size
 /// of 4: R9 waits for R2, which moves". Empty where the robot waits for nobody.
 std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot);
 
-/// Whether a half-plane of the robot is that of a pair which fell back: as if both rested (liveness, rule R0), or with
-/// an acceleration as if both braked. Known by its horizon, so that it is false where another rule has the same one.
-/// REQUIRES: a row of a run of this scenario.
-bool fell_back(const Scenario& scenario, const Step& row, std::size_t robot, const DecisionConstraint& constraint);
-
 /// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 was first at its goal, 0.3 m from that of
 /// R1", "its goal is out of reach or taken" where the row does not tell which, "its slot cannot be filled". REQUIRES: a
 /// row of a run of this scenario, not its last.
