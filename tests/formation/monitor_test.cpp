@@ -115,6 +115,30 @@ TEST(Monitor, LongRobotThatTurnsOnTheSpotStopsBeforeAPointOfAScan) {
   EXPECT_EQ(monitor.judge({}, ahead(0.0, -0.3)).share, 1.0) << "away from it";
 }
 
+// A monitor that moves the footprint by one step of its simulation, and looks only then, drives on with an obstacle in
+// the footprint, and over a post that a step jumps.
+TEST(Monitor, WhatIsInTheFootprintNowOrBeforeTheFirstStepStopsTheRobot) {
+  constexpr double kStep = 1.0;  // s
+  const geometry::RigidBody box = rectangle(-0.5, 0.5, 0.3);
+  const auto post = [](double x) { return formation::disc_obstacle("post", {{x, 0.0}, 0.01}); };
+  int missed_by_steps = 0, judged = 0;
+  for (const double speed : {2.0, 4.0, 8.0}) {
+    Monitor inside(setup_with(box, {post(0.45)})), ahead_of_it(setup_with(box, {post(0.75)}));
+    const MonitorVerdict on = inside.judge({}, ahead(speed));
+    EXPECT_TRUE(on.in_contact);
+    EXPECT_LT(on.share, 1e-6) << speed;
+    EXPECT_EQ(inside.judge({}, ahead(-speed)).share, 1.0) << "it may leave";
+    const MonitorVerdict before = ahead_of_it.judge({}, ahead(speed));
+    EXPECT_FALSE(before.in_contact);
+    EXPECT_NEAR(speed * ahead_of_it.way(before.share).back().motion.end, 0.24, 1e-6) << "up to the post";
+    // The pose after a step is clear of both.
+    missed_by_steps += speed * kStep - 0.5 > 0.76;
+    ++judged;
+  }
+  EXPECT_EQ(judged, 3);
+  EXPECT_EQ(missed_by_steps, 3);
+}
+
 // Between two poses a quarter turn apart a square is clear, and its corner is not.
 TEST(Monitor, CornerThatTurnsIntoAWallBetweenTwoClearPosesIsSeen) {
   MonitorSetup setup = setup_with(rectangle(-1.0, 1.0, 1.0), {wall({{1.2, -5.0}, {1.2, 5.0}})});
