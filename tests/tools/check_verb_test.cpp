@@ -419,6 +419,7 @@ TEST(CheckVerb, ThePageHoldsTheTrajectoriesAndTheOverlaps) {
   }
   EXPECT_THAT(here.run("check t.csv --radius 0.25 --page check.png").err, HasSubstr(".html"));
   EXPECT_THAT(here.run("check t.csv t.csv --radius 0.25 --page check.html").err, HasSubstr("several files"));
+  EXPECT_THAT(here.run("view t.csv --out page.html").err, HasSubstr("--page"));
   here.write("t.html", kCrossing);
   EXPECT_THAT(here.run("check t.html --radius 0.25 --page t.html").err, HasSubstr("another file"));
 }

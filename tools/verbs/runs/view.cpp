@@ -17,6 +17,7 @@
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/stop.h"
@@ -166,6 +167,15 @@ MadeRun simulated(const PageFlags& flags, const std::string& path) {
   return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
 }
 
+/// Trajectories of another program, which are no scenario.
+void refuse_trajectories(const std::string& path) {
+  const std::string format = datasets::recognised_trajectory_format(path);
+  if (!format.empty())
+    throw datasets::DataError(
+        datasets::DataCode::format_unknown, path, "", "trajectories (" + format + ")",
+        "a run or a scenario; 'exactvo check FILE --radius R --page FILE.html' shows trajectories");
+}
+
 // --- The verb ---
 
 struct ViewFlags {
@@ -237,6 +247,7 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
       runs.push_back(is_crowd ? recorded_crowd(flags, *recording, metrics_beside(*recording))
                               : recorded(flags, *recording));
     } else {
+      refuse_trajectories(path);
       any_simulated = true;
       runs.push_back(simulated(flags, path));
     }
