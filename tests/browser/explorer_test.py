@@ -541,6 +541,32 @@ class PageItself(Page):
         self.assertAlmostEqual(x, float(last[3]), delta=ROBOTS_AT_A_TIME)
         self.assertIn("positions only", self.text("#why"))
 
+    def test_trajectories_of_a_check_play_and_lead_to_their_overlaps(self):
+        rows = [(0, "A", 0, 0), (0, "B", 5, -5), (1, "A", 10, 0), (1, "B", 5, 5), (2, "C", 9, 1), (4, "C", 9, -3)]
+        (self.place / "t.csv").write_text("t,id,x,y\n" + "".join(f"{t},{i},{x},{y}\n" for t, i, x, y in rows))
+        (self.place / "map.wkt").write_text("POLYGON ((8 -2, 10 -2, 10 -1, 8 -1, 8 -2))\n")
+        box = "POLYGON ((-0.4 -0.2, 0.4 -0.2, 0.4 0.2, -0.4 0.2, -0.4 -0.2))"
+        self.run_program("check", "t.csv", "--footprint", box, "--map", "map.wkt", "--page", "pages/check.html", status=1)
+        self.open("pages/check.html", "#t=0")
+        self.assertEqual(self.text("#outcome"), "2 overlaps, 0 contacts")
+        listed = self.run_script("return [...document.querySelectorAll('#collisions button')].map((b) => b.textContent)")
+        self.assertEqual(len(listed), 2)
+        self.assertIn("A: collision with robot B", listed[0])
+        self.assertIn("C: collision with obstacle 1", listed[1])
+        there = self.run_script("const r = exactvo.page.run; return [0, 0.5, 1.5, 3].map((t) => [0, 1, 2].map((i) => r.isThere(i, t)))")
+        self.assertEqual(there, [[True, True, False], [True, True, False], [False, False, False], [False, False, True]])
+        self.run_script("document.querySelectorAll('#collisions button')[0].click()")
+        self.settle()
+        time, robot, x, y, corners = self.run_script(
+            "const p = exactvo.page, r = p.run; p.positions.at(exactvo.ui.t);"
+            "return [exactvo.ui.t, exactvo.ui.robot, p.positions.x[0], p.positions.y[1], r.robots[0].outline[0].length / 2]")
+        self.assertAlmostEqual(time, 0.5, delta=0.05)
+        self.assertEqual(robot, 0)
+        self.assertAlmostEqual(x, 10 * time, delta=2 * ROBOTS_AT_A_TIME)
+        self.assertAlmostEqual(y, 10 * time - 5, delta=2 * ROBOTS_AT_A_TIME)
+        self.assertGreaterEqual(corners, 4)
+        self.assertIn("exactvo check", self.text("#why"))
+
     def test_the_moment_as_svg(self):
         self.run_program("view", "--out", "start.html")
         self.open("start.html", "#run=gap&t=3&robot=R3")

@@ -115,6 +115,30 @@ TEST(Monitor, LongRobotThatTurnsOnTheSpotStopsBeforeAPointOfAScan) {
   EXPECT_EQ(monitor.judge({}, ahead(0.0, -0.3)).share, 1.0) << "away from it";
 }
 
+// A monitor that moves the footprint by one step of its simulation, and looks only then, drives on with an obstacle in
+// the footprint, and over a post that a step jumps.
+TEST(Monitor, WhatIsInTheFootprintNowOrBeforeTheFirstStepStopsTheRobot) {
+  constexpr double kStep = 1.0;  // s
+  const geometry::RigidBody box = rectangle(-0.5, 0.5, 0.3);
+  const auto post = [](double x) { return formation::disc_obstacle("post", {{x, 0.0}, 0.01}); };
+  int missed_by_steps = 0, judged = 0;
+  for (const double speed : {2.0, 4.0, 8.0}) {
+    Monitor inside(setup_with(box, {post(0.45)})), ahead_of_it(setup_with(box, {post(0.75)}));
+    const MonitorVerdict on = inside.judge({}, ahead(speed));
+    EXPECT_TRUE(on.in_contact);
+    EXPECT_LT(on.share, 1e-6) << speed;
+    EXPECT_EQ(inside.judge({}, ahead(-speed)).share, 1.0) << "it may leave";
+    const MonitorVerdict before = ahead_of_it.judge({}, ahead(speed));
+    EXPECT_FALSE(before.in_contact);
+    EXPECT_NEAR(speed * ahead_of_it.way(before.share).back().motion.end, 0.24, 1e-6) << "up to the post";
+    // The pose after a step is clear of both.
+    missed_by_steps += speed * kStep - 0.5 > 0.76;
+    ++judged;
+  }
+  EXPECT_EQ(judged, 3);
+  EXPECT_EQ(missed_by_steps, 3);
+}
+
 // Between two poses a quarter turn apart a square is clear, and its corner is not.
 TEST(Monitor, CornerThatTurnsIntoAWallBetweenTwoClearPosesIsSeen) {
   MonitorSetup setup = setup_with(rectangle(-1.0, 1.0, 1.0), {wall({{1.2, -5.0}, {1.2, 5.0}})});
@@ -149,6 +173,60 @@ TEST(Monitor, RobotThatTouchesExactlyMayDriveAlongAndAway) {
   EXPECT_EQ(monitor.judge({}, ahead(1.0)).share, 1.0);
   EXPECT_EQ(monitor.judge({}, {{{0.5, -0.5}, 0.0}, false}).share, 1.0);
   EXPECT_LT(monitor.judge({}, {{{0.5, 0.01}, 0.0}, false}).share, 1e-4);
+}
+
+// A square that turns on the spot beside a wall leaves the contact with its corner, and comes back with the next one
+// after a quarter turn.
+TEST(Monitor, ArcThatLeavesAContactMayNotReturnToIt) {
+  MonitorSetup setup = setup_with(rectangle(-1.0, 1.0, 1.0), {wall({{1.3, -5.0}, {1.3, 5.0}})});
+  setup.latency = setup.period = 0.0;
+  const auto turns = [](double angle) { return ahead(0.0, 2.0 * std::sqrt(angle)); };  // half of turn^2 / 2 rad/s^2
+  const double at_start = 0.25 * geometry::kPi;
+  const double back = 0.5 * geometry::kPi - (std::acos(1.3 / std::sqrt(2.0)));
+  int judged = 0;
+  for (const double sign : {1.0, -1.0}) {
+    Monitor monitor(setup);
+    for (const double angle : {1.0, 3.0, 2.0 * geometry::kPi, 20.0}) {
+      Command command = turns(angle);
+      command.twist.turn *= sign;
+      const MonitorVerdict v = monitor.judge({{0, 0}, at_start}, command);
+      EXPECT_TRUE(v.in_contact);
+      // A share s of the turn rate turns by s^2 of the angle.
+      EXPECT_NEAR(v.share * v.share * angle, std::min(angle, back), 1e-6) << sign << " " << angle;
+      ++judged;
+    }
+  }
+  EXPECT_EQ(judged, 8);
+  // The same of a circle that leads away from a wall and back to it, and of a mover that stands.
+  Monitor disc(setup_with(geometry::disc_body(0.3), {wall({{-10.0, 0.9}, {10.0, 0.9}})}));
+  const Command circle = ahead(8.0, -4.0);
+  const double share = disc.judge({{0.0, 0.7}, 0.0}, circle).share;
+  EXPECT_GT(share, 0.5);
+  EXPECT_LT(disc.judge({{0.0, 0.7}, 0.0}, ahead(8.0, 4.0)).share, 1e-3) << "into the wall";
+  EXPECT_LT(share, 1.0);
+  Monitor open(setup_with(geometry::disc_body(0.3), {}));
+  const std::vector<Mover> stands{{{{{0.0, 1.1}}, 0.2}, 0.0, 0.0}};
+  const double beside = open.judge({{0.0, 0.7}, 0.0}, circle, stands).share;
+  EXPECT_GT(beside, 0.5);
+  EXPECT_LT(beside, 1.0);
+}
+
+TEST(Monitor, ContactIsLeftAlsoFarFromTheOrigin) {
+  int judged = 0;
+  for (const double far : {0.0, 3e4, 1e6, 1e8}) {
+    const auto at = [&](double x, double y) { return Vec2{far + x, -far + y}; };
+    Monitor monitor(setup_with(rectangle(-0.5, 0.5, 0.25), {wall({at(0.375, -3.0), at(0.375, 3.0)})}));
+    const auto share = [&](const Command& command) { return monitor.judge({at(0.0, 0.0), 0.0}, command).share; };
+    EXPECT_EQ(share(ahead(-1.0)), 1.0) << far;
+    EXPECT_EQ(share({{{0.0, 1.0}, 0.0}, false}), 1.0) << far << ", along the wall";
+    EXPECT_LT(share(ahead(0.25)), 1e-6) << far;
+    EXPECT_EQ(monitor.judge({at(0.0, 0.0), 0.0}, ahead(-1.0), {{{{at(0.75, 0.0)}, 0.375}, 1.0, 0.0}}).share, 1.0)
+        << far << ", and a mover";
+    const std::vector<TimedPose> away{{0.0, {at(0.0, 0.0), 0.0}}, {1.0, {at(-1.0, 0.0), 0.0}}, {2.0, {at(-2, 1), 1.0}}};
+    EXPECT_EQ(monitor.judge(away).share, 1.0) << far;
+    judged += 5;
+  }
+  EXPECT_EQ(judged, 20);
 }
 
 TEST(Monitor, InsideOfAPolygonCountsAsObstacle) {
@@ -374,11 +452,13 @@ TEST(Monitor, JudgesWithoutAllocatingOnceItsListsAreLong) {
 }
 
 TEST(Monitor, RefusesWhatIsWrongAndGoesOn) {
-  const auto problem_of = [](const auto& call) {
+  std::string place;
+  const auto problem_of = [&](const auto& call) {
     try {
       call();
     } catch (const MonitorError& e) {
-      EXPECT_NE(std::string(e.what()).find("expected"), std::string::npos);
+      EXPECT_EQ(e.what(), e.place() + ": found " + e.found() + ", expected " + e.expected());
+      place = e.place();
       return name(e.problem());
     }
     return "none";
@@ -390,10 +470,12 @@ TEST(Monitor, RefusesWhatIsWrongAndGoesOn) {
   setup = {};
   setup.footprint = {{{{0, 0}, {1, 0}}, 0.0}};
   EXPECT_STREQ(problem_of([&] { Monitor m(setup); }), "out-of-range");
+  EXPECT_EQ(place, "footprint/0");
   setup.footprint.clear();
   EXPECT_STREQ(problem_of([&] { Monitor m(setup); }), "out-of-range");
   setup = setup_with(geometry::disc_body(0.3), {{"crossed", geometry::Polygon{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, {}}}});
   EXPECT_STREQ(problem_of([&] { Monitor m(setup); }), "out-of-range");
+  EXPECT_EQ(place, "obstacles/0");
   Monitor monitor(MonitorSetup{});
   EXPECT_STREQ(problem_of([&] { monitor.judge({{nan, 0}, 0}, ahead(1)); }), "not-finite");
   EXPECT_STREQ(problem_of([&] { monitor.judge({}, ahead(1e300)); }), "out-of-range");
@@ -402,6 +484,9 @@ TEST(Monitor, RefusesWhatIsWrongAndGoesOn) {
                }),
                "out-of-range");
   EXPECT_STREQ(problem_of([&] { monitor.judge({}, ahead(1), mover_at(9.0, -1.0)); }), "out-of-range");
+  EXPECT_EQ(place, "movers/0/max_speed");
+  EXPECT_STREQ(problem_of([&] { monitor.judge({{0.0, {}}, {0.0, {}}}); }), "no-trajectory");
+  EXPECT_EQ(place, "trajectory/1");
   EXPECT_EQ(monitor.judge({}, ahead(1)).share, 1.0);
 }
 

@@ -429,10 +429,10 @@ MotionCase boxes_on_whole_numbers(SeededRandom& random) {
 
 MotionCase random_bodies(SeededRandom& random) {
   const int kind = random.integer(0, 9);
-  MotionCase c = kind < 4    ? random_discs(random)
-                 : kind < 8  ? random_disc_and_edges(random)
-                 : kind == 8 ? random_curved_discs(random)
-                             : random_curved_edges(random);
+  MotionCase c = kind < 3   ? random_discs(random)
+                 : kind < 6 ? random_disc_and_edges(random)
+                 : kind < 8 ? random_curved_discs(random)
+                            : random_curved_edges(random);
   double unit = 1.0;
   if (const auto* s = std::get_if<StraightMotion>(&c.a)) unit = std::fmax(1e-9, norm(s->to.at - s->from.at) / 3.0);
   c.body_a = random_body(random, unit);

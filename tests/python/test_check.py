@@ -140,6 +140,42 @@ def test_recordings_and_absent_robots():
     assert alone.clear and [body.rows for body in alone.bodies] == [len(run.time)]
 
 
+TWO = {"name": "two", "time_limit": 5, "guidance": "none", "obstacles": [{"id": "wall", "polyline": [[2, -2], [2, 2]]}], "robots": [
+    {"id": "a", "position": [0, 0], "goal": [1, 0], "radius": 0.4}, {"id": "b", "position": [0, 1], "goal": [1, 1], "radius": 0.5}]}  # fmt: skip
+
+
+def test_a_run_brings_its_radii_obstacles_and_ids(tmp_path, program):
+    run = exactvo.simulate(TWO)
+    run.write(tmp_path / "recording.jsonl")
+    answers = [exactvo.check(given, near=2) for given in (run, tmp_path, tmp_path / "recording.jsonl")]
+    for answer in answers:
+        assert answer.clear and [body.id for body in answer.bodies] == ["a", "b"]
+        assert {(a.body, a.with_obstacle) for a in answer.approaches} == {("a", False), ("a", True), ("b", True)}
+        least = {a.body: a.clearance for a in answer.approaches if a.with_obstacle}
+        assert least["a"] == pytest.approx((0.62, 0.62), abs=0.03) and least["b"] == pytest.approx((0.52, 0.52), abs=0.03)
+    assert len({answer.approaches for answer in answers}) == 1
+    lines = [json.loads(line) for line in program("check", tmp_path, "--near", 2, "--json").splitlines()]
+    assert sorted(tuple(line["approach"]) for line in lines if "approach" in line) == sorted(a.clearance for a in answers[0].approaches)
+    assert not exactvo.check(run, radius=0.6).clear and exactvo.check(run, map=[], radius=0.4, near=2).approaches[0].other == "b"
+    with pytest.raises(exactvo.DataError):
+        exactvo.check(tmp_path / "none")
+
+
+def test_unknown_cells_of_a_map_are_free_or_blocked_and_the_answer_says_which(tmp_path):
+    (tmp_path / "map.pgm").write_bytes(b"P5 4 4 255\n" + bytes([254, 254, 205, 254] * 4))
+    (tmp_path / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    through = {"A": [(0, 0.5, 0.5), (1, 3.5, 0.5)]}
+    free = exactvo.check(through, map=tmp_path / "map.yaml", radius=0.1)
+    assert free.clear and any("unknown" in note for note in free.notes)
+    assert exactvo.check(through, map=tmp_path / "map.yaml", unknown="blocked", radius=0.1).overlaps == 1
+    for options, where in (({"map": tmp_path / "map.yaml", "unknown": "bloked"}, "unknown"), ({"unknown": "blocked"}, "unknown")):
+        with pytest.raises(exactvo.ArgumentError) as caught:
+            exactvo.check(through, radius=0.1, **options)
+        assert caught.value.where == where
+
+
 def test_findings():
     t = np.arange(60.0)
     x = np.where(t >= 20, t + 50, t)

@@ -74,3 +74,19 @@ def test_commands_that_do_not_fit_are_refused_and_the_monitor_goes_on(given):
     with pytest.raises(exactvo.ArgumentError):
         monitor.judge(**{"pose": (0, 0, 0), "velocity": (1, 0), **given})
     assert monitor.judge((0, 0, 0), (1.5, 0)).share == before
+
+
+def test_errors_name_the_argument_in_the_words_of_python():
+    monitor = exactvo.Monitor([WALL], radius=0.3)
+    places = []
+    for call in (
+        lambda: monitor.judge((0, 0, 0), (1, 0), positions=[(1, 2), (3, 4)], radii=[1, -1]),
+        lambda: monitor.judge((0, 0, 0), (1, 0), positions=[(1, 2)], max_speeds=-1),
+        lambda: monitor.judge((0, 0, 0), (1, 0), positions=[(1, 2)], position_errors=-1),
+        lambda: monitor.judge((0, 0, 1e300), (1, 0)),
+        lambda: monitor.judge_trajectory([(0, 0, 0, 0), (1, 1, 0, 0), (1, 2, 0, 0)]),
+    ):
+        with pytest.raises(exactvo.ArgumentError) as caught:
+            call()
+        places.append(caught.value.where)
+    assert places == ["radii[1]", "max_speeds[0]", "position_errors[0]", "pose", "poses[2]"]

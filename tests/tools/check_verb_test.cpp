@@ -408,6 +408,22 @@ TEST(CheckVerb, TheFigureShowsTheOverlaps) {
   EXPECT_EQ(here.run("check t.csv --radius 0.25 --figure t.csv").status, 2);
 }
 
+TEST(CheckVerb, ThePageHoldsTheTrajectoriesAndTheOverlaps) {
+  const Workplace here;
+  here.write("t.csv", kCrossing);
+  for (const char* more : {"", " --between hold", " --between none", " --between cubic", " --max-gap 0.5"}) {
+    const Outcome outcome = here.run(std::string("check t.csv --radius 0.25 --page out/check.html") + more);
+    EXPECT_LE(outcome.status, 1) << more << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("wrote out/check.html")) << more;
+    EXPECT_THAT(here.read("out/check.html"), HasSubstr("<title>")) << more;
+  }
+  EXPECT_THAT(here.run("check t.csv --radius 0.25 --page check.png").err, HasSubstr(".html"));
+  EXPECT_THAT(here.run("check t.csv t.csv --radius 0.25 --page check.html").err, HasSubstr("several files"));
+  EXPECT_THAT(here.run("view t.csv --out page.html").err, HasSubstr("--page"));
+  here.write("t.html", kCrossing);
+  EXPECT_THAT(here.run("check t.html --radius 0.25 --page t.html").err, HasSubstr("another file"));
+}
+
 // --- Long files ---
 
 TEST(CheckVerb, AMillionRowsThroughAPipeNeedLittleMemory) {

@@ -43,7 +43,7 @@ std::vector<json> answers(const std::string& lines, int status = 0, const std::s
 
 TEST(MonitorVerb, AnswersEachLineWithItsShareAndTheScaledCommand) {
   const std::vector<json> all = answers(R"({"id": "a", "pose": [0, 0, 0], "velocity": [1.5, 0], "turn": 0})"
-                                        "\n\n"
+                                        "\n"
                                         R"({"id": 7, "pose": [0, 0, 3.14159], "velocity": [1.5, 0], "turn": 0.2})"
                                         "\n");
   ASSERT_EQ(all.size(), 2u);
@@ -55,7 +55,7 @@ TEST(MonitorVerb, AnswersEachLineWithItsShareAndTheScaledCommand) {
   EXPECT_NEAR(all[0]["witness"]["place"][0], 0.85, 1e-6);
   EXPECT_TRUE(all[0]["witness"].contains("obstacle"));
   EXPECT_EQ(all[1]["id"], 7);
-  EXPECT_EQ(all[1]["line"], 3);
+  EXPECT_EQ(all[1]["line"], 2);
   EXPECT_EQ(all[1]["share"], 1.0);
   EXPECT_EQ(all[1]["turn"], 0.2);
   EXPECT_EQ(all[1]["witness"], nullptr);
@@ -98,6 +98,8 @@ TEST(MonitorVerb, TrajectoriesMoversAndFootprintsAreRead) {
 TEST(MonitorVerb, BadLinesAreAnsweredWithACodeAndTheNextIsRead) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"{", "E_JSON_SYNTAX"},
+      {"", "E_JSON_SYNTAX"},
+      {" \t\r", "E_JSON_SYNTAX"},
       {"[1]", "E_TYPE"},
       {R"({"velocity": [1, 0]})", "E_KEY_MISSING"},
       {R"({"pose": [0, 0, 0], "velocity": [1, 0], "trun": 1})", "E_KEY_UNKNOWN"},
@@ -120,8 +122,45 @@ TEST(MonitorVerb, BadLinesAreAnsweredWithACodeAndTheNextIsRead) {
   for (std::size_t k = 0; k < bad.size(); ++k) {
     EXPECT_EQ(all[2 * k]["error"]["code"], bad[k].second) << bad[k].first << " " << all[2 * k];
     EXPECT_EQ(all[2 * k]["line"], 2 * k + 1);
+    EXPECT_EQ(all[2 * k]["error"]["place"].get<std::string>().rfind("line " + std::to_string(2 * k + 1), 0), 0u)
+        << all[2 * k];
+    for (const char* key : {"found", "expected"})
+      EXPECT_FALSE(all[2 * k]["error"][key].get<std::string>().empty()) << all[2 * k];
     EXPECT_EQ(all[2 * k + 1]["share"], 1.0) << "the line after " << bad[k].first;
   }
+}
+
+TEST(MonitorVerb, ErrorsNameTheKeyOrTheOption) {
+  const std::vector<json> all = answers(
+      R"({"pose": [0, 0, 0], "velocity": [1, 0], "movers": [{"position": [5, 5], "radius": 1, "max_speed": 1},)"
+      R"( {"position": [5, 5], "radius": -1, "max_speed": 1}]})"
+      "\n"
+      R"({"trajectory": [[0, 0, 0, 0], [1, 1, 0, 0], [1, 2, 0, 0]]})"
+      "\n"
+      R"({"pose": [0, 0, 0], "velocity": [1, "x"]})"
+      "\n",
+      1);
+  ASSERT_EQ(all.size(), 3u);
+  const json radius{{"code", "E_RANGE"},
+                    {"place", "line 1, /movers/1/radius"},
+                    {"found", "-1"},
+                    {"expected", "a number of at least 0 and less than 2^30"}};
+  EXPECT_EQ(all[0]["error"], radius);
+  EXPECT_EQ(all[1]["error"]["place"], "line 2, /trajectory/2");
+  EXPECT_EQ(all[2]["error"]["place"], "line 3, /velocity/1");
+}
+
+TEST(MonitorVerb, ProofsOfNothingAreAcceptedByTheAudit) {
+  const Workplace here;
+  here.write("lines.jsonl", R"({"pose": [0, 0, 0], "velocity": [1, 0]})"
+                            "\n");
+  ASSERT_EQ(here.run("monitor lines.jsonl --radius 0.3 --certificates proofs.jsonl").status, 0);
+  const Outcome audit = here.run("audit --certificate proofs.jsonl");
+  EXPECT_EQ(audit.status, 0) << audit.err;
+  EXPECT_THAT(audit.out, HasSubstr("0 certificates"));
+  here.write("other.jsonl", R"({"summary": {"overlaps": 0}})"
+                            "\n");
+  EXPECT_EQ(here.run("audit --certificate other.jsonl").status, 2);
 }
 
 TEST(MonitorVerb, CertificatesOfWhatIsClearAreAcceptedByTheAuditAndChangedOnesAreNot) {
@@ -241,7 +280,7 @@ TEST(MonitorVerb, AnswersComeBeforeTheNextLineGoesIn) {
 TEST(MonitorVerb, OptionsThatAreWrongAreNamed) {
   const Workplace here;
   EXPECT_THAT(here.run("monitor - < /dev/null").err, HasSubstr("--radius or --footprint"));
-  EXPECT_THAT(here.run("monitor - --radius 0.3 --max-deceleration 0 < /dev/null").err, HasSubstr("max_deceleration"));
+  EXPECT_THAT(here.run("monitor - --radius 0.3 --max-deceleration 0 < /dev/null").err, HasSubstr("--max-deceleration"));
   EXPECT_THAT(here.run("monitor - --radius -1 < /dev/null").err, HasSubstr("--radius"));
   EXPECT_THAT(here.run("monitor - --footprint 'LINESTRING (0 0, 1 0)' < /dev/null").err, HasSubstr("half its width"));
   EXPECT_EQ(here.run("monitor - --radius 0.3 --latency nan < /dev/null").status, 2);

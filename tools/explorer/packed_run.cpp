@@ -346,12 +346,14 @@ std::vector<Step> RunPacker::decided() const {
   return rows;
 }
 
-std::string RunPacker::finish(const datasets::RecordingFile& about, const std::string& metrics_json) const {
+std::string RunPacker::finish(const datasets::RecordingFile& about, const std::string& metrics_json,
+                              const std::vector<Json>& bodies) const {
   PackedColumns columns;
   const Json quantum = add_rows(about.scenario.robots.size(), columns);
   const std::vector<Step> decisions = decided();
   add_decisions(decisions, about.scenario, columns);
   Json head = packed_head(about, limits_);
+  for (std::size_t k = 0; k < bodies.size(); ++k) head["scene"]["robots"][k].update(bodies[k]);
   head["events"] = events_;
   head["events_left_out"] = events_left_out_;
   head["metrics"] = shown_metrics(metrics_json);

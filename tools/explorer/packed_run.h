@@ -59,7 +59,10 @@ class RunPacker {
   void add_positions(const formation::Step& row);
 
   /// Of `about` everything but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is none.
-  std::string finish(const datasets::RecordingFile& about, const std::string& metrics_json) const;
+  /// `bodies`, one for each robot or none: more members of the robots in the head. "there" is a list of times, from and
+  /// until, s, at which the robot is there; "outline" a list of rings [x, y, ...] round its place, m, for a disc.
+  std::string finish(const datasets::RecordingFile& about, const std::string& metrics_json,
+                     const std::vector<nlohmann::ordered_json>& bodies = {}) const;
 
  private:
   struct State {

@@ -82,6 +82,25 @@ Points outline(const geometry::ConvexShape& shape) {
   return support_ring({shape, {0.0, 0.0}, 0.0});
 }
 
+Points hull_outline(const geometry::RoundedPolygon& part, const geometry::Pose& pose, double grown) {
+  constexpr int kSteps = 96;
+  Points ring;
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec2 n = geometry::rotated({1.0, 0.0}, 2.0 * geometry::kPi * k / kSteps);
+    Vec2 best;
+    double most = -INFINITY;
+    for (const Vec2 corner : part.corners) {
+      const Vec2 turned = geometry::rotated(corner, pose.heading);
+      if (dot(n, turned) > most) {
+        most = dot(n, turned);
+        best = turned;
+      }
+    }
+    ring.push_back(pose.at + best + (part.radius + grown) * n);
+  }
+  return ring;
+}
+
 Points scaled_outline(const GrownShape& s, double tau) {
   Points ring = support_ring(s);
   for (Vec2& p : ring) p = p / tau;

@@ -13,8 +13,10 @@
 
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/motions.h"
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/support.h"
+#include "exactvo/geometry/twist.h"
 #include "exactvo/geometry/vec2.h"
 
 namespace exactvo::tools {
@@ -49,6 +51,9 @@ using Points = std::vector<Vec2>;
 
 /// The boundary of a convex shape, counter-clockwise, first point not repeated.
 Points outline(const geometry::ConvexShape& shape);
+
+/// The boundary of a convex part of a body at a pose, grown by `grown` m.
+Points hull_outline(const geometry::RoundedPolygon& part, const geometry::Pose& pose = {}, double grown = 0.0);
 
 /// Of S scaled by 1/tau: the points of the velocity plane that reach S at exactly time tau.
 Points scaled_outline(const geometry::GrownShape& s, double tau);

@@ -223,6 +223,7 @@ class TreeChecker {
     if (is_motion_certificate(value)) return checked_.all.push_back(check_motion_certificate(value));
     if (RouteChecker::lacks_one(value)) return checked_.all.push_back({"no certificate", "", false});
     for (const auto& [key, member] : value.items()) {
+      if (key == "summary" && member.is_object() && member.contains("certificates")) checked_.is_summed = true;
       if (key == "certificate") {
         add(member, value);
       } else {
@@ -289,7 +290,7 @@ auto count_valid(const CheckedCertificates& checked) {
 CheckedCertificates check_certificates(const std::string& file) {
   const std::string whole = datasets::read_file_or_input(file), text(without_mark(whole));
   CheckedCertificates checked = is_json(text) ? checked_in_json(text) : checked_in_lines(text);
-  const bool is_empty = checked.all.empty() && checked.none == 0;
+  const bool is_empty = checked.all.empty() && checked.none == 0 && !checked.is_summed;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
     throw datasets::DataError(datasets::DataCode::format_unknown, datasets::name_of_input(file), "",
                               whole.empty() ? "an empty file" : "no certificate", "a certificate a line");

@@ -22,6 +22,7 @@ struct CheckedCertificate {
 struct CheckedCertificates {
   std::vector<CheckedCertificate> all;  ///< in order
   std::size_t none = 0;                 ///< places of JSON that say that there is none: "certificate": null
+  bool is_summed = false;               ///< a "summary" of JSON lines says how many there are, which may be none
 };
 
 /// Every certificate of a file, or of stdin where its name is "-". Its text may be JSON, JSON lines or plain lines: one
@@ -31,8 +32,8 @@ struct CheckedCertificates {
 /// proves, number by number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum,
 /// made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and
 /// the same one where that has a certificate of containment. In lines, nothing says which belong together, and this is
-/// not checked. Throws DataError where it can't be read, and where neither a certificate nor a place that says
-/// there is none is in it: no line begins as one, no JSON has any.
+/// not checked. Throws DataError where it can't be read, and where neither a certificate nor a place that says there is
+/// none nor a summary is in it: no line begins as one, no JSON has any.
 CheckedCertificates check_certificates(const std::string& file);
 
 std::string to_json(const CheckedCertificates& checked);

@@ -18,4 +18,7 @@ geometry::Obstacle footprint_shape(const std::string& text);
 /// holes, and for a line without a radius.
 geometry::RigidBody footprint_body(const geometry::Obstacle& shape, double radius);
 
+/// m, rounded: the radius of the least disc round the reference point that holds the body.
+double reach_of(const geometry::RigidBody& body);
+
 }  // namespace exactvo::tools

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "support/certificate_json.h"
-#include "support/turning_certificates.h"
 
 namespace exactvo::tools {
 
@@ -166,8 +165,8 @@ OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInM
   return json_with(certificate, moving_json(a), "obstacle", obstacle_json(obstacle));
 }
 
-OrderedJson turning_certificate_json(const MotionCertificate& certificate, const TurningMotion& motion,
-                                     const RigidBody& body, const formation::SceneObstacle& obstacle) {
+OrderedJson certificate_json(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
+                             const formation::SceneObstacle& obstacle) {
   return json_with(certificate, turning_json(motion, body), "obstacle", obstacle_json(obstacle));
 }
 

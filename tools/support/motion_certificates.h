@@ -2,9 +2,10 @@
 #pragma once
 
 /// \file
-/// Certificates that moving bodies stay clear, as JSON: two bodies with their motions (straight: "from" and "to"; else
-/// "basis", "start", "end" and "points" of a geometry::CurvedMotion), or one and an obstacle, and the
-/// separations that prove it (geometry/motion_certificate.h). docs/guide/check.md has the format.
+/// Certificates that moving bodies stay clear, as JSON: two bodies with their motions (straight: "from" and "to"; on a
+/// curve: "basis", "start", "end" and "points" of a geometry::CurvedMotion; turning, beside an obstacle: "from",
+/// "until", "velocity" and "turn" of a geometry::TurningMotion), or one and an obstacle, and the separations that prove
+/// it (geometry/motion_certificate.h). docs/guide/check.md has the format.
 ///
 /// See also: certificates.h checks whole files.
 
@@ -12,6 +13,7 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/motion_certificate.h"
+#include "exactvo/geometry/turning_motions.h"
 #include "support/certificates.h"
 #include "support/json_layout.h"
 
@@ -27,6 +29,10 @@ OrderedJson certificate_json(const geometry::MotionCertificate& certificate, con
                              const BodyInMotion& b);
 OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
                              const formation::SceneObstacle& obstacle);
+
+/// Of a body that drives and turns.
+OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
+                             const geometry::RigidBody& body, const formation::SceneObstacle& obstacle);
 
 /// Whether an object claims to be one.
 bool is_motion_certificate(const OrderedJson& certificate);

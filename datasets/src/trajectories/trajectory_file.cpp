@@ -187,6 +187,21 @@ std::string recognised_trajectory_format(const std::string& file) {
   return "";
 }
 
+std::vector<std::string> trajectory_files_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const char* recording : {"recording.jsonl", "recording.evr"})
+    if (std::filesystem::is_regular_file(folder / recording, error)) return {(folder / recording).string()};
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.is_regular_file(error) && !recognised_trajectory_format(entry.path().string()).empty())
+      files.push_back(entry.path().string());
+  if (files.empty())
+    throw DataError(DataCode::format_unknown, folder.string(), "", "no file of trajectories",
+                    "a folder with files of trajectories, or the folder of a run");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 struct TrajectoryReader::State {
   TrajectoryOptions options;
   std::optional<SpooledInput> spooled;

@@ -22,8 +22,6 @@ Vec2 velocity_of(const TrajectoryRow& row, Vec2 otherwise) {
   return is_finite(row.velocity) ? row.velocity : otherwise;
 }
 
-}  // namespace
-
 void for_each_row_in_time(TrajectoryReader& reader, bool is_in_order,
                           const std::function<void(const TrajectoryRow&)>& take) {
   if (is_in_order) {
@@ -35,6 +33,47 @@ void for_each_row_in_time(TrajectoryReader& reader, bool is_in_order,
   std::stable_sort(rows.begin(), rows.end(),
                    [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.time < b.time; });
   for (const TrajectoryRow& row : rows) take(row);
+}
+
+/// The curves of a file of polynomials, by the time at which they begin.
+class CurveFeed {
+ public:
+  CurveFeed(std::vector<std::vector<geometry::CurvedMotion>> curves, const TrajectoryPieces::Take& take)
+      : curves_(std::move(curves)), take_(take) {
+    for (std::size_t agent = 0; agent < curves_.size(); ++agent)
+      for (const geometry::CurvedMotion& curve : curves_[agent]) waiting_.push_back({agent, &curve});
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.curve->start < b.curve->start; });
+  }
+  /// Hands on what begins before this time.
+  void advance(double time) {
+    for (; next_ < waiting_.size() && waiting_[next_].curve->start < time; ++next_)
+      take_(waiting_[next_].agent, *waiting_[next_].curve);
+  }
+
+ private:
+  struct Waiting {
+    std::size_t agent;
+    const geometry::CurvedMotion* curve;
+  };
+  std::vector<std::vector<geometry::CurvedMotion>> curves_;
+  const TrajectoryPieces::Take& take_;
+  std::vector<Waiting> waiting_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+void for_each_piece(TrajectoryReader& reader, const TrajectorySurvey& survey, const TrajectoryPieces::Options& options,
+                    const std::function<void(TrajectoryRow&)>& look, const TrajectoryPieces::Take& take) {
+  const bool has_curves = !reader.file().curves.empty();
+  CurveFeed curves(reader.file().curves, take);
+  TrajectoryPieces pieces(survey.agents(), options, take);
+  for_each_row_in_time(reader, survey.is_in_order(), [&](TrajectoryRow row) {
+    look(row);
+    has_curves ? curves.advance(row.time) : pieces.add(row);
+  });
+  has_curves ? curves.advance(std::numeric_limits<double>::infinity()) : pieces.finish();
 }
 
 TrajectoryPieces::TrajectoryPieces(const std::vector<AgentSurvey>& agents, const Options& options, Take take)

@@ -73,14 +73,7 @@ std::vector<geometry::Vec2> derivative_of(const std::vector<geometry::Vec2>& pow
   return derivative;
 }
 
-}  // namespace
-
-bool looks_like_polynomials(std::string_view beginning) {
-  return header_in(beginning.substr(0, beginning.find('\n'))).has_value();
-}
-
-void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
-  TextLines lines(path.string(), kLongestRow);
+Header required_header(TextLines& lines, const TrajectorySink& out) {
   std::string_view line;
   std::optional<Header> header;
   if (lines.next(line)) header = header_in(line);
@@ -89,46 +82,71 @@ void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
   if (header->x.size() > geometry::kMostDegree + 1)
     out.refuse(DataCode::out_of_range, 1, "x^" + std::to_string(header->x.size() - 1),
                "powers up to " + std::to_string(geometry::kMostDegree));
-  // Files of one name in several folders are told apart by their paths.
+  return *header;
+}
+
+/// Files of one name in several folders are told apart by their paths.
+std::size_t agent_of(const std::filesystem::path& path, TrajectorySink& out) {
   const std::vector<std::string>& known = out.file().agents;
   const std::string stem = path.stem().string();
   const bool is_taken = std::find(known.begin(), known.end(), stem) != known.end();
-  const std::size_t agent = out.agent(is_taken ? path.string() : stem);
+  return out.agent(is_taken ? path.string() : stem);
+}
+
+/// The piece of a line.
+geometry::CurvedMotion piece_in(std::string_view text, const Header& header, double begin, std::uint64_t line,
+                                const TrajectorySink& out) {
+  const std::vector<std::string> fields = fields_of(text);
+  if (fields.size() < header.count)
+    out.refuse(DataCode::wrong_count, line, std::to_string(fields.size()) + " fields",
+               std::to_string(header.count) + " fields, as the header has");
+  const double duration = out.number(fields[header.duration], "a duration", line);
+  if (!(duration > 0.0) || !(begin + duration > begin))
+    out.refuse(DataCode::out_of_range, line, fields[header.duration], "a duration above 0 s");
+  geometry::CurvedMotion curve{geometry::CurveBasis::powers, begin, begin + duration, {}};
+  double power = 1.0;  // of the duration
+  const auto coefficient = [&](std::size_t column) {
+    const double c = out.scale() * out.number(fields[column], "a coefficient", line);
+    if (!(std::fabs(c) * power <= kLargestCoordinate))
+      out.refuse(DataCode::out_of_range, line, fields[column] + " of a piece of " + fields[header.duration] + " s",
+                 "terms up to 2^100 m");
+    return c;
+  };
+  for (std::size_t k = 0; k < header.x.size(); ++k, power *= duration) {
+    const double x = coefficient(header.x[k]);
+    curve.points.push_back({x, coefficient(header.y[k])});
+  }
+  return curve;
+}
+
+/// Samples of a piece; of the first one also its beginning.
+void add_rows(std::size_t agent, const geometry::CurvedMotion& curve, bool is_first, std::uint64_t line,
+              TrajectorySink& out) {
+  const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
+  const double duration = curve.end - curve.start;
+  for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {
+    const double t = static_cast<double>(s) / kSamples * duration;
+    out.row(agent, s == kSamples ? curve.end : curve.start + t, value_of(curve.points, t) / out.scale(), line,
+            TrajectoryRow().heading, value_of(velocity, t) / out.scale());
+  }
+}
+
+}  // namespace
+
+bool looks_like_polynomials(std::string_view beginning) {
+  return header_in(beginning.substr(0, beginning.find('\n'))).has_value();
+}
+
+void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
+  TextLines lines(path.string(), kLongestRow);
+  const Header header = required_header(lines, out);
+  const std::size_t agent = agent_of(path, out);
   std::vector<geometry::CurvedMotion> curves;
-  double begin = 0.0;
-  while (lines.next(line)) {
+  for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
-    const std::vector<std::string> fields = fields_of(line);
-    if (fields.size() < header->count)
-      out.refuse(DataCode::wrong_count, lines.number(), std::to_string(fields.size()) + " fields",
-                 std::to_string(header->count) + " fields, as the header has");
-    const double duration = out.number(fields[header->duration], "a duration", lines.number());
-    if (!(duration > 0.0) || !(begin + duration > begin))
-      out.refuse(DataCode::out_of_range, lines.number(), fields[header->duration], "a duration above 0 s");
-    geometry::CurvedMotion curve{geometry::CurveBasis::powers, begin, begin + duration, {}};
-    double power = 1.0;  // of the duration
-    for (std::size_t k = 0; k < header->x.size(); ++k) {
-      const auto coefficient = [&](std::size_t column) {
-        const double c = out.scale() * out.number(fields[column], "a coefficient", lines.number());
-        if (!(std::fabs(c) * power <= kLargestCoordinate))
-          out.refuse(DataCode::out_of_range, lines.number(),
-                     fields[column] + " of a piece of " + fields[header->duration] + " s", "terms up to 2^100 m");
-        return c;
-      };
-      const double x = coefficient(header->x[k]);
-      curve.points.push_back({x, coefficient(header->y[k])});
-      power *= duration;
-    }
-    const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
-    const bool is_first = curves.empty();
-    for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {
-      const double share = static_cast<double>(s) / kSamples, t = share * duration;
-      const double time = s == kSamples ? curve.end : begin + t;
-      out.row(agent, time, value_of(curve.points, t) / out.scale(), lines.number(), TrajectoryRow().heading,
-              value_of(velocity, t) / out.scale());
-    }
-    curves.push_back(std::move(curve));
-    begin += duration;
+    const double begin = curves.empty() ? 0.0 : curves.back().end;
+    curves.push_back(piece_in(line, header, begin, lines.number(), out));
+    add_rows(agent, curves.back(), curves.size() == 1, lines.number(), out);
   }
   if (curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no piece", "a line for each piece");
   if (out.file().curves.empty())

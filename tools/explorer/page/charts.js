@@ -40,7 +40,8 @@ function jitterAt(run, row, robot) {
 function pathLength(run, robot) {
   let length = 0;
   for (let row = 1; row < run.rows; ++row)
-    length += Math.hypot(run.x(row, robot) - run.x(row - 1, robot), run.y(row, robot) - run.y(row - 1, robot));
+    if (run.isThere(robot, run.time[row]) && run.isThere(robot, run.time[row - 1]))
+      length += Math.hypot(run.x(row, robot) - run.x(row - 1, robot), run.y(row, robot) - run.y(row - 1, robot));
   return length;
 }
 
@@ -122,13 +123,16 @@ function drawStrip(ctx, run, series, strip, colours, width, top, height) {
 
 const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5};
 
+function collisionWords(c) {
+  return `collision with ${c.kind} ${c.with}, ${c.depth.toPrecision(2)} m deep at ${c.at.toFixed(2)} s`;
+}
+
 // Events of the run as {time, robot, kind, text}; collisions among them.
 function eventsOf(run) {
   const ids = new Map(run.robots.map((r, i) => [r.id, i]));
   const events = run.head.events.map((e) => ({...e}));
   for (const c of run.about.collisions)
-    events.push({time: c.from, robot: ids.get(c.robot), kind: 'collision',
-      text: `collision with ${c.kind} ${c.with}, ${c.depth.toPrecision(2)} m deep`});
+    events.push({time: c.from, robot: ids.get(c.robot), kind: 'collision', text: collisionWords(c)});
   events.sort((a, b) => a.time - b.time);
   return events;
 }
@@ -195,4 +199,4 @@ function pickEvent(run, events, width, px) {
   return best;
 }
 
-export {seriesOf, pathLength, eventsOf, drawCharts, drawCursor, pickEvent, timeToPx, pxToTime};
+export {seriesOf, pathLength, collisionWords, eventsOf, drawCharts, drawCursor, pickEvent, timeToPx, pxToTime};

@@ -146,6 +146,14 @@ class Run {
     return this.columns['side'][row * this.n + robot] - 1;
   }
 
+  // Whether a robot is there: trajectories that were checked may begin late, pause or end early.
+  isThere(robot, t) {
+    const there = this.robots[robot].there;
+    if (!there) return true;
+    for (let k = 0; k < there.length; k += 2) if (there[k] <= t + 1e-9 && t <= there[k + 1] + 1e-9) return true;
+    return false;
+  }
+
   // The last row at or before t.
   rowAt(t) {
     return lastAtOrBefore(this.time, t);

@@ -37,6 +37,17 @@ function showLegend(on) {
   resize();
 }
 
+// To the moment at which a collision is deepest.
+function showCollision(event) {
+  const button = event.target.closest('button');
+  if (!button) return;
+  const c = page.run.about.collisions[Number(button.dataset.collision)];
+  setPlaying(false);
+  chooseRobot(Math.max(0, page.run.robots.findIndex((r) => r.id === c.robot)));
+  seek(c.at);
+  writeAddress();
+}
+
 function onKey(event) {
   if (!page.run || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
   const tag = event.target.tagName;
@@ -60,6 +71,7 @@ function onKey(event) {
 
 function connectControls() {
   const on = (id, action) => $(id).addEventListener('click', action);
+  on('collisions', showCollision);
   on('play', () => setPlaying(!page.isPlaying));
   on('back', () => stepBy(-1));
   on('step', () => stepBy(1));

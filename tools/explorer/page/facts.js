@@ -76,10 +76,12 @@ function fillStateOnly(run) {
   const facts = [], i = ui.robot, row = shownPositions().row;
   fact(facts, 'robot', shortName(run.robots[i].id, 400));
   fact(facts, 'time', `${number(run.time[row])} s`, 'time');
-  fact(facts, 'position', `${pair([run.x(row, i), run.y(row, i)])} m`, 'position');
-  fact(facts, 'moving at', speedWords([run.vx(row, i), run.vy(row, i)]), 'velocity');
+  const isThere = run.isThere(i, ui.t);
+  fact(facts, 'position', isThere ? `${pair([run.x(row, i), run.y(row, i)])} m` : 'not there', 'position');
+  if (isThere) fact(facts, 'moving at', speedWords([run.vx(row, i), run.vy(row, i)]), 'velocity');
   $('facts').replaceChildren(...facts);
-  $('why').textContent = run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals (exactvo explain computes a decision again; simulate --decisions binding records all). ' +
+  const checked = 'Trajectories that exactvo check decided on, in continuous time: bounds of moments and depths are in its answer. The page draws straight lines between the bends of a way.';
+  $('why').textContent = run.about.method === 'check' ? checked : run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals (exactvo explain computes a decision again; simulate --decisions binding records all). ' +
     'Robots in red had a half-plane relaxed since the row before.';
 }
 

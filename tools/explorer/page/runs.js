@@ -4,7 +4,7 @@ import {bytesOfBase64, DataProblem, unpackRun} from './columns.js';
 import {shortName} from './draw.js';
 import {number} from './words.js';
 import {Positions, unreachableOf} from './world.js';
-import {eventsOf, pathLength} from './charts.js';
+import {collisionWords, eventsOf, pathLength} from './charts.js';
 import {$, element, page, report, ui} from './state.js';
 import {fitSpace, fitWorld, resize} from './views.js';
 import {writeAddress} from './moment.js';
@@ -65,9 +65,16 @@ function fillRun() {
   $('scrub').min = String(run.time[0]);
   $('scrub').max = String(run.end);
   $('outcome').textContent = about.outcome;
+  $('collisions').replaceChildren(...about.collisions.map((c, k) => {
+    const item = element('li'), button = element('button', shortName(`${c.robot}: ${collisionWords(c)}`, 200));
+    button.dataset.collision = String(k);
+    item.append(button);
+    return item;
+  }));
   $('warnings').replaceChildren(...[...about.warnings, ...about.stuck.map((s) => s.text)].map((w) => element('li', shortName(w, 1000))));
   const partial = [];
   const hasDecisions = run.decisionTime.length > 0;
+  $('main').classList.toggle('positions-only', !hasDecisions);
   for (const e of document.querySelectorAll('.of-decisions')) e.hidden = !hasDecisions;
   if (hasDecisions && !about.all_half_planes)
     partial.push('The recording has only the half-planes that bind or are violated and those against what could be met within a time step: simulate --decisions all keeps the others too.');

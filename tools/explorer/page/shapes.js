@@ -146,9 +146,15 @@ function distanceToObstacle(obstacle, x, y, ox, oy) {
   return inside ? -least : least;
 }
 
+// Whether clearances are counted at a row: of a disc that is there.
+function isCounted(run, row, robot) {
+  return !run.robots[robot].outline && run.isThere(robot, run.time[row]);
+}
+
 // Sampled at a row: from the robot's rim to the nearest obstacle, and to the nearest other robot's rim. Infinite where
 // there is none.
 function obstacleClearance(run, row, robot) {
+  if (!isCounted(run, row, robot)) return Infinity;
   const x = run.x(row, robot), y = run.y(row, robot), radius = run.robots[robot].radius;
   let least = Infinity;
   for (const o of run.obstacles) least = Math.min(least, distanceToObstacle(o, x, y, 0, 0));
@@ -163,8 +169,8 @@ function obstacleClearance(run, row, robot) {
 function robotClearance(run, row, robot) {
   const x = run.x(row, robot), y = run.y(row, robot), radius = run.robots[robot].radius;
   let least = Infinity;
-  for (let j = 0; j < run.n; ++j)
-    if (j !== robot) least = Math.min(least, Math.hypot(run.x(row, j) - x, run.y(row, j) - y) - radius - run.robots[j].radius);
+  for (let j = 0; j < run.n && isCounted(run, row, robot); ++j)
+    if (j !== robot && isCounted(run, row, j)) least = Math.min(least, Math.hypot(run.x(row, j) - x, run.y(row, j) - y) - radius - run.robots[j].radius);
   return least;
 }
 

@@ -130,9 +130,13 @@ function drawTrail(ctx, view, run, robot, from, until) {
   ctx.beginPath();
   let lastX = NaN, lastY = NaN;
   for (let row = from; row <= until; row += stride) {
+    if (!run.isThere(robot, run.time[row])) {
+      lastX = NaN;
+      continue;
+    }
     const x = view.px(run.x(row, robot)), y = view.py(run.y(row, robot));
     if (Math.abs(x - lastX) + Math.abs(y - lastY) < 1.5) continue;
-    if (row === from) ctx.moveTo(x, y);
+    if (Number.isNaN(lastX)) ctx.moveTo(x, y);
     else ctx.lineTo(x, y);
     lastX = x;
     lastY = y;
@@ -262,7 +266,7 @@ function drawLeader(ctx, view, colours, run, row) {
 }
 
 // In bulk: one path a colour.
-function drawCrowd(ctx, view, colours, run, positions) {
+function drawCrowd(ctx, view, colours, run, positions, t) {
   const modes = run.columns['mode'], statuses = run.columns['status'], at = positions.row * run.n;
   const arrived = run.head.modes.indexOf('arrived');
   for (let group = 0; group < 3; ++group) {
@@ -270,7 +274,7 @@ function drawCrowd(ctx, view, colours, run, positions) {
     ctx.beginPath();
     for (let i = 0; i < run.n; ++i) {
       const kind = statuses[at + i] !== 0 ? 2 : modes[at + i] === arrived ? 1 : 0;
-      if (kind !== group) continue;
+      if (kind !== group || !run.isThere(i, t)) continue;
       const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(1.3, run.robots[i].radius * view.scale);
       if (x < -r || y < -r || x > view.width + r || y > view.height + r) continue;
       if (r < 2.5) {
@@ -300,13 +304,25 @@ function drawOnWheels(ctx, view, colours, wheels, positions, i) {
   line(ctx, ...at(0, 0), ...at(wheels.reference, 0));
 }
 
+// A body that is no disc: its convex parts.
+function traceOutline(ctx, view, rings, x, y) {
+  for (const ring of rings) {
+    for (let k = 0; k < ring.length; k += 2) {
+      if (k === 0) ctx.moveTo(view.px(x + ring[0]), view.py(y + ring[1]));
+      else ctx.lineTo(view.px(x + ring[k]), view.py(y + ring[k + 1]));
+    }
+    ctx.closePath();
+  }
+}
+
 function drawRobot(ctx, view, colours, run, ui, positions, i) {
   const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale);
   const wheels = run.robots[i].on_wheels;
   ctx.fillStyle = colourOf(colours, i);
   ctx.globalAlpha = wheels ? 0.3 : 0.85;
   ctx.beginPath();
-  ctx.arc(x, y, r, 0, 2 * Math.PI);
+  if (run.robots[i].outline) traceOutline(ctx, view, run.robots[i].outline, positions.x[i], positions.y[i]);
+  else ctx.arc(x, y, r, 0, 2 * Math.PI);
   ctx.fill();
   ctx.globalAlpha = 1;
   if (wheels) drawOnWheels(ctx, view, colours, wheels, positions, i);
@@ -397,7 +413,7 @@ function drawNames(ctx, view, colours, run, ui, positions) {
   ctx.textAlign = 'left';
   const taken = [], shown = [];
   for (let i = 0; i < run.n; ++i) {
-    if (run.n > CROWD && i !== ui.robot) continue;
+    if ((run.n > CROWD && i !== ui.robot) || !run.isThere(i, ui.t)) continue;
     const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale) + 3;
     if (x < -r || y < -r || x > view.width + r || y > view.height + r) continue;
     taken.push([x - r, y - r, x + r, y + r]);
@@ -440,8 +456,8 @@ function drawWorld(ctx, view, run, positions, ui, decision) {
   drawUnreachable(ctx, view, colours, run, ui);
   drawTrails(ctx, view, colours, run, ui, positions.row);
   drawLeader(ctx, view, colours, run, positions.row);
-  if (run.n > CROWD) drawCrowd(ctx, view, colours, run, positions);
-  for (let i = 0; i < run.n; ++i) if (run.n <= CROWD || i === ui.robot) drawRobot(ctx, view, colours, run, ui, positions, i);
+  if (run.n > CROWD) drawCrowd(ctx, view, colours, run, positions, ui.t);
+  for (let i = 0; i < run.n; ++i) if ((run.n <= CROWD || i === ui.robot) && run.isThere(i, ui.t)) drawRobot(ctx, view, colours, run, ui, positions, i);
   drawPressure(ctx, view, colours, run, ui, positions);
   drawWaits(ctx, view, colours, run, ui, positions);
   drawPinnedBody(ctx, view, colours, ui, decision);
@@ -466,6 +482,7 @@ function drawStill(ctx, view, run, ui) {
 function pickInWorld(view, run, positions, px, py) {
   let best = null, nearest = 14;
   for (let i = 0; i < run.n; ++i) {
+    if (!run.isThere(i, run.time[positions.row])) continue;
     const d = Math.hypot(view.px(positions.x[i]) - px, view.py(positions.y[i]) - py) - run.robots[i].radius * view.scale;
     if (d < Math.min(nearest, 6)) {
       nearest = d;

@@ -11,6 +11,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -167,6 +168,7 @@ def check(
     trajectories: PathLike | Sequence[PathLike] | Mapping[Any, Any] | npt.ArrayLike | Recording | Any,
     *,
     map: PathLike | Obstacles | ShapeLike | Sequence[Any] | None = None,
+    unknown: str | None = None,
     radius: float | Mapping[Any, float] | npt.ArrayLike | None = None,
     footprint: npt.ArrayLike | ShapeLike | None = None,
     time: npt.ArrayLike | None = None,
@@ -180,12 +182,15 @@ def check(
 ) -> CheckResult:
     """Whether bodies on trajectories touch each other or a map at any time. Exact.
 
-    trajectories  a path (any format of `trajectory_formats()`; several paths of polynomials are one fleet); a dict of ids to
+    trajectories  a path (any format of `trajectory_formats()`, or the folder of a run; several paths of polynomials, or a
+                  folder of them, are one fleet); a dict of ids to
                   n x 3 arrays (t, x, y) or n x 4 arrays (t, x, y, theta); a table with the columns t, id, x, y and, where
                   wanted, theta, vx, vy (a DataFrame, or a dict of columns); an n x 4 array (t, id, x, y); a steps x robots
                   x 2 array of positions with `time`, in which NaN is "not there"; a `Recording`
-    map           a path, or obstacles as `exactvo.obstacles` takes them; of a recording's file else its own
-    radius        m: of all, or of each: by id, or in the order of the robots of an array. Grows a footprint
+    map           a path, or obstacles as `exactvo.obstacles` takes them; of a run by default its own
+    unknown       what unknown cells of a ROS map are, "free" (the default, which `notes` says) or "blocked"
+    radius        m: of all, or of each: by id, or in the order of the robots of an array. Grows a footprint. Of a run by
+                  default its own
     footprint     a polygon round the place, or a wall of half width `radius`; turned by theta, which must not change
     time          s, for an array of positions: one time a step
     between       what lies between rows: "straight", "hold", "cubic" (with the rows' velocities, else Catmull-Rom), "none"
@@ -199,9 +204,24 @@ def check(
     Raises `ArgumentError`, `DataError` with the line or row, `MissingFileError`.
     """
     source, ids = _source(trajectories, time)
+    notes: list[str] = []
+    if isinstance(trajectories, Recording):
+        scenario = trajectories.scenario
+        if radius is None and footprint is None:
+            radius = {robot.id: robot.radius for robot in scenario.robots}
+        if map is None:
+            map = scenario.obstacles
+        if moving := json.loads(scenario.to_json()).get("moving_obstacles"):
+            notes.append(f"{len(moving)} moving obstacle{'s' * (len(moving) > 1)} left out")
     shapes = None
-    if map is not None:
-        shapes = datasets.read(map).obstacles if isinstance(map, (str, os.PathLike)) else _shapes(map, "map")
+    if isinstance(map, (str, os.PathLike)):
+        content = datasets.read(map, unknown=unknown or "free")
+        shapes = content.obstacles
+        notes += [f"{content.file}: {note}" for note in content.notes]
+    elif unknown is not None:
+        raise ArgumentError("unknown", repr(unknown)[:60], "none: only the file of a map has unknown cells")
+    elif map is not None:
+        shapes = _shapes(map, "map")
     outline = None if footprint is None else _shapes(footprint, "footprint")
     native = _exactvo.check_trajectories(
         source,
@@ -222,7 +242,7 @@ def check(
         approaches=tuple(Approach(*a) for a in native["approaches"]),
         findings=tuple(Finding(*f) for f in native["findings"]),
         bodies=tuple(BodySummary(b[0], b[1], b[2], b[3], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
-        notes=tuple(native["notes"]),
+        notes=(*native["notes"], *notes),
     )
 
 
@@ -266,7 +286,9 @@ Columns = tuple[list[str], Any, Any, Any, Any, Any, Any, Any]
 def _source(given: Any, time: Any) -> tuple[Union[list[str], Columns], list[str] | None]:
     """Paths, or columns as the extension takes them; and the ids, where their order is known."""
     if isinstance(given, Recording):
-        given, time = given.position, given.time
+        _no_time(time)
+        ids = [robot.id for robot in given.scenario.robots]
+        return (ids, *_of_array(given.position, given.time)[1:]), ids
     if isinstance(given, (str, os.PathLike)):
         _no_time(time)
         return [os.fspath(given)], None

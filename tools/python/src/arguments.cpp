@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "exactvo/formation/crowd.h"
-#include "exactvo/formation/monitor.h"
 #include "exactvo/formation/navigator.h"
 #include "exactvo/geometry/routes.h"
 #include "module.h"
@@ -42,8 +41,6 @@ void translate(std::exception_ptr thrown) {
   } catch (const formation::CrowdError& e) {
     raise("CrowdError", py::make_tuple(name(e.problem()), std::string(e.what())));
   } catch (const formation::NavigatorError& e) {
-    raise_refused(e.what());
-  } catch (const formation::MonitorError& e) {
     raise_refused(e.what());
   } catch (const geometry::RouteNotProven& e) {
     raise("RouteNotProvenError", py::make_tuple(std::string(e.what())));

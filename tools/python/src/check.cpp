@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "exactvo/datasets/trajectory_pieces.h"
 #include "module.h"
@@ -127,34 +128,21 @@ void set_bodies(const TrajectoryReader& reader, const TrajectorySurvey& survey, 
   }
 }
 
-void add_curves(const TrajectoryFile& file, geometry::MotionStream& stream) {
-  std::vector<std::pair<const geometry::CurvedMotion*, std::size_t>> all;
-  for (std::size_t agent = 0; agent < file.curves.size(); ++agent)
-    for (const geometry::CurvedMotion& curve : file.curves[agent]) all.emplace_back(&curve, agent);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const auto& a, const auto& b) { return a.first->start < b.first->start; });
-  for (const auto& [curve, agent] : all) stream.add(agent, *curve);
-}
-
 Answer answer_of(TrajectoryReader& reader, const TrajectorySurvey& survey, const Question& question) {
   Answer answer;
   geometry::MotionCheckOptions options{question.between, question.near, {}, question.discs};
   geometry::MotionStream stream(question.map, options, [&](const MotionEvent& e) { answer.events.push_back(e); });
   for (const RigidBody& body : question.bodies) stream.add_body(body);
-  datasets::TrajectoryPieces pieces(
-      survey.agents(), {question.between, question.longest_gap},
-      [&](std::size_t agent, const geometry::Motion& piece) { stream.add(agent, piece); });
-  const bool has_curves = !reader.file().curves.empty();
   datasets::Moves moves;
-  for_each_row_in_time(reader, survey.is_in_order(), [&](const TrajectoryRow& row) {
-    Move move;
-    if (moves.next(row, move)) {
-      if (move.speed() > question.jump_speed) answer.jumps.push_back(move);
-      if (move.interval() > survey.gap_of(move.agent)) answer.gaps.push_back(move);
-    }
-    if (!has_curves) pieces.add(row);
-  });
-  has_curves ? add_curves(reader.file(), stream) : pieces.finish();
+  for_each_piece(
+      reader, survey, {question.between, question.longest_gap},
+      [&](const TrajectoryRow& row) {
+        Move move;
+        if (!moves.next(row, move)) return;
+        if (move.speed() > question.jump_speed) answer.jumps.push_back(move);
+        if (move.interval() > survey.gap_of(move.agent)) answer.gaps.push_back(move);
+      },
+      [&](std::size_t agent, const geometry::Motion& piece) { stream.add(agent, piece); });
   answer.check = stream.finish();
   return answer;
 }
@@ -220,7 +208,11 @@ py::dict check_trajectories(const py::object& source, const py::object& format, 
   const auto made_reader = [&] {
     if (py::isinstance<py::tuple>(source))
       return std::make_unique<TrajectoryReader>(columns_of(py::cast<py::tuple>(source)), "trajectories", options);
-    return std::make_unique<TrajectoryReader>(py::cast<std::vector<std::string>>(source), options);
+    auto files = py::cast<std::vector<std::string>>(source);
+    std::error_code unknown;
+    if (files.size() == 1 && std::filesystem::is_directory(files.front(), unknown))
+      files = datasets::trajectory_files_in(files.front());
+    return std::make_unique<TrajectoryReader>(files, options);
   };
   const std::unique_ptr<TrajectoryReader> reader = made_reader();
   TrajectorySurvey survey;

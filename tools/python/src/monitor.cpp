@@ -2,8 +2,10 @@
 // The monitor of a control loop: movers come as arrays, a verdict goes out as a tuple.
 #include "exactvo/formation/monitor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "module.h"
@@ -23,6 +25,28 @@ geometry::Pose pose_of(py::handle object, const char* name) {
   return {{values.data()[0], values.data()[1]}, values.data()[2]};
 }
 
+/// What Python calls the place of an error: of "movers/1/radius" "radii[1]".
+std::string python_name(const std::string& place) {
+  const std::size_t begin = place.find('/');
+  if (begin == std::string::npos) return place;
+  const std::size_t end = std::min(place.find('/', begin + 1), place.size());
+  const std::string index = "[" + place.substr(begin + 1, end - begin - 1) + "]";
+  const std::string list = place.substr(0, begin), field = place.substr(std::min(end + 1, place.size()));
+  if (list == "trajectory") return "poses" + index;
+  if (list != "movers") return list == "footprint" ? list : list + index;
+  return (field == "radius" ? "radii" : field + "s") + index;
+}
+
+/// Errors of the monitor by the names that Python's arguments have.
+template <class Call>
+auto named(const Call& call) {
+  try {
+    return call();
+  } catch (const formation::MonitorError& e) {
+    throw ArgumentError(python_name(e.place()), e.found(), e.expected());
+  }
+}
+
 /// A monitor for one thread at a time: another that calls meanwhile, while the interpreter's lock is released, is
 /// refused.
 class PythonMonitor {
@@ -35,7 +59,7 @@ class PythonMonitor {
     const geometry::Pose at = pose_of(pose, "pose");
     const formation::Command command{{vector(velocity, "velocity"), finite(turn, "turn")}, in_world_axes};
     take_movers(positions, radii, max_speeds, position_errors);
-    return as_tuple(without_gil([&] { return monitor_.judge(at, command, movers_); }));
+    return as_tuple(named([&] { return without_gil([&] { return monitor_.judge(at, command, movers_); }); }));
   }
 
   py::tuple judge_trajectory(py::handle poses, py::handle positions, py::handle radii, py::handle max_speeds,
@@ -48,7 +72,7 @@ class PythonMonitor {
       trajectory_.push_back({row[0], {{row[1], row[2]}, row[3]}});
     }
     take_movers(positions, radii, max_speeds, position_errors);
-    return as_tuple(without_gil([&] { return monitor_.judge(trajectory_, movers_); }));
+    return as_tuple(named([&] { return without_gil([&] { return monitor_.judge(trajectory_, movers_); }); }));
   }
 
  private:
@@ -115,7 +139,7 @@ std::unique_ptr<PythonMonitor> monitor(const Obstacles& obstacles, py::handle ra
   setup.period = at_least_zero(period, "period");
   setup.margin = at_least_zero(margin, "margin");
   setup.obstacles = obstacles.list;
-  return std::make_unique<PythonMonitor>(setup);
+  return named([&] { return std::make_unique<PythonMonitor>(setup); });
 }
 
 }  // namespace

@@ -227,66 +227,67 @@ void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
     put(fmt::format("... and {} more that come nearer than {:.6g} m\n", apart.size() - kMostListed, asked_.near));
 }
 
-void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t missed) {
-  list_approaches(check.approaches);
-  const datasets::TrajectorySurvey& s = asked_.survey;
-  std::size_t fastest = 0, hardest = 0;
-  for (std::size_t k = 0; k < s.agents().size(); ++k) {
-    if (s.agents()[k].speed.value > s.agents()[fastest].speed.value) fastest = k;
-    if (s.agents()[k].acceleration.value > s.agents()[hardest].acceleration.value) hardest = k;
+OrderedJson CheckAnswer::bodies_json() const {
+  OrderedJson bodies = OrderedJson::array();
+  for (std::size_t k = 0; k < asked_.survey.agents().size(); ++k) {
+    const AgentSurvey& a = asked_.survey.agents()[k];
+    bodies.push_back({{"id", name_of(k)},
+                      {"rows", a.rows},
+                      {"from", a.first},
+                      {"to", a.last},
+                      {"speed", extreme_json(a.speed)},
+                      {"acceleration", extreme_json(a.acceleration)}});
   }
-  if (json_) {
-    OrderedJson bodies = OrderedJson::array();
-    for (std::size_t k = 0; k < s.agents().size(); ++k) {
-      const AgentSurvey& a = s.agents()[k];
-      bodies.push_back({{"id", name_of(k)},
-                        {"rows", a.rows},
-                        {"from", a.first},
-                        {"to", a.last},
-                        {"speed", extreme_json(a.speed)},
-                        {"acceleration", extreme_json(a.acceleration)}});
-    }
-    OrderedJson notes = OrderedJson::array();
-    for (const std::string& note : asked_.file.notes) notes.push_back(note);
-    OrderedJson whole{
-        {"file", asked_.file.file},
-        {"format", asked_.file.format},
-        {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
-        {"between", asked_.has_curves ? "polynomials" : between_names()[static_cast<std::size_t>(asked_.between)]},
-        {"footprint", asked_.bodies},
-        {"rows", s.rows()},
-        {"repeated_rows", asked_.file.repeated},
-        {"overlaps", check.overlaps},
-        {"contacts", check.contacts},
-        {"jumps", jumps_},
-        {"jump_speed", number_or_null(asked_.jump_speed)},
-        {"gaps", gaps_},
-        {"near", asked_.near},
-        {"approaches", check.approaches.size()},
-        {"pieces", check.pieces},
-        {"pairs", check.pairs},
-        {"edge_pairs", check.edge_pairs},
-        {"examined", check.examined},
-        {"most_held", check.most_held},
-        {"bodies", bodies},
-        {"notes", notes}};
-    if (asked_.samples > 0) {
-      whole["samples"] = asked_.samples;
-      whole["missed"] = missed;
-    }
-    put(line_of({{"summary", whole}}));
-    return print_waiting();
+  return bodies;
+}
+
+OrderedJson CheckAnswer::summary_json(const geometry::MotionCheck& check, std::uint64_t missed) const {
+  OrderedJson notes = OrderedJson::array();
+  for (const std::string& note : asked_.file.notes) notes.push_back(note);
+  OrderedJson whole{
+      {"file", asked_.file.file},
+      {"format", asked_.file.format},
+      {"map", asked_.map.empty() ? OrderedJson() : OrderedJson(asked_.map)},
+      {"between", asked_.has_curves ? "polynomials" : between_names()[static_cast<std::size_t>(asked_.between)]},
+      {"footprint", asked_.bodies},
+      {"rows", asked_.survey.rows()},
+      {"repeated_rows", asked_.file.repeated},
+      {"overlaps", check.overlaps},
+      {"contacts", check.contacts},
+      {"jumps", jumps_},
+      {"jump_speed", number_or_null(asked_.jump_speed)},
+      {"gaps", gaps_},
+      {"near", asked_.near},
+      {"approaches", check.approaches.size()},
+      {"pieces", check.pieces},
+      {"pairs", check.pairs},
+      {"edge_pairs", check.edge_pairs},
+      {"examined", check.examined},
+      {"most_held", check.most_held},
+      {"bodies", bodies_json()},
+      {"notes", notes}};
+  if (asked_.samples > 0) {
+    whole["samples"] = asked_.samples;
+    whole["missed"] = missed;
   }
-  if (jumps_ > kMostListed) put(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));
-  if (gaps_ > kMostListed) put(fmt::format("... and {} more gaps\n", gaps_ - kMostListed));
-  const auto extreme = [&](const char* what, const Extreme& e, const char* unit, std::size_t agent) {
-    if (e.line > 0)
-      put(shown(fmt::format("{}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit, name_of(agent), seconds(e.time),
-                            asked_.file.row_word, e.line)) +
-          "\n");
-  };
-  extreme("greatest speed", s.agents()[fastest].speed, "m/s", fastest);
-  extreme("greatest acceleration", s.agents()[hardest].acceleration, "m/s^2", hardest);
+  return whole;
+}
+
+/// Of all agents, the greatest of what an agent has one of.
+void CheckAnswer::put_greatest(const char* what, Extreme AgentSurvey::*member, const char* unit) {
+  const std::vector<AgentSurvey>& all = asked_.survey.agents();
+  const auto most = std::max_element(all.begin(), all.end(), [&](const AgentSurvey& a, const AgentSurvey& b) {
+    return (a.*member).value < (b.*member).value;
+  });
+  if (most == all.end() || ((*most).*member).line == 0) return;
+  const Extreme& e = (*most).*member;
+  put(shown(fmt::format("greatest {}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit,
+                        name_of(static_cast<std::size_t>(most - all.begin())), seconds(e.time), asked_.file.row_word,
+                        e.line)) +
+      "\n");
+}
+
+void CheckAnswer::put_counts(const geometry::MotionCheck& check, std::uint64_t missed) {
   if (asked_.samples > 0)
     put(fmt::format("{} of each move {} {} of {}\n", counted(asked_.samples, "sample"),
                     asked_.samples == 1 ? "misses" : "miss", missed, counted(check.overlaps, "overlap")));
@@ -294,6 +295,19 @@ void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t misse
       std::isfinite(asked_.jump_speed) ? fmt::format(" (faster than {:.6g} m/s)", asked_.jump_speed) : "";
   put(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),
                   counted(jumps_, "jump"), bound, counted(gaps_, "gap")));
+}
+
+void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t missed) {
+  list_approaches(check.approaches);
+  if (json_) {
+    put(line_of({{"summary", summary_json(check, missed)}}));
+    return print_waiting();
+  }
+  if (jumps_ > kMostListed) put(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));
+  if (gaps_ > kMostListed) put(fmt::format("... and {} more gaps\n", gaps_ - kMostListed));
+  put_greatest("speed", &AgentSurvey::speed, "m/s");
+  put_greatest("acceleration", &AgentSurvey::acceleration, "m/s^2");
+  put_counts(check, missed);
   print_waiting();
 }
 

@@ -12,6 +12,7 @@
 #include "exactvo/datasets/trajectory_survey.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/motion_check.h"
+#include "support/json_layout.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
@@ -78,6 +79,10 @@ class CheckAnswer {
   void put(const std::string& text);
   void print_waiting();
   void list_approaches(const std::vector<geometry::Approach>& approaches);
+  OrderedJson bodies_json() const;
+  OrderedJson summary_json(const geometry::MotionCheck& check, std::uint64_t missed) const;
+  void put_greatest(const char* what, datasets::Extreme datasets::AgentSurvey::*member, const char* unit);
+  void put_counts(const geometry::MotionCheck& check, std::uint64_t missed);
 
   const CheckedFile& asked_;
   bool json_;

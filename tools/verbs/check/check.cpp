@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,9 @@
 #include "verb.h"
 #include "verbs/check/answer.h"
 #include "verbs/check/figure.h"
+#include "verbs/check/page.h"
 #include "verbs/obstacles/obstacle_files.h"
+#include "verbs/runs/view.h"
 
 namespace exactvo::tools {
 
@@ -44,7 +47,7 @@ namespace {
 
 struct CheckFlags {
   std::vector<std::string> files;
-  std::string format, map, footprint, certificates, figure;
+  std::string format, map, footprint, certificates, figure, page;
   std::string between = "straight";
   ReadingFlags reading;  ///< of the map
   std::optional<double> radius, near, max_speed, max_gap;
@@ -74,6 +77,7 @@ void check_flags(const CheckFlags& flags) {
   for (const std::string& file : {flags.certificates, flags.footprint})
     if (!file.empty()) others.emplace_back(file);
   check_figure_name("--figure", flags.figure, others);
+  if (!flags.page.empty()) check_page_name("--page", flags.page, others);
   if (flags.certificates.empty()) return;
   for (const std::string& file : flags.files) refuse_input_as_output(file, "", "--certificates", flags.certificates);
   if (!flags.map.empty()) refuse_input_as_output(flags.map, flags.reading.format, "--certificates", flags.certificates);
@@ -86,13 +90,6 @@ struct Bodies {
   double reach = 0.0;  ///< m, of the largest
   std::string words;
 };
-
-double reach_of(const RigidBody& body) {
-  double reach = 0.0;
-  for (const geometry::RoundedPolygon& part : body)
-    for (const Vec2 c : part.corners) reach = std::max(reach, norm(c) + part.radius);
-  return reach;
-}
 
 Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const TrajectorySurvey& survey) {
   Bodies bodies;
@@ -236,7 +233,8 @@ class CertificateFile {
 
 // --- The check ---
 
-TrajectorySurvey survey_of(TrajectoryReader& reader, ProgressLine& progress) {
+TrajectorySurvey survey_of(TrajectoryReader& reader) {
+  ProgressLine progress(0.0, "rows");
   TrajectorySurvey survey;
   reader.read([&](const TrajectoryRow& row) {
     survey.add(row);
@@ -248,134 +246,132 @@ TrajectorySurvey survey_of(TrajectoryReader& reader, ProgressLine& progress) {
   return survey;
 }
 
-/// The curves of a file of polynomials, by the time at which they begin.
-class CurveFeed {
- public:
-  using Take = datasets::TrajectoryPieces::Take;
-  CurveFeed(const std::vector<std::vector<geometry::CurvedMotion>>& curves, Take take) : take_(std::move(take)) {
-    for (std::size_t agent = 0; agent < curves.size(); ++agent)
-      for (const geometry::CurvedMotion& curve : curves[agent]) waiting_.push_back({agent, &curve});
-    std::stable_sort(waiting_.begin(), waiting_.end(),
-                     [](const Waiting& a, const Waiting& b) { return a.curve->start < b.curve->start; });
-  }
-  /// Hands on what begins before this time.
-  void advance(double time) {
-    for (; next_ < waiting_.size() && waiting_[next_].curve->start < time; ++next_)
-      take_(waiting_[next_].agent, *waiting_[next_].curve);
-  }
-
- private:
-  struct Waiting {
-    std::size_t agent;
-    const geometry::CurvedMotion* curve;
-  };
-  Take take_;
-  std::vector<Waiting> waiting_;
-  std::size_t next_ = 0;
-};
-
-/// One file, or several files of polynomials together.
-ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
-  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale});
-  TrajectorySurvey survey;
-  {
-    ProgressLine progress(0.0, "rows");
-    survey = survey_of(reader, progress);
-  }
-  const TrajectoryFile file = reader.file();
+void say_what_was_read(const TrajectoryFile& file, const TrajectorySurvey& survey) {
   for (const std::string& note : file.notes) message(file.file + ": " + note);
   if (file.repeated > 0)
     message(fmt::format("{}: {} that repeat the one before were left out", file.file,
                         geometry::counted(file.repeated, "row")));
   if (!survey.is_in_order())
     message(file.file + ": rows are not in the order of time, so all of them are kept in memory");
-  const Bodies bodies = flags.footprint.empty() ? discs(flags, file, survey) : footprints(flags, reader, survey);
-  const CheckMap map = map_of(flags, file);
-  const Placing placing(file, map, flags.scale);
+}
+
+CheckedFile asked_of(const CheckFlags& flags, const TrajectoryFile& file, const TrajectorySurvey& survey,
+                     const Bodies& bodies, const CheckMap& map) {
   const bool has_curves = !file.curves.empty();
-  const auto names = between_names();
-  auto between = static_cast<Between>(std::find(names.begin(), names.end(), flags.between) - names.begin());
+  const auto& names = between_names();
+  const auto between = static_cast<Between>(std::find(names.begin(), names.end(), flags.between) - names.begin());
   if (has_curves && between != Between::straight)
     throw UsageError("--between", flags.between, "no such option for polynomials, which say how agents move");
   if (has_curves && flags.max_gap)
     throw UsageError("--max-gap", fmt::format("{}", *flags.max_gap),
                      "no such option for polynomials, which say when agents are there");
-  const CheckedFile asked{file,
-                          survey,
-                          map.name,
-                          map.obstacles,
-                          between,
-                          has_curves,
-                          bodies.words,
-                          flags.near.value_or(bodies.reach),
-                          flags.max_speed.value_or(survey.jump_speed()),
-                          flags.max_gap.value_or(std::numeric_limits<double>::infinity()),
-                          flags.samples};
+  return {file,
+          survey,
+          map.name,
+          map.obstacles,
+          between,
+          has_curves,
+          bodies.words,
+          flags.near.value_or(bodies.reach),
+          flags.max_speed.value_or(survey.jump_speed()),
+          flags.max_gap.value_or(std::numeric_limits<double>::infinity()),
+          flags.samples};
+}
+
+/// What is made of a check beside its answer: proofs, a figure, a page, and what samples miss.
+class Byproducts {
+ public:
+  Byproducts(const CheckFlags& flags, const CheckedFile& asked, const Bodies& bodies, const CheckMap& map)
+      : flags_(flags), sampled_(flags.samples, bodies.of_agent.size()) {
+    if (!flags.certificates.empty()) certificates_.emplace(flags.certificates, asked.file, bodies, map);
+    if (!flags.figure.empty()) picture_.emplace(asked, map.shapes, bodies.of_agent);
+    if (!flags.page.empty()) page_.emplace(asked, bodies.of_agent);
+  }
+
+  /// What gets the pairs that come near; empty where nothing wants them.
+  std::function<void(const MetPair&)> met() {
+    if (!certificates_) return {};
+    return [this](const MetPair& pair) { certificates_->add(pair); };
+  }
+  void add(const TrajectoryRow& row) {
+    if (picture_) picture_->add(row);
+  }
+  void add(std::size_t agent, const geometry::Motion& piece) {
+    if (flags_.samples > 0) sampled_.add(agent, piece);
+    if (page_) page_->add(agent, piece);
+  }
+  void add(const geometry::MotionEvent& event) {
+    if (flags_.samples > 0 && event.encounter == geometry::Encounter::overlap && !sampled_.finds(event)) ++missed_;
+    if (picture_) picture_->add(event);
+    if (page_) page_->add(event);
+  }
+  /// Overlaps that samples do not find.
+  std::uint64_t missed() const { return missed_; }
+
+  void write(const geometry::MotionCheck& result) {
+    if (certificates_) certificates_->finish();
+    if (picture_) write_figure(picture_->figure(result), flags_.figure);
+    if (!page_) return;
+    publish_page(flags_.page, page_->page(result));
+  }
+
+ private:
+  const CheckFlags& flags_;
+  std::optional<CertificateFile> certificates_;
+  std::optional<CheckPicture> picture_;
+  std::optional<CheckPage> page_;
+  SampledMoves sampled_;
+  std::uint64_t missed_ = 0;
+};
+
+/// One file, or several files of polynomials together.
+ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
+  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale});
+  const TrajectorySurvey survey = survey_of(reader);
+  const TrajectoryFile file = reader.file();
+  say_what_was_read(file, survey);
+  const Bodies bodies = flags.footprint.empty() ? discs(flags, file, survey) : footprints(flags, reader, survey);
+  const CheckMap map = map_of(flags, file);
+  const Placing placing(file, map, flags.scale);
+  const CheckedFile asked = asked_of(flags, file, survey, bodies, map);
   CheckAnswer answer(asked, flags.json);
   answer.begin();
 
-  std::optional<CertificateFile> certificates;
-  if (!flags.certificates.empty()) certificates.emplace(flags.certificates, file, bodies, map);
-  std::optional<CheckPicture> picture;
-  if (!flags.figure.empty()) picture.emplace(asked, map.shapes, bodies.of_agent);
-  geometry::MotionCheckOptions options{between, asked.near, {}, map.discs};
-  if (certificates) options.met = [&](const MetPair& pair) { certificates->add(pair); };
-  SampledMoves sampled(flags.samples, bodies.of_agent.size());
-  std::uint64_t missed = 0;
+  Byproducts byproducts(flags, asked, bodies, map);
+  const geometry::MotionCheckOptions options{asked.between, asked.near, byproducts.met(), map.discs};
   geometry::MotionStream stream(map.shapes, options, [&](const geometry::MotionEvent& event) {
     answer.add(event);
-    if (flags.samples > 0 && event.encounter == geometry::Encounter::overlap && !sampled.finds(event)) ++missed;
-    if (picture) picture->add(event);
+    byproducts.add(event);
   });
   for (const RigidBody& body : bodies.of_agent) stream.add_body(body);
-  const auto take = [&](std::size_t agent, const geometry::Motion& piece) {
-    if (flags.samples > 0) sampled.add(agent, piece);
-    stream.add(agent, piece);
-  };
-  datasets::TrajectoryPieces feed(survey.agents(), {between, asked.longest_gap}, take);
-  CurveFeed curves(file.curves, take);
   datasets::Moves moves;
   std::uint64_t done = 0;
-  {
-    ProgressLine progress(static_cast<double>(survey.rows()), "rows");
-    answer.set_progress(&progress);
-    for_each_row_in_time(reader, survey.is_in_order(), [&](TrajectoryRow row) {
-      placing.place(row);
-      datasets::Move move;
-      if (moves.next(row, move)) answer.look_at(move);
-      if (picture) picture->add(row);
-      has_curves ? curves.advance(row.time) : feed.add(row);
-      if ((++done & 0xff) != 0) return;
-      if (interrupted()) throw Interrupted();
-      if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
-    });
-    has_curves ? curves.advance(std::numeric_limits<double>::infinity()) : feed.finish();
-    answer.set_progress(nullptr);
-  }
+  ProgressLine progress(static_cast<double>(survey.rows()), "rows");
+  answer.set_progress(&progress);
+  for_each_piece(
+      reader, survey, {asked.between, asked.longest_gap},
+      [&](TrajectoryRow& row) {
+        placing.place(row);
+        datasets::Move move;
+        if (moves.next(row, move)) answer.look_at(move);
+        byproducts.add(row);
+        if ((++done & 0xff) != 0) return;
+        if (interrupted()) throw Interrupted();
+        if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
+      },
+      [&](std::size_t agent, const geometry::Motion& piece) {
+        byproducts.add(agent, piece);
+        stream.add(agent, piece);
+      });
+  progress.clear();
+  answer.set_progress(nullptr);
   const geometry::MotionCheck result = stream.finish();
-  if (certificates) certificates->finish();
-  answer.finish(result, missed);
-  if (picture) write_figure(picture->figure(result), flags.figure);
+  answer.finish(result, byproducts.missed());
+  byproducts.write(result);
   return result.overlaps > 0 ? ExitCode::negative : ExitCode::success;
 }
 
 // --- Which files ---
-
-/// The recording of a folder, or the files in it that are recognised, in the order of their names.
-std::vector<std::string> files_in(const std::filesystem::path& folder) {
-  std::vector<std::string> files;
-  const std::optional<std::filesystem::path> recording = recording_at(folder);
-  std::error_code error;
-  if (recording && std::filesystem::is_regular_file(*recording, error)) return {recording->string()};
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.is_regular_file(error) && !datasets::recognised_trajectory_format(entry.path().string()).empty())
-      files.push_back(entry.path().string());
-  if (files.empty())
-    throw DataError(DataCode::format_unknown, folder.string(), "", "no file of trajectories",
-                    "a folder with files of trajectories, or the folder of a run");
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 std::vector<std::string> listed_files(const std::vector<std::string>& arguments) {
   std::vector<std::string> files;
@@ -385,7 +381,7 @@ std::vector<std::string> listed_files(const std::vector<std::string>& arguments)
       files.push_back(argument);
       continue;
     }
-    for (std::string& file : files_in(argument)) files.push_back(std::move(file));
+    for (std::string& file : datasets::trajectory_files_in(argument)) files.push_back(std::move(file));
   }
   return files;
 }
@@ -420,6 +416,7 @@ ExitCode check(const CheckFlags& flags) {
   const std::vector<std::vector<std::string>> checks = checks_of(flags, listed_files(flags.files));
   if (checks.size() == 1) return check_together(flags, checks.front());
   refuse_both(!flags.figure.empty(), "--figure", "several files", "a figure shows one check");
+  refuse_both(!flags.page.empty(), "--page", "several files", "a page shows one check");
   refuse_both(!flags.certificates.empty(), "--certificates", "several files", "a file of proofs is about one check");
   ExitCode worst = ExitCode::success;
   for (const std::vector<std::string>& files : checks) {
@@ -478,6 +475,8 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
   app.add_option("--certificates", flags.certificates,
                  "FILE for a proof of each pair of motions that come near and stay clear, for audit --certificate");
   app.add_option("--figure", flags.figure, kFigureFileHelp);
+  app.add_option("--page", flags.page,
+                 "FILE.html: a page for a browser that plays the trajectories on the map and leads to each overlap");
 }
 
 }  // namespace
@@ -485,7 +484,7 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
 Verb check_verb() {
   return {
       "check", "Decide whether moving bodies touch each other or a map at any time, not only at samples",
-      "  exactvo check runs.csv --radius 0.3 --map office.geojson --figure out/check.svg\n"
+      "  exactvo check runs.csv --radius 0.3 --map office.geojson --figure out/check.svg --page out/check.html\n"
       "  exactvo check obsmat.txt --radius 0.2 --frame-rate 15 --json\n"
       "  exactvo check plan.yaml --footprint 'POLYGON ((-0.4 -0.3, 0.4 -0.3, 0.4 0.3, -0.4 0.3))'\n"
       "  exactvo check cars.csv --radius 1 --between cubic --map lab.yaml --unknown blocked\n"

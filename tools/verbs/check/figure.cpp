@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "exactvo/geometry/counted.h"
-#include "exactvo/geometry/pi.h"
 #include "figures/local_origin.h"
 
 namespace exactvo::tools {
@@ -27,23 +26,9 @@ constexpr double kFinest = 1.0 / 2000.0;
 /// Places of overlaps that are drawn.
 constexpr std::size_t kMostPlaces = 2000;
 
-/// The boundary of a convex part where the body stands.
-Points outline_of(const geometry::RoundedPolygon& part, Vec2 at) {
-  constexpr int kSteps = 72;
-  Points ring;
-  for (int k = 0; k < kSteps; ++k) {
-    const Vec2 n = geometry::rotated({1.0, 0.0}, 2.0 * geometry::kPi * k / kSteps);
-    Vec2 corner = part.corners.front();
-    for (const Vec2 c : part.corners)
-      if (dot(n, c) > dot(n, corner)) corner = c;
-    ring.push_back(at + corner + part.radius * n);
-  }
-  return ring;
-}
-
 std::vector<Points> outlines_of(const RigidBody& body, Vec2 at) {
   std::vector<Points> rings;
-  for (const geometry::RoundedPolygon& part : body) rings.push_back(outline_of(part, at));
+  for (const geometry::RoundedPolygon& part : body) rings.push_back(hull_outline(part, {at, 0.0}));
   return rings;
 }
 

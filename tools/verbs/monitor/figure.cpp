@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/geometry/pi.h"
 #include "figures/local_origin.h"
 
 namespace exactvo::tools {
@@ -31,25 +30,6 @@ Pose pose_on(const std::vector<formation::MonitorArc>& way, double share) {
   const geometry::TurningMotion& m = way[k].motion;
   const geometry::Displacement d = displacement_after(m.twist, at - m.start);
   return {m.at + d.by, way[k].heading + m.twist.turn * (at - m.start)};
-}
-
-Points hull_outline(const geometry::RoundedPolygon& part, const Pose& pose, double grown = 0.0) {
-  constexpr int kSteps = 96;
-  Points ring;
-  for (int k = 0; k < kSteps; ++k) {
-    const Vec2 n = geometry::rotated({1.0, 0.0}, 2.0 * geometry::kPi * k / kSteps);
-    Vec2 best;
-    double most = -INFINITY;
-    for (const Vec2 corner : part.corners) {
-      const Vec2 turned = geometry::rotated(corner, pose.heading);
-      if (dot(n, turned) > most) {
-        most = dot(n, turned);
-        best = turned;
-      }
-    }
-    ring.push_back(pose.at + best + (part.radius + grown) * n);
-  }
-  return ring;
 }
 
 class MonitorPanel {

@@ -21,8 +21,8 @@
 #include "figures/figure.h"
 #include "json/json_text.h"
 #include "support/footprint.h"
+#include "support/motion_certificates.h"
 #include "support/terminal.h"
-#include "support/turning_certificates.h"
 #include "support/usage.h"
 #include "verb.h"
 #include "verbs/monitor/figure.h"
@@ -173,7 +173,7 @@ class ProofFile {
         const auto proof = certify(arc.motion, body, obstacle.shape);
         OrderedJson json{{"line", line}};
         if (proof)
-          json["certificate"] = turning_certificate_json(*proof, arc.motion, body, obstacle);
+          json["certificate"] = tools::certificate_json(*proof, arc.motion, body, obstacle);
         else
           json.update({{"certificate", nullptr}, {"obstacle", obstacle.id}});
         ++(proof ? count_ : without_);
@@ -210,7 +210,7 @@ class Answers {
     bool is_right = true;
     try {
       const Json parsed = datasets::parse_json_line(text, file_, number);
-      const JsonCursor line(parsed, file_, "", JsonCursor::OtherKeys::refused);
+      const JsonCursor line(parsed, file_, fmt::format("line {}", number), JsonCursor::OtherKeys::refused);
       if (!parsed.is_object()) line.refuse("an object");
       if (parsed.contains("id")) json_.key("id").raw(parsed["id"].dump());
       const MonitorQuestion question = question_in(line);
@@ -225,7 +225,8 @@ class Answers {
       put_error(code_name(error.code()), error.place(), error.found(), error.expected());
       is_right = false;
     } catch (const MonitorError& error) {
-      put_error(code_name(code_of(error.problem())), "", error.what(), "");
+      put_error(code_name(code_of(error.problem())), fmt::format("line {}, /{}", number, error.place()), error.found(),
+                error.expected());
       is_right = false;
     }
     json_.end_object();
@@ -270,11 +271,8 @@ class Answers {
   }
 
   void put_error(const char* code, const std::string& place, const std::string& found, const std::string& expected) {
-    json_.key("error").begin_object().member("code", code);
-    if (!place.empty()) json_.member("place", place);
-    json_.member("found", found);
-    if (!expected.empty()) json_.member("expected", expected);
-    json_.end_object();
+    json_.key("error").begin_object().member("code", code).member("place", place).member("found", found);
+    json_.member("expected", expected).end_object();
   }
 
   const std::vector<std::string>& obstacles_;
@@ -303,11 +301,19 @@ MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obsta
   return setup;
 }
 
+/// The option that sets a field of the setup: of "max_deceleration" "--max-deceleration", of "obstacles/3" "--map".
+std::string option_of(const std::string& place) {
+  std::string option = place.substr(0, place.find('/'));
+  if (option == "obstacles") option = "map";
+  std::replace(option.begin(), option.end(), '_', '-');
+  return "--" + option;
+}
+
 Monitor monitor_of(const MonitorSetup& setup) {
   try {
     return Monitor(setup);
   } catch (const MonitorError& error) {
-    throw UsageError(error.what());
+    throw UsageError(option_of(error.place()), error.found(), error.expected());
   }
 }
 
@@ -336,7 +342,6 @@ ExitCode monitor(const MonitorFlags& flags) {
   for (std::string_view line; lines.next(line);) {
     throw_if_reader_left();
     if (interrupted()) throw Interrupted();
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     wrong += !answers.answer(monitor, line, lines.number());
   }
   if (proofs) proofs->finish();

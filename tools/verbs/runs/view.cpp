@@ -18,6 +18,7 @@
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/stop.h"
@@ -167,6 +168,15 @@ MadeRun simulated(const PageFlags& flags, const std::string& path) {
   return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
 }
 
+/// Trajectories of another program, which are no scenario.
+void refuse_trajectories(const std::string& path) {
+  const std::string format = datasets::recognised_trajectory_format(path);
+  if (!format.empty())
+    throw datasets::DataError(
+        datasets::DataCode::format_unknown, path, "", "trajectories (" + format + ")",
+        "a run or a scenario; 'exactvo check FILE --radius R --page FILE.html' shows trajectories");
+}
+
 // --- The verb ---
 
 struct ViewFlags {
@@ -174,28 +184,15 @@ struct ViewFlags {
   std::string out;
 };
 
-/// Before any work: the page must not replace what it is made from.
-void check_out(const ViewFlags& flags) {
-  const fs::path out(flags.out);
-  if (out.extension() != ".html" && out.extension() != ".htm")
-    throw UsageError("--out", flags.out, "a name that ends in .html");
-  std::error_code unknown;
-  if (fs::is_directory(out, unknown)) throw UsageError("--out", flags.out, "a file, not a folder");
-  for (const std::string& path : flags.page.runs) {
-    const fs::path file = recording_at(path).value_or(path);
-    if (fs::equivalent(file, out, unknown)) throw UsageError("--out", flags.out, "another file than the run's own");
-  }
-}
-
 ExitCode view(const ViewFlags& flags) {
-  check_out(flags);
+  std::vector<fs::path> inputs;
+  for (const std::string& path : flags.page.runs) inputs.push_back(recording_at(path).value_or(path));
+  check_page_name("--out", flags.out, inputs);
   std::vector<PageRun> runs;
   for (MadeRun& made : page_runs(flags.page)) runs.push_back(std::move(made.shown));
   const std::string page = explorer_page(runs, flags.page.runs.empty());
   if (interrupted()) throw Interrupted();
-  datasets::write_file_atomically(flags.out, page);
-  message(
-      fmt::format("wrote {} ({:.1f} MB): open it in a browser", flags.out, 1e-6 * static_cast<double>(page.size())));
+  publish_page(flags.out, page);
   return ExitCode::success;
 }
 
@@ -207,6 +204,22 @@ void declare_view(CLI::App& app, ViewFlags& flags) {
 }
 
 }  // namespace
+
+void check_page_name(const std::string& option, const std::string& out, const std::vector<fs::path>& inputs) {
+  const fs::path page(out);
+  if (page.extension() != ".html" && page.extension() != ".htm")
+    throw UsageError(option, out, "a name that ends in .html");
+  std::error_code unknown;
+  if (fs::is_directory(page, unknown)) throw UsageError(option, out, "a file, not a folder");
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(input, page, unknown)) throw UsageError(option, out, "another file than what is read");
+}
+
+void publish_page(const std::string& out, const std::string& page) {
+  make_folder(fs::absolute(out).parent_path());
+  datasets::write_file_atomically(out, page);
+  message(fmt::format("wrote {} ({:.1f} MB): open it in a browser", out, 1e-6 * static_cast<double>(page.size())));
+}
 
 void declare_page_flags(CLI::App& app, PageFlags& flags, int most, const std::string& what_runs_are) {
   app.add_option("runs", flags.runs, what_runs_are)->expected(0, most);
@@ -235,6 +248,7 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
       runs.push_back(is_crowd ? recorded_crowd(flags, *recording, metrics_beside(*recording))
                               : recorded(flags, *recording));
     } else {
+      refuse_trajectories(path);
       any_simulated = true;
       runs.push_back(simulated(flags, path));
     }

@@ -6,6 +6,7 @@
 /// scenarios, which are run with every half-plane, or without decisions (support/way.h).
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct PageFlags {
 
 /// Declares the names of runs, at most `most`, --most-states, --most-numbers and how scenarios are run.
 void declare_page_flags(CLI::App& app, PageFlags& flags, int most, const std::string& what_runs_are);
+
+/// Throws UsageError unless `out` is a name for a page: of a file, and none of the inputs.
+void check_page_name(const std::string& option, const std::string& out,
+                     const std::vector<std::filesystem::path>& inputs);
+
+/// Writes it, whole or not at all, and says so.
+void publish_page(const std::string& out, const std::string& page);
 
 /// In the order of the names, each with a key of its own. Throws DataError, UsageError, Interrupted.
 std::vector<MadeRun> page_runs(const PageFlags& flags);

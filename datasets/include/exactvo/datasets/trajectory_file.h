@@ -105,6 +105,10 @@ class TrajectoryReader {
 /// The names that `TrajectoryOptions::format` takes.
 std::vector<std::string> trajectory_formats();
 
+/// The files that a folder stands for: the recording of the run in it, or else the files in it that are recognised, in
+/// the order of their names. Throws DataError: E_FORMAT_UNKNOWN where there is none.
+std::vector<std::string> trajectory_files_in(const std::filesystem::path& folder);
+
 /// The name of the format by which a file would be read; empty where none is recognised, or the file can't be read
 /// twice. Throws DataError: E_FILE_MISSING.
 std::string recognised_trajectory_format(const std::string& file);

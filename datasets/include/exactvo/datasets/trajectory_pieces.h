@@ -14,11 +14,6 @@
 
 namespace exactvo::datasets {
 
-/// Calls `take` for each row of a file by time: as they come, or, where `is_in_order` is false (see TrajectorySurvey),
-/// sorted in memory. Throws DataError.
-void for_each_row_in_time(TrajectoryReader& reader, bool is_in_order,
-                          const std::function<void(const TrajectoryRow&)>& take);
-
 /// Makes pieces of rows. A piece is known when its second row comes (of a Catmull-Rom spline, its third), so it waits
 /// until no other agent can have one that begins earlier.
 class TrajectoryPieces {
@@ -83,5 +78,11 @@ class TrajectoryPieces {
   std::priority_queue<Begin, std::vector<Begin>, std::greater<>> begins_;  ///< of what open agents may still have
   std::uint64_t count_ = 0;
 };
+
+/// Reads a surveyed file once more. `look` gets each row by time (sorted in memory where the file is not in order), and
+/// may move it; `take` gets the pieces of all agents by the time at which they begin: those between rows, or the curves
+/// of a file of polynomials. Throws DataError.
+void for_each_piece(TrajectoryReader& reader, const TrajectorySurvey& survey, const TrajectoryPieces::Options& options,
+                    const std::function<void(TrajectoryRow&)>& look, const TrajectoryPieces::Take& take);
 
 }  // namespace exactvo::datasets

@@ -21,9 +21,10 @@
 /// kMonitorSlack from it, what is proven is that it does not go deeper than at the start by more than kMonitorSlack:
 /// depth is the length of the shortest shift that parts a convex part of the footprint and a convex piece of the
 /// obstacle; a gap is a depth below 0. So a share above 0 may end in an overlap of up to kMonitorSlack where less than
-/// that was left, and again at each decision: a loop that must never touch has a margin. Once a part of a trajectory
-/// begins out of the contact, the rest must be clear. A mover that may already touch, from anywhere within its position
-/// error, is taken as standing, and the footprint does not go deeper into all of where it may be.
+/// that was left, and again at each decision: a loop that must never touch has a margin. Once the contact is seen to be
+/// left, the rest must be clear; each arc is looked at at kMonitorLooks moments or more for that. A mover that may
+/// already touch, from anywhere within its position error, is taken as standing, and the footprint does not go deeper
+/// into all of where it may be.
 ///
 /// Certified: `share` (continuous time, no sampling; all roundings are bounded, geometry/turning.h). Certified too:
 /// `not_above`. Against obstacles and the share of a command the two enclose the largest clear share. With movers a
@@ -50,6 +51,9 @@ namespace exactvo::formation {
 
 /// m: the footprint is grown by this much and may go this much deeper where it is in contact.
 inline constexpr double kMonitorSlack = 1e-9;
+
+/// At so many moments of an arc, evenly spaced or closer, it is looked whether a contact is left.
+inline constexpr int kMonitorLooks = 64;
 
 /// The robot and what stands still.
 struct MonitorSetup {
@@ -116,16 +120,28 @@ enum class MonitorProblem {
 /// "not-finite", "out-of-range", "no-trajectory".
 const char* name(MonitorProblem problem);
 
-/// A caller's mistake; the monitor is as it was before the call.
+/// A caller's mistake; the monitor is as it was before the call. `what()` is "PLACE: found FOUND, expected EXPECTED".
 class MonitorError : public std::invalid_argument {
  public:
-  /// `words` is what `what()` returns.
-  MonitorError(MonitorProblem problem, const std::string& words) : std::invalid_argument(words), problem_(problem) {}
+  /// The place is a field of the arguments: "velocity", "movers/1/radius", "trajectory/3".
+  MonitorError(MonitorProblem problem, const std::string& place, const std::string& found, const std::string& expected)
+      : std::invalid_argument(place + ": found " + found + ", expected " + expected),
+        problem_(problem),
+        place_(place),
+        found_(found),
+        expected_(expected) {}
   /// What is wrong.
   MonitorProblem problem() const { return problem_; }
+  /// Where it is.
+  const std::string& place() const { return place_; }
+  /// What is there.
+  const std::string& found() const { return found_; }
+  /// What should be.
+  const std::string& expected() const { return expected_; }
 
  private:
   MonitorProblem problem_;
+  std::string place_, found_, expected_;
 };
 
 /// Judges one command after the other. Deterministic. Not to be called from two threads at once; several monitors share
@@ -146,11 +162,20 @@ class Monitor {
   std::vector<MonitorArc> way(double share) const;
 
  private:
+  /// A convex set that stands still, from its first corner: seen from nearby, places far from the origin lose nothing.
+  struct Standing {
+    geometry::Vec2 at;                  ///< m, the first corner
+    std::uint32_t first = 0, size = 0;  ///< in `corners_` or `mover_corners_`, which are seen from there
+    double radius = 0.0;                ///< m
+  };
   /// A convex piece of an obstacle.
-  struct Piece {
-    std::uint32_t first = 0, size = 0;  ///< in `corners_`
+  struct Piece : Standing {
     std::uint32_t obstacle = 0;
-    double radius = 0.0;  ///< m
+  };
+  /// A mover as it was seen, by the hull of its corners.
+  struct SeenMover : Standing {
+    double max_speed = 0.0;       ///< m/s
+    double position_error = 0.0;  ///< m
   };
   /// A part of the footprint, in the body's axes.
   struct Part {
@@ -168,6 +193,14 @@ class Monitor {
     double pace = 1.0, held = 0.0, braked = 0.0;
     double length() const { return held + braked; }
     double moment(double way) const;
+    double next_cut(double way) const;
+  };
+  /// A pair that is in contact as the way begins.
+  struct Contact {
+    std::size_t piece = 0, part = 0;
+    double gap = 0.0;        ///< m, less than 0: as the way begins
+    std::size_t looked = 0;  ///< stretches that have been looked at
+    double left_at = 0.0;    ///< s of the way: when it is seen to be left; infinite where it is not
   };
   /// Where the search for something too near ended.
   struct Clear {
@@ -175,32 +208,36 @@ class Monitor {
     double lost_by = 0.0;  ///< s of the way; infinite if not known
     geometry::GapToKeep lost;
     geometry::KeptGap kept;
-    double offset = 0.0;  ///< s of the way, at which the stretch of `lost` begins
+    std::size_t stretch = 0;  ///< of `lost`
+    double began = 0.0;       ///< s of the stretch, at which `lost` begins
     std::optional<MonitorWitness> witness;
   };
 
-  /// A mover as it was seen, by the hull of its corners.
-  struct SeenMover {
-    std::uint32_t first = 0, size = 0;  ///< in `mover_corners_`
-    double radius = 0.0;                ///< m
-    double max_speed = 0.0;             ///< m/s
-    double position_error = 0.0;        ///< m
-  };
-
-  void require_movers(const std::vector<Mover>& movers) const;
+  // monitor.cpp
   void see(const std::vector<Mover>& movers);
   double braking_time(const geometry::Twist& twist) const;
-  void turn_footprint(double heading);
+  void set_way_of(const std::vector<TimedPose>& trajectory);
+  MonitorVerdict judged();
+  MonitorVerdict judged_beside_obstacles();
+  bool is_clear_of_movers(double share, MonitorVerdict& verdict);
+  MonitorVerdict halved(MonitorVerdict verdict);
+  Pace pace_at(double share) const;
+  double share_within(double length) const;
+  // clearance.cpp
   void turn_footprint(const Stretch& stretch, double time);
-  geometry::ConvexOnTwist part_on(const Part& part, const Stretch& stretch, double time) const;
-  double gap_as_it_begins(const Stretch& stretch, const Part& part, const geometry::ConvexOnTwist& other, double reach);
-  double contact_until(const Stretch& last, const Part& part, const geometry::ConvexOnTwist& other, double reach);
-  MonitorVerdict judged(bool is_trajectory);
-  Pace pace_at(double share, bool is_trajectory) const;
-  double share_within(double length, bool is_trajectory) const;
+  geometry::GapToKeep question(const Part& part, const Stretch& stretch, double time, const Standing& other,
+                               const std::vector<geometry::Vec2>& corners, double duration, double reach) const;
+  double gap_as_it_begins(const Stretch& stretch, const Part& part, const Standing& other,
+                          const std::vector<geometry::Vec2>& corners, double reach);
+  double left_within(const Stretch& stretch, const Part& part, const Standing& other,
+                     const std::vector<geometry::Vec2>& corners, double reach);
+  Contact* contact_of(std::size_t piece, std::size_t part, double reach);
+  double left_by(Contact& contact, std::size_t stretch, double reach);
+  void meet(std::size_t piece, std::size_t stretch, double offset, Clear& clear, bool& in_contact);
   Clear clear_of_obstacles(double length, bool& in_contact);
   bool is_far_from(const SeenMover& mover, const Pace& pace) const;
-  bool clear_of_mover(const SeenMover& mover, std::size_t index, const Pace& pace, Clear& clear, bool& in_contact);
+  bool clear_of_mover(std::size_t index, const Pace& pace, MonitorVerdict& verdict);
+  bool part_clear_of_mover(const Part& part, std::size_t index, const Pace& pace, MonitorVerdict& verdict);
 
   MonitorSetup setup_;
   std::vector<geometry::Vec2> corners_;  ///< of pieces
@@ -215,6 +252,8 @@ class Monitor {
   std::vector<Stretch> way_, next_way_;  ///< the second: while a trajectory is looked at
   std::vector<geometry::Vec2> mover_corners_;
   std::vector<SeenMover> movers_;
+  std::size_t first_mover_ = 0;  ///< that is asked first: the one that was met last
+  std::vector<Contact> contacts_;
   geometry::GapKeeper keeper_;
 };
 
