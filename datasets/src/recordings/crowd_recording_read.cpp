@@ -2,14 +2,16 @@
 #include "recordings/crowd_recording_format.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <unordered_set>
 #include <vector>
 
@@ -305,6 +307,21 @@ bool begins_crowd_recording(std::string_view bytes) {
   return crowd_version(bytes.substr(0, kCrowdMarkSize)) > 0;
 }
 
+namespace {
+
+/// Lossless, as "%.17g" and "%zu" write them, which take three times as long.
+template <class Number>
+char* put_number(char* at, Number number) {
+  constexpr std::size_t kRoom = 32;  // for any
+  if constexpr (std::is_floating_point_v<Number>)
+    return std::to_chars(at, at + kRoom, number, std::chars_format::general, std::numeric_limits<Number>::max_digits10)
+        .ptr;
+  else
+    return std::to_chars(at, at + kRoom, number).ptr;
+}
+
+}  // namespace
+
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
   CrowdRecordingReader reader(from);
   const CrowdRecordingHead& head = reader.head();
@@ -315,11 +332,17 @@ CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
   CrowdTable table;
   for (; reader.next(row); ++table.rows) {
     char line[160];
+    char* time = put_number(line, row.step);
+    *time++ = ',';
+    char* const robot = put_number(time, row.step * head.time_step);
     for (std::size_t i = 0; i < row.x.size(); ++i) {
-      const int size =
-          std::snprintf(line, sizeof line, "%u,%.17g,%zu,%.17g,%.17g,%u", row.step, row.step * head.time_step, i,
-                        head.position_step * row.x[i], head.position_step * row.y[i], unsigned{row.kept[i]});
-      to.write({line, static_cast<std::size_t>(size)});
+      char* end = robot;
+      const auto put = [&](auto number) { *end++ = ',', end = put_number(end, number); };
+      put(i);
+      put(head.position_step * row.x[i]);
+      put(head.position_step * row.y[i]);
+      put(unsigned{row.kept[i]});
+      to.write({line, static_cast<std::size_t>(end - line)});
       to.write(ends.empty() ? std::string_view("\n") : std::string_view(ends[i]));
     }
   }
