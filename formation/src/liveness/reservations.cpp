@@ -22,6 +22,8 @@ constexpr double kDrivenMargin = 2e-3;
 static_assert(kPlaceReached < kKeptFromOthers - kDrivenMargin, "who has all but reached its place is in nobody's way");
 /// What ways keep beside the radius from obstacles, unless they begin or end nearer to one.
 constexpr double kWallMargin = 5e-4;
+/// Boxes are wider than what distances, which are rounded, are compared with.
+constexpr double kBeyondRounding = 1.0 + 1e-6;
 /// By how much a robot may leave its way before all ways are looked at anew. Any number serves.
 constexpr double kStrays = 1e-3;
 /// Between places.
@@ -421,9 +423,10 @@ void Reservations::look_about(std::size_t i, Outlook& out) const {
 double Reservations::cost_of_pushing(std::size_t i, Vec2 place, bool is_pushed, std::size_t near,
                                      std::size_t near_end) const {
   for (std::size_t k = near; k < near_end; ++k) {
+    const double apart2 = squared_norm(places_[list_[k]] - place);
+    if (apart2 >= diameter_ * diameter_) continue;
     const double keep = (*robots_)[i].radius + (*robots_)[list_[k]].radius - kPlaceReached * diameter_;
-    if (squared_norm(places_[list_[k]] - place) < keep * keep)
-      return (is_pushed ? kCostOfPushingOn : kCostOfPushing) * pitch_;
+    if (apart2 < keep * keep) return (is_pushed ? kCostOfPushingOn : kCostOfPushing) * pitch_;
   }
   return 0.0;
 }
@@ -435,9 +438,16 @@ bool Reservations::is_there_room(std::size_t i, const Option& to, std::size_t ne
   const Vec2 p = r.position, q = to.place;
   list_.resize(near_end);
   pushed = 0;
+  const double most = kBeyondRounding * (1.0 + kKeptFromOthers) * diameter_;
+  const Vec2 low{std::min(p.x, q.x) - most, std::min(p.y, q.y) - most};
+  const Vec2 high{std::max(p.x, q.x) + most, std::max(p.y, q.y) + most};
   for (std::size_t k = near; k < near_end; ++k) {
     const std::uint32_t j = list_[k];
     const RobotUnderWay& other = (*robots_)[j];
+    const Vec2 from = other.position, to_place = places_[j];
+    if (std::max(from.x, to_place.x) < low.x || std::min(from.x, to_place.x) > high.x ||
+        std::max(from.y, to_place.y) < low.y || std::min(from.y, to_place.y) > high.y)
+      continue;
     const double keep = r.radius + other.radius + kKeptFromOthers * diameter_;
     if (is_pushing_[j]) {  // sets out after this one
       if (comes_near_until_left(p, q, at(j), keep) || squared_distance(q, at(j), places_[j]) < keep * keep)
@@ -585,8 +595,7 @@ void Reservations::follow_ways() {
       continue;
     }
     if (ways_[i].ticket != of_[i].ticket) begin_here(i);
-    all_are_on_their_ways =
-        all_are_on_their_ways && squared_distance(at(i), ways_[i].from, places_[i]) <= strays2;
+    all_are_on_their_ways = all_are_on_their_ways && squared_distance(at(i), ways_[i].from, places_[i]) <= strays2;
     longest2 = std::max(longest2, squared_norm(places_[i] - ways_[i].from));
   }
   longest_ = std::sqrt(longest2);

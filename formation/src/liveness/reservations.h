@@ -230,7 +230,7 @@ class Reservations {
     std::array<std::uint32_t, kMost> earlier;  ///< robots with earlier tickets, whose ways may meet this one
   };
   std::vector<OfWay> ways_;
-  double longest_ = 0.0;  ///< m, of ways from where robots set out
+  double longest_ = 0.0;           ///< m, of ways from where robots set out
   std::vector<Outlook> outlooks_;  ///< of robots that decided lately, by number
 
   // Robots by place: cells are spread over buckets by a hash.

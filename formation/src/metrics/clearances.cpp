@@ -363,7 +363,7 @@ class ClearanceSweep::Sweep {
 
   /// Pairs that surely stay farther apart than the least so far are skipped.
   void lower_between(std::size_t step, double end) {
-    constexpr double kStepsOfRoom = 8.0;  // found by measuring
+    constexpr double kStepsOfRoom = 16.0;  // found by measuring
     ways_of_step_.clear();
     starts_.clear();
     double longest = 0.0, largest_radius = 0.0, farthest = 0.0, most_reach = 0.0;
@@ -375,7 +375,8 @@ class ClearanceSweep::Sweep {
       most_reach = std::max(most_reach, m.reach());
     }
     for (const Robot& r : scenario_.robots) largest_radius = std::max(largest_radius, r.radius);
-    const double terms = 2.0 * (farthest + longest + largest_radius + most_reach);  // of `rounding` of any pair, or more
+    const double terms =
+        2.0 * (farthest + longest + largest_radius + most_reach);  // of `rounding` of any pair, or more
     const double most_off = std::isfinite(terms) ? 2.0 * geometry::rounding_of_distance(terms) : kInfinity;
     const bool are_straight = run_.motion == MotionLaw::straight;
     // The least clearance falls meanwhile: what is too far for it now is too far then.
