@@ -80,5 +80,32 @@ TEST(NearPairs, PlacesOrAReachThatIsNotFiniteHaveAllPairs) {
   }
 }
 
+TEST(NearPairs, OfMovingPlacesNoneIsMissingAndTheyAreLookedUpNowAndThen) {
+  test::SeededRandom random(test::seed_of_run(21));
+  constexpr double kReach = 3.0, kRoom = 1.0;
+  for (const int count : {10, 200}) {
+    std::vector<Vec2> places;
+    for (int i = 0; i < count; ++i) places.push_back({random.uniform(0.0, 30.0), random.uniform(0.0, 30.0)});
+    NearPairsOfMoving pairs;
+    std::size_t near = 0;
+    for (int step = 0; step < 100; ++step) {
+      const double reach = kReach * (1.0 + 0.1 * (step % 7));
+      Pairs found, expected;
+      pairs.for_each(places, reach, kRoom, [&](std::size_t i, std::size_t j) {
+        if (norm(places[i] - places[j]) <= reach) found.emplace_back(i, j);
+      });
+      for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t j = i + 1; j < places.size(); ++j)
+          if (norm(places[i] - places[j]) <= reach) expected.emplace_back(i, j);
+      ASSERT_EQ(found, expected) << count << " places, step " << step;
+      near += expected.size();
+      const double farthest = step % 10 == 9 ? 5.0 : 0.1;
+      for (Vec2& p : places) p = p + farthest * random.in_box(1.0);
+      if (step == 50) places.pop_back();
+    }
+    EXPECT_GT(near, 100u);
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::formation::detail

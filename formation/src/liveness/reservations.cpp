@@ -22,6 +22,10 @@ constexpr double kDrivenMargin = 2e-3;
 static_assert(kPlaceReached < kKeptFromOthers - kDrivenMargin, "who has all but reached its place is in nobody's way");
 /// What ways keep beside the radius from obstacles, unless they begin or end nearer to one.
 constexpr double kWallMargin = 5e-4;
+/// Boxes are wider than what distances, which are rounded, are compared with.
+constexpr double kBeyondRounding = 1.0 + 1e-6;
+/// By how much a robot may leave its way before all ways are looked at anew. Any number serves.
+constexpr double kStrays = 1e-3;
 /// Between places.
 constexpr double kPlacePitch = 1.06;
 /// A place that is not as much nearer to the goal does not count as nearer.
@@ -145,7 +149,8 @@ Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, doubl
       left_(robots),
       clear_(robots, 0),
       decided_(robots, 0),
-      is_pushing_(robots, 0) {
+      is_pushing_(robots, 0),
+      ways_(robots) {
   std::size_t buckets = 1;
   while (buckets < robots) buckets *= 2;
   begin_.resize(buckets + 1);
@@ -339,6 +344,7 @@ void Reservations::look(const std::vector<RobotUnderWay>& robots) {
   has_changed_ = has_changed_ || tickets_ != tickets;
   count_ = 0;
   for (std::size_t i = 0; i < of_.size(); ++i) left_[i] = reserved_[i] ? norm(places_[i] - at(i)) : 0.0;
+  follow_ways();
   for (std::size_t i = 0; i < of_.size(); ++i) {
     count_ += reserved_[i];
     preferred_[i] = reserved_[i] ? preferred_of(i) : Vec2{};
@@ -417,9 +423,10 @@ void Reservations::look_about(std::size_t i, Outlook& out) const {
 double Reservations::cost_of_pushing(std::size_t i, Vec2 place, bool is_pushed, std::size_t near,
                                      std::size_t near_end) const {
   for (std::size_t k = near; k < near_end; ++k) {
+    const double apart2 = squared_norm(places_[list_[k]] - place);
+    if (apart2 >= diameter_ * diameter_) continue;
     const double keep = (*robots_)[i].radius + (*robots_)[list_[k]].radius - kPlaceReached * diameter_;
-    if (squared_norm(places_[list_[k]] - place) < keep * keep)
-      return (is_pushed ? kCostOfPushingOn : kCostOfPushing) * pitch_;
+    if (apart2 < keep * keep) return (is_pushed ? kCostOfPushingOn : kCostOfPushing) * pitch_;
   }
   return 0.0;
 }
@@ -431,9 +438,16 @@ bool Reservations::is_there_room(std::size_t i, const Option& to, std::size_t ne
   const Vec2 p = r.position, q = to.place;
   list_.resize(near_end);
   pushed = 0;
+  const double most = kBeyondRounding * (1.0 + kKeptFromOthers) * diameter_;
+  const Vec2 low{std::min(p.x, q.x) - most, std::min(p.y, q.y) - most};
+  const Vec2 high{std::max(p.x, q.x) + most, std::max(p.y, q.y) + most};
   for (std::size_t k = near; k < near_end; ++k) {
     const std::uint32_t j = list_[k];
     const RobotUnderWay& other = (*robots_)[j];
+    const Vec2 from = other.position, to_place = places_[j];
+    if (std::max(from.x, to_place.x) < low.x || std::min(from.x, to_place.x) > high.x ||
+        std::max(from.y, to_place.y) < low.y || std::min(from.y, to_place.y) > high.y)
+      continue;
     const double keep = r.radius + other.radius + kKeptFromOthers * diameter_;
     if (is_pushing_[j]) {  // sets out after this one
       if (comes_near_until_left(p, q, at(j), keep) || squared_distance(q, at(j), places_[j]) < keep * keep)
@@ -569,21 +583,62 @@ bool Reservations::find_place(std::size_t i, std::size_t near, std::size_t depth
 
 // --- How far ---
 
+/// Where ways begin. A robot that is not on its way makes all ways begin anew, where the robots are.
+void Reservations::follow_ways() {
+  const double strays2 = squared(kStrays * diameter_);
+  bool all_are_on_their_ways = true;
+  double longest2 = 0.0;
+  const auto begin_here = [this](std::size_t i) { ways_[i].from = at(i), ways_[i].ticket = of_[i].ticket; };
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    if (!reserved_[i]) {
+      ways_[i].ticket = OfWay::kNone;
+      continue;
+    }
+    if (ways_[i].ticket != of_[i].ticket) begin_here(i);
+    all_are_on_their_ways = all_are_on_their_ways && squared_distance(at(i), ways_[i].from, places_[i]) <= strays2;
+    longest2 = std::max(longest2, squared_norm(places_[i] - ways_[i].from));
+  }
+  longest_ = std::sqrt(longest2);
+  if (all_are_on_their_ways) return;
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    if (reserved_[i]) begin_here(i);
+    ways_[i].known = OfWay::kNone;
+    longest_ = std::max(longest_, left_[i]);
+  }
+}
+
+/// Robots with earlier tickets whose whole ways come near the whole way of this one.
+void Reservations::find_earlier(std::size_t i) {
+  OfWay& way = ways_[i];
+  const Segment own{way.from, places_[i]};
+  const double strays = 2.0 * kStrays * diameter_, widest_keep = (1.0 + kDrivenMargin) * diameter_ + strays;
+  way.known = of_[i].ticket;
+  way.count = 0;
+  for_each_near(at(i), norm(own.b - own.a) + longest_ + widest_keep + strays, [&](std::uint32_t j) {
+    if (j == i || !reserved_[j] || of_[j].ticket >= of_[i].ticket) return;
+    const double keep = (*robots_)[i].radius + (*robots_)[j].radius + kDrivenMargin * diameter_ + strays;
+    if (squared_distance(own, {ways_[j].from, places_[j]}) >= squared(keep)) return;
+    if (way.count < OfWay::kMost) way.earlier[way.count] = j;
+    ++way.count;
+  });
+}
+
 /// Of what is left of its way, what stays clear of the ways of all earlier tickets. These only get shorter: a way that
 /// is clear of them remains so.
 double Reservations::share_allowed(std::size_t i) {
   if (clear_[i] == of_[i].ticket) return 1.0;
   constexpr int kMostSteps = 8;
   constexpr double kClose = 1e-6;  // diameters
+  if (ways_[i].known != of_[i].ticket) find_earlier(i);
   const Vec2 p = at(i), way = places_[i] - p;
   const double length = left_[i], radius = (*robots_)[i].radius;
   double share = 1.0;
   bool is_clear = true;
   const double reach = length + kLongestDrive * pitch_ + (1.0 + kDrivenMargin) * diameter_;
-  for_each_near(p, reach, [&](std::size_t j) {
+  const auto look_at = [&](std::size_t j) {
     if (left_[j] <= kPlaceReached * diameter_ || of_[j].ticket >= of_[i].ticket || j == i || share == 0.0) return;
     const double keep = radius + (*robots_)[j].radius + kDrivenMargin * diameter_;
-    if (squared_norm(at(j) - p) > squared(length + left_[j] + keep) ||
+    if (squared_norm(at(j) - p) > std::min(squared(reach), squared(length + left_[j] + keep)) ||
         squared_distance({p, places_[i]}, {at(j), places_[j]}) >= squared(keep))
       return;
     is_clear = false;
@@ -595,7 +650,12 @@ double Reservations::share_allowed(std::size_t i) {
       t += gap / length;
     }
     share = std::min(share, t);
-  });
+  };
+  const OfWay& known = ways_[i];
+  if (known.count <= OfWay::kMost)
+    std::for_each(known.earlier.begin(), known.earlier.begin() + known.count, look_at);
+  else
+    for_each_near(p, reach, look_at);
   if (is_clear) clear_[i] = of_[i].ticket;
   return share;
 }
@@ -625,6 +685,7 @@ void Reservations::get(crowd::SnapshotReader& from) {
     from.fields(of.ticket, of.at_goal_last, of.looked, of.free_since, of.way_then, of.in_vain, of.pushed_off, of.leg,
                 of.has_way_then, of.is_at_goal);
   std::fill(decided_.begin(), decided_.end(), 0);
+  ways_.assign(of_.size(), {});
 }
 
 }  // namespace exactvo::formation::detail

@@ -185,6 +185,8 @@ class Reservations {
   bool is_there_room(std::size_t i, const Option& to, std::size_t near, std::size_t near_end, std::size_t& pushed);
   bool try_place(std::size_t i, const Option& to, std::size_t near, std::size_t depth);
 
+  void follow_ways();
+  void find_earlier(std::size_t i);
   double share_allowed(std::size_t i);
   Vec2 preferred_of(std::size_t i);
 
@@ -216,6 +218,19 @@ class Reservations {
   std::vector<std::uint32_t> waiting_;    ///< robots that reserve, the oldest first
   std::vector<std::uint32_t> list_;       ///< robots near the robots that decide now, and those that they push
   std::size_t oldest_pusher_ = 0;
+
+  // Two ways only get shorter, so two that were apart stay so. What follows from that is found again after a restart.
+  struct OfWay {
+    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    static constexpr std::uint32_t kMost = 10;
+    std::uint64_t ticket = kNone;              ///< of `from`
+    std::uint64_t known = kNone;               ///< ticket, of `earlier`
+    Vec2 from;                                 ///< m: where the robot set out
+    std::uint32_t count = 0;                   ///< of `earlier`; above kMost it says nothing
+    std::array<std::uint32_t, kMost> earlier;  ///< robots with earlier tickets, whose ways may meet this one
+  };
+  std::vector<OfWay> ways_;
+  double longest_ = 0.0;           ///< m, of ways from where robots set out
   std::vector<Outlook> outlooks_;  ///< of robots that decided lately, by number
 
   // Robots by place: cells are spread over buckets by a hash.

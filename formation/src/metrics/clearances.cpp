@@ -25,6 +25,9 @@ using geometry::Segment;
 
 using geometry::kInfinity;
 
+/// Covers the roundings of a few operations.
+constexpr double kWider = 1.0 + 1e-9;
+
 double largest(Vec2 v) {
   return std::max(std::fabs(v.x), std::fabs(v.y));
 }
@@ -201,7 +204,7 @@ class ClearanceSweep::Sweep {
   /// m: nothing farther from the motion's chord can bring its clearance below `enough`.
   double reach_that_matters(std::size_t robot, double enough) const {
     const Motion& motion = motions_[robot];
-    return (1.0 + 1e-9) * (enough + most_off(robot, motion, motion.chord(0.0, 1.0)) + motion.stray(1.0));
+    return kWider * (enough + most_off(robot, motion, motion.chord(0.0, 1.0)) + motion.stray(1.0));
   }
 
   /// Obstacles whose boxes are that near to the motion's chord, by number.
@@ -219,12 +222,11 @@ class ClearanceSweep::Sweep {
 
   /// Whether what is known round a place says that no obstacle matters to this step.
   bool stays_quiet(std::size_t robot, double enough) const {
-    constexpr double kRounding = 1.0 + 1e-9;
     const Quiet& quiet = quiet_[robot];
     if (!(quiet.room > 0.0)) return false;
     const Segment chord = motions_[robot].chord(0.0, 1.0);
     const double away = std::max(norm(chord.a - quiet.place), norm(chord.b - quiet.place));
-    return quiet.room > kRounding * (away + reach_that_matters(robot, enough));
+    return quiet.room > kWider * (away + reach_that_matters(robot, enough));
   }
 
   /// Looks as far round the end of the step as pays for some steps to come. Where obstacles are too near for that it is
@@ -359,26 +361,46 @@ class ClearanceSweep::Sweep {
   /// How far a robot gets from where it starts, m.
   static double strays(const Motion& m) { return norm(m.to - m.from) + m.stray(1.0); }
 
-  /// Pairs that stay farther apart than the least so far are skipped: twice their ways would not bring them nearer.
+  /// Pairs that surely stay farther apart than the least so far are skipped.
   void lower_between(std::size_t step, double end) {
+    constexpr double kStepsOfRoom = 16.0;  // found by measuring
     ways_of_step_.clear();
     starts_.clear();
-    double longest = 0.0, largest_radius = 0.0;
+    double longest = 0.0, largest_radius = 0.0, farthest = 0.0, most_reach = 0.0;
     for (const Motion& m : motions_) {
       starts_.push_back(m.from);
       const double way = ways_of_step_.emplace_back(strays(m));
       longest = std::isnan(way) ? kInfinity : std::max(longest, way);
+      farthest = std::max({farthest, largest(m.from), largest(m.to)});
+      most_reach = std::max(most_reach, m.reach());
     }
     for (const Robot& r : scenario_.robots) largest_radius = std::max(largest_radius, r.radius);
+    const double terms =
+        2.0 * (farthest + longest + largest_radius + most_reach);  // of `rounding` of any pair, or more
+    const double most_off = std::isfinite(terms) ? 2.0 * geometry::rounding_of_distance(terms) : kInfinity;
+    const bool are_straight = run_.motion == MotionLaw::straight;
     // The least clearance falls meanwhile: what is too far for it now is too far then.
-    const double reach = enough(between_) + 4.0 * longest + 2.0 * largest_radius;
-    for_each_near_pair(starts_, (1.0 + 1e-9) * reach, [&](std::size_t i, std::size_t j) {
-      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-      const double apart = norm(starts_[i] - starts_[j]) - radii;
-      if (apart > enough(between_) + 2.0 * (ways_of_step_[i] + ways_of_step_[j])) return;
+    const double reach = kWider * (enough(between_) + 4.0 * longest + 2.0 * largest_radius);
+    near_pairs_.for_each(starts_, reach, kStepsOfRoom * longest, [&](std::size_t i, std::size_t j) {
+      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius, kept = radii + enough(between_);
+      const double ways = ways_of_step_[i] + ways_of_step_[j];
+      const Vec2 apart = starts_[i] - starts_[j];
+      const double far = kWider * (kept + std::min(2.0 * ways, ways + 2.0 * most_off));
+      if (squared_norm(apart) > far * far || norm(apart) - radii > enough(between_) + 2.0 * ways) return;
+      if (are_straight && stays_apart(apart, motions_[i].to - motions_[j].to, kWider * (kept + 2.0 * most_off))) return;
       note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
            between_);
     });
+  }
+
+  /// Whether a point on its straight way stays farther than `keep` from 0, by more than `most_off`.
+  static bool stays_apart(Vec2 from, Vec2 to, double keep) {
+    const Vec2 way = to - from;
+    const double along = -dot(from, way), length2 = squared_norm(way);
+    if (!(along > 0.0)) return squared_norm(from) > keep * keep;
+    if (along >= length2) return squared_norm(to) > keep * keep;
+    const double across = cross(from, way);
+    return across * across > keep * keep * length2;
   }
 
   static double pair_clearance(const Motion& a, const Motion& b, double radii, double enough) {
@@ -473,6 +495,7 @@ class ClearanceSweep::Sweep {
   std::vector<Motion> motions_;
   std::vector<double> ways_of_step_;  ///< m
   std::vector<Vec2> starts_;          ///< m
+  NearPairsOfMoving near_pairs_;
   std::vector<std::size_t> near_;
   std::vector<Quiet> quiet_;  ///< of each robot
 };
