@@ -12,9 +12,9 @@ Definition over_product (t : Q) (p : point) : point := let one := Qmake (Zpos (Q
 Definition way_of_braking (tau : Q) (d : driver) : motion :=
   let x := over_product tau (now_at d) in {| from := x; to := along x tau (chosen d); size := its_radius d |}.
 Definition at_most_length (l : Q) (v : point) : bool := qle (pdot v v) (qmul l l).
-Definition brakes (os : list obstacle) (poles : list pole) (step tau a : Q) (ds : list driver) : bool :=
+Definition brakes (os : list obstacle) (poles : list pole) (step tau : Q) (ds : list driver) : bool :=
   qlt 0 step && qle step tau
-  && forallb (fun d => at_most_length (qmul a step) (psub (chosen d) (had d)) && at_most_length (qmul a tau) (chosen d)) ds
+  && forallb (fun d => at_most_length (qmul (its_most d) step) (psub (chosen d) (had d)) && at_most_length (qmul (its_most d) tau) (chosen d)) ds
   && Step.step os (map (fun c => {| from := fst c; to := fst c; size := snd c |}) poles) (map (way_of_braking tau) ds).
 
 Lemma Q2R_one_over d : Q2R (Qmake (Zpos d) d) = 1.
@@ -78,8 +78,8 @@ Proof. destruct a; unfold mix, add, scale; simpl. f_equal; ring. Qed.
 Lemma apart_symmetric r q x y : apart (r + q) x y -> apart (q + r) y x.
 Proof. rewrite Rplus_comm. apply apart_sym. Qed.
 
-Theorem brakes_sound os poles step tau a ds : brakes os poles step tau a ds = true -> (forall d, In d ds -> outside os (real (now_at d))) ->
-  can_brake os poles step tau a ds.
+Theorem brakes_sound os poles step tau ds : brakes os poles step tau ds = true -> (forall d, In d ds -> outside os (real (now_at d))) ->
+  can_brake os poles step tau ds.
 Proof.
   unfold brakes. intros h start. apply andb_true_iff in h; destruct h as [h safe]. apply andb_true_iff in h; destruct h as [h slow].
   apply andb_true_iff in h; destruct h as [hs ht]. apply qlt_R in hs. apply qle_R in ht. rewrite Q2R_0 in hs.
@@ -93,8 +93,8 @@ Proof.
     set (k := 1 - st / t) in *. unfold no_longer, dot, sub, scale in *; simpl in *. set (vx := fst (real (chosen d))) in *. set (vy := snd (real (chosen d))) in *.
     assert (e : forall u, k * k ^ n * u - k ^ n * u = - (k ^ n * (st / t * u))) by (intro u; unfold k; ring).
     rewrite !e.
-    assert (b : (st / t * vx) * (st / t * vx) + (st / t * vy) * (st / t * vy) <= (Q2R a * st) * (Q2R a * st)).
-    { replace (Q2R a * st * (Q2R a * st)) with ((st / t) * (st / t) * (Q2R a * t * (Q2R a * t))) by (field; lra).
+    assert (b : (st / t * vx) * (st / t * vx) + (st / t * vy) * (st / t * vy) <= (Q2R (its_most d) * st) * (Q2R (its_most d) * st)).
+    { replace (Q2R (its_most d) * st * (Q2R (its_most d) * st)) with ((st / t) * (st / t) * (Q2R (its_most d) * t * (Q2R (its_most d) * t))) by (field; lra).
       replace (st / t * vx * (st / t * vx) + st / t * vy * (st / t * vy)) with ((st / t) * (st / t) * (vx * vx + vy * vy)) by ring.
       apply Rmult_le_compat_l; [nra|exact v]. }
     apply Rle_trans with (2 := shrinks k n _ _ _ hk b). right. unfold vx, vy; simpl. ring.

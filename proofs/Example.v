@@ -159,19 +159,19 @@ Proof. vm_compute. reflexivity. Qed.
 
 (* --- Braking: two robots drive at each other at 1 m/s, and can stop within 2 m each; 1/16 m farther on they cannot --- *)
 Definition head_on (x speed : Q) : list driver :=
-  [{| now_at := (x, 0); had := (speed, 0); chosen := (speed, 0); its_radius := 1 # 2 |};
-   {| now_at := (-x, 0); had := (-speed, 0); chosen := (-speed, 0); its_radius := 1 # 2 |}].
-Definition they_stop_in_time : can_brake [] [] (1 # 16) 2 (1 # 2) (head_on (-(5 # 2)) 1).
+  [{| now_at := (x, 0); had := (speed, 0); chosen := (speed, 0); its_radius := 1 # 2; its_most := 1 # 2 |};
+   {| now_at := (-x, 0); had := (-speed, 0); chosen := (-speed, 0); its_radius := 1 # 2; its_most := 1 # 2 |}].
+Definition they_stop_in_time : can_brake [] [] (1 # 16) 2 (head_on (-(5 # 2)) 1).
 Proof. apply brakes_sound; [vm_compute; reflexivity|]. intros d _ o []. Qed.
-Example too_near_to_stop : brakes [] [] (1 # 16) 2 (1 # 2) (head_on (-(39 # 16)) 1) = false.
+Example too_near_to_stop : brakes [] [] (1 # 16) 2 (head_on (-(39 # 16)) 1) = false.
 Proof. vm_compute. reflexivity. Qed.
-Example too_fast_to_stop : brakes [] [] (1 # 16) 2 (1 # 2) (head_on (-9) (17 # 16)) = false.
+Example too_fast_to_stop : brakes [] [] (1 # 16) 2 (head_on (-9) (17 # 16)) = false.
 Proof. vm_compute. reflexivity. Qed.
-Example a_wall_across_its_way : brakes [Wall [(2, -1); (2, 1)]] [] (1 # 16) 2 (1 # 2) (head_on (-9) 1) = true
-  /\ brakes [Wall [(-(15 # 2), -1); (-(15 # 2), 1)]] [] (1 # 16) 2 (1 # 2) (head_on (-9) 1) = false.
+Example a_wall_across_its_way : brakes [Wall [(2, -1); (2, 1)]] [] (1 # 16) 2 (head_on (-9) 1) = true
+  /\ brakes [Wall [(-(15 # 2), -1); (-(15 # 2), 1)]] [] (1 # 16) 2 (head_on (-9) 1) = false.
 Proof. split; vm_compute; reflexivity. Qed.
-Example a_pole_at_its_very_distance : brakes [] [((-(6), 0), 1 # 2)] (1 # 16) 2 (1 # 2) (head_on (-9) 1) = true
-  /\ brakes [] [((-(6), 0), 33 # 64)] (1 # 16) 2 (1 # 2) (head_on (-9) 1) = false.
+Example a_pole_at_its_very_distance : brakes [] [((-(6), 0), 1 # 2)] (1 # 16) 2 (head_on (-9) 1) = true
+  /\ brakes [] [((-(6), 0), 33 # 64)] (1 # 16) 2 (head_on (-9) 1) = false.
 Proof. split; vm_compute; reflexivity. Qed.
 
 (* --- Sweeps: two walkers of a file of tracks, and a third past a square --- *)

@@ -109,7 +109,7 @@ Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows
 
 (* --- Braking: the robots choose velocities, take them for a step (s), and then all brake: in each step of braking a
    robot keeps the share 1 - step / tau of its velocity (tau: s) --- *)
-Record driver := { now_at : point; had : point; chosen : point; its_radius : Q }.   (* had, chosen: velocities *)
+Record driver := { now_at : point; had : point; chosen : point; its_radius : Q; its_most : Q }.   (* had, chosen: velocities *)
 Definition pole := (point * Q)%type.                    (* a disc at rest: centre and radius *)
 Fixpoint braked (step tau : R) (d : driver) (n : nat) : vec * vec :=   (* place and velocity after n steps *)
   match n with
@@ -119,11 +119,11 @@ Fixpoint braked (step tau : R) (d : driver) (n : nat) : vec * vec :=   (* place 
 Definition while_braking (step tau : R) (d : driver) (n : nat) (s : R) : vec :=   (* at share s of the step after n steps *)
   let (x, v) := braked step tau d n in add x (scale (s * step) v).
 Definition no_longer (l : R) (v : vec) := dot v v <= l * l.
-Definition gentle (step tau a : R) (d : driver) :=      (* velocities change by at most a (m/s^2): now, and in each step of braking *)
-  no_longer (a * step) (sub (real (chosen d)) (real (had d))) /\
-  forall n, no_longer (a * step) (sub (snd (braked step tau d (S n))) (snd (braked step tau d n))).
-Definition can_brake (os : list obstacle) (poles : list pole) (step tau a : Q) (ds : list driver) :=
-  (forall d, In d ds -> gentle (Q2R step) (Q2R tau) (Q2R a) d) /\
+Definition gentle (step tau : R) (d : driver) :=        (* its velocity changes by its_most (m/s^2) at most: now, and in each step of braking *)
+  no_longer (Q2R (its_most d) * step) (sub (real (chosen d)) (real (had d))) /\
+  forall n, no_longer (Q2R (its_most d) * step) (sub (snd (braked step tau d (S n))) (snd (braked step tau d n))).
+Definition can_brake (os : list obstacle) (poles : list pole) (step tau : Q) (ds : list driver) :=
+  (forall d, In d ds -> gentle (Q2R step) (Q2R tau) d) /\
   forall n s, 0 <= s <= 1 -> let there := fun d => while_braking (Q2R step) (Q2R tau) d n s in
     ForallOrdPairs (fun a b => apart (Q2R (its_radius a) + Q2R (its_radius b)) (there a) (there b)) ds /\
     forall d, In d ds -> room os (Q2R (its_radius d)) (there d) /\
@@ -175,9 +175,9 @@ Module Type Verifier.
   Parameter run : list obstacle -> list motion -> list Q -> list (list point) -> bool.   (* also of one row *)
   Parameter run_sound : forall os discs sizes rows, run os discs sizes rows = true ->
     Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os discs (moves sizes a b)) (with_start rows).
-  Parameter brakes : list obstacle -> list pole -> Q -> Q -> Q -> list driver -> bool.
-  Parameter brakes_sound : forall os poles step tau a ds, brakes os poles step tau a ds = true ->
-    (forall d, In d ds -> outside os (real (now_at d))) -> can_brake os poles step tau a ds.
+  Parameter brakes : list obstacle -> list pole -> Q -> Q -> list driver -> bool.
+  Parameter brakes_sound : forall os poles step tau ds, brakes os poles step tau ds = true ->
+    (forall d, In d ds -> outside os (real (now_at d))) -> can_brake os poles step tau ds.
   Parameter sweep : trip -> trip -> list separation -> bool.
   Parameter sweep_sound : forall a b l, sweep a b l = true -> never_meet a b.
   Parameter sweep_past : trip -> obstacle -> list separation -> bool.

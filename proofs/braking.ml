@@ -1,9 +1,9 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* The reader, continued: rows of robots with an acceleration, in each of which all could brake. *)
+(* The reader, continued: rows of robots with an acceleration or on wheels, in each of which all could brake. *)
 open Checker
 open Exact
 
-type t = { most : float; step : float; tau : float; scenario : Json.t; mutable bits : int;
+type t = { step : float; tau : float; scenario : Json.t; robots : Json.t list; mutable bits : int;
   mutable obstacles : obstacle list; mutable poles : (point * q) list; mutable widths : q list;
   mutable latest : Json.t list; count : Decisions.count }
 
@@ -17,29 +17,49 @@ let prepare b bits =
   b.bits <- bits;
   b.obstacles <- List.map (Certificates.obstacle q) others;
   b.poles <- List.map pole discs;
-  b.widths <- List.map (fun r -> q (number "radius" r)) Json.(arr (get "robots" b.scenario))
+  b.widths <- List.map (fun r -> q (number "radius" r)) b.robots
 
-(* The braking time that a scenario does not state is 1.1 V / A of the fastest robot, and at least a step. *)
+let acceleration scenario = match Json.find "acceleration" scenario with None | Some Json.Null -> None | Some a -> Some (number "max" a)
+
+(* The braking time that a scenario does not state is 1.1 V / A of the robot that is slowest to stop, and at least a step. *)
+let usual_time scenario robots step =
+  let share = if Json.find "speed_bound" scenario = Some (Json.Str "box") then Float.sqrt 2. else 1. in
+  let of_robot t robot =
+    let by speed a t = Float.max t (1.1 *. (speed /. a)) in
+    let t = match acceleration scenario with Some a -> by (share *. number "max_speed" robot) a t | None -> t in
+    match Wheels.drive robot with Some k -> let speed, a = Wheels.speed_and_acceleration k in by speed a t | None -> t in
+  List.fold_left of_robot step robots
+
+(* The wheels of a robot have limits, and its velocity none: what it takes is enough. *)
+let most b robot had chosen =
+  match acceleration b.scenario, Wheels.drive robot with
+  | Some a, None -> a
+  | _ ->
+    let length (x, y) = Float.hypot x y and (x, y), (u, v) = had, chosen in
+    let taken = 1.001 *. Float.max (length (u -. x, v -. y) /. b.step) (length chosen /. b.tau) in
+    Float.ldexp (Float.ceil (Float.ldexp taken 16)) (-16)
+
 let start scenario =
-  match Json.find "acceleration" scenario with
-  | None | Some Json.Null -> None
-  | Some a ->
-    let most = number "max" a and step = number "time_step" scenario in
-    let share = if Json.find "speed_bound" scenario = Some (Json.Str "box") then Float.sqrt 2. else 1. in
-    let usual = List.fold_left (fun t r -> Float.max t (1.1 *. (share *. number "max_speed" r /. most))) step Json.(arr (get "robots" scenario)) in
-    let tau = match Json.find "braking_time" scenario with Some (Json.Num t) -> t | _ -> usual in
-    let b = { most; step; tau; scenario; bits = 0; obstacles = []; poles = []; widths = []; latest = []; count = { asked = 0; proven = 0 } } in
-    prepare b (List.fold_left (fun m x -> max m (bits_of x)) (Certificates.bits_needed scenario) [most; step; tau]);
+  let robots = Json.(arr (get "robots" scenario)) in
+  if acceleration scenario = None && List.for_all (fun r -> Wheels.drive r = None) robots then None
+  else begin
+    let step = number "time_step" scenario in
+    let tau = match Json.find "braking_time" scenario with Some (Json.Num t) -> t | _ -> usual_time scenario robots step in
+    let b = { step; tau; scenario; robots; bits = 0; obstacles = []; poles = []; widths = []; latest = []; count = { asked = 0; proven = 0 } } in
+    prepare b (List.fold_left (fun m x -> max m (bits_of x)) (max 16 (Certificates.bits_needed scenario)) [step; tau]);
     Some b
+  end
 
 let ask b robots =
   let need = List.fold_left (fun m r -> List.fold_left (fun m key -> let x, y = Decisions.pair (Json.get key r) in max m (max (bits_of x) (bits_of y)))
       m ["position"; "velocity"; "chosen"]) b.bits robots in
   if need > b.bits then prepare b need;
   let q = over b.bits in
-  let at key r = let x, y = Decisions.pair (Json.get key r) in (q x, q y) in
-  let driver r its_radius = { now_at = at "position" r; had = at "velocity" r; chosen = at "chosen" r; its_radius } in
-  Decisions.ask b.count (Checked.brakes b.obstacles b.poles (q b.step) (q b.tau) (q b.most) (List.map2 driver robots b.widths))
+  let driver (described, its_radius) r =
+    let at key = Decisions.pair (Json.get key r) in
+    let exact (x, y) = (q x, q y) and had = at "velocity" and chosen = at "chosen" in
+    { now_at = exact (at "position"); had = exact had; chosen = exact chosen; its_radius; its_most = q (most b described had chosen) } in
+  Decisions.ask b.count (Checked.brakes b.obstacles b.poles (q b.step) (q b.tau) (List.map2 driver (List.combine b.robots b.widths) robots))
 
 (* Robots choose in each row but the last, after which none moves. *)
 let row b robots =
@@ -47,5 +67,5 @@ let row b robots =
   b.latest <- robots
 
 let report b =
-  Printf.printf "rows in which all could brake within %g m/s^2, alone and together: %d asked, %d proven\n" b.most b.count.asked b.count.proven;
+  Printf.printf "rows in which all could brake, alone and together: %d asked, %d proven\n" b.count.asked b.count.proven;
   b.count.proven = b.count.asked
