@@ -1,6 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The checkers keep their promises: the kernel holds this module against Theorems.v. *)
-From ExactVO Require Theorems HalfPlane Program Route Step Sweep.
+From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep.
 
 Module Checked <: Theorems.Verifier.
   Definition half_plane_holds := HalfPlane.half_plane_holds.
@@ -31,6 +31,8 @@ Module Checked <: Theorems.Verifier.
   Definition step_sound := Step.step_sound.
   Definition run := Step.run.
   Definition run_sound := Step.run_sound.
+  Definition brakes := Braking.brakes.
+  Definition brakes_sound := Braking.brakes_sound.
   Definition sweep := Sweep.sweep.
   Definition sweep_sound := Sweep.sweep_sound.
   Definition sweep_past := Sweep.sweep_past.

@@ -157,6 +157,23 @@ Proof. apply run_sound. vm_compute. reflexivity. Qed.
 Example a_larger_post_is_in_its_way : run [] (post (1025 # 1024)) [1] [[(-(5), 0)]; [(7, 0)]] = false.
 Proof. vm_compute. reflexivity. Qed.
 
+(* --- Braking: two robots drive at each other at 1 m/s, and can stop within 2 m each; 1/16 m farther on they cannot --- *)
+Definition head_on (x speed : Q) : list driver :=
+  [{| now_at := (x, 0); had := (speed, 0); chosen := (speed, 0); its_radius := 1 # 2; its_most := 1 # 2 |};
+   {| now_at := (-x, 0); had := (-speed, 0); chosen := (-speed, 0); its_radius := 1 # 2; its_most := 1 # 2 |}].
+Definition they_stop_in_time : can_brake [] [] (1 # 16) 2 (head_on (-(5 # 2)) 1).
+Proof. apply brakes_sound; [vm_compute; reflexivity|]. intros d _ o []. Qed.
+Example too_near_to_stop : brakes [] [] (1 # 16) 2 (head_on (-(39 # 16)) 1) = false.
+Proof. vm_compute. reflexivity. Qed.
+Example too_fast_to_stop : brakes [] [] (1 # 16) 2 (head_on (-9) (17 # 16)) = false.
+Proof. vm_compute. reflexivity. Qed.
+Example a_wall_across_its_way : brakes [Wall [(2, -1); (2, 1)]] [] (1 # 16) 2 (head_on (-9) 1) = true
+  /\ brakes [Wall [(-(15 # 2), -1); (-(15 # 2), 1)]] [] (1 # 16) 2 (head_on (-9) 1) = false.
+Proof. split; vm_compute; reflexivity. Qed.
+Example a_pole_at_its_very_distance : brakes [] [((-(6), 0), 1 # 2)] (1 # 16) 2 (head_on (-9) 1) = true
+  /\ brakes [] [((-(6), 0), 33 # 64)] (1 # 16) 2 (head_on (-9) 1) = false.
+Proof. split; vm_compute; reflexivity. Qed.
+
 (* --- Sweeps: two walkers of a file of tracks, and a third past a square --- *)
 Definition walker : trip := {| leave := d 3152519739159347 50; arrive := d 3602879701896397 50; start := (d (-5877197513718497) 50, d (-5800636320053199) 55); goal := (d (-658651445502935) 47, d (-3206562934687793) 54);
   parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 3602879701896397 54 |}] |}.

@@ -7,11 +7,14 @@ Open Scope R_scope.
 
 (* --- Plane --- *)
 Definition vec := (R * R)%type.
-Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).  Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
-Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).  Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
+Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).
+Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
+Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
+Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
 Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
 Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
-Definition point := (Q * Q)%type.  Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
+Definition point := (Q * Q)%type.
+Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
 
 Inductive hull (ps : list point) : vec -> Prop :=       (* convex hull; of two points: the segment between them *)
 | corner p : In p ps -> hull ps (real p)
@@ -74,7 +77,8 @@ Definition ring_sides (ps : list point) : list edge := match ps with [] => [] | 
 Definition edges_of (o : obstacle) : list edge := match o with Wall l => sides l | Solid rs => flat_map ring_sides rs end.
 Definition on (e : edge) (x : vec) := hull [fst e; snd e] x.
 (* Does the ray from x upward cross the side ab? Of its ends the left one counts, the right one does not. *)
-Definition le (a b : R) : bool := if Rle_dec a b then true else false.  Definition lt (a b : R) : bool := if Rlt_dec a b then true else false.
+Definition le (a b : R) : bool := if Rle_dec a b then true else false.
+Definition lt (a b : R) : bool := if Rlt_dec a b then true else false.
 Definition line (a b : vec) (t : R) : R := snd a + (snd b - snd a) / (fst b - fst a) * (t - fst a).
 Definition crosses (x a b : vec) : bool := xorb (le (fst a) (fst x)) (le (fst b) (fst x)) && lt (snd x) (line a b (fst x)).
 Definition odd (es : list edge) (x : vec) : bool :=     (* is the number of crossings odd? *)
@@ -103,6 +107,28 @@ Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list poi
   match rows with a :: ((b :: _) as r) => P a b /\ all_steps P r | _ => True end.
 Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows | [] => [] end.   (* rest, then the steps *)
 
+(* --- Braking: the robots choose velocities, take them for a step (s), and then all brake: in each step of braking a
+   robot keeps the share 1 - step / tau of its velocity (tau: s) --- *)
+Record driver := { now_at : point; had : point; chosen : point; its_radius : Q; its_most : Q }.   (* had, chosen: velocities *)
+Definition pole := (point * Q)%type.                    (* a disc at rest: centre and radius *)
+Fixpoint braked (step tau : R) (d : driver) (n : nat) : vec * vec :=   (* place and velocity after n steps *)
+  match n with
+  | O => (real (now_at d), real (chosen d))
+  | S k => let (x, v) := braked step tau d k in (add x (scale step v), scale (1 - step / tau) v)
+  end.
+Definition while_braking (step tau : R) (d : driver) (n : nat) (s : R) : vec :=   (* at share s of the step after n steps *)
+  let (x, v) := braked step tau d n in add x (scale (s * step) v).
+Definition no_longer (l : R) (v : vec) := dot v v <= l * l.
+Definition gentle (step tau : R) (d : driver) :=        (* its velocity changes by its_most (m/s^2) at most: now, and in each step of braking *)
+  no_longer (Q2R (its_most d) * step) (sub (real (chosen d)) (real (had d))) /\
+  forall n, no_longer (Q2R (its_most d) * step) (sub (snd (braked step tau d (S n))) (snd (braked step tau d n))).
+Definition can_brake (os : list obstacle) (poles : list pole) (step tau : Q) (ds : list driver) :=
+  (forall d, In d ds -> gentle (Q2R step) (Q2R tau) d) /\
+  forall n s, 0 <= s <= 1 -> let there := fun d => while_braking (Q2R step) (Q2R tau) d n s in
+    ForallOrdPairs (fun a b => apart (Q2R (its_radius a) + Q2R (its_radius b)) (there a) (there b)) ds /\
+    forall d, In d ds -> room os (Q2R (its_radius d)) (there d) /\
+      forall c, In c poles -> apart (Q2R (its_radius d) + Q2R (snd c)) (there d) (real (fst c)).
+
 (* --- Sweep: bodies of convex parts, each grown by a reach, that move straight and evenly between two moments --- *)
 Record part := { corners : list point; reach : Q }.     (* corners seen from the place of the body *)
 Record trip := { leave : Q; arrive : Q; start : point; goal : point; parts : list part }.
@@ -119,17 +145,21 @@ Record separation := { part_no : nat; other_no : nat; since : Q; until : Q; dire
 
 (* --- The promises --- *)
 Module Type Verifier.
-  Parameter half_plane_holds : half_plane -> bool.  Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
+  Parameter half_plane_holds : half_plane -> bool.
+  Parameter half_plane_sound : forall c, half_plane_holds c = true -> keeps_clear c.
   Parameter pair_holds : half_plane -> point -> Q -> Q -> bool.
   Parameter pair_sound : forall c p r other, pair_holds c p r other = true -> keep_each_other_clear c p r other.
   Parameter contains : shape -> list point -> Q -> bool.
   Parameter contains_sound : forall c l11 l21 l22 ps m, contains (Ellipse c l11 l21 l22) ps m = true ->
     forall x, hull ps x -> in_ellipse (1 - Q2R m) c l11 l21 l22 x.
   Parameter nearest farthest least : program -> choice -> bool.
-  Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.  Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
+  Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.
+  Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.
   Parameter least_sound : forall p c, least p c = true -> gives_least p c.
-  Parameter pinned : program -> point -> bool.  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
-  Parameter contradicted : program -> choice -> bool.  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
+  Parameter pinned : program -> point -> bool.
+  Parameter pinned_sound : forall p v, pinned p v = true -> allowed 0 p (real v).
+  Parameter contradicted : program -> choice -> bool.
+  Parameter contradicted_sound : forall p c, contradicted p c = true -> forall w, ~ allowed 0 p w.
   Parameter route : list obstacle -> Q -> list point -> bool.
   Parameter route_sound : forall os r ps, route os r ps = true ->
     forall e x, In e (sides ps) -> on e x -> room os (Q2R r) x.
@@ -138,13 +168,18 @@ Module Type Verifier.
     room os (Q2R r) (real s) /\ room os (Q2R r) (real g) /\ ~ way os (Q2R r) (real s) (real g).
   Parameter blocked : list obstacle -> Q -> point -> nat -> option nat -> bool.   (* by an edge, or inside a polygon *)
   Parameter blocked_sound : forall os r x o e, blocked os r x o e = true -> ~ room os (Q2R r) (real x).
-  Parameter starts : list obstacle -> list motion -> bool.  Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
+  Parameter starts : list obstacle -> list motion -> bool.
+  Parameter starts_sound : forall os ms, starts os ms = true -> forall m, In m ms -> outside os (place m 0).
   Parameter step : list obstacle -> list motion -> list motion -> bool.
   Parameter step_sound : forall os discs ms, step os discs ms = true -> (forall m, In m ms -> outside os (place m 0)) -> keeps_apart os discs ms.
   Parameter run : list obstacle -> list motion -> list Q -> list (list point) -> bool.   (* also of one row *)
   Parameter run_sound : forall os discs sizes rows, run os discs sizes rows = true ->
     Forall (fun r => length r = length sizes) rows /\ all_steps (fun a b => keeps_apart os discs (moves sizes a b)) (with_start rows).
-  Parameter sweep : trip -> trip -> list separation -> bool.  Parameter sweep_sound : forall a b l, sweep a b l = true -> never_meet a b.
+  Parameter brakes : list obstacle -> list pole -> Q -> Q -> list driver -> bool.
+  Parameter brakes_sound : forall os poles step tau ds, brakes os poles step tau ds = true ->
+    (forall d, In d ds -> outside os (real (now_at d))) -> can_brake os poles step tau ds.
+  Parameter sweep : trip -> trip -> list separation -> bool.
+  Parameter sweep_sound : forall a b l, sweep a b l = true -> never_meet a b.
   Parameter sweep_past : trip -> obstacle -> list separation -> bool.
   Parameter sweep_past_sound : forall a o l, sweep_past a o l = true -> stays_out a o.
 End Verifier.

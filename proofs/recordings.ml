@@ -172,6 +172,7 @@ let recording file text =
   let scenario = ref Json.Null and obstacles = ref [] and discs = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
   let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
+  let brakes = ref None in
   let prepare b =
     bits := b;
     let q = over b in
@@ -183,13 +184,14 @@ let recording file text =
     if Json.find "kind" h <> Some (Json.Str "exactvo-recording") then raise Json.Bad;
     curved := Json.find "motion" h <> Some (Json.Str "straight");
     if !curved then not_covered := ["the motions: robots do not move straight from row to row, and only the rows were looked at"];
-    scenario := Json.get "scenario" h;
+    let on_wheels = List.exists (fun r -> Wheels.drive r <> None) Json.(arr (get "robots" (get "scenario" h))) in
+    scenario := Wheels.as_discs (Json.get "scenario" h);
     robots := List.length Json.(arr (get "robots" !scenario));
-    if List.exists (fun r -> Json.find "kinematics" r <> None) Json.(arr (get "robots" !scenario)) then
-      refuse file "header" "robots on wheels" "robots that move in any direction; exactvo audit asks for wheels" "E_FORMAT_UNKNOWN";
+    if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points: that bodies and wheels follow, audit asks"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
       "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices, and that the scenario is the one that was meant"];
+    brakes := Braking.start !scenario;
     prepare (Certificates.bits_needed !scenario) in
   let row r =
     let ps = List.map (fun x -> pair_of (Json.get "position" x)) Json.(arr (get "robots" r)) in
@@ -202,6 +204,7 @@ let recording file text =
     let moves = List.rev (List.rev_map2 (fun size (from, to0) -> { from; to0; size }) !sizes (List.combine before here)) in
     take t (Printf.sprintf "row %d" !rows) ~anew !obstacles !discs moves;
     Decisions.row decisions !scenario Json.(arr (get "robots" r));
+    Option.iter (fun b -> Braking.row b Json.(arr (get "robots" r))) !brakes;
     last := Some here; incr rows in
   List.iteri (fun i l ->
     let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in
@@ -213,11 +216,12 @@ let recording file text =
     | Json.Obj [((("goal_bodies" | "plan"), _))] -> ()
     | _ | exception Json.Bad -> bad ()) (lines text);
   let decided = Decisions.report decisions in
+  let stop = Option.fold ~none:true ~some:Braking.report !brakes in
   let ok = report t "the first row and each motion to the next" !rows !robots
       (Printf.sprintf "one of %s with %s%s" (counted (List.length !obstacles) "obstacle") (counted (List.length (List.concat_map edges_of !obstacles)) "edge")
         (if !discs = [] then "" else " and of " ^ counted (List.length !discs) "disc")) !not_covered !curved in
   if not !ended then refuse file (Printf.sprintf "row %d" !rows) "the end of the file" "a last line \"end\": the recording ends early" "E_CUT_OFF";
-  ok && decided
+  ok && decided && stop
 
 (* --- Recordings of crowds: docs/guide/crowd-recordings.md --- *)
 let crowd file s =
