@@ -296,9 +296,10 @@ DecisionConstraint Decider::named(const Kept& kept) const {
 
 void Decider::reserve(std::size_t constraints) {
   if (rules_->has_brakes()) {
-    constraints += kSidesOfLimit;
-    limit_.reserve(kSidesOfLimit);
-    limits_.reserve(kSidesOfLimit);
+    constexpr std::size_t kMost = std::max<std::size_t>(kSidesOfLimit, kMostHalfPlanesOfWheels);
+    constraints += kMost;
+    limit_.reserve(kMost);
+    limits_.reserve(kMost);
   }
   problem_.constraints.reserve(constraints);
   memory_.reserve(constraints);

@@ -40,6 +40,8 @@ using geometry::HalfPlane;
 /// Share of a limit that is left to roundings.
 constexpr double kAimedAt = 1.0 - 1e-12;
 constexpr int kLeastChords = 25, kMostChords = 201;
+// Two edges from the apex, the greatest speed back, and the change of both wheels up and down.
+static_assert(kMostChords + 2 + 1 + 4 == kMostHalfPlanesOfWheels);
 
 Vec2 left_of(Vec2 v) {
   return {-v.y, v.x};

@@ -39,6 +39,9 @@ Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnW
 /// points already or else to the left, until the heading has come round.
 Vec2 turned_aside(Vec2 heading, Vec2 preferred);
 
+/// Half-planes of WheelLimits at most.
+inline constexpr std::size_t kMostHalfPlanesOfWheels = 208;
+
 /// A robot on wheels in a run: what it may do.
 class WheelLimits {
  public:

@@ -90,6 +90,28 @@ Scenario braking() {
   return s;
 }
 
+/// Two on wheels, one after the other round a post; they turn on their way.
+Scenario wheels() {
+  Scenario s = kinematic("wheels");
+  s.braking_time = 0.5;
+  formation::DifferentialDrive drive;
+  drive.wheel_separation = 0.16;
+  drive.max_wheel_speed = 0.22;
+  drive.max_wheel_acceleration = 1.0;
+  drive.max_angular_speed = 2.5;
+  drive.max_backward_speed = 0.1;
+  drive.reference = 0.07;
+  drive.body_radius = 0.1;
+  s.robots = {robot("a", {}, {2.0, 0.3}), robot("b", {}, {-1.0, -0.1})};
+  drive.heading = 70.0;
+  put_on_wheels(s.robots[0], drive, s.time_step);
+  drive.heading = 150.0;
+  drive.axle = {0.52, 0.05};
+  put_on_wheels(s.robots[1], drive, s.time_step);
+  s.obstacles = {{"post", box({-0.3, 0.35}, {0.2, 0.45})}};
+  return s;
+}
+
 /// Past the corner of a block, with two goals.
 Scenario corner() {
   Scenario s = kinematic("corner");
@@ -197,6 +219,8 @@ std::vector<ShortRun> short_runs() {
       {crossing(), Method::orca, true},
       {braking(), Method::ivo, false},
       {braking(), Method::orca, true},
+      {wheels(), Method::ivo, false},
+      {wheels(), Method::orca, true},
       {corner(), Method::ivo, true},
       {corner(), Method::orca, false},
       {corner(), Method::ivo_edge, false},

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace exactvo::datasets::test {
@@ -286,8 +287,15 @@ struct Line {
   }
 };
 
+/// Of a robot with two.
+struct Wheels {
+  Vec2 heading;
+  double left = 0.0, right = 0.0;
+};
+
 struct State {
   Vec2 position, velocity, anchor, anchor_velocity, preferred, chosen;
+  std::optional<Wheels> wheels;
   std::string status;
   double violation = 0.0;
   bool exact_multipliers = false;  ///< they are not written: no doubles prove the choice
@@ -314,6 +322,9 @@ State state_of(const json& j) {
   s.velocity = point(j.at("velocity"));
   s.anchor = j.contains("anchor") ? point(j["anchor"]) : s.position;
   s.anchor_velocity = j.contains("anchor_velocity") ? point(j["anchor_velocity"]) : s.velocity;
+  if (j.contains("wheels"))
+    s.wheels =
+        Wheels{point(j["wheels"].at("heading")), number(j["wheels"].at("left")), number(j["wheels"].at("right"))};
   s.preferred = point(j.at("preferred"));
   s.chosen = point(j.at("chosen"));
   s.status = j.at("status");
@@ -347,6 +358,12 @@ class Opinion {
       radius_.push_back(r.value("radius", 0.5));
       speed_.push_back(r.value("max_speed", 3.0));
       cooperates_.push_back(r.value("cooperates", true));
+      if (!has_wheels(r)) continue;
+      const json& drive = r["kinematics"];
+      const double ahead = number(drive.at("reference")), most = number(drive.at("max_wheel_speed")), way = most * dt_;
+      radius_.back() += ahead + way * way / (4.0 * (2.0 * ahead - way));
+      speed_.back() = most;
+      tau_ = scenario_.at("braking_time");
     }
     if (scenario_.contains("acceleration")) {
       most_change_ = number(scenario_["acceleration"].at("max")) * dt_;
@@ -363,6 +380,7 @@ class Opinion {
         step(k);
         motion(k);
         if (tau_ > 0.0) braking(k);
+        for (std::size_t i = 0; i < rows_[k].robots.size(); ++i) follow_wheels(k, i);
         for (std::size_t i = 0; i < rows_[k].robots.size(); ++i) decision(k, i);
       }
     }
@@ -378,6 +396,7 @@ class Opinion {
   void wrong(std::size_t row, std::size_t robot, const std::string& what) {
     wrong("row " + std::to_string(row) + " robot " + std::to_string(robot) + ": " + what);
   }
+  static bool has_wheels(const json& robot) { return robot.contains("kinematics"); }
   bool is_formation() const { return scenario_.contains("formation"); }
   bool option(const char* name) const { return header_.at("controller_options").at(name); }
   bool tracks_choice() const {
@@ -434,7 +453,16 @@ class Opinion {
     for (std::size_t i = 0; i < row.robots.size() && k == 0; ++i) {
       const json& r = scenario_["robots"][i];
       const Vec2 v = r.contains("velocity") ? point(r["velocity"]) : Vec2{};
-      if (row.robots[i].position != point(r.at("position")) || row.robots[i].velocity != v) wrong(k, i, "the start");
+      Vec2 place = point(r.at("position"));
+      if (const std::optional<Wheels>& wheels = row.robots[i].wheels; has_wheels(r)) {
+        const double angle = 0.017453292519943295 * number(r.at("heading"));
+        const Vec2 heading{std::cos(angle), std::sin(angle)};
+        place += number(r["kinematics"].at("reference")) * heading;
+        if (!wheels || norm(wheels->heading - heading) > kClose || wheels->left != 0.0 || wheels->right != 0.0)
+          wrong(k, i, "the start of its wheels");
+        if (norm(row.robots[i].position - place) <= kClose) place = row.robots[i].position;
+      }
+      if (row.robots[i].position != place || row.robots[i].velocity != v) wrong(k, i, "the start");
     }
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
       const State& s = row.robots[i];
@@ -521,6 +549,37 @@ class Opinion {
     }
   }
 
+  /// The axle drives as the next row says its wheels ran: does that lead to the next row, within the limits?
+  void follow_wheels(std::size_t k, std::size_t i) {
+    const json& robot = scenario_["robots"][i];
+    const std::optional<Wheels>&from = rows_[k].robots[i].wheels, &to = rows_[k + 1].robots[i].wheels;
+    if (from.has_value() != has_wheels(robot) || to.has_value() != has_wheels(robot)) return wrong(k, i, "wheels");
+    if (!from) return;
+    const json& limits = robot["kinematics"];
+    const double apart = number(limits.at("wheel_separation")), ahead = number(limits.at("reference"));
+    const double speed = 0.5 * (to->left + to->right), turn = (to->right - to->left) / apart;
+    const int parts = 200;
+    const double h = dt_ / parts;
+    double angle = std::atan2(from->heading.y, from->heading.x);
+    Vec2 axle = rows_[k].robots[i].position - ahead * from->heading;
+    for (int p = 0; p < parts; ++p) {
+      const double middle = angle + 0.5 * h * turn;
+      axle += h * speed * Vec2{std::cos(middle), std::sin(middle)};
+      angle += h * turn;
+    }
+    const Vec2 heading{std::cos(angle), std::sin(angle)};
+    if (norm(heading - to->heading) > kClose) wrong(k, i, "the next heading");
+    if (norm(axle + ahead * heading - rows_[k + 1].robots[i].position) > kClose)
+      wrong(k, i, "its wheels lead elsewhere");
+    const double most = number(limits.at("max_wheel_speed")) + kClose;
+    if (std::fabs(to->left) > most || std::fabs(to->right) > most) wrong(k, i, "the speed of a wheel");
+    const double change = number(limits.at("max_wheel_acceleration")) * dt_ + kClose;
+    if (std::fabs(to->left - from->left) > change || std::fabs(to->right - from->right) > change)
+      wrong(k, i, "the acceleration of a wheel");
+    if (std::fabs(turn) > number(limits.at("max_angular_speed")) + kClose) wrong(k, i, "turns too fast");
+    if (speed < -number(limits.at("max_backward_speed")) - kClose) wrong(k, i, "drives back too fast");
+  }
+
   /// Changes of velocity, and ways to brake, alone and together.
   void braking(std::size_t k) {
     constexpr int kSamples = 64;
@@ -529,7 +588,8 @@ class Opinion {
       const mpq_class x = mpq_class(robots[i].chosen.x) - mpq_class(robots[i].velocity.x),
                       y = mpq_class(robots[i].chosen.y) - mpq_class(robots[i].velocity.y);
       const double most = most_change_ * (1.0 + 1e-15);
-      if (x * x + y * y > mpq_class(most) * mpq_class(most)) wrong(k, i, "changes its velocity by too much");
+      if (most > 0.0 && x * x + y * y > mpq_class(most) * mpq_class(most))
+        wrong(k, i, "changes its velocity by too much");
       if (robots[i].status != "optimal") wrong(k, i, "relaxes");
     }
     for (int m = 0; m <= kSamples; ++m) {
@@ -668,7 +728,9 @@ class Opinion {
     if (body.kind == "robot" && line.hard) {
       // Its own limit: a side of the polygon in the disc of its changes.
       const double left = dot(line.normal, s.velocity) - line.offset;
-      if (body.owners.at(0) != i || line.index != i || left < (0.99144 * most_change_ - kClose) * norm(line.normal))
+      const bool is_of_wheels = has_wheels(scenario_["robots"][i]);  // which may cut off more: not audited
+      if (body.owners.at(0) != i || line.index != i ||
+          (!is_of_wheels && left < (0.99144 * most_change_ - kClose) * norm(line.normal)))
         wrong(k, i, "a limit that leaves too little");
       return;
     }

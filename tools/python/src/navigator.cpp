@@ -58,7 +58,8 @@ formation::DifferentialDrive drive_of(const py::dict& kinematics, double radius)
   for (const auto& [name, number] : {std::pair{"wheel_separation", drive.wheel_separation},
                                      {"max_wheel_speed", drive.max_wheel_speed},
                                      {"max_wheel_acceleration", drive.max_wheel_acceleration}})
-    if (!(number > 0.0)) throw ArgumentError(name, std::to_string(number), "a number above 0");
+    if (!(number > 0.0))
+      throw ArgumentError(name, number == 0.0 ? "none, or 0" : std::to_string(number), "a number above 0");
   if (drive.reference == 0.0) drive.reference = 0.5 * drive.wheel_separation;
   drive.body_radius = radius;
   return drive;

@@ -86,7 +86,7 @@ struct NavigatorState {
 struct Twist {
   double linear = 0.0;   ///< m/s, of the axle's centre, > 0 forward
   double angular = 0.0;  ///< rad/s, > 0 to the left
-  WheelSpeeds wheels{};
+  WheelSpeeds wheels{};  ///< the same, m/s
 };
 
 /// Another robot.

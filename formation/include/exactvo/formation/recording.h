@@ -91,7 +91,7 @@ inline bool bodies_gave(const Decision& decision) {
 /// m/s: how fast the wheels of a robot run over the ground.
 struct WheelSpeeds {
   double left = 0.0;   ///< above 0: forward
-  double right = 0.0;  ///< above 0: forward
+  double right = 0.0;  ///< the same
 };
 
 /// What a robot on wheels has beside its reference point, at the start of a step.
