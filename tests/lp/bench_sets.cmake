@@ -41,6 +41,18 @@ if(NOT READS_LINES AND NOT words MATCHES "lines of JSON are read where datasets 
   message(FATAL_ERROR "lines of JSON without datasets: ${words}")
 endif()
 
+# So are those of CSV, a row per half-plane.
+set(table ${WORK}/two_instances.csv)
+file(WRITE ${table} "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset,priority
+first,1,1,0,-2,0,-1,hard
+second,1,1,0,-1,0,2,soft
+")
+execute_process(COMMAND ${BENCH_LP} --instances ${table} --rounds 1
+                RESULT_VARIABLE status OUTPUT_VARIABLE words_of_table ERROR_VARIABLE words)
+if(READS_LINES AND (NOT status EQUAL 0 OR NOT words_of_table MATCHES "file: 2 problems, 1 feasible.*filei: 1 problems, 0 feasible"))
+  message(FATAL_ERROR "CSV: status ${status}, ${words_of_table} ${words}")
+endif()
+
 # What not every solver here takes is refused by its number.
 file(APPEND ${lines} "{\"bound\": {\"box\": [1, 1]}, \"preferred\": [1, 0], \"constraints\": []}\n")
 execute_process(COMMAND ${BENCH_LP} --instances ${lines} --rounds 1 RESULT_VARIABLE status ERROR_VARIABLE words OUTPUT_QUIET)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -229,7 +230,7 @@ std::string two_instances() {
   return std::string("\2\0\0\0", 4) + one + one;
 }
 
-TEST(Lp, WhatIsNeitherJsonNorInstancesIsToldBothFormats) {
+TEST(Lp, WhatIsInNoFormatIsToldAll) {
   const Workplace here;
   const std::pair<std::string, const char*> cases[] = {
       {"hello\n", "line 1, column 1: found \"hello\""},
@@ -243,11 +244,49 @@ TEST(Lp, WhatIsNeitherJsonNorInstancesIsToldBothFormats) {
     here.write("p", bytes);
     const Outcome outcome = here.run("lp - <p");
     EXPECT_EQ(outcome.status, 2) << words;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr(words), HasSubstr("lines of JSON"), HasSubstr("binary instances"),
-                                   HasSubstr("[E_FORMAT_UNKNOWN]")));
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(words), HasSubstr("lines of JSON"), HasSubstr("CSV"),
+                                   HasSubstr("binary instances"), HasSubstr("[E_FORMAT_UNKNOWN]")));
   }
   here.write("p", "[1, 2]\n");
   EXPECT_THAT(here.run("lp p").err, HasSubstr("[E_TYPE]"));
+}
+
+constexpr const char* kHeader = "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset,priority\n";
+
+TEST(Lp, ATableIsTheSameProblemsAsLinesOfJson) {
+  const Workplace here;
+  here.write("p.csv", std::string(kHeader) + "a,2,2,0,-1,0,-0.5,soft\n\na,2,2,0,0,1,0.25,hard\nb,,0,1,,,,\n");
+  here.write(
+      "p.jsonl",
+      "{\"bound\":{\"disc\":2},\"preferred\":[2,0],\"constraints\":[{\"normal\":[-1,0],\"offset\":-0.5,\"priority\":"
+      "\"soft\"},{\"normal\":[0,1],\"offset\":0.25}]}\n{\"preferred\":[0,1],\"constraints\":[]}\n");
+  EXPECT_EQ(here.run("lp p.csv --out a.jsonl").status, 0);
+  EXPECT_EQ(here.run("lp p.jsonl --out b.jsonl").status, 0);
+  EXPECT_EQ(here.read("a.jsonl"), here.read("b.jsonl"));
+  EXPECT_THAT(here.read("a.jsonl"), HasSubstr("0.25"));
+}
+
+TEST(Lp, ATableIsRefusedWithItsLine) {
+  const Workplace here;
+  const std::string header = kHeader;
+  const std::tuple<std::string, const char*, const char*> cases[] = {
+      {"problem,preferred_x\n", "line 1: found no column disc", "[E_KEY_MISSING]"},
+      {"preferred_x,preferred_x\n", "line 1: found two columns preferred_x", "[E_FORMAT_SYNTAX]"},
+      {"speed," + header, "line 1: found", "[E_KEY_UNKNOWN]"},
+      {header + "a,2,2,0,-1,0\n", "line 2: found 6 fields, expected 8", "[E_COUNT]"},
+      {header + "a,2,2,0,x,0,1,\n", "line 2: found", "[E_NUMBER]"},
+      {header + "a,-1,2,0,,,,\n", "line 2: found disc -1, expected 0 to 1e90", "[E_RANGE]"},
+      {header + "a,2,2,0,0,0,1,\n", "line 2: found the normal 0, 0", "[E_RANGE]"},
+      {header + "a,2,2,0,1,0,1,maybe\n", "line 2: found maybe, expected hard or soft", "[E_OPTION]"},
+      {header + "a,2,2,0,1,0,1,\na,3,2,0,1,0,1,\n", "line 3: found another disc or preferred velocity in problem a",
+       "[E_FORMAT_SYNTAX]"}};
+  for (const auto& [text, words, code] : cases) {
+    here.write("p.csv", text);
+    const Outcome outcome = here.run("lp p.csv");
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(words), HasSubstr(code))) << text;
+    EXPECT_EQ(outcome.out, "");
+  }
 }
 
 TEST(Lp, BytesAfterTheInstancesAreRefusedWithTheirPlace) {

@@ -75,7 +75,7 @@ class Kernel {
     exponent_ = std::ilogb(disc);
     if (exponent_ > kMostExponent || exponent_ < -kMostExponent) return false;
     unit_ = std::ldexp(1.0, -exponent_);
-    inward_ = slack_units * kInwardSlack * unit_ * largest_speed(problem_);
+    inward_ = slack_units > 0.0 ? slack_units * kInwardSlack * unit_ * largest_speed(problem_) : 0.0;
     shortest_ = kInfinity;
     longest_ = 0.0;
     if (!lay_out(part)) return false;

@@ -71,7 +71,8 @@ const char* name(Status status) {
 
 double largest_speed(const Problem& problem) {
   const SpeedBound& b = problem.bound;
-  const double bounded = std::min(b.disc, std::hypot(b.box_x, b.box_y));
+  const bool has_box = std::isfinite(b.box_x) && std::isfinite(b.box_y);
+  const double bounded = has_box ? std::min(b.disc, std::hypot(b.box_x, b.box_y)) : b.disc;
   if (std::isfinite(bounded)) return std::max(bounded, std::numeric_limits<double>::min());
   double speed = std::max(norm(problem.preferred), std::numeric_limits<double>::min());
   for (const Constraint& c : problem.constraints)
