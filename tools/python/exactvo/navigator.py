@@ -59,7 +59,8 @@ class Navigator:
     arrival_tolerance   m: within this of the last goal it has arrived
     neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
-    braking_time        s, with an acceleration, the same of all: None: 1.1 max_speed / acceleration
+    braking_time        s, with an acceleration, the same of all: None: 1.1 max_speed / acceleration, and neighbours of
+                        another max_speed are refused. Horizons that are not given are at least this long
 
     Raises `ArgumentError`.
     """
