@@ -281,10 +281,10 @@ class KinematicSteps final : public Stepper {
   }
 
   /// Its velocity, and as much of what it lacks to the preferred one as it lacks for its acceleration alone: of what
-  /// was within its reach in the last step, the share that it took.
+  /// was within its reach in the last step, the share that it took. (Turns on wheels are tight: there all counts.)
   Vec2 unhindered(std::size_t i, Vec2 preferred) const {
     const double most = acceleration_of(scenario_, i) * scenario_.time_step, wanted = norm(preferred - before_[i]);
-    if (!(wanted > most)) return velocities_[i];
+    if (wheels_[i] || !(wanted > most)) return velocities_[i];
     const Vec2 within_reach = (most / wanted) * (preferred - before_[i]);
     const double taken = dot(velocities_[i] - before_[i], within_reach) / (most * most);
     return velocities_[i] + std::clamp(taken, 0.0, 1.0) * (preferred - velocities_[i]);

@@ -62,7 +62,8 @@ class Navigator:
     neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
     braking_time        s, the same of all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
-                        max_wheel_acceleration
+                        max_wheel_acceleration, and with an acceleration neighbours of another max_speed are refused.
+                        Horizons that are not given are at least this long
     kinematics          two wheels on one axle, by the names of a scenario (docs/guide/wheels.md): {"wheel_separation": 0.16,
                         "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}. `radius` is then that of the body about the
                         centre of the axle, `max_speed` is not used, and goals are of the reference point
