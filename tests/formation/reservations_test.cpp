@@ -425,6 +425,35 @@ TEST(Reservations, Property5_AStateThatWasPutAndGotGoesOnWithTheSameBits) {
   EXPECT_GT(reserved_anew, 50u);
 }
 
+TEST(Reservations, Property5_AlsoWhereRobotsAreNotOnTheirWays) {
+  test::SeededRandom random(test::seed_of_run(6));
+  const Scenario s = exchange_of_places(7, 7, 1.3, random);
+  ReservationDrive drive(s);
+  Reservations known(open_space(), s.robots.size(), drive.time_step(), 0.5, WhoReserves::all);
+  std::size_t waiting = 0;
+  for (int step = 0; step < 200; ++step) {
+    drive.look();
+    drive.reservations().look(drive.robots());
+    std::vector<RobotUnderWay> robots = drive.robots();
+    if (step % 5 == 4)
+      for (RobotUnderWay& r : robots) r.position = r.position + random.in_box(0.01);
+    std::istringstream in(bytes_of(known));
+    Reservations fresh(open_space(), s.robots.size(), drive.time_step(), 0.5, WhoReserves::all);
+    crowd::SnapshotReader from(in, "reservations");
+    fresh.get(from);
+    known.look(robots);
+    fresh.look(robots);
+    ASSERT_EQ(bytes_of(known), bytes_of(fresh)) << step;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      ASSERT_EQ(known.preferred()[i], fresh.preferred()[i]) << step << ", robot " << i;
+      const double left = norm(known.places()[i] - robots[i].position);
+      waiting += left > 0.3 && norm(known.preferred()[i]) < 0.5 * robots[i].max_speed;
+    }
+    drive.drive();
+  }
+  EXPECT_GT(waiting, 100u);
+}
+
 TEST(Reservations, ACutStateIsRefused) {
   Reservations reservations(open_space(), 3, 0.1, 0.5), other(open_space(), 4, 0.1, 0.5);
   const std::string bytes = bytes_of(reservations);
