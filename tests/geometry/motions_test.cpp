@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Motions, AgainstTheOracle,
                          testing::Values(std::pair{MotionKind::discs, 10000},
                                          std::pair{MotionKind::disc_and_edges, 5000},
                                          std::pair{MotionKind::curved_discs, 2500},
-                                         std::pair{MotionKind::curved_edges, 800}, std::pair{MotionKind::bodies, 1000}),
+                                         std::pair{MotionKind::curved_edges, 800}, std::pair{MotionKind::bodies, 500}),
                          [](const auto& info) {
                            std::string name = name_of(info.param.first);
                            for (char& c : name) c = c == '-' ? '_' : c;

@@ -161,6 +161,14 @@ def test_a_run_brings_its_radii_obstacles_and_ids(tmp_path, program):
         exactvo.check(tmp_path / "none")
 
 
+def test_moving_obstacles_of_a_run_are_left_out_and_the_answer_says_so(tmp_path):
+    cart = {"id": "cart", "polygon": [[5, 5], [6, 5], [6, 6], [5, 6]], "path": [[0, 0], [1, 0]], "speed": 0.5}
+    run = exactvo.simulate({**TWO, "moving_obstacles": [cart]})
+    run.write(tmp_path / "recording.jsonl")
+    for given in (run, tmp_path):
+        assert exactvo.check(given).notes == ("1 moving obstacle left out",)
+
+
 def test_unknown_cells_of_a_map_are_free_or_blocked_and_the_answer_says_which(tmp_path):
     (tmp_path / "map.pgm").write_bytes(b"P5 4 4 255\n" + bytes([254, 254, 205, 254] * 4))
     (tmp_path / "map.yaml").write_text(

@@ -131,15 +131,15 @@ TEST(MonitorVerb, BadLinesAreAnsweredWithACodeAndTheNextIsRead) {
 }
 
 TEST(MonitorVerb, ErrorsNameTheKeyOrTheOption) {
-  const std::vector<json> all = answers(
-      R"({"pose": [0, 0, 0], "velocity": [1, 0], "movers": [{"position": [5, 5], "radius": 1, "max_speed": 1},)"
-      R"( {"position": [5, 5], "radius": -1, "max_speed": 1}]})"
-      "\n"
-      R"({"trajectory": [[0, 0, 0, 0], [1, 1, 0, 0], [1, 2, 0, 0]]})"
-      "\n"
-      R"({"pose": [0, 0, 0], "velocity": [1, "x"]})"
-      "\n",
-      1);
+  const std::vector<json> all =
+      answers(R"({"pose": [0, 0, 0], "velocity": [1, 0], "movers": [{"position": [5, 5], "radius": 1, "max_speed": 1},)"
+              R"( {"position": [5, 5], "radius": -1, "max_speed": 1}]})"
+              "\n"
+              R"({"trajectory": [[0, 0, 0, 0], [1, 1, 0, 0], [1, 2, 0, 0]]})"
+              "\n"
+              R"({"pose": [0, 0, 0], "velocity": [1, "x"]})"
+              "\n",
+              1);
   ASSERT_EQ(all.size(), 3u);
   const json radius{{"code", "E_RANGE"},
                     {"place", "line 1, /movers/1/radius"},
