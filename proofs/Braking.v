@@ -87,7 +87,7 @@ Proof.
   assert (hk : 0 <= 1 - st / t <= 1).
   { assert (0 <= st / t <= 1); [|lra]. split; [apply Rmult_le_pos; [lra|left; now apply Rinv_0_lt_compat]|].
     apply Rmult_le_reg_r with t; [exact pt|]. unfold Rdiv. rewrite Rmult_assoc, Rinv_l by lra. lra. }
-  rewrite forallb_forall in slow. split.
+  rewrite forallb_forall in slow. split; [unfold st, t in *; lra|]. split.
   - intros d hd. specialize (slow d hd). apply andb_true_iff in slow. destruct slow as [c v]. apply at_most_length_ok in c, v.
     rewrite Q2R_mul in *. rewrite real_sub in c. split; [exact c|]. intro n. rewrite !velocity_left. fold st t. fold st in c. fold t in v.
     set (k := 1 - st / t) in *. unfold no_longer, dot, sub, scale in *; simpl in *. set (vx := fst (real (chosen d))) in *. set (vy := snd (real (chosen d))) in *.

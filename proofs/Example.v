@@ -92,7 +92,7 @@ Example another_velocity_farthest : farthest program_farthest
      pull := [d 1 0]; mu := d 0 0; against := [d 0 0] |} = false.
 Proof. vm_compute. reflexivity. Qed.
 
-(* --- A region without interior: one velocity alone is left --- *)
+(* --- A region without interior: a point of it --- *)
 Definition needle : program := {| disc := Some (d 2 0); box_x := None; box_y := None; wish := (d 1 0, d 0 0);
   rows := [{| row_normal := (d 1 0, d 0 0); row_offset := d 1 1; soft := false |};
            {| row_normal := (d (-1) 0, d 0 0); row_offset := d (-1) 1; soft := true |}] |}.

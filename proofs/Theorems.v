@@ -24,7 +24,7 @@ Inductive shape :=
 | Polygon (vertices : list point)                       (* their hull: segments are polygons of two vertices *)
 | Disc (centre : point) (radius : Q)
 | Ellipse (centre : point) (l11 l21 l22 : Q).           (* the unit disc under [l11 0; l21 l22], moved to the centre *)
-(* The same of the disc of radius sqrt(m). *)
+(* The image of the disc of radius sqrt(m) under the same map. *)
 Definition in_ellipse (m : R) (c : point) (l11 l21 l22 : Q) (x : vec) := exists a b,
   a * a + b * b <= m /\ x = add (real c) (Q2R l11 * a, Q2R l21 * a + Q2R l22 * b).
 Definition inside (b : shape) (x : vec) : Prop := match b with
@@ -123,6 +123,7 @@ Definition gentle (step tau : R) (d : driver) :=        (* its velocity changes 
   no_longer (Q2R (its_most d) * step) (sub (real (chosen d)) (real (had d))) /\
   forall n, no_longer (Q2R (its_most d) * step) (sub (snd (braked step tau d (S n))) (snd (braked step tau d n))).
 Definition can_brake (os : list obstacle) (poles : list pole) (step tau : Q) (ds : list driver) :=
+  0 < Q2R step <= Q2R tau /\
   (forall d, In d ds -> gentle (Q2R step) (Q2R tau) d) /\
   forall n s, 0 <= s <= 1 -> let there := fun d => while_braking (Q2R step) (Q2R tau) d n s in
     ForallOrdPairs (fun a b => apart (Q2R (its_radius a) + Q2R (its_radius b)) (there a) (there b)) ds /\

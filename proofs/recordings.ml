@@ -69,6 +69,15 @@ let certificates file text =
   Printf.printf "%s, %d valid%s\n" (counted (List.length all) "certificate") valid (if !none > 0 then Printf.sprintf ", %d none" !none else "");
   valid = List.length all
 
+(* Whether the velocity of a choice breaks no half-plane by more than a rounding error: 2^-48 of the largest terms. *)
+let nearly program c =
+  let size r = Q.add (Q.abs (to_q (fst r.row_normal))) (Q.abs (to_q (snd r.row_normal))) in
+  let speed = Q.add (Q.abs (to_q (fst c.velocity))) (Q.abs (to_q (snd c.velocity))) in
+  let unit = List.fold_left (fun m r -> Q.max m (Q.add (Q.mul (size r) speed) (Q.abs (to_q r.row_offset)))) Q.zero program.rows in
+  let give = Q.div_2exp unit 48 in
+  let lowered r = { r with row_offset = of_q (Q.sub (to_q r.row_offset) give) } in
+  Checked.pinned { program with rows = List.map lowered program.rows } c.velocity
+
 (* --- Answers of `exactvo lp`, beside the problems that they answer --- *)
 let pair_of v = match Json.arr v with [x; y] -> (Json.num x, Json.num y) | _ -> raise Json.Bad
 let answer p a =
@@ -125,8 +134,9 @@ let answer p a =
         if Q.sign w = 0 then raise Json.Bad;
         (Q.div (Q.sub (Q.mul c e) (Q.mul b f)) w, Q.div (Q.sub (Q.mul a f) (Q.mul c d)) w)
       | _ -> raise Json.Bad in
+    let must_hold = if contradicts then { program with rows = List.filter (fun r -> not r.soft) program.rows } else program in
     (not contradicts || Checked.contradicted program choice)
-    && Checked.pinned (if contradicts then { program with rows = List.filter (fun r -> not r.soft) program.rows } else program) (of_q x, of_q y)
+    && Checked.pinned must_hold (of_q x, of_q y) && nearly must_hold choice
   | _ -> raise Json.Bad
 
 let answers file text problems =
@@ -150,7 +160,8 @@ let answers file text problems =
 (* --- Recordings --- *)
 type tally = { mutable asked : int; mutable robots_apart : int; mutable edges_clear : int; mutable first : string option }
 
-(* Where robots were outside of all polygons when they came, step says that they stay so: `anew` asks it. *)
+(* Whether the motions are proven clear of each other and of all obstacles. Robots that are outside of all polygons at
+   their beginning stay so by `step_sound`; where it is not known that they are (~anew), that is asked too. *)
 let take tally place ~anew os discs ms =
   tally.asked <- tally.asked + 1;
   let all = Checked.step os discs ms && (not anew || Checked.starts os ms) in
@@ -158,7 +169,8 @@ let take tally place ~anew os discs ms =
   if robots then tally.robots_apart <- tally.robots_apart + 1;
   if all then tally.edges_clear <- tally.edges_clear + 1
   else if tally.first = None then
-    tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an obstacle" else ": two robots are not proven apart")
+    tally.first <- Some (place ^ if robots then ": a robot is not proven clear of an obstacle" else ": two robots are not proven apart");
+  all
 
 let report t what rows robots obstacles not_covered incomplete =
   Printf.printf "%s of %s, %s: %d asked, in %d no two robots overlap, in %d also no robot overlaps %s\n"
@@ -172,7 +184,7 @@ let recording file text =
   let scenario = ref Json.Null and obstacles = ref [] and discs = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
   let t = { asked = 0; robots_apart = 0; edges_clear = 0; first = None } and decisions = Decisions.start () in
-  let brakes = ref None in
+  let brakes = ref None and outside = ref false in
   let prepare b =
     bits := b;
     let q = over b in
@@ -200,11 +212,11 @@ let recording file text =
     let here = let q = over !bits in List.map (fun (x, y) -> (q x, q y)) ps in
     if List.length ps <> !robots then raise Json.Bad;
     (* The row before may have been read with another denominator: the checkers take any. *)
-    let before, anew = match !last with Some b when not !curved -> (b, false) | _ -> (here, true) in
+    let before, anew = match !last with Some b when not !curved -> (b, not !outside) | _ -> (here, true) in
     let moves = List.rev (List.rev_map2 (fun size (from, to0) -> { from; to0; size }) !sizes (List.combine before here)) in
-    take t (Printf.sprintf "row %d" !rows) ~anew !obstacles !discs moves;
+    outside := take t (Printf.sprintf "row %d" !rows) ~anew !obstacles !discs moves;
     Decisions.row decisions !scenario Json.(arr (get "robots" r));
-    Option.iter (fun b -> Braking.row b Json.(arr (get "robots" r))) !brakes;
+    Option.iter (fun b -> Braking.row b ~outside:!outside Json.(arr (get "robots" r))) !brakes;
     last := Some here; incr rows in
   List.iteri (fun i l ->
     let bad () = refuse file (Printf.sprintf "line %d" (i + 1)) "a line that is not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX" in
@@ -280,7 +292,7 @@ let crowd file s =
               let here = Array.init n (fun i -> (at x.(i), at y.(i))) in
               (* Of rows of consecutive steps the motion, of others its end. *)
               let before, anew = match last with Some (j, ps) when k = j + 1 -> (ps, false) | _ -> (here, true) in
-              take t (Printf.sprintf "step %d" k) ~anew walls [] (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) }));
+              ignore (take t (Printf.sprintf "step %d" k) ~anew walls [] (List.init n (fun i -> { from = before.(i); to0 = here.(i); size = sizes.(i) })));
               rows (count + 1) (Some (k, here)))
         | 'E' -> (match block (fun () -> u64 ()) with
             | None -> cut ()
