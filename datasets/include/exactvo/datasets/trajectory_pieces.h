@@ -23,7 +23,8 @@ class TrajectoryPieces {
     /// `cubic` takes the rows' velocities; where a row has none, that of a Catmull-Rom spline, and of the chord at the
     /// first and the last row of a stay.
     geometry::Between between = geometry::Between::straight;
-    double longest_gap = std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer is away
+    double longest_gap =
+        std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer counts as absent
   };
   /// Gets an agent's number and its next piece.
   using Take = std::function<void(std::size_t agent, const geometry::Motion& piece)>;

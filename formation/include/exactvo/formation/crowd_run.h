@@ -35,8 +35,8 @@ namespace exactvo::formation {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
-/// Ranks have come to other states than each other: at a snapshot, or at the end. Their machines' C libraries round the
-/// elementary functions differently, or one of them is broken.
+/// The ranks computed different states, seen at a snapshot or at the end: the C libraries of their machines round the
+/// elementary functions differently, or a machine is broken.
 class RanksDiffer : public std::runtime_error {
  public:
   RanksDiffer() : std::runtime_error("ranks have come to different states of the same run") {}  ///< Says just that.

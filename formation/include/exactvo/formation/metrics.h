@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Measurements of a run, from its recording alone. SI units. Nothing where a value does not apply.
+/// Measurements of a run, from its recording alone. SI units. A value that does not apply is empty.
 ///
 /// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
 /// ends, where the integrator has no closed form) and of what moves beside the robot, round its corners and through
@@ -45,7 +45,7 @@ struct Collision {
   bool relaxed = false;  ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
 };
 
-/// What one robot's run came to.
+/// The results of one robot.
 struct RobotMetrics {
   std::string id;  ///< the robot's
   /// At its last goal, or in a formation at its slot with the leader at its end, within the scenario's tolerance.
@@ -65,9 +65,9 @@ struct FormationCourse {
   double largest_error_at = 0.0;       ///< s
   std::string largest_error_of;        ///< the robot's id
   std::optional<double> first_formed;  ///< s: when all were first within the scenario's arrival tolerance
-  std::optional<double> formed_since;  ///< s: since when they are to the end
-  double share_formed = 0.0;           ///< of the rows from the second on: in which all were within that tolerance
-  double rms_error = 0.0;              ///< m, root mean square of all robots' distances from their slots in these rows
+  std::optional<double> formed_since;  ///< s: from then to the end all are within it
+  double share_formed = 0.0;  ///< share of the rows, from the second on, in which all robots were within that tolerance
+  double rms_error = 0.0;     ///< m, root mean square of all robots' distances from their slots in these rows
 };
 
 /// Joint plans of robots that waited for each other (liveness).
@@ -83,11 +83,11 @@ struct RobotMarginCourse {
   std::size_t robots = 0;     ///< robots of such pairs
 };
 
-/// What a run came to.
+/// The results of a run.
 struct Metrics {
   std::size_t arrived = 0;   ///< robots that are at their goals at the end
   bool all_arrived = false;  ///< every robot's `arrived`
-  /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
+  /// s: median over all robots; a robot that did not arrive counts as last; empty if the median is such a robot.
   std::optional<double> median_arrival_time;
   std::optional<double> last_arrival_time;         ///< s
   std::optional<double> min_obstacle_clearance;    ///< m, swept; 0 in contact
@@ -157,7 +157,8 @@ class Evaluator {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A gap of less than this share of the margin has not kept it: robots come to it from farther away, ever more slowly.
+/// A gap below this share of the margin breaks the margin. The share is below 1 because robots approach the margin ever
+/// more slowly.
 inline constexpr double kMarginKept = 0.99;
 
 /// m. A clearance below `-kContactDepth` is a contact. Certified clearances are too low by at most 4 * 2^-46 of the
@@ -170,19 +171,19 @@ bool touched(const std::optional<double>& clearance);
 /// An obstacle or another robot was touched, by the swept clearances.
 bool touched(const Metrics& metrics);
 
-/// m and m/s: a formation that ends nearer to its slots, or to the leader's velocity, has formed.
+/// m and m/s: a formation has formed if its final position (or velocity) error is below this.
 inline constexpr double kFormed = 1e-6;
 
-/// Proven: every swept clearance is above 0 and every half-plane was certified. More than not to have touched, which
-/// leaves out what rounding alone could explain.
+/// Proven: every swept clearance is above 0 and every half-plane was certified. This is stricter than
+/// `!touched`, which ignores overlaps that rounding could explain.
 bool is_safe(const Metrics& metrics);
 
 /// A detour that is worth a word in the outcome of a formation: longer than 1 m and than this share of the direct way.
 inline constexpr double kLongDetour = 0.25;
 
-/// What `Recording::diverged` is of a run that ends with the last row: a robot that still moves, or whose leader does,
-/// ends farther from its slot than any began, or the state left every bound. Who rests elsewhere while the leader rests
-/// too has not diverged: it is stuck (stuck.h). REQUIRES: a row.
+/// `Recording::diverged` for a run that ends with the last row: a robot that still moves, or whose leader does,
+/// ends farther from its slot than any began, or the state left every bound. A robot that rests elsewhere while the
+/// leader rests is stuck (stuck.h), not diverged. REQUIRES: a row.
 bool has_diverged(const Recording& recording);
 
 /// "obstacle", "moving obstacle" or "robot".

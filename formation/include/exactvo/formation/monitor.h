@@ -59,8 +59,8 @@ inline constexpr int kMonitorLooks = 64;
 struct MonitorSetup {
   /// In the body's axes (x ahead, y left), from the point that `Pose::at` means. Parts are convex hulls with a radius.
   geometry::RigidBody footprint = geometry::disc_body(0.3);
-  double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: by which the robot can certainly brake
-  double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: by which it can certainly stop turning
+  double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: deceleration that the robot always reaches
+  double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: angular deceleration that it always reaches
   double latency = 0.1;                  ///< s, >= 0: from a decision to its effect
   double period = 0.1;                   ///< s, >= 0: from a decision to the next
   double margin = 0.0;                   ///< m, >= 0: localisation, map and drive are off by no more than this together

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What a run of robots with goals came to, whatever decided (simulation.h, crowd_run.h).
+/// The results of a run of robots with goals, whatever decided (simulation.h, crowd_run.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,7 @@ struct CrowdMetrics {
   std::uint64_t digest = 0;        ///< Crowd::digest at the end
 };
 
-/// What a run came to. Times in s, lengths in m. The counts of a crowd are 0 where the run is not on one.
+/// The results of a run. Times in s, lengths in m. The crowd counts are 0 in a run without a crowd.
 struct RunReport : CrowdMetrics {
   std::string outcome;      ///< how it ended, in words, for people
   std::size_t robots = 0;   ///< of the scenario
