@@ -67,7 +67,7 @@ class TrajectoryPieces {
   /// From the agent's last row to this one.
   void go_on(std::size_t agent, const TrajectoryRow& row);
   void put_cubic(std::size_t agent, geometry::Vec2 end_velocity);
-  /// Ends a stay: of one row, and of data that is held, its last row is a piece of its own.
+  /// Ends a stay. If it has one row, or the data is held, its last row is a piece of its own.
   void close(std::size_t agent);
   void hand_on(double now);
 

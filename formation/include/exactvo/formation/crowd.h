@@ -20,8 +20,8 @@
 ///  (1) Two robots that do not overlap at the beginning of a step do not overlap at any moment of it, kept or not, at
 ///  any
 ///      density (exact contact is no overlap). Exact, for `CrowdOptions::certified`; radii are rounded up to whole
-///      lattice steps. Of two that overlap by more than 8 of them nothing is promised until they are apart; less is
-///      the rounding of places and radii, and such two do not come nearer.
+///      lattice steps. Two robots that overlap by more than 8 lattice steps have no promise until they are apart;
+///      a smaller overlap is the rounding of places and radii, and such two do not come nearer.
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
 ///      pair needs.
 ///  (3) |velocity| <= max_speed, exactly.

@@ -44,10 +44,10 @@ class RanksDiffer : public std::runtime_error {
 
 /// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
 /// where one leaves the lattice or two start in one place, and `bad_snapshot` where the run cannot go on from
-/// `SimulationOptions::resume_from`; RanksDiffer; AnotherRankFailed. What ranks other than the first return of arrivals
-/// and routes is not known there. Of `options` it reads guidance, liveness, threads, progress, steering and those of a
-/// crowd. With a user's steering robots reserve no places and do not turn to the right for each other. REQUIRES: no
-/// half-planes of a user, and neither rvo nor hrvo; the other methods are taken for orca.
+/// `SimulationOptions::resume_from`; RanksDiffer; AnotherRankFailed. Only the first rank returns arrivals
+/// and routes. The run reads from `options` guidance, liveness, threads, progress, steering and those of a crowd. With
+/// a user's steering robots reserve no places and do not turn to the right for each other. REQUIRES: no half-planes of
+/// a user, and neither rvo nor hrvo; the other methods are taken for orca.
 RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, RunSink* sink = nullptr);
 
 }  // namespace exactvo::formation

@@ -53,8 +53,8 @@ struct RobotMetrics {
   std::optional<double> arrival_time;            ///< s
   double path_length = 0.0;                      ///< m
   std::optional<double> min_obstacle_clearance;  ///< m, swept: to the robot's rim, negative is penetration
-  /// m, how much longer its path is than the direct way: from its start straight to its goals, through walls too, of a
-  /// robot that arrived; in a formation from its start to its slot and on with the leader. Never below 0.
+  /// m, how much longer its path is than the direct way, for a robot that arrived: from its start straight to its
+  /// goals, through walls too; in a formation from its start to its slot and on with the leader. Never below 0.
   std::optional<double> detour = std::nullopt;
   std::optional<double> largest_slot_error = std::nullopt;  ///< m, in a formation, from the second row on
 };
@@ -92,7 +92,7 @@ struct Metrics {
   std::optional<double> last_arrival_time;         ///< s
   std::optional<double> min_obstacle_clearance;    ///< m, swept; 0 in contact
   std::optional<double> min_robot_clearance;       ///< m, swept; 0 in contact
-  std::optional<RobotMarginCourse> robot_margin;   ///< of several robots that are asked to keep one
+  std::optional<RobotMarginCourse> robot_margin;   ///< set for several robots with a margin to keep
   std::optional<double> formation_position_error;  ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
   std::optional<double> formation_velocity_error;  ///< m/s, at the end
   std::optional<double> leader_arrival_time;       ///< s
@@ -103,19 +103,19 @@ struct Metrics {
   std::size_t active_set_switches = 0;  ///< decisions whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
   std::size_t uncertified_half_planes = 0;          ///< half-planes of all decisions that could not be certified
-  std::optional<CrowdMetrics> crowd;                ///< of a run whose decisions are not kept; else none
+  std::optional<CrowdMetrics> crowd;                ///< set if the run does not keep decisions
   std::size_t steps = 0;                            ///< rows but the last
   double time = 0.0;                                ///< s, simulated
   double wall_time = 0.0;                           ///< s
   std::vector<RobotMetrics> robots;                 ///< in the order of the scenario
-  std::optional<LyapunovSummary> lyapunov;          ///< of a formation
-  std::optional<FormationCourse> formation_course;  ///< of a formation
+  std::optional<LyapunovSummary> lyapunov;          ///< set for a formation
+  std::optional<FormationCourse> formation_course;  ///< set for a formation
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
   std::vector<std::string> warnings;      ///< the recording's
-  std::vector<std::string> not_measured;  ///< what was not, and why, in words
-  std::optional<PlanMetrics> plans;       ///< where robots may go by plan
-  std::optional<RoutesCourse> routes;     ///< where robots go along routes
+  std::vector<std::string> not_measured;  ///< what was not measured, and why, in words
+  std::optional<PlanMetrics> plans;       ///< set if robots may follow plans
+  std::optional<RoutesCourse> routes;     ///< set if robots follow routes
   std::vector<std::string> deadlock;      ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
   std::vector<std::string> stuck;         ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
@@ -126,14 +126,14 @@ Metrics measure(const Scenario& scenario, const Recording& recording);
 /// The metrics with what they are made from.
 struct Evaluation {
   Metrics metrics;                    ///< of the whole run
-  std::vector<LyapunovRow> lyapunov;  ///< a row for every row, of a formation; else empty
-  std::vector<StuckReport> stuck;     ///< of every robot that stopped elsewhere
+  std::vector<LyapunovRow> lyapunov;  ///< one for every row of a formation; else empty
+  std::vector<StuckReport> stuck;     ///< one for every robot that stopped elsewhere
 };
 
 /// `measure`, `lyapunov_along` and `explain_stuck` in one pass, nothing computed twice.
 Evaluation evaluate(const Scenario& scenario, const Recording& recording);
 
-/// The same of a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
+/// The same for a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
 /// grow with the run.
 class Evaluator {
  public:
@@ -166,7 +166,7 @@ inline constexpr double kMarginKept = 0.99;
 /// not reported.
 inline constexpr double kContactDepth = 1e-9;
 
-/// Whether a clearance is a contact; an empty one, of a scene without anything to touch, is none.
+/// Whether a clearance is a contact. An empty one, from a scene without anything to touch, is not.
 bool touched(const std::optional<double>& clearance);
 /// An obstacle or another robot was touched, by the swept clearances.
 bool touched(const Metrics& metrics);

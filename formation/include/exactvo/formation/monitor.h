@@ -77,7 +77,7 @@ struct Mover {
 /// A constant twist in the body's axes, or a velocity in the world's with a heading that stays.
 struct Command {
   geometry::Twist twist;       ///< m/s, rad/s
-  bool in_world_axes = false;  ///< of the velocity; then turn must be 0
+  bool in_world_axes = false;  ///< the velocity is in world axes; then turn must be 0
 };
 
 /// A piece of a trajectory.
@@ -155,7 +155,7 @@ class Monitor {
   /// The largest share of a command that is found to be clear. Throws MonitorError.
   MonitorVerdict judge(const geometry::Pose& pose, const Command& command, const std::vector<Mover>& movers = {});
 
-  /// The same of a trajectory: its first pose is where the robot is. Throws MonitorError.
+  /// The same for a trajectory: its first pose is the robot's place. Throws MonitorError.
   MonitorVerdict judge(const std::vector<TimedPose>& trajectory, const std::vector<Mover>& movers = {});
 
   /// The way of the last command or trajectory at a share of it, braking included; none before. Allocates.

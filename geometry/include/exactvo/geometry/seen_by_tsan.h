@@ -15,7 +15,8 @@ namespace exactvo::geometry {
 #if defined(__SANITIZE_THREAD__)
 /// Addresses to speak of; what stands there says nothing.
 inline char tasks_given, tasks_done;
-/// Before tasks are handed out; once more after it, where they may wait for long: who wrote what is forgotten.
+/// Call before tasks are handed out, and once more after it if they may wait for long: ThreadSanitizer forgets old
+/// writers.
 inline void gives_tasks() {
   __tsan_release(&tasks_given);
 }
@@ -34,7 +35,7 @@ inline void gives_tasks() {}
 inline void has_waited() {}
 /// Nothing, in a build without ThreadSanitizer.
 struct TaskAtWork {
-  /// Not `= default`: nobody reads the object, and compilers would say so.
+  /// Not `= default`: no code reads the object, and compilers would warn.
   TaskAtWork() {}
 };
 #endif
