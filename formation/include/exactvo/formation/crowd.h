@@ -257,7 +257,7 @@ class Crowd {
   /// At the place of the lattice nearest to `position`, at the velocity of the lattice that is nearest among those
   /// within the kind's speed limit. |velocity| <= max_speed. O(1); two robots in one place are found by `step`.
   RobotId add_robot(Vec2 position, KindId kind = 0, Vec2 velocity = {});
-  /// Memory for so many, where it is known how many there will be.
+  /// Reserves memory for this many robots, for callers that know their number.
   void reserve(std::size_t robots);
   /// O(1), but O(n) the first time after a step.
   void remove_robot(RobotId robot);

@@ -52,12 +52,12 @@ namespace exactvo::formation {
 /// m: the footprint is grown by this much and may go this much deeper where it is in contact.
 inline constexpr double kMonitorSlack = 1e-9;
 
-/// At so many moments of an arc, evenly spaced or closer, it is looked whether a contact is left.
+/// The monitor checks at this many moments of an arc, evenly spaced or closer, whether the robot has left a contact.
 inline constexpr int kMonitorLooks = 64;
 
 /// The robot and what stands still.
 struct MonitorSetup {
-  /// In the body's axes (x ahead, y left), from the point that `Pose::at` means. Parts are convex hulls with a radius.
+  /// In the body's axes (x ahead, y left), with `Pose::at` at the origin. Parts are convex hulls with a radius.
   geometry::RigidBody footprint = geometry::disc_body(0.3);
   double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: deceleration that the robot always reaches
   double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: angular deceleration that it always reaches

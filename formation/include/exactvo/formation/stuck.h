@@ -54,7 +54,8 @@ struct StuckReport {
 /// leader is still under way. REQUIRES: a recording of this scenario.
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording);
 
-/// The same of rows that come one after the other: keeps the last two, where it ended and what was decided last.
+/// The same for rows that come one after the other. It keeps the last two rows: where the run ended, and the last
+/// decisions.
 class StuckWatch {
  public:
   /// `scenario` must outlive the watch.

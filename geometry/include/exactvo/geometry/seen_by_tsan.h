@@ -3,8 +3,8 @@
 
 /// \file
 /// Tells ThreadSanitizer of an order that it cannot see, since the system's oneTBB is not instrumented: tasks see what
-/// was there when they were handed out, and whoever waits for them sees what they left. Tasks stay unordered among
-/// themselves, so that a race between two of them is reported. Nothing in any other build.
+/// was there when they were handed out, and a thread that waits for them sees what they left. Tasks stay unordered
+/// among themselves, so that a race between two of them is reported. Nothing in any other build.
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>

@@ -89,7 +89,7 @@ class FreeVelocities {
   /// (m/s)^2. Certified.
   geometry::Bracket area() const;
 
-  /// F has at least so many connected components: pieces of `outer` that hold a piece of `inner`. Certified; parts
+  /// F has at least this many connected components: pieces of `outer` that hold a piece of `inner`. Certified; parts
   /// thinner than the bracket may make more.
   std::size_t least_components() const;
 
