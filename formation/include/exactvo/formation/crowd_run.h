@@ -39,7 +39,7 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 /// elementary functions differently, or a machine is broken.
 class RanksDiffer : public std::runtime_error {
  public:
-  RanksDiffer() : std::runtime_error("ranks have come to different states of the same run") {}  ///< Says just that.
+  RanksDiffer() : std::runtime_error("the ranks computed different states of the same run") {}  ///< Says just that.
 };
 
 /// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
