@@ -38,7 +38,7 @@ TEST_F(GraphFormats, ArgumentsOfJtsCasesAreRead) {
 TEST_F(GraphFormats, HexadecimalWkbOfEitherByteOrderAndWithHeights) {
   const std::string little = "0102000000020000000000000000000000000000000000F03F00000000000000400000000000000840";
   const std::string big = "000000000200000002000000000000000000000000000000003FF00000000000003FF0000000000000";
-  // PostGIS's flag for Z; then ISO's thousand, and a multipolygon that claims 2^32 - 1 parts.
+  // PostGIS's flag for Z. Below: a multipolygon that claims 2^32 - 1 parts.
   const std::string heights =
       "01020000800200000000000000000000000000000000000000000000000000F03F000000000000F03F000000000000F03F000000000000F0"
       "3F";

@@ -101,7 +101,7 @@ std::string nested_holes(int count) {
   return all;
 }
 
-/// Beside one another, each a triangle.
+/// side x side triangular holes, side by side.
 std::string many_holes(int side) {
   std::string all;
   for (int k = 0; k < side * side; ++k) {

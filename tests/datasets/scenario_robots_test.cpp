@@ -122,7 +122,7 @@ TEST(ScenarioRobots, ACircleWithoutARadiusHasRoomForItsRobots) {
       EXPECT_NEAR(gap_on(s), 2.0 * radius, 1e-9 * radius * count);
       EXPECT_NEAR(norm(s.robots[0].position + s.robots[0].goals[0] - Vec2{14, -6}), 0.0, 1e-9 * radius * count);
     }
-  for (const int count : {1, 2, 3, 15}) {  // small crowds have some way to go
+  for (const int count : {1, 2, 3, 15}) {  // the circle of a small crowd has a least radius of ten robot radii
     const Scenario s = read(R"({"circle": {"count": )" + std::to_string(count) + "}}");
     EXPECT_NEAR(norm(s.robots[0].position), 5.0, 1e-12) << count;
   }

@@ -298,7 +298,7 @@ TEST(BadInput, OfManyRobotsWithOneGoalTheFirstPairsAreNamed) {
   EXPECT_EQ(warnings.back(), "1215 more pairs of goals too near to each other");
 }
 
-/// A room without a door round the goal.
+/// A closed room round the goal.
 Scenario closed_room() {
   Scenario s;
   s.name = "closed-room";

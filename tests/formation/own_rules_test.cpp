@@ -55,7 +55,7 @@ std::string first(const datasets::AuditReport& report) {
   return report.findings.empty() ? "" : report.findings.front();
 }
 
-/// Decisions by the stage they were made in.
+/// The number of decisions that were made in `stage`.
 std::size_t count(const Recording& run, OwnStage stage) {
   std::size_t found = 0;
   for (std::size_t k = 0; k + 1 < run.steps.size(); ++k)

@@ -37,7 +37,8 @@ Problem problem_from(Bytes bytes) {
 }
 
 /// Lines as velocity obstacles give them: normals of length 1 (of 255 directions, none opposite another) and moderate
-/// numbers; every kind of bound, objective and priorities. Few have thin regions, so that plain doubles must be right.
+/// numbers; every kind of bound, objective and priorities. Thin regions are rare, and
+/// none is so thin that plain doubles may err by more than `kAlike`.
 Problem plain_problem_from(Bytes bytes) {
   Problem p;
   const std::uint8_t kind = bytes.byte();

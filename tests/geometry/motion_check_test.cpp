@@ -203,7 +203,8 @@ TEST(MotionCheck, ListsAllPairsThatComeNear) {
         ASSERT_LT(next, check.approaches.size());
         const geometry::Approach& found = check.approaches[next++];
         ASSERT_EQ(std::tie(found.body, found.other), std::tie(i, j));
-        // Enclosures of one number. The check leaves out moments at which both bodies go on, this loop does not.
+        // Enclosures of one number. The check leaves out moments at which both bodies go on to a next piece; this loop
+        // does not.
         ASSERT_NEAR(found.clearance.low, least.low, 1e-11);
         ASSERT_NEAR(found.clearance.high, least.high, 1e-11);
       }

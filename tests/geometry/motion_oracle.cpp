@@ -339,7 +339,7 @@ bool MotionOracle::interiors_meet(const Pair& pair, const Point& p) const {
   if (pair.corners_a.size() < 2 && pair.corners_b.size() < 2) return false;
   const std::vector<P>&a = pair.corners_a, &b = pair.corners_b;
   if (a.size() < 3 && b.size() < 3) {
-    // Two segments, or a point and a segment: the difference has an interior if it is a parallelogram.
+    // The difference of two segments has an interior if it is a parallelogram. That of a point and a segment has none.
     if (a.size() < 2 || b.size() < 2) return false;
     const P e = a[1] - a[0], f = b[1] - b[0];
     if (cross(e, f) == 0) return false;

@@ -524,7 +524,7 @@ def judged(tools, name, lines):
     theirs = {point: report["points"][point]["refuted"] == 0 for point in ours}
     # The audit first compares what a row says of its choice: which half-planes bind, and the violation. No theorem does.
     if ours["choices"]:
-        theirs["choices"] = not re.search("breaks a half-plane or the speed bound|is not proven the best|has more multipliers", json.dumps(report["findings"]))
+        theirs["choices"] = not re.search("breaks a half-plane or the speed bound|is not proven the best|has too many or invalid multipliers", json.dumps(report["findings"]))
     theirs["motions"] = theirs["motions"] and report["collisions"] == 0
     return ours, theirs, "the motions: robots do not move straight" in words or "moving obstacles" in words
 

@@ -14,7 +14,7 @@ import exactvo
 sys.path.insert(0, str(Path(__file__).parent))
 from good_calls import JUNK, good_calls, two_robots  # noqa: E402
 
-# No argument is meant by these: no such name, row or file, or what Python-RVO2 itself raises.
+# These errors name no argument: a name, row or file is missing, or Python-RVO2 raises the same.
 ANSWERS = (exactvo.ExactVOError, IndexError)
 
 

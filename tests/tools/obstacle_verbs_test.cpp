@@ -359,7 +359,7 @@ TEST(Batch, AShardThatIsThroughFirstSaysSo) {
   here.write("b.wkt", kGood);
   const Outcome first = here.run("batch a.wkt b.wkt --write measurements --out out --shard 1/2");
   EXPECT_EQ(first.status, 0);
-  EXPECT_THAT(first.err, HasSubstr("shard 1/2 is through"));
+  EXPECT_THAT(first.err, HasSubstr("shard 1/2 is complete"));
   EXPECT_FALSE(here.has("out/summary.json"));
   EXPECT_EQ(here.run("batch a.wkt b.wkt --write measurements --out out --shard 2/2").status, 0);
   EXPECT_TRUE(here.has("out/summary.json"));

@@ -479,7 +479,7 @@ TEST(Audit, SaysHowManyFindingsItDoesNotList) {
   EXPECT_EQ(report["findings"].size() + unlisted, found);
   ASSERT_GT(report["points"]["motions"]["unlisted"], 0);
   EXPECT_THAT(here.run("audit out").out,
-              HasSubstr("... and " + report["points"]["motions"]["unlisted"].dump() + " more of"));
+              HasSubstr("... and " + report["points"]["motions"]["unlisted"].dump() + " more findings of"));
 }
 
 TEST(Audit, ARunAmongEdgesThatItNeverMetIsProven) {

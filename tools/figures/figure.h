@@ -167,7 +167,7 @@ struct Sheet {
   double panel_height = 250.0;  ///< px; a plane is to scale where the panels' ranges have the same ratio
   double gap = 40.0;            ///< px between columns, for the numbers at the axes
   std::vector<SheetPanel> panels;
-  /// Of the legend: what gnuplot draws ("keyentry with ..."), and its words.
+  /// The entries of the legend: what gnuplot draws ("keyentry with ..."), and its words.
   std::vector<std::pair<std::string, std::string>> legend;
 };
 

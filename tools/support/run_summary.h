@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What a run came to as text, however it was made.
+/// The results of a run as text, however it was made.
 
 #include <string>
 

@@ -37,7 +37,7 @@ class LayerPlane {
   LayerPlane(const std::filesystem::path& path, Collector& out, GdalComplaints& complaints)
       : path_(path), out_(out), complaints_(complaints) {}
 
-  /// Of the next layer: its numbers are metres as they stand.
+  /// Begins the next layer: its numbers are metres as they stand.
   void reset();
   /// What the file says of its plane.
   void set_given(GivenPlane given) { given_ = std::move(given); }

@@ -76,11 +76,11 @@ struct Refuted {
 /// Share of the largest speed: what is said to bind does so to within this (lp/certificate.h has the same for gaps).
 constexpr double kBindsWithin = lp::kWidestGap;
 
-/// A choice that is said to have no room. The problem is solved again, exactly: no double may be found that satisfies
-/// what must hold, and the choice is the best point of what there is, up to rounding.
+/// Audits a choice whose status is `no_interior`. The problem is solved again, exactly: no double may be found that
+/// satisfies what must hold, and the choice is the best point of what there is, up to rounding.
 Refuted without_room(const lp::Problem& problem, const lp::Solution& chosen, double fastest) {
   const lp::Proven exact = lp::solve_exact(problem);
-  if (exact.solution.status != lp::Status::no_interior) return {" is said to have no room, and has"};
+  if (exact.solution.status != lp::Status::no_interior) return {" says that it has no room, but it has some"};
   if (norm(exact.solution.velocity - chosen.velocity) > kBindsWithin * fastest)
     return {" has no room, and is not the best of what there is"};
   if (!exact.certificate) return {" has no room: that it is the best is not proven", true};
@@ -105,7 +105,7 @@ bool is_hard_in(OwnStage stage, const OwnConstraint& c) {
   return stage == OwnStage::held && c.hard;
 }
 
-constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
+constexpr const char* kBesideExact = " has multipliers although it says that no double multipliers prove it";
 
 class DecisionAudit : public RowAudit {
  public:
@@ -476,7 +476,7 @@ class DecisionAudit : public RowAudit {
   std::string earlier_stage(const Seen& s) const {
     const RobotStep& r = *s.state;
     if (r.own.empty() != (r.own_stage == OwnStage::none))
-      return " has half-planes of a user in no stage, or none in one";
+      return " states a stage without half-planes of a user, or has such half-planes without a stage";
     const bool has_answer = r.status == lp::Status::optimal || r.status == lp::Status::relaxed;
     if (holds_bodies(r.own_stage) && !has_answer) return " is made in a stage that has no answer";
     if (r.own_stage == OwnStage::none || r.own_stage == OwnStage::held) return "";
@@ -579,7 +579,7 @@ class DecisionAudit : public RowAudit {
       ++number;
     }
     for (const lp::ActiveConstraint& part : r.bound) take(part.binding, part.multiplier);
-    return fits ? "" : " has more multipliers, or others, than an optimum has";
+    return fits ? "" : " has too many or invalid multipliers";
   }
 
   const AuditedRun& run_;

@@ -33,7 +33,7 @@ inline bool moves(vo::BodyKind kind) {
   return kind == vo::BodyKind::robot || kind == vo::BodyKind::moving_obstacle;
 }
 
-/// Of a robot or moving obstacle the shape is left out: its place changes, and rows have it.
+/// The shape of a robot or moving obstacle is left out: its place changes, and rows have it.
 template <class Codec>
 void members(Codec& json, For<Codec, vo::Body>& body) {
   json.member("kind", body.kind);

@@ -4,19 +4,19 @@
 /// \file
 /// The certified crowd (formation/crowd.h) behind the names of the RVO2 library (van den Berg, Guy, Snape, Lin,
 /// Manocha; gamma.cs.unc.edu/RVO2), so that a program written for RVO2 compiles unchanged: with `exactvo/rvo2` on the
-/// include path, `#include "RVO.h"` finds this file. Written afresh; nothing of RVO2 is in it.
+/// include path, `#include "RVO.h"` finds this file. Written from scratch; it contains no code of RVO2.
 ///
-/// What is different (docs/guide/rvo2.md has more):
+/// Differences (docs/guide/rvo2.md has more):
 ///  - Motions are certified: Crowd's promises (1) to (3) and (7) hold in every step. Positions are whole multiples of a
 ///    lattice step, 2^-18 m within 4 km and finer than a float everywhere; floats are the nearest to them.
 ///  - Velocities differ from RVO2's by some 1e-5 m/s where the problem has one answer.
 ///  - Edges of obstacles are walls from both sides, whatever the order of the vertices.
-///  - A pair of agents looks ahead the shorter of its two time horizons.
-///  - An agent has at least 1 and at most 15 nearest neighbours, whatever maxNeighbors says, and beyond them all that
-///    can be met within the step.
-///  - A radius, time horizon or speed limit below what the crowd takes counts as the least that it does: a lattice
-///    step, a time step, 2^-12 m/s.
-///  - What RVO2 leaves undefined (NaN, agents in one place, numbers of no agent) throws formation::CrowdError.
+///  - A pair of agents uses the shorter of its two time horizons.
+///  - An agent has at least 1 and at most 15 nearest neighbours, whatever maxNeighbors says, and in addition all agents
+///    that it could meet within the step.
+///  - A radius, time horizon or speed limit below the crowd's minimum counts as that minimum: a lattice step, a time
+///    step, 2^-12 m/s.
+///  - Input that RVO2 leaves undefined (NaN, agents in one place, unknown agent numbers) throws formation::CrowdError.
 ///
 /// REQUIRES: processObstacles() after the last addObstacle(), as in RVO2; a time step before the first doStep().
 
@@ -34,9 +34,9 @@
 
 namespace RVO {
 
-/// What stands for "none".
+/// Means "none".
 inline constexpr std::size_t RVO_ERROR = static_cast<std::size_t>(-1);
-/// RVO2's tolerance, for programs that use it; nothing here does.
+/// RVO2's tolerance, for programs that use it. This header does not use it.
 inline constexpr float RVO_EPSILON = 0.00001F;
 
 /// A vector of floats; arithmetic rounded.
@@ -102,10 +102,10 @@ constexpr float det(const Vector2& a, const Vector2& b) {
 constexpr float leftOf(const Vector2& a, const Vector2& b, const Vector2& c) {
   return det(a - c, b - a);
 }
-/// Of length 1. REQUIRES: not zero.
+/// The vector scaled to length 1. REQUIRES: not zero.
 Vector2 normalize(const Vector2& vector);
 
-/// A half-plane of velocities: what lies to the left of the line is allowed.
+/// A half-plane of velocities: those to the left of the line are allowed.
 class Line {
  public:
   Vector2 direction;  ///< of length 1
@@ -115,33 +115,33 @@ class Line {
 /// Agents are numbered from 0 in the order in which they were added, vertices of obstacles too. SI units.
 class RVOSimulator {
  public:
-  /// Without defaults for agents; time step 0, to be set before doStep().
+  /// Has no defaults for agents and a time step of 0, which must be set before doStep().
   RVOSimulator();
-  /// With the defaults that addAgent(position) uses; the arguments as in setAgentDefaults.
+  /// Sets the defaults that addAgent(position) uses; the arguments are as in setAgentDefaults.
   RVOSimulator(float timeStep, float neighborDist, std::size_t maxNeighbors, float timeHorizon, float timeHorizonObst,
                float radius, float maxSpeed, const Vector2& velocity = {});
   ~RVOSimulator();
   RVOSimulator(const RVOSimulator&) = delete;
   RVOSimulator& operator=(const RVOSimulator&) = delete;
 
-  /// With the defaults; RVO_ERROR where none were set.
+  /// Adds an agent with the defaults. Returns its number, or RVO_ERROR if no defaults were set.
   std::size_t addAgent(const Vector2& position);
-  /// Distances in m, times in s, speeds in m/s. What is not finite is refused by the next step. Returns the
-  /// agent's number.
+  /// Adds an agent: distances in m, times in s, speeds in m/s. The next step refuses values that are not finite.
+  /// Returns the agent's number.
   std::size_t addAgent(const Vector2& position, float neighborDist, std::size_t maxNeighbors, float timeHorizon,
                        float timeHorizonObst, float radius, float maxSpeed, const Vector2& velocity = {});
-  /// A closed polygon, or with two vertices a wall: the number of its first vertex; RVO_ERROR for fewer than two.
-  /// Throws CrowdError where a coordinate is no number.
+  /// Adds a closed polygon, or with two vertices a wall. Returns the number of its first vertex; RVO_ERROR for fewer
+  /// than two. Throws CrowdError if a coordinate is not finite.
   std::size_t addObstacle(const std::vector<Vector2>& vertices);
-  /// From now on the obstacles added so far are in the way of agents and of queryVisibility.
+  /// From now on agents and queryVisibility take the obstacles added so far into account.
   void processObstacles();
-  /// Throws CrowdError; the agents are then as they were before.
+  /// Moves all agents by one time step. If it throws CrowdError, the agents stay as they were.
   void doStep();
 
   ///@{
-  /// Of the last step, whatever was set or added since. The first query after a step costs O(agents). Neighbours:
-  /// nearest first; of obstacles those with a half-plane of their own, by the vertex that begins the edge. Lines: of
-  /// obstacles, then of agents.
+  /// These describe the last step, whatever was set or added since. The first query after a step costs O(agents).
+  /// Neighbours come nearest first. An obstacle neighbour is an edge with a half-plane of its own, named by the vertex
+  /// that begins it. Lines against obstacles come before lines against agents.
   std::size_t getAgentNumAgentNeighbors(std::size_t agentNo) const;
   std::size_t getAgentAgentNeighbor(std::size_t agentNo, std::size_t neighborNo) const;
   std::size_t getAgentNumObstacleNeighbors(std::size_t agentNo) const;
@@ -151,7 +151,8 @@ class RVOSimulator {
   ///@}
 
   ///@{
-  /// Of an agent, as it was set or as the last step left it: m, s, m/s. Throws CrowdError for a number of no agent.
+  /// An agent's value, as it was set or as the last step left it: m, s, m/s. Throws CrowdError if there is no such
+  /// agent.
   const Vector2& getAgentPosition(std::size_t agentNo) const;
   const Vector2& getAgentVelocity(std::size_t agentNo) const;
   const Vector2& getAgentPrefVelocity(std::size_t agentNo) const;
@@ -162,11 +163,11 @@ class RVOSimulator {
   float getAgentTimeHorizon(std::size_t agentNo) const;
   float getAgentTimeHorizonObst(std::size_t agentNo) const;
   ///@}
-  /// s: how much time all steps took.
+  /// s: the simulated time, summed over all steps.
   float getGlobalTime() const;
   /// s.
   float getTimeStep() const;
-  /// How many agents there are.
+  /// The number of agents.
   std::size_t getNumAgents() const;
   ///@{
   /// Vertices of obstacles: their number, places in m, and the vertices before and after along the obstacle.
@@ -177,21 +178,21 @@ class RVOSimulator {
   ///@}
 
   ///@{
-  /// Whether a disc gets straight from one point to the other without an edge of an obstacle in its interior, and no
-  /// edge touches the way itself. The disc has the radius, or less where a point has less room. Exact, up to the last
-  /// place of the radius or a rounding of the room.
+  /// Whether a disc can move straight from one point to the other with no edge of an obstacle in its interior and none
+  /// touching its centre's path. The disc has the radius, or a smaller one if a point has less room. Exact, up to the
+  /// last place of the radius or a rounding of the room.
   bool queryVisibility(const Vector2& point1, const Vector2& point2) const;
   bool queryVisibility(const Vector2& point1, const Vector2& point2, float radius) const;
   ///@}
 
-  /// What addAgent(position) gives an agent: distances in m, times in s, speeds in m/s.
+  /// Sets the values that addAgent(position) uses: distances in m, times in s, speeds in m/s.
   void setAgentDefaults(float neighborDist, std::size_t maxNeighbors, float timeHorizon, float timeHorizonObst,
                         float radius, float maxSpeed, const Vector2& velocity = {});
-  /// Of different agents from different threads, if need be. The others: from one thread at a time. All but the
-  /// preferred velocity cost O(agents) at the next step.
+  /// Different threads may set the preferred velocities of different agents at the same time. All other setters need
+  /// one thread at a time, and they cost O(agents) at the next step.
   void setAgentPrefVelocity(std::size_t agentNo, const Vector2& prefVelocity);
   ///@{
-  /// Of an agent, from the next step on: m, s, m/s. Throws CrowdError for a number of no agent.
+  /// Sets an agent's value from the next step on: m, s, m/s. Throws CrowdError if there is no such agent.
   void setAgentPosition(std::size_t agentNo, const Vector2& position);
   void setAgentVelocity(std::size_t agentNo, const Vector2& velocity);
   void setAgentMaxNeighbors(std::size_t agentNo, std::size_t maxNeighbors);
@@ -204,7 +205,7 @@ class RVOSimulator {
   /// s, > 0.
   void setTimeStep(float timeStep);
 
-  // What RVO2 has not.
+  // Additions to RVO2.
 
   /// As CrowdOptions::threads; 1 at first.
   void setThreads(int threads);

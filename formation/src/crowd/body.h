@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
 inline constexpr double kFastest = 0x1p15;
 /// m; of edges.
 inline constexpr double kFarthestEdge = 0x1p40;
-/// Of the way of a body, in lattice steps: differences to places of robots are exact doubles.
+/// Bound on the displacement of a body, in lattice steps: differences to places of robots are exact doubles.
 inline constexpr std::int64_t kFarthestBody = std::int64_t{1} << 50;
 inline constexpr std::size_t kMostEdgesOfAll = std::size_t{1} << 24U;
 /// m

@@ -3,7 +3,7 @@
 
 /// \file
 /// The search for a joint plan (liveness, rule R3): searches with other seeds, one after the other or several at a
-/// time, until a counted budget is spent; of some plans the shortest.
+/// time, until a counted budget is spent. It returns the shortest of the plans found.
 ///
 /// Restarted with growing limits, since the lengths of such searches are heavy-tailed (Luby, Sinclair and Zuckerman,
 /// "Optimal speedup of Las Vegas algorithms", Information Processing Letters 47, 1993).

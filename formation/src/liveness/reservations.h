@@ -104,7 +104,7 @@ class Reservations {
   bool has_changed() const { return has_changed_; }
   /// If in as many steps nothing moves and nothing has changed, nothing will.
   std::uint64_t patience() const;
-  /// Of the reservation that the robot got last; 0: none yet.
+  /// The number of the robot's last reservation; 0: none yet.
   std::uint64_t ticket(std::size_t i) const { return of_[i].ticket; }
 
   /// All that is remembered from step to step.

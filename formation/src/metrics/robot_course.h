@@ -34,7 +34,7 @@ class SettledSince {
 struct RobotCourse {
   /// rad: smaller turns have no sign worth counting.
   static constexpr double kLeastTurn = 1e-3;
-  /// Of the greatest speed: what is slower rests, and its heading is noise.
+  /// A robot slower than this share of its greatest speed rests, and its heading is noise.
   static constexpr double kLeastHeadway = 1e-3;
 
   Vec2 position, velocity;  ///< in the last row

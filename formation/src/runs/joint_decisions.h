@@ -55,8 +55,8 @@ class JointDecisions {
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
 
-  /// Of a method that promises nothing between robots: half-planes against the others that leave the robot what is
-  /// nearest to its preferred velocity.
+  /// For a method that promises nothing between robots: replaces the half-planes against the others by those that
+  /// leave the robot the velocity nearest to its preferred one.
   void take_sides(std::size_t i, Vec2 preferred) { formation::detail::take_sides(now(), i, preferred, others[i]); }
 
   /// Along the plan, as fast as all half-planes allow. Those of `field` have one time step as their horizon, so that

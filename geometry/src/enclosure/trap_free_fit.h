@@ -17,7 +17,7 @@ struct FitMemory {
   std::vector<Vec2> points;    ///< the hull's corners from the first of them
   std::vector<double> angles;  ///< of the coarse search
   std::vector<Orientation> orientations;
-  // Of each candidate: orientation x semi-minor axis x offset across.
+  // One for each candidate: orientation x semi-minor axis x offset across.
   std::vector<Known::State> state;
   std::vector<MajorFit> major;  ///< read where the state says so
   Orientation here, aside;      ///< of the pattern search

@@ -56,7 +56,7 @@ class WaySearch {
   /// the cells are in one component.
   std::optional<Way> find(Vec2 s, const std::vector<int>& starts, Vec2 t, const std::vector<int>& goals);
 
-  /// Of the last question: portals looked at one by one, and boxes of portals in leaps (corridors.h).
+  /// Steps of the last question: portals checked one by one, and boxes of portals in leaps (corridors.h).
   std::size_t steps() const { return steps_; }
   /// Whether the last question was answered by the second search.
   bool was_second_search() const { return was_second_search_; }

@@ -132,7 +132,8 @@ Scenario cart() {
   return s;
 }
 
-/// Too many at one place, bounded by boxes: choices are relaxed. One does not give way.
+/// Five robots meet at one place with a box as speed bound, so that choices are relaxed. The last robot does not
+/// cooperate.
 Scenario crowd() {
   Scenario s = kinematic("crowd");
   s.speed_bound = formation::SpeedBoundKind::box;

@@ -24,8 +24,8 @@ struct ShortRun {
 };
 
 /// Kinematic robots and formations of every integrator, by half-planes of enclosures and of edges, with and without
-/// moving obstacles, boxes and discs as speed bounds, choices that are relaxed, recordings that leave out what is far
-/// and such that do not. A few rows each.
+/// moving obstacles, boxes and discs as speed bounds, choices that are relaxed, recordings with and without what is
+/// far away. A few rows each.
 std::vector<ShortRun> short_runs();
 
 /// What was done to which field.
@@ -35,8 +35,8 @@ struct Edit {
   std::string place;  ///< with its numbers, and what stood there before and after
 };
 
-/// One edit of any number, word, list, member or line, or one of those that keep the rest consistent with it. The last
-/// line counts the rows as they are then.
+/// Makes one edit: it changes a random number, word, list, member or line, or it adapts the rest of the file to the
+/// change. It corrects the count in the last line.
 Edit edit(Lines& lines, exactvo::test::SeededRandom& random);
 
 /// The file that the lines make, sealed.

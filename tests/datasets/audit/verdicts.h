@@ -15,7 +15,7 @@ namespace exactvo::datasets::test {
 enum class Fate {
   refused,   ///< no recording: a DataError
   rejected,  ///< a recording that the audit refutes
-  free,      ///< only a word or number was changed that no audit asks (`not_audited`)
+  free,      ///< the edit changed only a word or number that no audit reads (`not_audited`)
   holds,     ///< the audit proves it, and it is true and safe by the second opinion
   wrong      ///< the audit proves it, and it is not
 };

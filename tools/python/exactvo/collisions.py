@@ -196,7 +196,7 @@ def check(
     between       what lies between rows: "straight", "hold", "cubic" (with the rows' velocities, else Catmull-Rom), "none"
     near          m: list pairs that come nearer; by default the radius, or the reach of the footprint
     max_speed     m/s: a faster move is a jump; by default three times what 95 of 100 moves do not exceed
-    max_gap       s: a body without a row for longer is away; by default it goes on to its next row
+    max_gap       s: a body without a row for longer counts as absent; by default it goes on to its next row
     format        of the file; by default found by content
     frame_rate    frames a second, of files that count frames
     scale         m: of the trajectories' unit of length

@@ -55,10 +55,10 @@ class Monitor:
     obstacles               what stands still
     radius                  m: of a robot that is a disc; with a footprint, by which that is grown
     footprint               n x 2, m: a simple polygon in the body's axes (x ahead, y left) about the point of its poses
-    max_deceleration        m/s^2: by which the robot can certainly brake
-    max_turn_deceleration   rad/s^2: by which it can certainly stop turning
+    max_deceleration        m/s^2: deceleration that the robot always reaches
+    max_turn_deceleration   rad/s^2: angular deceleration that it always reaches
     latency, period         s: from a decision to its effect, and to the next decision
-    margin                  m: by which localisation, map and drive are off together at most
+    margin                  m: largest total error of localisation, map and drive
 
     Raises `ArgumentError`.
     """

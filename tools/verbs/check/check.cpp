@@ -466,10 +466,11 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
       "the reach of the footprint");
   app.add_option("--max-speed", flags.max_speed,
                  "A faster move is a jump, m/s; by default three times what 95 of 100 moves do not exceed");
-  app.add_option("--max-gap", flags.max_gap,
-                 "An agent without a row for longer is away, s; by default it goes on to its next row");
+  app.add_option(
+      "--max-gap", flags.max_gap,
+      "An agent without a row for more than this many s counts as absent; by default it goes on to its next row");
   app.add_option("--samples", flags.samples,
-                 "Count the overlaps that a check misses which looks at each move this many times, from its row on")
+                 "Count the overlaps that sampling would miss with this many samples of each move, from its row on")
       ->check(whole_number(1, 1000000));
   app.add_flag("--json", flags.json, "One line of JSON for each event, finding and approach, then a summary");
   app.add_option("--certificates", flags.certificates,

@@ -360,7 +360,7 @@ void declare_monitor(CLI::App& app, MonitorFlags& flags) {
   app.add_option("--radius", flags.radius, "Radius of a robot that is a disc, m");
   app.add_option(
       "--footprint", flags.footprint,
-      "WKT or FILE: a polygon round the point that poses mean, x ahead; --radius grows it. Or with --radius a "
+      "WKT or FILE: a polygon in body axes: x ahead, origin at the pose; --radius grows it. Or with --radius a "
       "line with that half width");
   app.add_option("--map", flags.map, "Obstacle file of any readable format: what stands still");
   app.add_option(
@@ -370,14 +370,14 @@ void declare_monitor(CLI::App& app, MonitorFlags& flags) {
   app.add_option("--unknown", flags.reading.unknown, "What unknown cells of ROS maps are: free or blocked");
   app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
   MonitorSetup& setup = flags.setup;
-  app.add_option("--max-deceleration", setup.max_deceleration, "By which the robot can certainly brake, m/s^2")
+  app.add_option("--max-deceleration", setup.max_deceleration, "Deceleration that the robot always reaches, m/s^2")
       ->capture_default_str();
   app.add_option("--max-turn-deceleration", setup.max_turn_deceleration,
-                 "By which it can certainly stop turning, rad/s^2")
+                 "Angular deceleration that it always reaches, rad/s^2")
       ->capture_default_str();
   app.add_option("--latency", setup.latency, "From a decision to its effect, s")->capture_default_str();
   app.add_option("--period", setup.period, "From a decision to the next, s")->capture_default_str();
-  app.add_option("--margin", setup.margin, "By which localisation, map and drive are off together at most, m")
+  app.add_option("--margin", setup.margin, "Largest total error of localisation, map and drive, m")
       ->capture_default_str();
   app.add_option("--certificates", flags.certificates,
                  "FILE: certificates that the proven ways are clear of what is near, for audit --certificate");
@@ -395,9 +395,10 @@ Verb monitor_verb() {
           "map.yaml --latency 0.15\n"
           "    (a line holds \"pose\" [x, y, heading] in m and rad, \"velocity\" [ahead, left] in m/s and \"turn\" in "
           "rad/s;\n"
-          "    or \"trajectory\", a list of [time, x, y, heading]; and \"movers\". The answer's \"share\" of it, then "
-          "braking,\n"
-          "    is proven clear. A line that is wrong is answered with an \"error\", and the next one is read; status 1 "
+          "    or \"trajectory\", a list of [time, x, y, heading]; and \"movers\". The answer's \"share\" says how "
+          "much of the\n"
+          "    command or trajectory, followed by braking, is proven clear. A line that is wrong is answered with an "
+          "\"error\", and the next one is read; status 1 "
           "says\n"
           "    at the end that there were such lines. docs/guide/monitor.md)\n",
           with_flags(declare_monitor, monitor)};

@@ -249,8 +249,7 @@ void note_earlier_batches(const datasets::BatchResult& result) {
 void say_incomplete(const BatchFlags& flags, const BatchRun& run) {
   if (run.shards > 1)
     return message(
-        fmt::format("shard {}/{} is through, others are not: nothing is put together yet; the last one does that",
-                    run.shard, run.shards));
+        fmt::format("shard {}/{} is complete. The last shard to finish joins the results", run.shard, run.shards));
   if (!datasets::under_mpi())
     message("another process took the parts of this batch from " + flags.out + " and left no summary");
 }

@@ -68,7 +68,7 @@ std::string unlisted_lines(const datasets::AuditReport& report) {
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     if (report.points[p].unlisted == 0) continue;
     text += fmt::format(
-        "  ... and {} more of \"{}\" (of a recording, the first {} refuted and the first {} open ones are listed)\n",
+        "  ... and {} more findings of \"{}\" (each recording lists its first {} refuted and first {} open ones)\n",
         report.points[p].unlisted, words_of(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings,
         datasets::kMostAuditFindings);
   }

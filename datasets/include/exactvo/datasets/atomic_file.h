@@ -23,7 +23,7 @@ enum class Durability {
 /// What happens where the folder is not there.
 enum class MissingFolder {
   is_made,    ///< with those above it
-  is_refused  ///< DataError: somebody else may have taken it away
+  is_refused  ///< throws DataError: another program may have removed it
 };
 
 /// What becomes of a file that was not committed.
@@ -34,15 +34,15 @@ enum class Unfinished {
 
 /// What happens where a pipe stands at the path, or the path is "-", standard output.
 enum class Pipe {
-  is_refused,  ///< DataError: the rename would take its place; "-" is a name like others
-  is_written   ///< bytes go into it as they come; who reads it has to find out where they end too early
+  is_refused,  ///< throws DataError, since the rename would replace the pipe; "-" is an ordinary name
+  is_written   ///< bytes go into it as they come; the reader must detect a truncated output itself
 };
 
 /// A file in the making. Nothing stands at `path` until `commit`.
 class AtomicFile {
  public:
-  /// Throws DataError (E_FILE_UNWRITABLE), as the others do, also where another process makes the same file and it
-  /// `stays`.
+  /// Throws DataError (E_FILE_UNWRITABLE). With `Unfinished::stays` it also throws if another process is writing this
+  /// file. The other members throw it too.
   explicit AtomicFile(std::filesystem::path path, MissingFolder missing = MissingFolder::is_made,
                       Unfinished unfinished = Unfinished::goes, Pipe pipe = Pipe::is_refused);
   ~AtomicFile();

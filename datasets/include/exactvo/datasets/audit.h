@@ -40,10 +40,10 @@
 /// a collision is. Straight motions and those of obstacles whose legs have rational lengths are decided exactly;
 /// elsewhere what touches to within some 1e-7 of its bulge stays open.
 ///
-/// What stays open is neither proven nor refuted: of (7) it is a failure. Of (3) to (5) it is none by itself (a robot
-/// whose anchor overlaps an obstacle can be promised nothing), nor of (8) (a plan may begin too near to something),
-/// since (7) proves what was driven. `not_audited` lists
-/// what is not asked. The seal has no key: it shows damage, and the points show forgery.
+/// What stays open is neither proven nor refuted: in (7) it is a failure. In (3) to (5) it is none by itself (a robot
+/// whose anchor overlaps an obstacle has no promise), nor in (8) (a plan may begin too near to something), since (7)
+/// proves what was driven. `not_audited` lists what is not asked. The seal has no key: it shows damage, and the points
+/// show forgery.
 
 #include <array>
 #include <cstddef>
@@ -79,12 +79,12 @@ struct PointCount {
   std::size_t proven = 0;    ///< hold, by exact arithmetic
   std::size_t refuted = 0;   ///< do not hold
   std::size_t open = 0;      ///< neither: exact arithmetic did not decide them
-  std::size_t unlisted = 0;  ///< of the refuted and the open, those that have no line among AuditReport::findings
-  /// How many questions were put.
+  std::size_t unlisted = 0;  ///< refuted and open ones without a line in AuditReport::findings
+  /// The number of questions.
   std::size_t asked() const { return proven + refuted + open; }
 };
 
-/// What an audit found.
+/// The result of an audit.
 struct AuditReport {
   std::array<PointCount, kAuditPoints> points{};  ///< in the order of AuditPoint
   /// The count of one point.
@@ -92,8 +92,8 @@ struct AuditReport {
   /// The count of one point.
   const PointCount& operator[](AuditPoint point) const { return points[static_cast<std::size_t>(point)]; }
 
-  std::size_t rows = 0;  ///< that were audited
-  /// Of each recording that ends early: where, and what was found in the rows that are there. They are no whole run.
+  std::size_t rows = 0;  ///< audited rows
+  /// For each recording that ends early: where, and the findings in the rows that are there. They are no whole run.
   std::vector<std::string> cut_off;
 
   std::size_t half_planes = 0;        ///< of (4): certified ones of obstacles
@@ -102,14 +102,14 @@ struct AuditReport {
   std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
   std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
   std::size_t inconsistencies = 0;    ///< refuted of (1) and (6)
-  std::vector<std::string> findings;  ///< in words: of each point the first refuted and the first open ones
+  std::vector<std::string> findings;  ///< in words: the first refuted and the first open ones of each point
 
   std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
   std::size_t moving_questions = 0;    ///< of them, a step and a moving obstacle
   std::size_t robot_questions = 0;     ///< of them, a step and another robot
   double largest_bulge = 0.0;          ///< m: no curve strays farther from the straight way between its rows
-  double largest_violation = 0.0;      ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
+  double largest_violation = 0.0;      ///< m/s: by which a choice violates a half-plane that must hold; 0 if all hold
 
   /// Pairs of robots that overlapped in the first row of a scenario with `separate`: "R1 and R2, apart from 1.5 s on",
   /// "still in overlap at the end", or "came nearer after row 7", which refutes (7).
@@ -118,7 +118,7 @@ struct AuditReport {
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
   bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
-  bool has_places = false;          ///< of a crowd: decisions are not recorded
+  bool has_places = false;          ///< a crowd's recording, which has no decisions
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 
   /// Nothing is refuted, no motion open, and no recording ends early.
@@ -132,14 +132,14 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 
 /// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that
 /// was altered in a way that is still safe, an ulp inward, is found too. Reads it once, row by row, so that it may be a
-/// pipe into which a run writes; "-" is standard input. Memory does not grow with the rows, but for where robots were:
-/// 16 bytes a robot and row, of the last 2^23 of these. Of one that ends early (`cut_off`) the rows that are there are
-/// audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
+/// pipe into which a run writes; "-" is standard input. Memory does not grow with the rows, except for the places of
+/// robots: 16 bytes per robot and row, for the last 2^23 of these. If the file ends early (`cut_off`), the rows that
+/// are there are audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
 ///
-/// Of a recording of a crowd, FILE.evr (crowd_recording.h), there are places alone: (6) is that no robot moves farther
+/// A recording of a crowd, FILE.evr (crowd_recording.h), has places alone: (6) is that no robot moves farther
 /// than its speed allows, (7) is asked as it stands between rows of consecutive steps, and else of the rows. An
 /// obstacle at rest that a robot touches at a row, to within 40 u of the numbers involved (u = 2^-24), it must not come
-/// nearer to, by more than that; a moving one must be apart at the next row. `sample`: about so many motions, spread
+/// nearer to, by more than that; a moving one must be apart at the next row. `sample`: about this many motions, spread
 /// evenly over robots and rows; 0: all.
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr,
                             std::size_t sample = 0);

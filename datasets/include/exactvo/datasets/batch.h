@@ -119,7 +119,7 @@ struct BatchSummary {
 /// How a batch ended.
 enum class BatchEnd {
   complete,    ///< everything is in `out`
-  incomplete,  ///< this shard, or this rank, is through; others are not
+  incomplete,  ///< this shard, or this rank, is complete; others are not
   interrupted  ///< `keep_going` said no; --resume goes on
 };
 
@@ -143,8 +143,8 @@ struct BatchResult {
 /// Called from time to time, by one thread at a time; false stops the batch after what is under way.
 using BatchWatch = std::function<bool(const BatchProgress&)>;
 
-/// Runs it. Throws DataError where something can't be done at all: a path that is not there, or
-/// nothing to read where all are (E_FILE_MISSING), a place that can't be written (E_FILE_UNWRITABLE: full, removed
+/// Runs it. Throws DataError where something can't be done at all: a path does not exist, or the paths hold no file to
+/// read (E_FILE_MISSING), a place that can't be written (E_FILE_UNWRITABLE: full, removed
 /// under the batch), an output of other inputs, another configuration or another version, or an input that changes
 /// under the batch (E_OTHER_RUN). Whatever is thrown, what was finished stays for a resumption.
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {});

@@ -41,7 +41,7 @@ enum class DataCode {
   image,              ///< E_IMAGE: the picture of a map is missing or can't be decoded
   projection,         ///< E_PROJECTION: coordinates that can't be brought to metres
   other_run,          ///< E_OTHER_RUN: an output of other inputs, other options or another version
-  ranks_differ,       ///< E_RANKS_DIFFER: ranks of one run have come to different states
+  ranks_differ,       ///< E_RANKS_DIFFER: the ranks of a run computed different states
   library,            ///< E_LIBRARY: GDAL or another library reported an error; its words are in `found`
   not_finite,         ///< E_NOT_FINITE: a coordinate is NaN or infinite
   too_few_points,     ///< E_TOO_FEW_POINTS

@@ -50,7 +50,7 @@ class TextLines {
   /// is too long.
   bool next(std::string_view& line);
 
-  /// Of the line that was given last, from 1.
+  /// The number of the last line given, from 1.
   std::size_t number() const;
   /// As messages name it.
   const std::string& file() const;

@@ -54,7 +54,7 @@ bool parse(const std::string& text, Units& out);
 /// All, in the order of the enumeration.
 std::vector<std::string> unit_names();
 
-/// What the unknown cells of a map are: those between its thresholds, and transparent ones. Known of ROS maps only.
+/// What the unknown cells of a map are: those between its thresholds, and transparent ones. Known for ROS maps only.
 enum class UnknownCells {
   free,    ///< free; a note says how many
   blocked  ///< obstacles, as the occupied cells; a note says how many
@@ -95,8 +95,8 @@ struct PlaceInFile {
   bool is_degrees = false;  ///< longitude, latitude; else units of the file's reference system
 };
 
-/// Of a file so many findings are listed, the others counted (`ObstacleFile::unlisted`): what is said of a file must
-/// not take a hundred times its size.
+/// This many findings of a file are listed, the others counted (`ObstacleFile::unlisted`): a report must not take a
+/// hundred times the size of its file.
 inline constexpr std::size_t kMostFindings = 100'000;
 
 /// One problem of one ring, repaired or not; also of obstacles that were refused.
@@ -149,40 +149,41 @@ struct ReadCounts {
   std::size_t rejected = 0;     ///< refused, each with a code
 };
 
-/// Of a grid or a scan: its polygons are the union of the occupied cells, each of which they contain whole. For a grid
-/// nothing is gained in area; for a scan, whose hits are points, all of the area is.
+/// The coverage of a grid or a scan. Its polygons are the union of the occupied cells, which they contain whole. For a
+/// grid nothing is gained in area; for a scan, whose hits are points, all of the area is.
 struct Coverage {
   std::size_t cells = 0;     ///< of the whole grid
   std::size_t occupied = 0;  ///< of them
   double cell_area = 0.0;    ///< m^2; times `occupied` is the polygons' area
 };
 
-/// How far lengths and areas on the plane are from those on the ground, as shares of them, at most. Of the azimuthal
-/// equidistant projection both are too large, never too small, between any two points of the file (certified: derived
-/// in gdal/ground_scale.h). Of a reference system of the file's own it is measured at 289 places over its extent.
+/// How far lengths and areas on the plane are from those on the ground, as shares of them, at most. The
+/// azimuthal equidistant projection makes both too large, never too small, between any two points of the file
+/// (certified: derived in gdal/ground_scale.h). For a file's own reference system they are measured at 289 places over
+/// its extent.
 struct Distortion {
   double length = 0.0;     ///< of lengths
   double area = 0.0;       ///< of areas
   bool certified = false;  ///< whether these are bounds
 };
 
-/// Where lengths would be farther than that from those on the ground a file is refused. 1 %: of degrees some 1551 km
-/// from their middle.
+/// A file is refused if its lengths would differ from those on the ground by more than this share. Coordinates in
+/// degrees reach 1 % some 1551 km from their middle.
 inline constexpr double kMostDistortion = 0.01;
 
-/// What was read of a file, and what was found in it.
+/// The content of a file, and the findings about it.
 struct ObstacleFile {
   std::string file;                                 ///< its path, as the caller named it
   std::string format;                               ///< the one that was used
   std::vector<formation::SceneObstacle> obstacles;  ///< in the order of the file
   std::vector<FeatureProperties>
       properties;                     ///< with `keep_properties`: one an obstacle; empty where no feature has any
-  LocalPlane plane;                   ///< of the obstacles' coordinates; unplaced where layers lie on several
+  LocalPlane plane;                   ///< the plane of the obstacles' coordinates; unplaced if layers lie on several
   std::vector<DataNote> notes;        ///< repairs and what was skipped
   std::vector<RingFinding> findings;  ///< in the order of the file; kMostFindings at most
   std::map<DataCode, std::size_t> unlisted;  ///< findings that are not listed, by code
   std::vector<DataError> rejected;           ///< only with `keep_going`
-  std::vector<RepairRecord> repairs;         ///< only with `repair`: of every polygon that had a problem
+  std::vector<RepairRecord> repairs;         ///< only with `repair`: one for every polygon that had a problem
   std::optional<ProjectionOrigin> origin;    ///< where degrees, or what `projected_from` names, were projected
   std::string projected_from;            ///< "degrees", or the name of the file's reference system; empty: no origin
   std::optional<Distortion> distortion;  ///< where the place on earth is known

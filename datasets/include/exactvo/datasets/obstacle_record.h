@@ -15,7 +15,7 @@
 
 namespace exactvo::datasets {
 
-/// Who the obstacle is: what goes before its shapes.
+/// The obstacle's identity, written before its shapes.
 struct RecordHead {
   std::string file;     ///< as the user named it; empty: left out
   std::string id;       ///< the obstacle's own; empty: left out

@@ -21,8 +21,8 @@
 ///
 ///     "local_metres": {"centre": [13.4, 52.5], "offset": [0, 0], "decimals": 3, "is_placed": true}
 ///
-/// is the azimuthal equidistant projection on WGS 84 round `centre`, then `offset` added, m; all metres had so many
-/// `decimals`, where it is there. Instead of `centre` may stand `reference_system`, a projected one as WKT.
+/// is the azimuthal equidistant projection on WGS 84 round `centre`, then `offset` added, m. If `decimals` is there,
+/// all metres had this many. `reference_system`, a projected one as WKT, may replace `centre`.
 ///
 /// Properties (tests quote the numbers):
 ///  (1) read_obstacles gives back the same shapes, bit for bit and in the same order, but for what is lost; through
@@ -53,7 +53,7 @@ struct WriteOptions {
   std::vector<FeatureProperties> properties{};  ///< none, or one an obstacle
 };
 
-/// The member "local_metres" of a collection whose metres have so many decimals; below 0 they have more.
+/// The member "local_metres" of a collection whose metres have this many decimals; below 0: they have more.
 std::string local_metres_member(const LocalPlane& plane, int decimals);
 
 /// The names above that this build writes.

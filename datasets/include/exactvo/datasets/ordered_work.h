@@ -13,8 +13,8 @@ namespace exactvo::datasets {
 
 /// A task in two halves.
 struct OrderedTask {
-  std::function<void()> work;    ///< in any thread, at the same time as that of others
-  std::function<void()> finish;  ///< in any thread, after that of all tasks before this one
+  std::function<void()> work;    ///< runs in any thread, at the same time as other tasks' work
+  std::function<void()> finish;  ///< runs in any thread, after `finish` of all tasks before this one
 };
 
 /// Runs what `next` gives, until it gives nothing, on `workers` threads (1 or more), the caller's among them. `next`,

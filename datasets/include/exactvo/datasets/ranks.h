@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The ranks of mpirun for whoever steps one crowd over them (formation/ranks.h).
+/// The ranks of mpirun, for a crowd that is stepped over them (formation/ranks.h).
 
 #include <memory>
 

@@ -40,8 +40,8 @@ struct RecordingFile {
   RunInfo info;                                       ///< what was run, and by what
   formation::Scenario scenario;                       ///< the whole scenario
   formation::Recording recording;                     ///< the run
-  std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
-  std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
+  std::vector<formation::LyapunovRow> lyapunov = {};  ///< one for every row of a formation; else empty
+  std::vector<formation::StuckReport> stuck = {};     ///< robots that stopped elsewhere; binding bodies by name only
   std::vector<formation::Collision> collisions = {};  ///< as the metrics have them
   /// As the metrics have it, with collisions and detours; empty: as `recording.outcome`, which has neither.
   std::string outcome = {};
@@ -52,8 +52,8 @@ struct RecordingFile {
 /// (E_CUT_OFF where it is read). Throws DataError where it can't be written.
 class RecordingWriter {
  public:
-  /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
-  /// `tracking_gain`, `relative_frame`, `controller_options`, `offsets` and `all_half_planes`.
+  /// Reads from `about` only what is known before a run: the scenario, the info, and from the recording `motion`,
+  /// `time_step`, `tracking_gain`, `relative_frame`, `controller_options`, `offsets` and `all_half_planes`.
   RecordingWriter(const std::filesystem::path& path, const RecordingFile& about);
   /// Into a pipe that was opened before, for instance.
   RecordingWriter(std::shared_ptr<AtomicFile> out, const RecordingFile& about);
@@ -65,7 +65,7 @@ class RecordingWriter {
   /// Adds a row. `lyapunov`: its row of the functions, null without a formation.
   void add(const formation::Step& row, const std::vector<vo::Body>& bodies,
            const formation::LyapunovRow* lyapunov = nullptr);
-  /// Of `about` the rest: outcome, warnings, who was stuck, the time it took.
+  /// Reads the rest from `about`: outcome, warnings, robots that were stuck, the time it took.
   void finish(const RecordingFile& about, Durability durability = Durability::name);
 
  private:

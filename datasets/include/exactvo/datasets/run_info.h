@@ -25,10 +25,10 @@ struct RunInfo {
   std::string decisions = "binding";  ///< what is recorded of half-planes: "none", "binding" ones, or "all"
 };
 
-/// Of a run of `scenario`: what of `options` it depends on.
+/// The info of a run of `scenario`: the parts of `options` that it depends on.
 RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                  Provenance provenance);
-/// The same of a run on a crowd.
+/// The same for a run on a crowd.
 RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
                        Provenance provenance);
 

@@ -21,8 +21,8 @@
 
 namespace exactvo::datasets {
 
-/// A scenario and what a reader of it should know: one line per fact, for people. Of each obstacle file it names: how the
-/// units were decided, the projection's centre and the extent, how many repairs were made and what was skipped.
+/// A scenario with notes for people, one line per fact. For each obstacle file that it names they say how the units
+/// were decided, the projection's centre and the extent, how many repairs were made and what was skipped.
 struct LoadedScenario {
   formation::Scenario scenario;    ///< valid: it can be run
   std::vector<std::string> notes;  ///< "floor.geojson: metres: by its member "units""; empty without obstacle files
@@ -47,8 +47,8 @@ LoadedScenario parse_scenario_with_notes(const std::string& text, const std::str
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
 
-/// The scenario file and the obstacle files it names, without what is read with those. Reads the file: of a pipe
-/// nothing is left. Throws DataError.
+/// The scenario file and the obstacle files it names, without what is read with those. Reads the file, which
+/// empties a pipe. Throws DataError.
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path);
 
 /// Canonical JSON: every field written, keys in the schema's order, obstacles inline, shortest numbers that read back

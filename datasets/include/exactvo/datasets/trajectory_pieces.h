@@ -23,7 +23,8 @@ class TrajectoryPieces {
     /// `cubic` takes the rows' velocities; where a row has none, that of a Catmull-Rom spline, and of the chord at the
     /// first and the last row of a stay.
     geometry::Between between = geometry::Between::straight;
-    double longest_gap = std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer is away
+    double longest_gap =
+        std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer counts as absent
   };
   /// Gets an agent's number and its next piece.
   using Take = std::function<void(std::size_t agent, const geometry::Motion& piece)>;
@@ -66,7 +67,7 @@ class TrajectoryPieces {
   /// From the agent's last row to this one.
   void go_on(std::size_t agent, const TrajectoryRow& row);
   void put_cubic(std::size_t agent, geometry::Vec2 end_velocity);
-  /// Ends a stay: of one row, and of data that is held, its last row is a piece of its own.
+  /// Ends a stay. If it has one row, or the data is held, its last row is a piece of its own.
   void close(std::size_t agent);
   void hand_on(double now);
 

@@ -18,11 +18,11 @@ namespace exactvo::formation {
 std::string name_of(const DecisionConstraint& constraint, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies);
 
-/// The same of several, those of one kind and obstacle together: "enclosures 4 and 5 of obstacle U and robot R2".
+/// The same for several; those of one kind and obstacle are joined: "enclosures 4 and 5 of obstacle U and robot R2".
 std::string name_of(const std::vector<DecisionConstraint>& constraints, const Scenario& scenario,
                     const std::vector<vo::Body>& bodies);
 
-/// "obstacle wall", "obstacles wall and desk"; of no obstacle nothing.
+/// "obstacle wall", "obstacles wall and desk"; empty for no obstacle.
 std::string names_of_obstacles(const Scenario& scenario, const std::vector<std::size_t>& which);
 
 /// "a", "a and b", "a, b and c".

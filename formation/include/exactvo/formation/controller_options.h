@@ -54,7 +54,7 @@ struct ControllerSwitch {
 /// All of them but the bound, in the order of the struct.
 const std::vector<ControllerSwitch>& controller_switches();
 
-/// `base` with what is asked for.
+/// `base` with the options of `asked` switched on or off.
 ControllerOptions switched(ControllerOptions base, const AskedControllerOptions& asked);
 
 /// A set of controller options with the name under which it is reported.

@@ -20,8 +20,8 @@
 ///  (1) Two robots that do not overlap at the beginning of a step do not overlap at any moment of it, kept or not, at
 ///  any
 ///      density (exact contact is no overlap). Exact, for `CrowdOptions::certified`; radii are rounded up to whole
-///      lattice steps. Of two that overlap by more than 8 of them nothing is promised until they are apart; less is
-///      the rounding of places and radii, and such two do not come nearer.
+///      lattice steps. Two robots that overlap by more than 8 lattice steps have no promise until they are apart;
+///      a smaller overlap is the rounding of places and radii, and such two do not come nearer.
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
 ///      pair needs.
 ///  (3) |velocity| <= max_speed, exactly.
@@ -257,7 +257,7 @@ class Crowd {
   /// At the place of the lattice nearest to `position`, at the velocity of the lattice that is nearest among those
   /// within the kind's speed limit. |velocity| <= max_speed. O(1); two robots in one place are found by `step`.
   RobotId add_robot(Vec2 position, KindId kind = 0, Vec2 velocity = {});
-  /// Memory for so many, where it is known how many there will be.
+  /// Reserves memory for this many robots, for callers that know their number.
   void reserve(std::size_t robots);
   /// O(1), but O(n) the first time after a step.
   void remove_robot(RobotId robot);

@@ -18,7 +18,7 @@
 
 namespace exactvo::formation {
 
-/// Clearances are measured of at most so many robots: with more they would take longer than the run.
+/// Clearances are measured for at most this many robots: with more they would take longer than the run.
 inline constexpr std::size_t kMostClearances = 2000;
 
 /// Takes the states of a run as it is made, in memory that does not grow with the run.

@@ -35,19 +35,19 @@ namespace exactvo::formation {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
-/// Ranks have come to other states than each other: at a snapshot, or at the end. Their machines' C libraries round the
-/// elementary functions differently, or one of them is broken.
+/// The ranks computed different states, seen at a snapshot or at the end: the C libraries of their machines round the
+/// elementary functions differently, or a machine is broken.
 class RanksDiffer : public std::runtime_error {
  public:
-  RanksDiffer() : std::runtime_error("ranks have come to different states of the same run") {}  ///< Says just that.
+  RanksDiffer() : std::runtime_error("the ranks computed different states of the same run") {}  ///< Says just that.
 };
 
 /// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
 /// where one leaves the lattice or two start in one place, and `bad_snapshot` where the run cannot go on from
-/// `SimulationOptions::resume_from`; RanksDiffer; AnotherRankFailed. What ranks other than the first return of arrivals
-/// and routes is not known there. Of `options` it reads guidance, liveness, threads, progress, steering and those of a
-/// crowd. With a user's steering robots reserve no places and do not turn to the right for each other. REQUIRES: no
-/// half-planes of a user, and neither rvo nor hrvo; the other methods are taken for orca.
+/// `SimulationOptions::resume_from`; RanksDiffer; AnotherRankFailed. Only the first rank returns arrivals
+/// and routes. The run reads from `options` guidance, liveness, threads, progress, steering and those of a crowd. With
+/// a user's steering robots reserve no places and do not turn to the right for each other. REQUIRES: no half-planes of
+/// a user, and neither rvo nor hrvo; the other methods are taken for orca.
 RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, RunSink* sink = nullptr);
 
 }  // namespace exactvo::formation

@@ -20,18 +20,18 @@ MovingObstacle moving_disc(std::string id, const geometry::Disc& disc, TimedPath
 
 /// m: from x to the disc's rim or the shape's edges; negative inside (geometry/distance.h). Rounded.
 double signed_distance(const SceneObstacle& obstacle, Vec2 x);
-/// The same of a moving obstacle where it stands at t = 0.
+/// The same for a moving obstacle at its place at t = 0.
 double signed_distance(const MovingObstacle& obstacle, Vec2 x);
 
-/// A shape grown by a length: of a disc its centre, as a segment from a point to itself, and its radius; of others the
-/// shape and 0.
+/// A shape and the length by which it grows. A disc gives its centre, as a segment of length 0, and its radius. Other
+/// shapes give themselves and 0.
 struct Core {
   geometry::Obstacle shape;  ///< m
   double grown = 0.0;        ///< m
 };
-/// What an obstacle is, exactly.
+/// The exact shape of an obstacle.
 Core core_of(const SceneObstacle& obstacle);
-/// The same of a moving obstacle where it stands at t = 0.
+/// The same for a moving obstacle at its place at t = 0.
 Core core_of(const MovingObstacle& obstacle);
 
 /// A velocity that is taken at a time and kept until the next one.

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Measurements of a run, from its recording alone. SI units. Nothing where a value does not apply.
+/// Measurements of a run, from its recording alone. SI units. A value that does not apply is empty.
 ///
 /// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
 /// ends, where the integrator has no closed form) and of what moves beside the robot, round its corners and through
@@ -45,7 +45,7 @@ struct Collision {
   bool relaxed = false;  ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
 };
 
-/// What one robot's run came to.
+/// The results of one robot.
 struct RobotMetrics {
   std::string id;  ///< the robot's
   /// At its last goal, or in a formation at its slot with the leader at its end, within the scenario's tolerance.
@@ -53,8 +53,8 @@ struct RobotMetrics {
   std::optional<double> arrival_time;            ///< s
   double path_length = 0.0;                      ///< m
   std::optional<double> min_obstacle_clearance;  ///< m, swept: to the robot's rim, negative is penetration
-  /// m, how much longer its path is than the direct way: from its start straight to its goals, through walls too, of a
-  /// robot that arrived; in a formation from its start to its slot and on with the leader. Never below 0.
+  /// m, how much longer its path is than the direct way, for a robot that arrived: from its start straight to its
+  /// goals, through walls too; in a formation from its start to its slot and on with the leader. Never below 0.
   std::optional<double> detour = std::nullopt;
   std::optional<double> largest_slot_error = std::nullopt;  ///< m, in a formation, from the second row on
 };
@@ -65,9 +65,9 @@ struct FormationCourse {
   double largest_error_at = 0.0;       ///< s
   std::string largest_error_of;        ///< the robot's id
   std::optional<double> first_formed;  ///< s: when all were first within the scenario's arrival tolerance
-  std::optional<double> formed_since;  ///< s: since when they are to the end
-  double share_formed = 0.0;           ///< of the rows from the second on: in which all were within that tolerance
-  double rms_error = 0.0;              ///< m, root mean square of all robots' distances from their slots in these rows
+  std::optional<double> formed_since;  ///< s: from then to the end all are within it
+  double share_formed = 0.0;  ///< share of the rows, from the second on, in which all robots were within that tolerance
+  double rms_error = 0.0;     ///< m, root mean square of all robots' distances from their slots in these rows
 };
 
 /// Joint plans of robots that waited for each other (liveness).
@@ -83,16 +83,16 @@ struct RobotMarginCourse {
   std::size_t robots = 0;     ///< robots of such pairs
 };
 
-/// What a run came to.
+/// The results of a run.
 struct Metrics {
   std::size_t arrived = 0;   ///< robots that are at their goals at the end
   bool all_arrived = false;  ///< every robot's `arrived`
-  /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
+  /// s: median over all robots; a robot that did not arrive counts as last; empty if the median is such a robot.
   std::optional<double> median_arrival_time;
   std::optional<double> last_arrival_time;         ///< s
   std::optional<double> min_obstacle_clearance;    ///< m, swept; 0 in contact
   std::optional<double> min_robot_clearance;       ///< m, swept; 0 in contact
-  std::optional<RobotMarginCourse> robot_margin;   ///< of several robots that are asked to keep one
+  std::optional<RobotMarginCourse> robot_margin;   ///< set for several robots with a margin to keep
   std::optional<double> formation_position_error;  ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
   std::optional<double> formation_velocity_error;  ///< m/s, at the end
   std::optional<double> leader_arrival_time;       ///< s
@@ -103,19 +103,19 @@ struct Metrics {
   std::size_t active_set_switches = 0;  ///< decisions whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
   std::size_t uncertified_half_planes = 0;          ///< half-planes of all decisions that could not be certified
-  std::optional<CrowdMetrics> crowd;                ///< of a run whose decisions are not kept; else none
+  std::optional<CrowdMetrics> crowd;                ///< set if the run does not keep decisions
   std::size_t steps = 0;                            ///< rows but the last
   double time = 0.0;                                ///< s, simulated
   double wall_time = 0.0;                           ///< s
   std::vector<RobotMetrics> robots;                 ///< in the order of the scenario
-  std::optional<LyapunovSummary> lyapunov;          ///< of a formation
-  std::optional<FormationCourse> formation_course;  ///< of a formation
+  std::optional<LyapunovSummary> lyapunov;          ///< set for a formation
+  std::optional<FormationCourse> formation_course;  ///< set for a formation
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
   std::vector<std::string> warnings;      ///< the recording's
-  std::vector<std::string> not_measured;  ///< what was not, and why, in words
-  std::optional<PlanMetrics> plans;       ///< where robots may go by plan
-  std::optional<RoutesCourse> routes;     ///< where robots go along routes
+  std::vector<std::string> not_measured;  ///< what was not measured, and why, in words
+  std::optional<PlanMetrics> plans;       ///< set if robots may follow plans
+  std::optional<RoutesCourse> routes;     ///< set if robots follow routes
   std::vector<std::string> deadlock;      ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
   std::vector<std::string> stuck;         ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
@@ -126,14 +126,14 @@ Metrics measure(const Scenario& scenario, const Recording& recording);
 /// The metrics with what they are made from.
 struct Evaluation {
   Metrics metrics;                    ///< of the whole run
-  std::vector<LyapunovRow> lyapunov;  ///< a row for every row, of a formation; else empty
-  std::vector<StuckReport> stuck;     ///< of every robot that stopped elsewhere
+  std::vector<LyapunovRow> lyapunov;  ///< one for every row of a formation; else empty
+  std::vector<StuckReport> stuck;     ///< one for every robot that stopped elsewhere
 };
 
 /// `measure`, `lyapunov_along` and `explain_stuck` in one pass, nothing computed twice.
 Evaluation evaluate(const Scenario& scenario, const Recording& recording);
 
-/// The same of a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
+/// The same for a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
 /// grow with the run.
 class Evaluator {
  public:
@@ -157,7 +157,8 @@ class Evaluator {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A gap of less than this share of the margin has not kept it: robots come to it from farther away, ever more slowly.
+/// A gap below this share of the margin breaks the margin. The share is below 1 because robots approach the margin ever
+/// more slowly.
 inline constexpr double kMarginKept = 0.99;
 
 /// m. A clearance below `-kContactDepth` is a contact. Certified clearances are too low by at most 4 * 2^-46 of the
@@ -165,24 +166,24 @@ inline constexpr double kMarginKept = 0.99;
 /// not reported.
 inline constexpr double kContactDepth = 1e-9;
 
-/// Whether a clearance is a contact; an empty one, of a scene without anything to touch, is none.
+/// Whether a clearance is a contact. An empty one, from a scene without anything to touch, is not.
 bool touched(const std::optional<double>& clearance);
 /// An obstacle or another robot was touched, by the swept clearances.
 bool touched(const Metrics& metrics);
 
-/// m and m/s: a formation that ends nearer to its slots, or to the leader's velocity, has formed.
+/// m and m/s: a formation has formed if its final position (or velocity) error is below this.
 inline constexpr double kFormed = 1e-6;
 
-/// Proven: every swept clearance is above 0 and every half-plane was certified. More than not to have touched, which
-/// leaves out what rounding alone could explain.
+/// Proven: every swept clearance is above 0 and every half-plane was certified. This is stricter than
+/// `!touched`, which ignores overlaps that rounding could explain.
 bool is_safe(const Metrics& metrics);
 
 /// A detour that is worth a word in the outcome of a formation: longer than 1 m and than this share of the direct way.
 inline constexpr double kLongDetour = 0.25;
 
-/// What `Recording::diverged` is of a run that ends with the last row: a robot that still moves, or whose leader does,
-/// ends farther from its slot than any began, or the state left every bound. Who rests elsewhere while the leader rests
-/// too has not diverged: it is stuck (stuck.h). REQUIRES: a row.
+/// `Recording::diverged` for a run that ends with the last row: a robot that still moves, or whose leader does,
+/// ends farther from its slot than any began, or the state left every bound. A robot that rests elsewhere while the
+/// leader rests is stuck (stuck.h), not diverged. REQUIRES: a row.
 bool has_diverged(const Recording& recording);
 
 /// "obstacle", "moving obstacle" or "robot".

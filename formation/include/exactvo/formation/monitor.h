@@ -52,15 +52,15 @@ namespace exactvo::formation {
 /// m: the footprint is grown by this much and may go this much deeper where it is in contact.
 inline constexpr double kMonitorSlack = 1e-9;
 
-/// At so many moments of an arc, evenly spaced or closer, it is looked whether a contact is left.
+/// The monitor checks at this many moments of an arc, evenly spaced or closer, whether the robot has left a contact.
 inline constexpr int kMonitorLooks = 64;
 
 /// The robot and what stands still.
 struct MonitorSetup {
-  /// In the body's axes (x ahead, y left), from the point that `Pose::at` means. Parts are convex hulls with a radius.
+  /// In the body's axes (x ahead, y left), with `Pose::at` at the origin. Parts are convex hulls with a radius.
   geometry::RigidBody footprint = geometry::disc_body(0.3);
-  double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: by which the robot can certainly brake
-  double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: by which it can certainly stop turning
+  double max_deceleration = 1.0;         ///< m/s^2, >= 2^-30: deceleration that the robot always reaches
+  double max_turn_deceleration = 2.0;    ///< rad/s^2, >= 2^-30: angular deceleration that it always reaches
   double latency = 0.1;                  ///< s, >= 0: from a decision to its effect
   double period = 0.1;                   ///< s, >= 0: from a decision to the next
   double margin = 0.0;                   ///< m, >= 0: localisation, map and drive are off by no more than this together
@@ -77,7 +77,7 @@ struct Mover {
 /// A constant twist in the body's axes, or a velocity in the world's with a heading that stays.
 struct Command {
   geometry::Twist twist;       ///< m/s, rad/s
-  bool in_world_axes = false;  ///< of the velocity; then turn must be 0
+  bool in_world_axes = false;  ///< the velocity is in world axes; then turn must be 0
 };
 
 /// A piece of a trajectory.
@@ -155,7 +155,7 @@ class Monitor {
   /// The largest share of a command that is found to be clear. Throws MonitorError.
   MonitorVerdict judge(const geometry::Pose& pose, const Command& command, const std::vector<Mover>& movers = {});
 
-  /// The same of a trajectory: its first pose is where the robot is. Throws MonitorError.
+  /// The same for a trajectory: its first pose is the robot's place. Throws MonitorError.
   MonitorVerdict judge(const std::vector<TimedPose>& trajectory, const std::vector<Mover>& movers = {});
 
   /// The way of the last command or trajectory at a share of it, braking included; none before. Allocates.

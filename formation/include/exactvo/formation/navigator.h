@@ -50,12 +50,12 @@ struct NavigatorSetup {
   std::vector<SceneObstacle> obstacles;               ///< what stands still
   Method method = Method::ivo;                        ///< how it avoids obstacles
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how `max_speed` is meant
-  /// Of the velocity obstacles. With an acceleration those that have their default are at least the braking time.
+  /// Horizons of the velocity obstacles. With an acceleration, defaults are raised to at least the braking time.
   Horizons horizons;
   Margins margins;                   ///< beside radii and facades
   double time_step = 0.05;           ///< s, > 0: the longest time from a decision to the next
   double arrival_tolerance = 0.1;    ///< m: within this of the last goal it has arrived
-  double neighbour_distance = 15.0;  ///< m: who is farther away, and cannot be met within a time step, is ignored
+  double neighbour_distance = 15.0;  ///< m: farther robots that cannot be met within a time step are ignored
   /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
   /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
   std::optional<double> acceleration = {};
@@ -66,7 +66,7 @@ struct NavigatorSetup {
   /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
   /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds.
   std::optional<DifferentialDrive> drive = {};
-  std::size_t neighbours = 32;  ///< memory is there from the beginning for so many neighbours and moving bodies
+  std::size_t neighbours = 32;  ///< memory is allocated at the start for this many neighbours and moving bodies
 };
 
 /// The setup of one robot of a scenario with goals. What moves in the scenario and the other robots are not in it: they
@@ -103,7 +103,7 @@ struct Neighbour {
 Neighbour neighbour_on_wheels(std::size_t id, const DifferentialDrive& drive, double time_step, Vec2 axle,
                               const OnWheels& wheels);
 
-/// Something else that moves: nobody expects it to yield.
+/// Something else that moves. It does not yield.
 struct MovingBody {
   geometry::ConvexShape shape;  ///< m, as it stands now
   Vec2 velocity;                ///< m/s

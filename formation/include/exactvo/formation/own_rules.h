@@ -2,11 +2,11 @@
 #pragma once
 
 /// \file
-/// What a user adds to the decisions of a run (simulation.h): own steering, and own half-planes. Both are asked once in
-/// every step, before any robot decides.
+/// What a user adds to the decisions of a run (simulation.h): own steering, and own half-planes. The run calls both
+/// once per step, before any robot decides.
 ///
-/// In a decision half-planes against obstacles and robots come first: no user's half-plane is ever a reason to give way
-/// in one of these. What the user states as hard comes next, then what the user states as soft. A decision is therefore
+/// In a decision half-planes against obstacles and robots come first: a user's half-plane never relaxes one
+/// of these. What the user states as hard comes next, then what the user states as soft. A decision is therefore
 /// made in up to three stages, and the first that has an answer counts (`OwnStage`).
 ///
 /// See also: crowd.h takes preferred velocities by itself, navigator.h decides for one robot in a loop of the user's.

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Two robots that have no room to pass each other, and whose goals would need it: a proof that they cannot both get
-/// there, whatever anybody does (docs/guide/liveness.md, lemma 6).
+/// Two robots that have no room to pass each other, and whose goals would need it: a proof that no motion of the
+/// robots brings both there (docs/guide/liveness.md, lemma 6).
 ///
 /// Squares of a grid cover the places of each robot's centre: a square is left out only where all of it is nearer than
 /// the radius to one edge of an obstacle. Pairs of squares cover the places of both: a pair is left out only where all
@@ -33,16 +33,17 @@ struct NoPassing {
   std::size_t first = 0;      ///< robot, in the order of the scenario
   std::size_t second = 0;     ///< the other one, > first
   double side = 0.0;          ///< m, of the squares
-  std::vector<Vec2> squares;  ///< m, lower left corners, of those that cover the places of the first one
-  std::size_t pairs = 0;      ///< of squares, that the two may get to; of none where they are in a strip
+  std::vector<Vec2> squares;  ///< m, lower left corners of the squares that cover the places of the first robot
+  std::size_t pairs = 0;      ///< pairs of squares that the two robots can reach; 0 if they are in a strip
   double strip = 0.0;         ///< m, width of the strip, rounded up; 0 without one
-  double side_by_side = 0.0;  ///< m, that the two take in it
-  bool with_gaps = false;     ///< that plans leave to walls and between robots: without, there is room
+  double side_by_side = 0.0;  ///< m, width that the two take side by side in it
+  bool with_gaps = false;     ///< true: they lack room only because plans leave gaps to walls and between robots
 };
 
 /// Pairs of robots that are proven not to be able to be at their goals together, though neither goal is proven out of
-/// reach by itself, in order; of robots with one goal, by the static obstacles alone. Deterministic; takes a few tenths
-/// of a second at most, and of some robots that something is proven of the map of all obstacles (geometry/routes.h).
+/// reach by itself, in order. Only robots with one goal are judged, and only by the static obstacles. Deterministic;
+/// takes a few tenths of a second at most, and if it proves something, also builds the map of all obstacles
+/// (geometry/routes.h).
 /// REQUIRES: a valid scenario.
 std::vector<NoPassing> robots_without_passing(const Scenario& scenario);
 

@@ -26,10 +26,11 @@ bool parse(const std::string& text, Pattern& out);
 /// `n` slots, neighbours `spacing` (m, > 0) apart, in a fixed order. REQUIRES: n >= 1.
 std::vector<Vec2> pattern_offsets(Pattern pattern, std::size_t n, double spacing, Vec2 heading = {1.0, 0.0});
 
-/// Everybody hears everybody and the leader.
+/// Every robot hears every other robot and the leader.
 Topology complete_topology(std::size_t n);
 
-/// Each hears whoever stands within `reach` (m) of its slot; `pinned` lists those who hear the leader (none: all do).
+/// Each robot hears the robots whose slots are within `reach` (m) of its own; `pinned` lists the robots that hear the
+/// leader (empty: all do).
 Topology neighbour_topology(const std::vector<Vec2>& offsets, double reach,
                             const std::vector<std::size_t>& pinned = {});
 

@@ -19,17 +19,18 @@
 
 namespace exactvo::formation {
 
-/// Of one robot to one of its goals.
+/// The route of one robot to one of its goals.
 struct PlannedRoute {
   std::size_t robot = 0;  ///< index
-  std::size_t goal = 0;   ///< which of its goals, from 0
-  /// m, with start and end; where the goal is out of reach to the nearest place, or empty (`Scenario::unreachable`).
+  std::size_t goal = 0;   ///< the goal's number, from 0
+  /// m, with start and end. If the goal is out of reach: to the nearest place, or empty (`Scenario::unreachable`).
   std::vector<Vec2> points;
   std::string why_not;                      ///< why the goal is out of reach, in words; else empty
-  std::vector<geometry::ChainPoint> chain;  ///< then: what separates them, closed; empty where an end is not free
+  std::vector<geometry::ChainPoint> chain;  ///< then: the closed chain that separates them; empty if an end is not free
 };
 
-/// Of every robot and goal, in their order; nothing in a run without guidance. Costs what the run spends on planning.
+/// The routes of every robot and goal, in their order; none in a run without guidance. Costs what the run spends on
+/// planning.
 /// REQUIRES: a valid scenario.
 std::vector<PlannedRoute> planned_routes(const Scenario& scenario, const SimulationOptions& options);
 

@@ -7,8 +7,8 @@
 /// decided is shared. A share is a stretch of the sorted order: neighbouring strips of the plane. Exact: every rank
 /// ends with the bits that one alone would have.
 ///
-/// What fails in one rank ends all of them, whatever it is and wherever: who fails says so once (`fail`), and the
-/// others learn of it in what they call next.
+/// Any failure in one rank ends all ranks: the failing rank calls `fail` once, and the others learn of it in their next
+/// call.
 ///
 /// See also: datasets/ranks.h has those of mpirun.
 
@@ -37,9 +37,9 @@ struct SharedArray {
 class Ranks {
  public:
   virtual ~Ranks() = default;
-  /// Of this one, from 0.
+  /// The number of this rank, from 0.
   virtual int rank() const = 0;
-  /// How many there are, at least 1.
+  /// The number of ranks, at least 1.
   virtual int size() const = 0;
   /// Each rank has filled its parts of these arrays; then all have all. REQUIRES: the same ends in every rank.
   virtual void share(const std::vector<SharedArray>& arrays) = 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What a run of robots with goals came to, whatever decided (simulation.h, crowd_run.h).
+/// The results of a run of robots with goals, whatever decided (simulation.h, crowd_run.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -32,23 +32,23 @@ struct CrowdMetrics {
   std::uint64_t digest = 0;        ///< Crowd::digest at the end
 };
 
-/// What a run came to. Times in s, lengths in m. The counts of a crowd are 0 where the run is not on one.
+/// The results of a run. Times in s, lengths in m. The crowd counts are 0 in a run without a crowd.
 struct RunReport : CrowdMetrics {
   std::string outcome;      ///< how it ended, in words, for people
-  std::size_t robots = 0;   ///< of the scenario
-  std::size_t arrived = 0;  ///< are within the arrival tolerance of their last goals at the end
-  /// Have no route to a goal, in the order of the scenario: each stays, or goes as near as it can
+  std::size_t robots = 0;   ///< robots of the scenario
+  std::size_t arrived = 0;  ///< robots within the arrival tolerance of their last goals at the end
+  /// Robots without a route to a goal, in the order of the scenario: each stays, or goes as near as it can
   /// (`Scenario::unreachable`).
   std::vector<RobotNotThere> without_route;
-  /// Others that did not arrive, each of which stays beside its goal or was on its way there: another robot is there,
-  /// or at a goal so near that the two cannot both be at theirs.
+  /// Other robots that did not arrive. Each stays beside its goal or was on its way there: another robot is at the
+  /// goal, or at a goal so near that the two cannot both arrive.
   std::vector<RobotNotThere> goal_taken;
-  /// Others that did not arrive: a moving obstacle stands on the route of each, and none leads round it.
+  /// Other robots that did not arrive: a moving obstacle stands on the route of each, and none leads round it.
   std::vector<RobotNotThere> route_cut;
   std::size_t steps = 0;     ///< time steps that were taken
   double time = 0.0;         ///< simulated
-  double path_length = 0.0;  ///< of all robots together
-  std::size_t relaxed = 0;   ///< of a crowd: decisions in which half-planes against others are relaxed
+  double path_length = 0.0;  ///< sum over all robots
+  std::size_t relaxed = 0;   ///< in a crowd: decisions in which half-planes against others are relaxed
   bool interrupted = false;  ///< `SimulationOptions::progress` stopped it
   double wall_time = 0.0;    ///< s, of the whole call
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// A scenario as plain data: robots, obstacles, and, for a formation, who hears whom and whom they follow.
+/// A scenario as plain data: robots, obstacles, and, for a formation, the topology and the leader.
 /// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md, but for `guidance` and
 /// `liveness`, which the paper has not. SI units throughout.
 ///
@@ -55,7 +55,7 @@ struct Robot {
 /// An obstacle that stands still.
 struct SceneObstacle {
   std::string id;            ///< its name in results and messages
-  geometry::Obstacle shape;  ///< m; of a disc the polygon round it
+  geometry::Obstacle shape;  ///< m; for a disc the polygon round it
   std::optional<geometry::Disc> disc =
       {};  ///< m; what it is, where set: then made by `disc_obstacle` (disc_obstacle.h)
 };
@@ -69,11 +69,11 @@ enum class SpeedBoundKind {
 /// How a robot with goals finds its way.
 enum class Guidance {
   none,  ///< straight for the goal, and round obstacles as the method has it: the paper's way
-  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; of a robot
-         ///< whose goal is out of reach `Unreachable` says what it does
+  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures;
+         ///< `Unreachable` says what a robot does if its goal is out of reach
 };
 
-/// What a robot along routes does whose goal is out of reach.
+/// What a robot along routes does if its goal is out of reach.
 enum class Unreachable {
   stay,    ///< it stays where it is
   nearest  ///< it goes to the place nearest to the goal that it can reach
@@ -157,10 +157,10 @@ struct Topology {
 
 /// What robots without goals do together.
 struct FormationSpec {
-  Topology topology;            ///< who hears whom
+  Topology topology;            ///< which robot hears which
   std::vector<Vec2> offsets;    ///< Delta_i, m
   bool recentre = true;         ///< subtract mean(Delta), as equation (4) needs
-  Leader leader;                ///< whom they follow
+  Leader leader;                ///< the leader that they follow
   Gains gains;                  ///< of the controller
   double catch_up_speed = 1.5;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
   AskedControllerOptions controller_options = {};  ///< switched on or off beside what the controller has
@@ -198,8 +198,8 @@ inline double fastest(SpeedBoundKind bound, double max_speed) {
   return bound == SpeedBoundKind::disc ? max_speed : kDiagonal * max_speed;
 }
 
-/// s: tau of braking where none is given, of robots that are no faster than this (m/s): 1.1 times what the fastest
-/// needs to stop, and at least a step.
+/// s: the default tau of braking for robots that are no faster than this (m/s): 1.1 times the time that the fastest
+/// robot needs to stop, and at least a step.
 inline double usual_braking_time(double fastest, double acceleration, double time_step) {
   constexpr double kSpare = 1.1;
   return std::max(kSpare * (fastest / acceleration), time_step);

@@ -15,12 +15,12 @@
 
 namespace exactvo::formation {
 
-/// Of its max_speed: a slower robot counts as at rest. (In a flat trap or a corner the tie-break leaves it a creeping
-/// speed, a thousandth.)
+/// A robot slower than this share of its max_speed counts as at rest. (In a flat trap or a corner the tie-break leaves
+/// it a creeping speed, a thousandth.)
 inline constexpr double kAtRestShare = 1.0 / 300.0;
 
-/// Of the push |chosen - preferred|: a smaller multiplier is rounding. (Multipliers round by far less. A share of 5e-4
-/// decides where the tie-break turns a robot that would slide off against another boundary.)
+/// A multiplier below this share of the push |chosen - preferred| is rounding. (Multipliers round by far less. A share
+/// of 5e-4 decides where the tie-break turns a robot that would slide off against another boundary.)
 inline constexpr double kLeastShare = 1e-6;
 
 /// A half-plane that is active in the last decision.
@@ -35,7 +35,7 @@ struct BindingConstraint {
   bool pressing = false;
 };
 
-/// Why one robot is not where it was to go.
+/// Why one robot is not at its goal.
 struct StuckReport {
   std::size_t robot = 0;                   ///< in the order of the scenario
   Vec2 position;                           ///< m, where it ended
@@ -54,7 +54,8 @@ struct StuckReport {
 /// leader is still under way. REQUIRES: a recording of this scenario.
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording);
 
-/// The same of rows that come one after the other: keeps the last two, where it ended and what was decided last.
+/// The same for rows that come one after the other. It keeps the last two rows: where the run ended, and the last
+/// decisions.
 class StuckWatch {
  public:
   /// `scenario` must outlive the watch.

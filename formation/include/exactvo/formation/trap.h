@@ -61,27 +61,28 @@ struct TrapFinding {
   /// Where the finding is about two enclosures that overlap once they are grown by the robot: the other one. Their
   /// boundaries cross at concave vertices, where a robot can rest although neither enclosure alone would stop it.
   std::optional<TrapPlace> overlapping;
-  bool start_clear = false;  ///< the start lies outside the grown enclosure (of two: outside both)
+  bool start_clear = false;  ///< the start lies outside the grown enclosure (for two: outside both)
   bool goal_clear = false;   ///< so does the goal
   /// One enclosure: `stall_possible` of its shape, exact for an ellipse or disc, or the goal inside it by more than the
   /// arrival tolerance, rounded. Two enclosures, or an edge: whether there are `equilibria`, heuristic.
   bool stall_possible = false;
-  /// Evolute margin of an ellipse. Of two enclosures, where a robot rests: minus the sine of the angle by which the way
-  /// to the goal lies inside the cone of rest, at the vertex where that is most; near 0 the verdict is close.
+  /// For an ellipse its evolute margin. For two enclosures where a robot rests: minus the sine of the angle by which
+  /// the way to the goal lies inside the cone of rest, at the vertex where that angle is largest. Near 0 the verdict is
+  /// close.
   std::optional<double> margin;
-  std::vector<Equilibrium> equilibria;  ///< of two enclosures: the vertices at which a robot rests
+  std::vector<Equilibrium> equilibria;  ///< for two enclosures: the vertices at which a robot rests
   /// s; for a robot that goes straight from the start and meets the boundary: how long it slides before the way is
   /// free. Nothing where it misses the shape, or would come to rest.
   std::optional<double> slide_time;
 };
 
 /// Every robot against every enclosure that the method builds for it, then every two of them that overlap once they are
-/// grown by the robot (`TrapFinding::stall_possible` says what is exact). Of two, a pair of crossings closer together
-/// than a hundredth of the radius can be missed. A goal inside a grown enclosure, by more than the arrival tolerance,
-/// is a stall: the robot stops at the boundary. An enclosure is judged for a robot from anywhere; places that the robot
-/// cannot get to from its start, such as those outside of a room that it is in, are marked (`Equilibrium::reachable`,
-/// exact for a disc smaller by a thousandth of the radius, moving obstacles left out). Not judged: the pieces that an
-/// enclosure gives way to while the robot is inside it (`start_clear` is false there).
+/// grown by the robot (`TrapFinding::stall_possible` says what is exact). For two enclosures a pair of crossings closer
+/// together than a hundredth of the radius can be missed. A goal inside a grown enclosure, by more than the arrival
+/// tolerance, is a stall: the robot stops at the boundary. An enclosure is judged for a robot from anywhere; places
+/// that the robot cannot get to from its start, such as those outside of a room that it is in, are marked
+/// (`Equilibrium::reachable`, exact for a disc smaller by a thousandth of the radius, moving obstacles left out). Not
+/// judged: the pieces that an enclosure gives way to while the robot is inside it (`start_clear` is false there).
 ///
 /// The method `orca` builds no enclosures: there each edge of each obstacle stands for itself, seen from its free side,
 /// together with the corner at its end where that is a concave one; a robot may rest on the edge over the goal's foot,

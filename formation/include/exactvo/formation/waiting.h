@@ -19,34 +19,34 @@
 
 namespace exactvo::formation {
 
-/// Of the preferred velocity: a robot that gets less of it is held up.
+/// A robot is held up if it gets less than this share of its preferred velocity.
 inline constexpr double kHeldBelow = 0.3;
 
-/// Of each robot, whom it waits for; the one that holds it most comes first.
+/// For each robot, the robots that it waits for; the one that holds it most comes first.
 using WaitForGraph = std::vector<std::vector<std::size_t>>;
 
-/// Who waits for whom. In a formation nobody does before its leader has come to the end of its path, and in a run's
-/// last row, which decides nothing, nobody does either. REQUIRES: a row of a run of this scenario.
+/// Which robot waits for which. In a formation no robot waits before the leader has come to the end of its path; in the
+/// last row of a run, which decides nothing, no robot waits either. REQUIRES: a row of a run of this scenario.
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 
 /// The cycles that are met by going from each robot to the one that holds it most: disjoint, each from its lowest
 /// number on, in the order of these.
 std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
 
-/// Whether it drives at less than a fifteenth of its fastest speed.
+/// Whether the robot drives at less than a fifteenth of its greatest speed.
 bool stands(const Robot& robot, Vec2 velocity);
 
 /// Whether this robot, those that it waits for, and those that they wait for in turn, all stand.
 bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& row, std::size_t robot);
 
-/// "R13 waits for R6, which waits for R13: a deadlock of two"; of a long cycle the first ones by name.
+/// "R13 waits for R6, which waits for R13: a deadlock of two". A long cycle names only its first robots.
 std::string deadlock_words(const Scenario& scenario, const std::vector<std::size_t>& cycle);
 
-/// The same of a robot in a deadlock, beginning with it; of others "R3 waits for R1, which rests at its goal", "queue
-/// of 4: R9 waits for R2, which moves". Empty where the robot waits for nobody.
+/// For a robot in a deadlock the same, beginning with it. For other robots "R3 waits for R1, which rests at its goal",
+/// "queue of 4: R9 waits for R2, which moves". Empty if the robot waits for no other.
 std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot);
 
-/// Why a robot of the mode `staying` does: "its goal is out of reach", "R2 was first at its goal, 0.3 m from that of
+/// Why a robot with the mode `staying` stays: "its goal is out of reach", "R2 was first at its goal, 0.3 m from that of
 /// R1", "its goal is out of reach or taken" where the row does not tell which, "its slot cannot be filled". REQUIRES: a
 /// row of a run of this scenario, not its last.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot);

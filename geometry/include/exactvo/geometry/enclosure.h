@@ -66,8 +66,8 @@ struct FittedEllipse {
 std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
                                            const EnclosureOptions& options = {});
 
-/// An obstacle in parts: the facades that enclosures are built on, and what stands for it where none fits: convex
-/// shapes that cover it, of a polygon with holes its edges.
+/// An obstacle in parts: the facades that enclosures are built on, and what replaces it if none fits: convex shapes
+/// that cover it, or the edges of a polygon with holes.
 struct ObstacleParts {
   std::vector<Segment> facades;     ///< m, in the order of divide_into_facades
   std::vector<ConvexShape> pieces;  ///< convex pieces of a polygon without holes, else its facades

@@ -58,10 +58,10 @@ inline constexpr std::size_t most_crossings(std::size_t edges) {
 /// intervals that CGAL's filters compute in.
 inline constexpr double kLargestCutCoordinate = 0x1p100;
 
-/// One or two roundings are the rule. After so many plain ones comes snap rounding, on a grid of two units in the last
-/// place of the largest coordinate.
+/// One or two roundings are the rule. After this many plain ones comes snap rounding, on a grid of two units in the
+/// last place of the largest coordinate.
 inline constexpr std::size_t kPlainRounds = 4;
-/// After so many rounds it ends as `not_roundable`.
+/// After this many rounds it ends as `not_roundable`.
 inline constexpr std::size_t kMostRounds = 8;
 
 /// REQUIRES: all points finite.

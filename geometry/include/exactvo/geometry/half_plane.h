@@ -9,7 +9,7 @@
 namespace exactvo::geometry {
 
 /// { v : normal . v >= offset }. `normal` points into the allowed side and is about, not exactly, of length 1: the pair
-/// of doubles is what is proven, so nobody may renormalise it.
+/// of doubles is what is proven, so do not renormalise it.
 struct HalfPlane {
   Vec2 normal;          ///< dimensionless, |normal| = 1 up to rounding
   double offset = 0.0;  ///< m/s

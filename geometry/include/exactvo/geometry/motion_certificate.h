@@ -33,8 +33,8 @@ struct Separation {
 
 /// A proof that a moving body stays clear.
 struct MotionCertificate {
-  /// Of each pair of parts in turn (by `part`, then by `other`), each pair's in the order of time and without a gap
-  /// over the time that the two motions have in common; empty where they have none.
+  /// Sorted by `part`, then by `other`, then by time. The separations of each pair of parts cover, without a gap, the
+  /// time that the two motions have in common; empty if they have none.
   std::vector<Separation> separations;
 };
 

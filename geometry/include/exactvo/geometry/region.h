@@ -59,8 +59,8 @@ class Region {
   /// Where x lies. Exact. REQUIRES: within kLargestRegionCoordinate.
   Place locate(Vec2 x) const;
 
-  /// The connected pieces, largest first. Those that touch in a point count as one where one walk round the outside
-  /// goes along both, as round two squares that share a corner.
+  /// The connected pieces, largest first. Two pieces that touch in a point are one piece if a single walk round the
+  /// outside passes both, for example two squares with a common corner.
   struct Piece;
   /// Rounded, for showing and drawing.
   std::vector<Piece> pieces() const;

@@ -3,8 +3,8 @@
 
 /// \file
 /// Tells ThreadSanitizer of an order that it cannot see, since the system's oneTBB is not instrumented: tasks see what
-/// was there when they were handed out, and whoever waits for them sees what they left. Tasks stay unordered among
-/// themselves, so that a race between two of them is reported. Nothing in any other build.
+/// was there when they were handed out, and a thread that waits for them sees what they left. Tasks stay unordered
+/// among themselves, so that a race between two of them is reported. Nothing in any other build.
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
@@ -15,7 +15,8 @@ namespace exactvo::geometry {
 #if defined(__SANITIZE_THREAD__)
 /// Addresses to speak of; what stands there says nothing.
 inline char tasks_given, tasks_done;
-/// Before tasks are handed out; once more after it, where they may wait for long: who wrote what is forgotten.
+/// Call before tasks are handed out, and once more after it if they may wait for long: ThreadSanitizer forgets old
+/// writers.
 inline void gives_tasks() {
   __tsan_release(&tasks_given);
 }
@@ -34,7 +35,7 @@ inline void gives_tasks() {}
 inline void has_waited() {}
 /// Nothing, in a build without ThreadSanitizer.
 struct TaskAtWork {
-  /// Not `= default`: nobody reads the object, and compilers would say so.
+  /// Not `= default`: no code reads the object, and compilers would warn.
   TaskAtWork() {}
 };
 #endif

@@ -12,10 +12,10 @@
 
 namespace exactvo::geometry {
 
-/// Of a shape, in the order of its fields, m. Its kind is its place in ConvexShape (`shape.index()`).
+/// The numbers of a shape, in the order of its fields, m. Its kind is its place in ConvexShape (`shape.index()`).
 std::vector<double> numbers_of(const ConvexShape& shape);
 
-/// The shape of these numbers, valid or not; nothing where no shape of the kind has so many.
+/// The shape of these numbers, valid or not; none if no shape of the kind has this many.
 std::optional<ConvexShape> shape_of(std::size_t kind, const std::vector<double>& numbers);
 
 }  // namespace exactvo::geometry

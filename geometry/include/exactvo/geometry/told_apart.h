@@ -28,8 +28,8 @@ inline std::string lossless(double x) {
   return in_digits(x, kEnough);
 }
 
-/// Two numbers of which a message says that the first is the lesser, in the fewest digits, `digits` or more, that show
-/// it. Where rounding has left no difference, or one of the wrong sign, the first is said by the second: "less than 2".
+/// The text of two numbers for a message that says that the first is less: with the fewest digits, at least `digits`,
+/// that show it. If rounding left no difference, or one of the wrong sign, the first reads "less than 2".
 inline std::pair<std::string, std::string> told_apart(double less, double more, int digits = 3) {
   constexpr int kEnough = 17;
   if (less < more)

@@ -28,7 +28,7 @@
 
 namespace exactvo::geometry {
 
-/// Corners of a convex set that somebody else keeps; at least one.
+/// A view of the corners of a convex set, at least one; the caller keeps them.
 struct CornerView {
   const Vec2* data = nullptr;  ///< m, from the set's reference point, in the axes of the world at the start
   std::size_t size = 0;        ///< >= 1

@@ -3,7 +3,7 @@
 
 /// \file
 /// Directions whose slope is an algebraic number: the legs of a velocity obstacle, unrounded (VelocityObstacle::
-/// exact_legs). A value that can be shown to anybody: a polynomial with integer coefficients, an interval of rationals
+/// exact_legs). A value that a reader can check: a polynomial with integer coefficients, an interval of rationals
 /// that holds exactly one of its roots t, and the number of quarter turns k of
 ///
 ///     direction = (1, t) turned counter-clockwise by k quarter turns,   -1 < t <= 1,   k = 0, 1, 2, 3

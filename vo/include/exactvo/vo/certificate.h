@@ -15,7 +15,7 @@
 ///  (3) a certificate of which any number was changed, by an ulp or more, is not valid: a change of the half-plane or
 ///  of
 ///      what it touches shows in the margin, any other in the digest. (The digest guards against accidents, not against
-///      someone who computes it anew; the margin guards against both.)
+///      a forger that computes it anew; the margin guards against both.)
 
 #include <cstdint>
 #include <optional>

@@ -76,7 +76,7 @@ class BodyTable {
   struct Entry {
     Body body;
     geometry::Box box;
-    geometry::GrownShape seen;  ///< the shape again, with the origin and radius of whoever looked last
+    geometry::GrownShape seen;  ///< the shape again, with the origin and radius of the last robot that asked
   };
   std::deque<Entry> entries_;  ///< references to entries outlast `add`
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The family: what different authors make of one encounter, as values that can be asked, drawn and compared.
+/// The family: velocity obstacles of different papers for one encounter, as values to query, draw and compare.
 ///
 ///   VO    u + C(tau)              velocities that collide if the obstacle keeps u      Fiorini and Shiller 1998
 ///   RVO   (v + u)/2 + C(2 tau)    the obstacle does half: 2 v' - v lies in the VO      van den Berg, Lin, Manocha 2008
@@ -11,8 +11,8 @@
 ///   IVO   one half-plane          the whole change, on an ellipse round the shape      the paper, equation (10)
 ///
 /// u is the obstacle's velocity, v the robot's, v' the asked one; C(tau) is the velocity obstacle of a robot and an
-/// obstacle with relative velocity (velocity_obstacle.h). The three cones are one cone with different apices. Authors
-/// who give no horizon mean an infinite one; RVO's and HRVO's are cut off at 2 tau here, since v' stands for twice its
+/// obstacle with relative velocity (velocity_obstacle.h). The three cones are one cone with different apices. A paper
+/// without a horizon means an infinite one; RVO's and HRVO's are cut off at 2 tau here, since v' stands for twice its
 /// offset.
 ///
 /// Exact: `ShiftedCone::contains` for the apex that is stated; VO's and RVO's apices are exact sums, HRVO's is the

@@ -22,7 +22,7 @@
 ///  (1) a point in the interior of `inner` is contained; a contained point lies in `outer`;
 ///  (2) the bracket of the area shrinks with the tolerance;
 ///  (3) one obstacle more never enlarges either bound of the area;
-///  (4) half-planes that are certified, one a cone, bound a region that lies in F.
+///  (4) certified half-planes, one for each cone, bound a region that lies in F.
 
 #include <cstddef>
 #include <vector>
@@ -89,7 +89,7 @@ class FreeVelocities {
   /// (m/s)^2. Certified.
   geometry::Bracket area() const;
 
-  /// F has at least so many connected components: pieces of `outer` that hold a piece of `inner`. Certified; parts
+  /// F has at least this many connected components: pieces of `outer` that hold a piece of `inner`. Certified; parts
   /// thinner than the bracket may make more.
   std::size_t least_components() const;
 

@@ -96,7 +96,7 @@ class VelocityObstacle {
   VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, geometry::ConvexPolygon robot,
                    double time_horizon);
 
-  /// S with its parts; of a polygonal robot a shape round S.
+  /// S with its parts; for a polygonal robot a shape round S.
   const geometry::GrownShape& grown() const { return grown_; }
   /// m; how far `grown()` may reach beyond S: 0 for a disc.
   double grown_error() const { return polygonal_ ? polygonal_->error : 0.0; }
@@ -131,8 +131,8 @@ class VelocityObstacle {
   NearestBoundary nearest_boundary(Vec2 v) const;
 
   /// Equation (10): { v' : n.v' >= n.(v + alpha u) }, alpha the responsibility. 1 is the full one, for a static
-  /// obstacle: certified disjoint from the interior of VO. Less leaves the rest of u to somebody else, and the offset
-  /// is rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing
+  /// obstacle: certified disjoint from the interior of VO. Less leaves the rest of u to the obstacle, and the offset is
+  /// rounded to nearest: nothing is certified (reciprocal.h makes and certifies both halves of a pair). Nothing
   /// where no half-plane could be certified: overlap, or a few ulps from it. REQUIRES: 0 < responsibility <= 1, v
   /// finite.
   std::optional<HalfPlane> half_plane(Vec2 v, double responsibility = 1.0) const;

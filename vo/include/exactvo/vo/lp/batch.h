@@ -35,7 +35,7 @@ struct BatchProblems {
   const T* preferred_x = nullptr;      ///< with preferred_y
   const T* preferred_y = nullptr;      ///< m/s, [i]
   const T* disc = nullptr;             ///< m/s, [i], finite, > 0
-  const std::int32_t* hard = nullptr;  ///< [i]: the first so many lines are hard; null: none
+  const std::int32_t* hard = nullptr;  ///< [i]: the number of hard lines, which come first; null: none
 };
 
 /// Index of nothing in `active`.

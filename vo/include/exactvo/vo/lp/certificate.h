@@ -68,9 +68,9 @@ CertificateError check(const Problem& problem, const Certificate& certificate);
 /// its active set does not show why. REQUIRES: a well-formed problem.
 std::optional<Certificate> certify(const Problem& problem, const Solution& solution);
 
-/// What the multipliers of a solution claim, as a certificate: its terms are the active constraints, of a relaxed or
-/// infeasible answer they are the contradiction too, and the gap is the widest that a double answer may have
-/// (kWidestGap). `check` says whether it holds: it does of every answer that `certify` proves, so that a decision
+/// The claim of a solution's multipliers, as a certificate: its terms are the active constraints, which for a relaxed
+/// or infeasible answer are the contradiction too, and the gap is the widest that a double answer may have
+/// (kWidestGap). `check` says whether it holds: it does for every answer that `certify` proves, so that a decision
 /// recorded with its multipliers carries its proof. REQUIRES: a well-formed problem.
 Certificate claim_of(const Problem& problem, const Solution& solution);
 
@@ -97,12 +97,12 @@ struct Proven {
 /// REQUIRES: a well-formed problem.
 Proven solve_certified(const Problem& problem);
 
-/// The same of an answer that is there already: of `solve`, say.
+/// The same for an answer that exists already, from `solve` for instance.
 Proven certified(const Problem& problem, const Solution& solution);
 
 /// Whether `certified` needs no exact stage: then the multipliers of `solution` are its proof (`claim_of`), and no
-/// certificate is written out. They stay what they are where that shows by rounding, and else are those that `certified`
-/// finds. Allocates only where signs are computed exactly. REQUIRES: a well-formed problem.
+/// certificate is written out. They stay what they are where that shows by rounding, and else are those that
+/// `certified` finds. Allocates only where signs are computed exactly. REQUIRES: a well-formed problem.
 bool is_proven_by_multipliers(const Problem& problem, Solution& solution);
 
 /// The exact answer: every branch decided in exact arithmetic, the optimum an algebraic point, rounded inward.
