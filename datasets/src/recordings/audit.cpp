@@ -405,6 +405,9 @@ void add(AuditReport& sum, const AuditReport& other) {
 
 std::vector<std::string> not_audited(const AuditReport& report) {
   std::vector<std::string> words;
+  if (report.has_places)
+    words.emplace_back("decisions and goals of recordings without them, and whether their runs are whole");
+  if (report.has_places && report[AuditPoint::scenario].asked() == 0) return words;
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
   words.emplace_back(
@@ -413,8 +416,6 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   words.emplace_back(
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");
-  if (report.has_places)
-    words.emplace_back("decisions and half-planes of recordings without them, and whether their runs are whole");
   if (report.without_pairs)
     words.emplace_back(
         "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");

@@ -26,10 +26,8 @@ struct RunInfo {
 };
 
 /// Of a run of `scenario`: what of `options` it depends on.
-RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                 Provenance provenance);
-/// The same of a run on a crowd.
-RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                       Provenance provenance);
+/// Without recorded decisions: on a crowd, whatever the method of `options`.
+RunInfo run_info(const formation::Scenario& scenario, formation::SimulationOptions options, Provenance provenance,
+                 bool has_decisions = true);
 
 }  // namespace exactvo::datasets
