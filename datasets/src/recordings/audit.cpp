@@ -405,6 +405,9 @@ void add(AuditReport& sum, const AuditReport& other) {
 
 std::vector<std::string> not_audited(const AuditReport& report) {
   std::vector<std::string> words;
+  if (report.has_places)
+    words.emplace_back("decisions and goals of recordings without them, and whether their runs are whole");
+  if (report.has_places && report[AuditPoint::scenario].asked() == 0) return words;
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
   words.emplace_back(
@@ -416,8 +419,6 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   words.emplace_back(
       "that recorded half-planes forbid no more than they must, and that a user asked for those of a user: a choice is "
       "the best, and its stage the first, of the half-planes that its row has");
-  if (report.has_places)
-    words.emplace_back("decisions and half-planes of recordings without them, and whether their runs are whole");
   if (report.without_pairs)
     words.emplace_back(
         "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");

@@ -88,7 +88,7 @@ struct RationalObstacle {
   explicit RationalObstacle(const Obstacle& o) : obstacle(&o.shape), segments(edges_of(o.shape)) {
     if (o.disc) disc.emplace(*o.disc);
     for (const geometry::Segment& edge : segments) {
-      edges.push_back({exact::exactly(edge.a), exact::exactly(edge.b)});
+      edges.push_back(exact::exactly(edge));
       boxes.push_back(box_of(edge));
     }
     for (const geometry::Box& b : boxes) box.add(b);

@@ -26,26 +26,6 @@ Rational up(const Rational& x) {
   return -down(-x);
 }
 
-bool cross_properly(const Straight& a, const Straight& b) {
-  const Point e = a.to - a.from, f = b.to - b.from;
-  return sgn(cross(e, b.from - a.from)) * sgn(cross(e, b.to - a.from)) < 0 &&
-         sgn(cross(f, a.from - b.from)) * sgn(cross(f, a.to - b.from)) < 0;
-}
-
-/// Whether the boxes of the two are at least r apart along x or y: then so are they.
-bool boxes_are_apart(const Straight& a, const Straight& b, const Rational& r) {
-  const auto apart = [&](const Rational& a0, const Rational& a1, const Rational& b0, const Rational& b1) {
-    return std::max(a0, a1) + r <= std::min(b0, b1) || std::max(b0, b1) + r <= std::min(a0, a1);
-  };
-  return apart(a.from.x, a.to.x, b.from.x, b.to.x) || apart(a.from.y, a.to.y, b.from.y, b.to.y);
-}
-
-bool crosses_ray(const Point& p, const Point& a, const Point& b) {
-  if ((a.y > p.y) == (b.y > p.y)) return false;
-  const int side = sgn(cross(b - a, p - a));
-  return b.y > a.y ? side > 0 : side < 0;
-}
-
 /// e^-z for 0 <= z <= 1/2, z on the grid. The terms fall by half at least, so what is left out is below the last one;
 /// each term is rounded down by less than a step of the grid.
 Interval decay_of_little(const Rational& z) {
@@ -62,28 +42,11 @@ Interval decay_of_little(const Rational& z) {
 
 }  // namespace
 
-Rational squared_distance(const Point& p, const Straight& s) {
-  const Point e = s.to - s.from, d = p - s.from;
-  const Rational length2 = dot(e, e);
-  Rational t = sgn(length2) > 0 ? Rational(dot(d, e) / length2) : Rational(0);
-  t = std::min(std::max(t, Rational(0)), Rational(1));
-  const Point rest{Rational(d.x - t * e.x), Rational(d.y - t * e.y)};
-  return dot(rest, rest);
-}
-
-bool come_nearer_than(const Straight& a, const Straight& b, const Rational& r) {
-  if (boxes_are_apart(a, b, r)) return false;
-  if (cross_properly(a, b)) return true;
-  const Rational r2 = r * r;
-  return squared_distance(a.from, b) < r2 || squared_distance(a.to, b) < r2 || squared_distance(b.from, a) < r2 ||
-         squared_distance(b.to, a) < r2;
-}
-
 bool is_inside(const Point& p, const geometry::Obstacle& obstacle) {
   if (!geometry::has_interior(obstacle)) return false;
   bool inside = false;
   for (const geometry::Segment& edge : edges_of(obstacle))
-    if (crosses_ray(p, exactly(edge.a), exactly(edge.b))) inside = !inside;
+    inside ^= ray_crosses(p, east(), exactly(edge.a), exactly(edge.b));
   return inside;
 }
 

@@ -2,52 +2,20 @@
 #pragma once
 
 /// \file
-/// Plane geometry in rationals, for the audit. Written out here though others have such lines (vo's exact legs, the
-/// benches' oracles): the checker shares nothing with what it checks but the plain types.
+/// What the audit has beside the plane in rationals (exact/rational_plane.h): the inside of obstacles, enclosures of
+/// roots and exponentials. It shares nothing with what it checks but the plain types.
 
-#include <gmpxx.h>
-
+#include "exact/rational_plane.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::datasets::exact {
 
-using Rational = mpq_class;
+using namespace geometry::rational;
 
-struct Point {
-  Rational x, y;
-};
-inline Point exactly(geometry::Vec2 v) {
-  return {Rational(v.x), Rational(v.y)};
-}
-inline Point operator+(const Point& a, const Point& b) {
-  return {Rational(a.x + b.x), Rational(a.y + b.y)};
-}
-inline Point operator-(const Point& a, const Point& b) {
-  return {Rational(a.x - b.x), Rational(a.y - b.y)};
-}
-inline Point operator*(const Rational& s, const Point& a) {
-  return {Rational(s * a.x), Rational(s * a.y)};
-}
-inline Rational dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y;
-}
-inline Rational cross(const Point& a, const Point& b) {
-  return a.x * b.y - a.y * b.x;
-}
 /// |x| + |y|: at least the length.
 inline Rational length_at_most(const Point& a) {
   return abs(a.x) + abs(a.y);
 }
-
-/// From one point to another, straight.
-struct Straight {
-  Point from, to;
-};
-
-Rational squared_distance(const Point& p, const Straight& s);
-
-/// Whether some point of a is nearer than r to some point of b.
-bool come_nearer_than(const Straight& a, const Straight& b, const Rational& r);
 
 /// Whether p lies inside by the even-odd rule. Exact off the boundary.
 bool is_inside(const Point& p, const geometry::Obstacle& obstacle);

@@ -99,8 +99,9 @@ std::string indented(const std::string& text) {
 
 }  // namespace
 
-RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                 Provenance provenance) {
+RunInfo run_info(const formation::Scenario& scenario, formation::SimulationOptions options, Provenance provenance,
+                 bool has_decisions) {
+  if (!has_decisions) options.method = formation::Method::orca;
   RunInfo info{scenario.name, name(options.method), std::nullopt, std::nullopt, std::move(provenance)};
   if (scenario.formation) {
     info.controller = name(options.controller);
@@ -110,18 +111,10 @@ RunInfo run_info(const formation::Scenario& scenario, const formation::Simulatio
   const formation::Liveness liveness = liveness_of(scenario, options);
   if (guidance != formation::Guidance::none) info.guidance = name(guidance);
   if (liveness != formation::Liveness::off) info.liveness = name(liveness);
-  if (options.record_all) info.decisions = "all";
-  return info;
-}
-
-RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                       Provenance provenance) {
-  RunInfo info{scenario.name, name(formation::Method::orca), std::nullopt, std::nullopt, std::move(provenance)};
-  const formation::Guidance guidance = options.guidance.value_or(scenario.guidance);
-  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
-  const formation::Liveness liveness = options.liveness.value_or(scenario.liveness);
-  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
-  info.decisions = "none";
+  if (!has_decisions)
+    info.decisions = "none";
+  else if (options.record_all)
+    info.decisions = "all";
   return info;
 }
 

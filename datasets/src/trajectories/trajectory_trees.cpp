@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <optional>
 #include <pugixml.hpp>
-#include <stdexcept>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/recording_file.h"
-#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/pi.h"
 #include "files/text_file.h"
@@ -156,32 +153,17 @@ class TagAttributes {
   pugi::xml_document document_;
 };
 
-// --- Obstacles of crowds ---
-
-/// The obstacle that a body is; none of ellipses, and of discs that are nearly points far away.
-std::optional<formation::SceneObstacle> obstacle_of(const geometry::ConvexShape& body, std::string id) {
-  if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body))
-    return formation::SceneObstacle{std::move(id), geometry::Polygon{polygon->vertices, {}}};
-  if (const auto* segment = std::get_if<geometry::Segment>(&body))
-    return formation::SceneObstacle{std::move(id), geometry::Polyline{{segment->a, segment->b}}};
-  const auto* disc = std::get_if<geometry::Disc>(&body);
-  if (disc == nullptr) return std::nullopt;
-  try {
-    return formation::disc_obstacle(std::move(id), *disc);
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
+/// Robots and what stands still.
+void begin(const formation::Scenario& scenario, TrajectorySink& out) {
+  TrajectoryFile& file = out.file();
+  file.row_word = "row";
+  for (const formation::Robot& robot : scenario.robots) {
+    out.agent(robot.id);
+    file.radii.push_back(robot.radius);
   }
-}
-
-void add_bodies(const std::vector<CrowdBodyRecord>& bodies, TrajectoryFile& file) {
-  std::size_t left_out = 0;
-  for (const CrowdBodyRecord& body : bodies) {
-    std::optional<formation::SceneObstacle> obstacle;
-    if (!body.moves) obstacle = obstacle_of(body.shape, "body " + std::to_string(file.obstacles.size() + 1));
-    obstacle ? file.obstacles.push_back(std::move(*obstacle)) : static_cast<void>(++left_out);
-  }
-  if (left_out > 0)
-    file.notes.push_back(geometry::counted(left_out, "body") + " that move or are ellipses were left out of the map");
+  file.obstacles = scenario.obstacles;
+  if (!scenario.moving_obstacles.empty())
+    file.notes.push_back(geometry::counted(scenario.moving_obstacles.size(), "moving obstacle") + " left out");
 }
 
 }  // namespace
@@ -249,23 +231,12 @@ bool looks_like_recording(std::string_view beginning) {
 }
 
 void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySink& out) {
-  TrajectoryFile& file = out.file();
-  file.row_word = "row";
   std::uint64_t number = 0;
-  const auto begin = [&](const formation::Scenario& scenario) {
-    for (const formation::Robot& robot : scenario.robots) {
-      out.agent(robot.id);
-      file.radii.push_back(robot.radius);
-    }
-    file.obstacles = scenario.obstacles;
-    if (!scenario.moving_obstacles.empty())
-      file.notes.push_back(geometry::counted(scenario.moving_obstacles.size(), "moving obstacle") + " left out");
-  };
   read_recording(path, [&](const RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*) {
     if (number++ == 0) {
-      begin(so_far.scenario);
+      begin(so_far.scenario, out);
       if (so_far.recording.motion != formation::MotionLaw::straight)
-        file.notes.emplace_back(
+        out.file().notes.emplace_back(
             "robots of this formation moved on curves between rows, which exactvo audit judges; here they go straight");
     }
     for (std::size_t i = 0; i < row.robots.size(); ++i)
@@ -274,28 +245,19 @@ void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySin
 }
 
 void read_crowd_trajectories(const std::filesystem::path& path, TrajectorySink& out) {
-  TrajectoryFile& file = out.file();
-  file.row_word = "row";
   CrowdRecordingReader reader(path);
   const CrowdRecordingHead& head = reader.head();
-  for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
-    out.agent(head.name_of(i));
-    file.radii.push_back(head.kinds[head.kind_of[i]].radius);
-  }
-  for (const geometry::Segment& edge : head.edges)
-    file.obstacles.push_back(
-        {"edge " + std::to_string(file.obstacles.size() + 1), geometry::Polyline{{edge.a, edge.b}}});
-  add_bodies(head.bodies, file);
+  begin(scene_of(head).scenario, out);
   CrowdRow row;
   for (std::uint64_t number = 1; reader.next(row); ++number) {
     call_wait_hook();
-    for (std::size_t i = 0; i < row.x.size(); ++i)
-      out.row(i, row.step * head.time_step, {row.x[i] * head.position_step, row.y[i] * head.position_step}, number);
+    for (std::size_t i = 0; i < row.x.size(); ++i) out.row(i, row.step * head.time_step, head.place(row, i), number);
   }
-  if (reader.is_cut_off()) file.notes.emplace_back("the recording is cut off after its last row");
+  std::vector<std::string>& notes = out.file().notes;
+  if (reader.is_cut_off()) notes.emplace_back("the recording is cut off after its last row");
   if (head.every > 1)
-    file.notes.push_back("the recording has every " + std::to_string(head.every) +
-                         "th step only: between rows robots are taken to go straight");
+    notes.push_back("the recording has every " + std::to_string(head.every) +
+                    "th step only: between rows robots are taken to go straight");
 }
 
 }  // namespace exactvo::datasets

@@ -3,6 +3,9 @@
 #include "exactvo/formation/disc_obstacle.h"
 
 #include <algorithm>
+#include <istream>
+#include <ostream>
+#include <sstream>
 #include <utility>
 
 #include "control/lyapunov_accumulator.h"
@@ -17,9 +20,13 @@
 #include "metrics/metrics_accumulator.h"
 #include "scene/borrowed_row.h"
 #include "scene/number_text.h"
+#include "snapshot_bytes.h"
 
 namespace exactvo::formation {
 namespace {
+
+using crowd::SnapshotReader;
+using crowd::SnapshotWriter;
 
 /// What is known of a run before its first row.
 Recording beginning_of(const Recording& run) {
@@ -31,6 +38,13 @@ Recording beginning_of(const Recording& run) {
   known.offsets = run.offsets;
   known.controller_options = run.controller_options;
   return known;
+}
+
+Recording straight_run(const Scenario& scenario) {
+  Recording run;
+  run.motion = MotionLaw::straight;
+  run.time_step = scenario.time_step;
+  return run;
 }
 
 std::string of_detours(const Metrics& m) {
@@ -67,6 +81,14 @@ void tell_starts(const Scenario& scenario, Metrics& m) {
   m.collisions.erase(std::remove_if(m.collisions.begin(), m.collisions.end(), starts), m.collisions.end());
 }
 
+/// Of a robot that is not at its goal.
+std::string where_words(const Robot& spec, const detail::RobotCourse& course) {
+  const double speed = norm(course.velocity);
+  const bool rests = !(speed > detail::RobotCourse::kLeastHeadway * spec.max_speed);
+  return "is " + detail::metres(norm(course.position - spec.goals.back())) + " from its goal, " +
+         (rests ? "at rest" : "still moving at " + detail::number_text(speed, 3) + " m/s");
+}
+
 /// How a run ended, from its measurements and from what the run says: collisions first, so that nothing sounds like
 /// success where it was none; long detours of a formation last.
 std::string outcome_words(const Metrics& m, const std::string& end) {
@@ -76,37 +98,93 @@ std::string outcome_words(const Metrics& m, const std::string& end) {
 }  // namespace
 
 struct Evaluator::Parts {
-  Parts(const Scenario& s, const Recording& r, TakeRow take)
-      : scenario(s), run(beginning_of(r)), take_row(std::move(take)), clearances(s, run), measures(s, run), stuck(s) {
-    if (s.formation) lyapunov.emplace(s, run);
-  }
+  Parts(const Scenario& s, Recording r) : scenario(s), run(std::move(r)), measures(s, run) {}
 
   void settle(const std::optional<LyapunovRow>& values) {
     if (take_row && last) take_row(*last, values ? &*values : nullptr);
   }
 
+  Metrics begin() const {
+    Metrics m;
+    for (const Robot& r : scenario.robots) m.robots.emplace_back().id = r.id;
+    measures.write_to(m);
+    if (clearances) detail::write_clearances(clearances->result(), m);
+    return m;
+  }
+
   const Scenario& scenario;
   const Recording run;
-  TakeRow take_row;
-  detail::ClearanceSweep clearances;
   detail::MetricsAccumulator measures;
-  StuckWatch stuck;
+  std::optional<detail::ClearanceSweep> clearances;
+  // Of rows.
+  TakeRow take_row;
+  std::optional<StuckWatch> stuck;
   std::optional<detail::LyapunovAccumulator> lyapunov;
   std::shared_ptr<const Step> last;
+  // Of states.
+  RunSink* next = nullptr;
 };
 
 Evaluator::Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row)
-    : parts_(std::make_unique<Parts>(scenario, run, std::move(take_row))) {}
+    : parts_(std::make_unique<Parts>(scenario, beginning_of(run))) {
+  parts_->take_row = std::move(take_row);
+  parts_->clearances.emplace(scenario, parts_->run);
+  parts_->stuck.emplace(scenario);
+  if (scenario.formation) parts_->lyapunov.emplace(scenario, parts_->run);
+}
+
+Evaluator::Evaluator(const Scenario& scenario, RunSink* next)
+    : parts_(std::make_unique<Parts>(scenario, straight_run(scenario))) {
+  parts_->next = next;
+  if (scenario.robots.size() <= kMostClearances) parts_->clearances.emplace(scenario, parts_->run);
+}
+
 Evaluator::~Evaluator() = default;
 
 void Evaluator::add(std::shared_ptr<const Step> row) {
-  parts_->clearances.add(*row);
+  parts_->clearances->add(*row);
   parts_->measures.add(*row);
-  parts_->stuck.add(row);
+  parts_->stuck->add(row);
   std::optional<LyapunovRow> before;
   if (parts_->lyapunov) before = parts_->lyapunov->add(row);
   parts_->settle(before);
   parts_->last = std::move(row);
+}
+
+void Evaluator::add_state(const RunState& now) {
+  parts_->measures.add(now.time, now.positions, now.velocities);
+  if (parts_->clearances) {
+    detail::RowState row{now.time, {}};
+    for (std::size_t i = 0; i < now.positions.size(); ++i)
+      row.robots.push_back({now.positions[i], now.velocities[i], false});
+    parts_->clearances->add(std::move(row));
+  }
+  if (parts_->next) parts_->next->add_state(now);
+}
+
+void Evaluator::save(std::ostream& to) {
+  std::ostringstream own, next;
+  SnapshotWriter of_own(own);
+  of_own.put(parts_->scenario.robots.size());
+  parts_->measures.fields(of_own);
+  if (parts_->clearances) parts_->clearances->put(of_own);
+  if (parts_->next) parts_->next->save(next);
+  SnapshotWriter whole(to);
+  whole.fields(own.str(), next.str());
+  whole.finish();
+}
+
+void Evaluator::restore(const RunState& now, std::istream& from) {
+  const std::string expected = "those of a run of this scenario and these options";
+  SnapshotReader whole(from, expected);
+  std::istringstream own(whole.get<std::string>()), next(whole.get<std::string>());
+  whole.finish();
+  SnapshotReader of_own(own, expected);
+  if (of_own.get<std::size_t>() != parts_->scenario.robots.size())
+    crowd::refuse_snapshot("another number of robots", expected);
+  parts_->measures.fields(of_own);
+  if (parts_->clearances) parts_->clearances->get(of_own);
+  if (parts_->next) parts_->next->restore(now, next);
 }
 
 Evaluation Evaluator::finish(const Recording& run) {
@@ -115,11 +193,8 @@ Evaluation Evaluator::finish(const Recording& run) {
   if (parts_->lyapunov) last = parts_->lyapunov->last();
   parts_->settle(last);
   Evaluation found;
-  found.stuck = parts_->stuck.reports(run);
-  Metrics& m = found.metrics;
-  for (const Robot& r : parts_->scenario.robots) m.robots.emplace_back().id = r.id;
-  parts_->measures.write_to(m);
-  detail::write_clearances(parts_->clearances.result(), m);
+  found.stuck = parts_->stuck->reports(run);
+  Metrics& m = found.metrics = parts_->begin();
   if (run.liveness)
     static_cast<LivenessCourse&>(*m.plans) = *run.liveness;
   else
@@ -130,11 +205,34 @@ Evaluation Evaluator::finish(const Recording& run) {
   tell_starts(parts_->scenario, m);
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
-  const std::vector<std::size_t> deadlock = parts_->stuck.deadlock(run);
+  const std::vector<std::size_t> deadlock = parts_->stuck->deadlock(run);
   for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
   m.outcome =
       outcome_words(m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
   return found;
+}
+
+Metrics Evaluator::finish(const RunReport& report, std::vector<std::string> warnings) const {
+  const std::vector<Robot>& robots = parts_->scenario.robots;
+  Metrics m = parts_->begin();
+  m.crowd = report;
+  m.relaxed_steps = report.relaxed;
+  m.wall_time = report.wall_time;
+  m.warnings = std::move(warnings);
+  m.not_measured.emplace_back(
+      "margins between robots, half-planes that bind or are not certified: decisions are not recorded");
+  if (!parts_->clearances)
+    m.not_measured.push_back("clearances and collisions: more than " + std::to_string(kMostClearances) +
+                             " robots; audit judges the recording");
+  std::vector<std::string> why(robots.size());
+  for (const auto* not_there : {&report.without_route, &report.goal_taken, &report.route_cut})
+    for (const RobotNotThere& r : *not_there) why[r.robot] = r.why;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    if (!m.robots[i].arrived)
+      m.stuck.push_back(robots[i].id + " " +
+                        (why[i].empty() ? where_words(robots[i], parts_->measures.course(i)) : why[i]));
+  m.outcome = detail::collision_words(m) + report.outcome;
+  return m;
 }
 
 Metrics measure(const Scenario& scenario, const Recording& recording) {

@@ -13,7 +13,25 @@ namespace exactvo::formation::detail {
 MetricsAccumulator::MetricsAccumulator(const Scenario& scenario, const Recording& run)
     : scenario_(scenario), run_(run), robots_(scenario.robots.size()) {}
 
+void MetricsAccumulator::add(double time, const std::vector<Vec2>& positions, const std::vector<Vec2>& velocities) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    add_state(i, positions[i], velocities[i]);
+    add_arrival(i, time);
+  }
+  time_ = time;
+  ++rows_;
+}
+
+void MetricsAccumulator::add_state(std::size_t robot, Vec2 position, Vec2 velocity) {
+  OfRobot& r = robots_[robot];
+  const double at_rest = RobotCourse::kLeastHeadway * scenario_.robots[robot].max_speed;
+  if (rows_ > 0) r.move_to(position, velocity, run_.time_step, at_rest);
+  r.position = position;
+  r.velocity = velocity;
+}
+
 void MetricsAccumulator::add(const Step& row) {
+  has_decisions_ = true;
   counted_.relaxed += of_last_row_.relaxed;
   counted_.uncertified += of_last_row_.uncertified;
   counted_.switches += of_last_row_.switches;
@@ -28,14 +46,12 @@ void MetricsAccumulator::add(const Step& row) {
     const RobotStep& step = row.robots[i];
     if (scenario_.formation)
       r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - leader_.position);
-    if (rows_ > 0) {
-      const double at_rest = RobotCourse::kLeastHeadway * scenario_.robots[i].max_speed;
-      r.move_to(step.position, step.velocity, run_.time_step, at_rest);
-    }
-    r.position = step.position;
-    r.velocity = step.velocity;
+    add_state(i, step.position, step.velocity);
     add_decision(r, step);
-    add_arrival(i, row);
+    if (scenario_.formation)
+      r.settled.add(row.time, slot_error(row, run_.offsets, i), scenario_.arrival_tolerance);
+    else
+      add_arrival(i, row.time);
   }
   if (scenario_.formation) add_to_course(row);
   add_margins(row);
@@ -60,12 +76,8 @@ void MetricsAccumulator::add_decision(OfRobot& r, const RobotStep& step) {
   r.active = std::move(active);
 }
 
-void MetricsAccumulator::add_arrival(std::size_t robot, const Step& row) {
-  OfRobot& r = robots_[robot];
-  if (scenario_.formation)
-    r.settled.add(row.time, slot_error(row, run_.offsets, robot), scenario_.arrival_tolerance);
-  else
-    r.arrive(scenario_.robots[robot], scenario_.arrival_tolerance, row.time, row.robots[robot].position);
+void MetricsAccumulator::add_arrival(std::size_t robot, double time) {
+  robots_[robot].arrive(scenario_.robots[robot], scenario_.arrival_tolerance, time, robots_[robot].position);
 }
 
 void MetricsAccumulator::add_to_course(const Step& row) {
@@ -109,6 +121,9 @@ void MetricsAccumulator::write_to(Metrics& m) const {
   for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i].write_to(m.robots[i], m);
   if (scenario_.formation) write_course(m);
   write_detours(m);
+  m.steps = rows_ - 1;
+  m.time = time_;
+  if (!has_decisions_) return;
   m.plans.emplace();
   m.plans->time_by_plan = static_cast<double>(rows_by_plan_) * run_.time_step;
   m.plans->time_back = static_cast<double>(rows_back_) * run_.time_step;
@@ -120,8 +135,6 @@ void MetricsAccumulator::write_to(Metrics& m) const {
   m.relaxed_steps = counted_.relaxed;
   m.uncertified_half_planes = counted_.uncertified;
   m.active_set_switches = counted_.switches;
-  m.steps = rows_ - 1;
-  m.time = time_;
 }
 
 void MetricsAccumulator::write_formation(Metrics& m) const {
@@ -142,10 +155,6 @@ void MetricsAccumulator::write_arrivals(Metrics& m) const {
     out.arrived = out.arrival_time.has_value() && (!scenario_.formation || m.leader_arrival_time.has_value());
     if (!out.arrived) out.arrival_time.reset();
   }
-  write_arrivals_of_run(m);
-}
-
-void write_arrivals_of_run(Metrics& m) {
   std::vector<double> times;
   for (const RobotMetrics& r : m.robots)
     if (r.arrived) times.push_back(*r.arrival_time);

@@ -20,9 +20,20 @@ class MetricsAccumulator {
   /// Of `run` what is known before the first row: time step, offsets. Both must outlive it.
   MetricsAccumulator(const Scenario& scenario, const Recording& run);
   void add(const Step& row);
+  /// A row without decisions, of robots with goals. Margins between robots are not measured then.
+  void add(double time, const std::vector<Vec2>& positions, const std::vector<Vec2>& velocities);
   /// Of the rows so far, at least one. Writes paths, arrivals, errors, the formation's course, jitter and counts into
   /// `m`.
   void write_to(Metrics& m) const;
+  /// In the last row. REQUIRES: a row.
+  const RobotCourse& course(std::size_t robot) const { return robots_[robot]; }
+
+  /// For snapshots, of rows without decisions: the same list of fields both ways.
+  template <class Stream>
+  void fields(Stream& stream) {
+    stream.fields(rows_, time_);
+    for (OfRobot& robot : robots_) robot.fields(stream);
+  }
 
  private:
   /// What binds, whatever the order.
@@ -37,7 +48,8 @@ class MetricsAccumulator {
   };
 
   void add_decision(OfRobot& r, const RobotStep& step);
-  void add_arrival(std::size_t robot, const Step& row);
+  void add_state(std::size_t robot, Vec2 position, Vec2 velocity);
+  void add_arrival(std::size_t robot, double time);
   void add_to_course(const Step& row);
   void add_margins(const Step& row);
   void write_formation(Metrics& m) const;
@@ -55,6 +67,7 @@ class MetricsAccumulator {
   const Scenario& scenario_;
   const Recording& run_;
   std::vector<OfRobot> robots_;
+  bool has_decisions_ = false;
   std::size_t rows_ = 0, rows_by_plan_ = 0, rows_back_ = 0;
   Counts counted_, of_last_row_;
   std::vector<Vec2> places_;  ///< memory of `add_margins`

@@ -121,7 +121,4 @@ inline double way_to_goals(const Robot& robot) {
   return way;
 }
 
-/// From the robots' arrival times the run's. REQUIRES: `m` has its robots.
-void write_arrivals_of_run(Metrics& m);
-
 }  // namespace exactvo::formation::detail

@@ -1,47 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Written out in rationals although others have such lines: who checks shares nothing with what is checked.
+// In rationals: the check shares nothing with what finds routes.
 #include "exactvo/geometry/route_certificate.h"
-
-#include <gmpxx.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "exact/rational_plane.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace {
 
-using Rational = mpq_class;
-
-struct Place {
-  Rational x, y;
-};
-bool operator==(const Place& a, const Place& b) {
-  return a.x == b.x && a.y == b.y;
-}
-Place operator-(const Place& a, const Place& b) {
-  return {Rational(a.x - b.x), Rational(a.y - b.y)};
-}
-Rational inner(const Place& a, const Place& b) {
-  return a.x * b.x + a.y * b.y;
-}
-Rational outer(const Place& a, const Place& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-struct Stretch {
-  Place a, b;
-};
-
-Place place_of(Vec2 p) {
-  return {Rational(p.x), Rational(p.y)};
-}
-Stretch stretch_of(const Segment& s) {
-  return {place_of(s.a), place_of(s.b)};
-}
+using rational::cross;
+using rational::cross_properly;
+using rational::dot;
+using rational::east;
+using rational::exactly;
+using rational::Rational;
+using rational::ray_crosses;
+using rational::squared_distance;
+using Place = rational::Point;
+using Stretch = rational::Straight;
 
 /// Doubles that are not more and not less: GMP rounds towards 0.
 double not_above(const Rational& x) {
@@ -84,63 +65,30 @@ double length_of(const std::vector<Place>& points) {
   return length;
 }
 
-Rational squared_distance(const Place& p, const Stretch& s) {
-  const Place e = s.b - s.a, d = p - s.a;
-  const Rational length = inner(e, e);
-  Rational share = sgn(length) > 0 ? Rational(inner(d, e) / length) : Rational(0);
-  share = std::min(std::max(share, Rational(0)), Rational(1));
-  const Place rest{Rational(d.x - share * e.x), Rational(d.y - share * e.y)};
-  return inner(rest, rest);
-}
-
-bool cross_inside(const Stretch& s, const Stretch& t) {
-  const auto turn = [](const Stretch& u, const Place& p) { return sgn(outer(u.b - u.a, p - u.a)); };
-  return turn(s, t.a) * turn(s, t.b) < 0 && turn(t, s.a) * turn(t, s.b) < 0;
-}
-
-bool comes_nearer_than(const Stretch& s, const Stretch& t, const Rational& squared) {
-  return cross_inside(s, t) || squared_distance(s.a, t) < squared || squared_distance(s.b, t) < squared ||
-         squared_distance(t.a, s) < squared || squared_distance(t.b, s) < squared;
-}
-
 bool lies_on(const Place& p, const Stretch& s) {
   return sgn(squared_distance(p, s)) == 0;
 }
 
 /// Whether two stretches have a point in common other than an end of the first that may (`a_may`, `b_may`).
 bool touch(const Stretch& s, const Stretch& t, bool a_may, bool b_may) {
-  const bool a_on = lies_on(s.a, t), b_on = lies_on(s.b, t);
-  if ((a_on && !a_may) || (b_on && !b_may) || (a_on && b_on && !(s.a == s.b))) return true;
-  for (const Place& p : {t.a, t.b})
-    if (lies_on(p, s) && !(a_may && p == s.a) && !(b_may && p == s.b)) return true;
-  return cross_inside(s, t);
-}
-
-/// Whether the ray from p along d crosses ab, behind p; of its ends the one on the left counts.
-bool ray_crosses(const Place& p, const Place& d, const Place& a, const Place& b) {
-  const bool is_east = sgn(d.y) == 0 && sgn(d.x) > 0;  // as it mostly is: without products
-  const auto is_left = [&](const Place& x) { return is_east ? x.y > p.y : sgn(outer(d, x - p)) > 0; };
-  const bool b_left = is_left(b);
-  if (is_left(a) == b_left) return false;
-  const int side = sgn(outer(b - a, p - a));
-  return b_left ? side > 0 : side < 0;
-}
-const Place& to_the_right() {
-  static const Place east{1, 0};
-  return east;
+  const bool a_on = lies_on(s.from, t), b_on = lies_on(s.to, t);
+  if ((a_on && !a_may) || (b_on && !b_may) || (a_on && b_on && !(s.from == s.to))) return true;
+  for (const Place& p : {t.from, t.to})
+    if (lies_on(p, s) && !(a_may && p == s.from) && !(b_may && p == s.to)) return true;
+  return cross_properly(s, t);
 }
 
 /// By their angle from the direction to the right, counter-clockwise.
 bool turns_less(const Place& u, const Place& v) {
   const auto is_upper = [](const Place& d) { return sgn(d.y) > 0 || (sgn(d.y) == 0 && sgn(d.x) > 0); };
   if (is_upper(u) != is_upper(v)) return is_upper(u);
-  return sgn(outer(u, v)) > 0;
+  return sgn(cross(u, v)) > 0;
 }
 
 /// A direction that is passed on the turn from u to v, counter-clockwise; from u to itself it is a whole turn.
 Place between(const Place& u, const Place& v) {
-  const int turn = sgn(outer(u, v));
-  if (turn == 0 && sgn(inner(u, v)) > 0) return {Rational(-u.x), Rational(-u.y)};
+  const int turn = sgn(cross(u, v));
+  if (turn == 0 && sgn(dot(u, v)) > 0) return {Rational(-u.x), Rational(-u.y)};
   if (turn == 0) return {Rational(-u.y), u.x};
   const Rational sign(turn);
   return {Rational(sign * (u.x + v.x)), Rational(sign * (u.y + v.y))};
@@ -149,7 +97,7 @@ Place between(const Place& u, const Place& v) {
 class Checker {
  public:
   Checker(const std::vector<Obstacle>& obstacles, const RouteQuestion& question)
-      : radius_(question.radius), start_(place_of(question.start)), goal_(place_of(question.goal)) {
+      : radius_(question.radius), start_(exactly(question.start)), goal_(exactly(question.goal)) {
     squared_ = radius_ * radius_;
     for (const Obstacle& obstacle : obstacles) {
       solid_.push_back(has_interior(obstacle));
@@ -195,7 +143,7 @@ class Checker {
       if (!lies_on(*p, edge(here.on))) return at(k) + "not on its edge";
       if (here.gap_follows) {
         const Place gap = *q - *p;
-        if (!(inner(gap, gap) < 4 * squared_)) return at(k) + "the gap behind it is not narrower than two radii";
+        if (!(dot(gap, gap) < 4 * squared_)) return at(k) + "the gap behind it is not narrower than two radii";
       } else if (!lies_on(*q, edge(here.on))) {
         return at(k) + "the next point is not on its edge";
       }
@@ -206,7 +154,7 @@ class Checker {
     for (const Place* end : {&start_, &goal_}) {
       for (const Place& d : open_directions(*end)) {
         bool round = false;
-        for (const Stretch& side : sides) round ^= ray_crosses(*end, d, side.a, side.b);
+        for (const Stretch& side : sides) round ^= ray_crosses(*end, d, side.from, side.to);
         is_round[end == &goal_].push_back(round);
       }
     }
@@ -219,7 +167,7 @@ class Checker {
   std::string operator()(const Blocked& blocked) const {
     const Place& end = blocked.end == Blocked::End::start ? start_ : goal_;
     if (blocked.inside) {
-      if (blocked.by.obstacle >= edges_.size() || !inside(blocked.by.obstacle, end, to_the_right()))
+      if (blocked.by.obstacle >= edges_.size() || !inside(blocked.by.obstacle, end, east()))
         return "not inside that obstacle";
       return is_on_edge(blocked.by.obstacle, end) ? "on the edge of that obstacle" : "";
     }
@@ -235,17 +183,17 @@ class Checker {
   bool exists(const EdgeName& name) const {
     return name.obstacle < edges_.size() && name.edge < edges_[name.obstacle].size();
   }
-  Stretch edge(const EdgeName& name) const { return stretch_of(edges_[name.obstacle][name.edge]); }
+  Stretch edge(const EdgeName& name) const { return exactly(edges_[name.obstacle][name.edge]); }
 
   bool is_on_edge(std::size_t obstacle, const Place& p) const {
     return std::any_of(edges_[obstacle].begin(), edges_[obstacle].end(),
-                       [&](const Segment& e) { return lies_on(p, stretch_of(e)); });
+                       [&](const Segment& e) { return lies_on(p, exactly(e)); });
   }
   /// Whether the obstacle holds what follows p along d, which no edge through p does.
   bool inside(std::size_t obstacle, const Place& p, const Place& d) const {
     bool in = false;
     if (solid_[obstacle])
-      for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, d, place_of(e.a), place_of(e.b));
+      for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, d, exactly(e.a), exactly(e.b));
     return in;
   }
   bool inside_any(const Place& p, const Place& d) const {
@@ -262,13 +210,13 @@ class Checker {
     for_each_edge_near({p, p}, [&](std::size_t, std::size_t, const Stretch& e) {
       is_near = is_near || squared_distance(p, e) < squared_;
       if (sgn(radius_) > 0 || !lies_on(p, e)) return;
-      for (const Place& end : {e.a, e.b})
+      for (const Place& end : {e.from, e.to})
         if (!(end == p)) along.push_back(end - p);
     });
     if (is_near) return {};
     std::sort(along.begin(), along.end(), turns_less);
     std::vector<Place> open;
-    if (along.empty()) open.push_back(to_the_right());
+    if (along.empty()) open.push_back(east());
     for (std::size_t k = 0; k < along.size(); ++k) {
       const Place &u = along[k], &v = along[(k + 1) % along.size()];
       const bool is_last_of_its_kind = k + 1 == along.size() || turns_less(u, v);
@@ -284,14 +232,14 @@ class Checker {
     bool touches = false;
     for_each_edge_near({start_, start_},
                        [&](std::size_t, std::size_t, const Stretch& e) { touches = touches || lies_on(start_, e); });
-    return !inside_any(start_, touches ? points[1] - points[0] : to_the_right());
+    return !inside_any(start_, touches ? points[1] - points[0] : east());
   }
 
   /// Calls f(obstacle, edge, stretch) for every edge that may come within a radius of the piece, and some others.
   template <typename F>
   void for_each_edge_near(const Stretch& piece, const F& f) const {
-    const auto [left, right] = std::minmax(piece.a.x, piece.b.x);
-    const auto [low, high] = std::minmax(piece.a.y, piece.b.y);
+    const auto [left, right] = std::minmax(piece.from.x, piece.to.x);
+    const auto [low, high] = std::minmax(piece.from.y, piece.to.y);
     const double x0 = not_above(left - radius_), x1 = not_below(right + radius_);
     const double y0 = not_above(low - radius_), y1 = not_below(high + radius_);
     for (std::size_t i = 0; i < edges_.size(); ++i) {
@@ -299,7 +247,7 @@ class Checker {
         const Segment& e = edges_[i][k];
         const bool apart = (e.a.x < x0 && e.b.x < x0) || (e.a.x > x1 && e.b.x > x1) || (e.a.y < y0 && e.b.y < y0) ||
                            (e.a.y > y1 && e.b.y > y1);
-        if (!apart) f(i, k, stretch_of(e));
+        if (!apart) f(i, k, exactly(e));
       }
     }
   }
@@ -308,8 +256,7 @@ class Checker {
   std::string too_near(const Stretch& piece, bool is_first, bool is_last) const {
     std::string why;
     for_each_edge_near(piece, [&](std::size_t i, std::size_t k, const Stretch& e) {
-      const bool is_wrong =
-          sgn(radius_) > 0 ? comes_nearer_than(piece, e, squared_) : touch(piece, e, is_first, is_last);
+      const bool is_wrong = sgn(radius_) > 0 ? come_nearer_than(piece, e, radius_) : touch(piece, e, is_first, is_last);
       if (why.empty() && is_wrong)
         why = "nearer to edge " + std::to_string(k) + " of obstacle " + std::to_string(i) + " than the radius";
     });

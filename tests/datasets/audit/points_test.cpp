@@ -696,15 +696,17 @@ TEST(ExactShapes, ContainTheirPointsAndNoOthers) {
     EXPECT_FALSE(exact::contains(e, at(1.0 + 1e-9)));
   }
   const geometry::ConvexPolygon square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-  EXPECT_TRUE(exact::contains(square, exact::exactly({1.0, 0.5})));
-  EXPECT_FALSE(exact::contains(square, exact::exactly({std::nextafter(1.0, 2.0), 0.5})));
-  EXPECT_FALSE(exact::contains(geometry::ConvexPolygon{{{0, 0}, {2, 0}}}, exact::exactly({1.0, 0x1p-60})));
-  EXPECT_TRUE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly({1.0, 1.0})));
-  EXPECT_FALSE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly({3.0, 3.0})));
-  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly({0.0, 5.0})));
-  EXPECT_FALSE(exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly({0.0, 5.0000001})));
-  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 2.0, 1.0, 0.0}, exact::exactly({-2.0, -1.0})));
-  EXPECT_TRUE(exact::contains(geometry::Disc{{0, 0}, 5.0}, exact::exactly({3.0, 4.0})));
+  EXPECT_TRUE(exact::contains(square, exact::exactly(geometry::Vec2{1.0, 0.5})));
+  EXPECT_FALSE(exact::contains(square, exact::exactly(geometry::Vec2{std::nextafter(1.0, 2.0), 0.5})));
+  EXPECT_FALSE(
+      exact::contains(geometry::ConvexPolygon{{{0, 0}, {2, 0}}}, exact::exactly(geometry::Vec2{1.0, 0x1p-60})));
+  EXPECT_TRUE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly(geometry::Vec2{1.0, 1.0})));
+  EXPECT_FALSE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly(geometry::Vec2{3.0, 3.0})));
+  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly(geometry::Vec2{0.0, 5.0})));
+  EXPECT_FALSE(
+      exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly(geometry::Vec2{0.0, 5.0000001})));
+  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 2.0, 1.0, 0.0}, exact::exactly(geometry::Vec2{-2.0, -1.0})));
+  EXPECT_TRUE(exact::contains(geometry::Disc{{0, 0}, 5.0}, exact::exactly(geometry::Vec2{3.0, 4.0})));
 }
 
 }  // namespace

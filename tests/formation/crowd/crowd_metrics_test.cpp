@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is measured of a run on a crowd, against the metrics of a recording with the same rows.
-#include "exactvo/formation/crowd_metrics.h"
+#include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ void expect_same(const Metrics& found, const Metrics& expected) {
 TEST(CrowdMetrics, AreThoseOfTheSameRowsInARecording) {
   const Scenario s = circle();
   AsRecording rows(s);
-  CrowdEvaluator evaluator(s, &rows);
+  Evaluator evaluator(s, &rows);
   const RunReport report = run_crowd(s, {}, &evaluator);
   const Metrics found = evaluator.finish(report, {"a warning"}), expected = measure(s, rows.run);
   expect_same(found, expected);
@@ -105,13 +106,13 @@ TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
   SimulationOptions options;
   options.snapshot_every = 25;
   options.keep_snapshot = [&](const std::string& bytes) { kept.push_back(bytes); };
-  CrowdEvaluator whole(s);
+  Evaluator whole(s);
   const Metrics expected = whole.finish(run_crowd(s, options, &whole), {});
   ASSERT_GT(kept.size(), 2U);
   for (const std::string& snapshot : kept) {
     SimulationOptions again;
     again.resume_from = snapshot;
-    CrowdEvaluator rest(s);
+    Evaluator rest(s);
     const Metrics found = rest.finish(run_crowd(s, again, &rest), {});
     expect_same(found, expected);
     EXPECT_EQ(found.outcome, expected.outcome);
@@ -122,7 +123,7 @@ TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
   std::ostringstream saved;
   whole.save(saved);
   std::istringstream bytes(saved.str());
-  CrowdEvaluator other(fewer);
+  Evaluator other(fewer);
   EXPECT_THROW(other.restore(RunState{0, 0.0, {}, {}}, bytes), CrowdError);
 }
 
@@ -139,7 +140,7 @@ TEST(CrowdMetrics, OfVeryManyRobotsClearancesAreNotMeasuredAndThatIsSaid) {
   }
   for (const bool is_less : {false, true}) {
     if (is_less) s.robots.pop_back();
-    CrowdEvaluator evaluator(s);
+    Evaluator evaluator(s);
     const Metrics m = evaluator.finish(run_crowd(s, {}, &evaluator), {});
     EXPECT_EQ(m.min_robot_clearance.has_value(), is_less);
     EXPECT_EQ(m.not_measured.size(), is_less ? 1U : 2U);

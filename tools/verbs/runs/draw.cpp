@@ -2,8 +2,8 @@
 // exactvo draw: the figures of a recorded run.
 #include <fmt/format.h>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/recording_file.h"
-#include "figures/crowd_figures.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/run_recorder.h"
@@ -12,6 +12,7 @@
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/runs/simulate_crowd.h"
 
 namespace exactvo::tools {
 
@@ -50,16 +51,9 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
 /// Whether the recording was cut off.
 bool draw_into(const fs::path& folder, const fs::path& recording) {
   const TerminateOnSignal terminate_on_signal;
-  if (!datasets::is_crowd_recording(recording)) {
-    draw_figures_of(read_shown(recording), folder);
-    return false;
-  }
-  ProgressLine line(0.0, "");
-  line.say("reading " + recording.string());
-  const CrowdCourse course = course_of(recording);
-  line.clear();
-  draw(write_figures(crowd_figures(course), folder), course.name);
-  return course.cut_off;
+  if (datasets::is_crowd_recording(recording)) return draw_crowd_figures(recording, folder);
+  draw_figures_of(read_shown(recording), folder);
+  return false;
 }
 
 ExitCode draw_figures(const DrawFlags& flags) {

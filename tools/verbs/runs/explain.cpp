@@ -197,7 +197,7 @@ struct CrowdMade {
 Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, const Scenario& scenario) {
   const std::size_t robot = find_robot(scenario, flags.robot);
   const TerminateOnSignal terminate_on_signal;
-  const std::string how = method_words(datasets::crowd_run_info(scenario, made.options, {}));
+  const std::string how = method_words(datasets::run_info(scenario, made.options, {}, false));
   CrowdDecision found = crowd_decision(scenario, made.options, how, robot, flags.time);
   if (!found.decision)
     throw UsageError("--time", fmt::format("{}", flags.time), fmt::format("below {} s, when the run ends", found.end));

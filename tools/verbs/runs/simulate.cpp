@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "exactvo/datasets/ranks.h"
-#include "exactvo/formation/crowd_metrics.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/notices.h"
 #include "exactvo/formation/stability.h"
 #include "explorer/packed_run.h"

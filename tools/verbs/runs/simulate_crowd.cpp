@@ -15,8 +15,8 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "exactvo/formation/crowd_metrics.h"
 #include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/notices.h"
 #include "figures/crowd_figures.h"
 #include "support/rank_watch.h"
@@ -168,8 +168,8 @@ void remove_snapshot(const std::filesystem::path& record) {
 }
 
 datasets::RunInfo crowd_info(const CrowdTask& task) {
-  return datasets::crowd_run_info(task.read.scenario, options_of(task),
-                                  datasets::make_provenance(command_line(), task.simulation.seed, task.read.files));
+  return datasets::run_info(task.read.scenario, options_of(task),
+                            datasets::make_provenance(command_line(), task.simulation.seed, task.read.files), false);
 }
 
 std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
@@ -208,7 +208,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
     recorder.emplace(task.record, scenario, flags.every,
                      has_snapshots ? datasets::Unfinished::stays : datasets::Unfinished::goes);
   if (has_snapshots && is_first && options.resume_from.empty()) remove_snapshot(task.record);
-  formation::CrowdEvaluator evaluator(scenario, recorder ? &*recorder : nullptr);
+  formation::Evaluator evaluator(scenario, recorder ? &*recorder : nullptr);
   formation::RunReport report;
   try {
     report = run_crowd(scenario, options, &evaluator);
@@ -231,12 +231,13 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
   return finished;
 }
 
-void draw_crowd_figures(const std::filesystem::path& recording, const std::filesystem::path& folder) {
+bool draw_crowd_figures(const std::filesystem::path& recording, const std::filesystem::path& folder) {
   ProgressLine line(0.0, "");
   line.say("reading " + recording.string());
   const CrowdCourse course = course_of(recording);
   line.clear();
   draw(write_figures(crowd_figures(course), folder), course.name);
+  return course.cut_off;
 }
 
 void write_crowd_table(const FinishedRun& run, const std::filesystem::path& recording,

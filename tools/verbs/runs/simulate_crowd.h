@@ -57,8 +57,8 @@ void remove_snapshot(const std::filesystem::path& record);
 datasets::RunInfo crowd_info(const CrowdTask& task);
 
 /// The figures and the table of a recording of a crowd, into a folder: figures/, trajectory.csv where it has at most
-/// `kMostTableLines`.
-void draw_crowd_figures(const std::filesystem::path& recording, const std::filesystem::path& folder);
+/// `kMostTableLines`. True of figures where the recording was cut off.
+bool draw_crowd_figures(const std::filesystem::path& recording, const std::filesystem::path& folder);
 inline constexpr std::size_t kMostTableLines = 1'000'000;
 void write_crowd_table(const FinishedRun& run, const std::filesystem::path& recording,
                        const std::filesystem::path& folder);

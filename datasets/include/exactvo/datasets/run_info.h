@@ -25,11 +25,9 @@ struct RunInfo {
   std::string decisions = "binding";  ///< what is recorded of half-planes: "none", "binding" ones, or "all"
 };
 
-/// The info of a run of `scenario`: the parts of `options` that it depends on.
-RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                 Provenance provenance);
-/// The same for a run on a crowd.
-RunInfo crowd_run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                       Provenance provenance);
+/// The info of a run of `scenario`: the parts of `options` that it depends on. A run without recorded decisions is one
+/// on a crowd, whatever the method of `options`.
+RunInfo run_info(const formation::Scenario& scenario, formation::SimulationOptions options, Provenance provenance,
+                 bool has_decisions = true);
 
 }  // namespace exactvo::datasets

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@
 #include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/run_report.h"
+#include "exactvo/formation/run_sink.h"
 #include "exactvo/formation/stuck.h"
 
 namespace exactvo::formation {
@@ -133,9 +135,15 @@ struct Evaluation {
 /// `measure`, `lyapunov_along` and `explain_stuck` in one pass, nothing computed twice.
 Evaluation evaluate(const Scenario& scenario, const Recording& recording);
 
-/// The same for a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
-/// grow with the run.
-class Evaluator {
+/// Runs without recorded decisions have clearances for at most this many robots: with more, measuring them would take
+/// longer than the run.
+inline constexpr std::size_t kMostClearances = 2000;
+
+/// The same for a run as it is made, in memory that does not grow with the run: takes its rows, or, where decisions are
+/// not recorded, its states (crowd_run.h). For states nothing is measured that needs half-planes: margins between
+/// robots, `active_set_switches`, `uncertified_half_planes`; and clearances and collisions for at most `kMostClearances`
+/// robots.
+class Evaluator : public RunSink {
  public:
   /// Called once per row, in order, when the next row or the end is known. `lyapunov` holds the values at that row, and
   /// is null without a formation. If it throws, the exception is passed on and the evaluator is unusable.
@@ -144,13 +152,24 @@ class Evaluator {
   /// Reads from `run`: motion, time_step, tracking_gain, relative_frame, offsets. `scenario` must outlive the
   /// evaluator.
   Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row = {});
-  ~Evaluator();
-  /// REQUIRES: not null.
+  /// Of states, which are handed on to `next`, if there is one. `scenario` and `next` must outlive it.
+  explicit Evaluator(const Scenario& scenario, RunSink* next = nullptr);
+  ~Evaluator() override;
+
+  /// REQUIRES: not null, and an evaluator of rows.
   void add(std::shared_ptr<const Step> row);
   /// Once, after the last row. Reads from `run`: outcome, diverged, warnings, wall_time, offsets, time_step, bodies,
   /// liveness, routes.
   /// `lyapunov` of the result is empty. REQUIRES: a row.
   Evaluation finish(const Recording& run);
+
+  /// REQUIRES: an evaluator of states.
+  void add_state(const RunState& now) override;
+  void save(std::ostream& to) override;
+  /// Throws CrowdError (bad_snapshot).
+  void restore(const RunState& now, std::istream& from) override;
+  /// After the last state. REQUIRES: a state.
+  Metrics finish(const RunReport& report, std::vector<std::string> warnings) const;
 
  private:
   struct Parts;
