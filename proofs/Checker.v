@@ -1,6 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The checkers keep their promises: the kernel holds this module against Theorems.v. *)
-From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep.
+From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep Turn.
 
 Module Checked <: Theorems.Verifier.
   Definition half_plane_holds := HalfPlane.half_plane_holds.
@@ -37,4 +37,6 @@ Module Checked <: Theorems.Verifier.
   Definition sweep_sound := Sweep.sweep_sound.
   Definition sweep_past := Sweep.sweep_past.
   Definition sweep_past_sound := Sweep.sweep_past_sound.
+  Definition turn_past := Turn.turn_past.
+  Definition turn_past_sound := Turn.turn_past_sound.
 End Checked.

@@ -207,3 +207,16 @@ Definition it_stays_out : stays_out passer square.
 Proof. apply (sweep_past_sound _ _ past_the_square). vm_compute. reflexivity. Qed.
 Example with_an_edge_left_out_it_might_not : sweep_past passer square (tl past_the_square) = false.
 Proof. vm_compute. reflexivity. Qed.
+
+(* --- Turn: a disc drives an arc to the right past a side of a square, as the monitor certified it --- *)
+Definition turner : drive := {| sets_out := d 0 0; halts := d 3602879701896401 51; place_then := (d 0 0, d 0 0);
+  heads := (d 494035062339541 49, d 539785169252447 50); turns := d (-3) 2; body_parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 1 2 |}] |}.
+Definition left_side : obstacle := Wall [(d 3602879701896397 52, d 3 1); (d 3602879701896397 52, d 3 2)].
+Definition past_the_side : list separation := [{| part_no := 0; other_no := 0; since := d 0 0; until := d 3602879701896401 51;
+  direction := (d (-6708614116703581) 57, d (-8997434949310831) 53); width := d 5339958565982691 54 |}].
+Definition it_drives_clear : drives_clear turner left_side.
+Proof. apply (turn_past_sound _ _ past_the_side). vm_compute. reflexivity. Qed.
+Definition with_turn (w : Q) (m : drive) : drive :=
+  {| sets_out := sets_out m; halts := halts m; place_then := place_then m; heads := heads m; turns := w; body_parts := body_parts m |}.
+Example to_the_left_it_would_not : turn_past (with_turn (3 # 4) turner) left_side past_the_side = false.
+Proof. vm_compute. reflexivity. Qed.

@@ -17,10 +17,12 @@ Extract Constant Z.opp => "Whole.neg".
 Extract Constant Z.div => "Whole.fdiv".
 Extract Constant Z.eqb => "Whole.equal".
 Extract Constant Z.leb => "Whole.leq".
+Extract Constant Z.shiftr => "(fun z n -> Whole.shift_right z (Whole.to_int n))".
+Extract Constant Z.sqrt => "Whole.sqrt".  (* what it returns is squared and compared *)
 Extract Constant Z.div2 => "(fun z -> Whole.shift_right z 1)".
 Extract Inlined Constant fst => "fst".
 Extract Inlined Constant snd => "snd".
 Extraction Inline negb.
 
 Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
-  Checked.route Checked.chain Checked.blocked Checked.starts Checked.step Checked.brakes Checked.sweep Checked.sweep_past edges_of.
+  Checked.route Checked.chain Checked.blocked Checked.starts Checked.step Checked.brakes Checked.sweep Checked.sweep_past Checked.turn_past edges_of.

@@ -131,31 +131,41 @@ Proof.
 Qed.
 
 Definition numbered {A} (l : list A) : list (nat * A) := combine (seq 0 (length l)) l.
-Definition pairs (a b : trip) : list ((nat * part) * (nat * part)) := list_prod (numbered (parts a)) (numbered (parts b)).
-Fixpoint all_taken (a b : trip) (from to : Q) (ps : list ((nat * part) * (nat * part))) (l : list separation) : bool :=
+Definition pairs {A B} (l : list A) (m : list B) : list ((nat * A) * (nat * B)) := list_prod (numbered l) (numbered m).
+Definition of_pair (i j : nat) (fits : separation -> bool) (s : separation) : bool := Nat.eqb (part_no s) i && Nat.eqb (other_no s) j && fits s.
+Fixpoint all_taken {A B} (fits : A -> B -> separation -> bool) (from to : Q) (ps : list ((nat * A) * (nat * B))) (l : list separation) : bool :=
   match ps with
   | [] => match l with [] => true | _ => false end
   | ((i, p), (j, q)) :: ps =>
-      match taken (fun s => Nat.eqb (part_no s) i && Nat.eqb (other_no s) j && separates a b p q s) from to l with
-      | Some rest => all_taken a b from to ps rest
+      match taken (of_pair i j (fits p q)) from to l with
+      | Some rest => all_taken fits from to ps rest
       | None => false
       end
   end.
 Definition sweep (a b : trip) (l : list separation) : bool :=
   let from := qmax (leave a) (leave b) in let to := qmin (arrive a) (arrive b) in
-  if qlt to from then match l with [] => true | _ => false end else all_taken a b from to (pairs a b) l.
+  if qlt to from then match l with [] => true | _ => false end else all_taken (separates a b) from to (pairs (parts a) (parts b)) l.
 
 Lemma in_numbered {A} (l : list A) x : In x l -> exists i, In (i, x) (numbered l).
 Proof.
   unfold numbered. generalize 0%nat. induction l as [|y l ih]; intros k h; [destruct h|]. simpl.
   destruct h as [e|h]; [subst; exists k; now left|]. destruct (ih (S k) h) as [i hi]. exists i. now right.
 Qed.
-Lemma all_taken_ok a b from to ps : forall l, all_taken a b from to ps l = true -> forall i p j q, In ((i, p), (j, q)) ps ->
-  exists l rest, taken (fun s => Nat.eqb (part_no s) i && Nat.eqb (other_no s) j && separates a b p q s) from to l = Some rest.
+Lemma all_taken_ok {A B} (fits : A -> B -> separation -> bool) from to ps : forall l, all_taken fits from to ps l = true ->
+  forall i p j q, In ((i, p), (j, q)) ps -> exists l rest, taken (of_pair i j (fits p q)) from to l = Some rest.
 Proof.
   induction ps as [|[[i0 p0] [j0 q0]] ps ih]; intros l h i p j q hin; [destruct hin|]. simpl in h.
   destruct (taken _ from to l) as [rest|] eqn:e; [|discriminate]. destruct hin as [eq|hin]; [injection eq as; subst; now exists l, rest|].
   now apply (ih rest).
+Qed.
+(* Of each two parts one fits at each moment. *)
+Lemma all_taken_fits {A B} (fits : A -> B -> separation -> bool) from to (ps : list A) (qs : list B) l : all_taken fits from to (pairs ps qs) l = true ->
+  forall p q t, In p ps -> In q qs -> Q2R from <= t <= Q2R to ->
+  exists s, fits p q s = true /\ Q2R from <= Q2R (since s) /\ Q2R (until s) <= Q2R to /\ Q2R (since s) <= t <= Q2R (until s).
+Proof.
+  intros h p q t hp hq ht. destruct (in_numbered _ _ hp) as [i hi]. destruct (in_numbered _ _ hq) as [j hj].
+  destruct (all_taken_ok _ _ _ _ _ h i p j q) as [l' [rest k]]; [now apply in_prod|].
+  destruct (taken_ok _ _ _ _ _ k t ht) as [s [hs more]]. apply andb_true_iff in hs. now exists s.
 Qed.
 
 Lemma sweep_parts a b l : sweep a b l = true -> forall t s p q, under_way a t -> under_way b t -> 0 <= s <= 1 -> In p (parts a) -> In q (parts b) ->
@@ -168,10 +178,8 @@ Proof.
   assert (et : Q2R to <= Q2R (arrive a) /\ Q2R to <= Q2R (arrive b) /\ (t <= Q2R to)).
   { unfold to. rewrite Q2R_min. repeat split; [apply Rmin_l|apply Rmin_r|]. apply Rmin_glb; lra. }
   destruct (qlt to from) eqn:e; [apply qlt_R in e; exfalso; lra|].
-  destruct (in_numbered _ _ hp) as [i hi]. destruct (in_numbered _ _ hq) as [j hj].
-  destruct (all_taken_ok _ _ _ _ _ _ h i p j q) as [l' [rest k]]; [now apply in_prod|].
-  destruct (taken_ok _ _ _ _ _ k t) as [s [hs [s1 [s2 s3]]]]; [lra|].
-  apply andb_true_iff in hs. destruct hs as [_ hs]. apply separates_ok in hs; [|lra|lra|lra|lra].
+  destruct (all_taken_fits _ _ _ _ _ _ h p q t hp hq) as [s [hs [s1 [s2 s3]]]]; [lra|].
+  apply separates_ok in hs; [|lra|lra|lra|lra].
   destruct hs as [p0 [q0 hs]]. split; [assumption|]. split; [assumption|]. now apply hs.
 Qed.
 
@@ -194,13 +202,13 @@ Qed.
 Definition at_rest (m : trip) (es : list edge) : trip :=
   {| leave := leave m; arrive := arrive m; start := (0, 0)%Q; goal := (0, 0)%Q; parts := map (fun e => {| corners := [fst e; snd e]; reach := 0%Q |}) es |}.
 Definition padd (a b : point) : point := (qadd (fst a) (fst b), qadd (snd a) (snd b)).
-Definition begins_outside (m : trip) (o : obstacle) (es : list edge) : bool :=
+Definition begins_outside (place : point) (ps : list part) (o : obstacle) (es : list edge) : bool :=
   match o with
   | Wall _ => true
-  | Solid _ => forallb (fun p => match corners p with [] => false | v :: _ => negb (qodd es (padd (start m) v)) end) (parts m)
+  | Solid _ => forallb (fun p => match corners p with [] => false | v :: _ => negb (qodd es (padd place v)) end) ps
   end.
 Definition sweep_past (m : trip) (o : obstacle) (l : list separation) : bool :=
-  let es := edges_of o in sweep m (at_rest m es) l && begins_outside m o es.
+  let es := edges_of o in sweep m (at_rest m es) l && begins_outside (start m) (parts m) o es.
 
 Lemma rest_place m es t s : at_time (at_rest m es) t s = (0, 0).
 Proof. unfold at_time, at_rest, mix, add, scale, real; simpl. rewrite Q2R_0. f_equal; ring. Qed.
@@ -218,39 +226,54 @@ Proof.
   apply (odd_path es (fun t => mix t x y) c (mix_continuous _ _) h).
 Qed.
 
+Lemma begins_outside_ok place ps rs : begins_outside place ps (Solid rs) (edges_of (Solid rs)) = true -> forall p, In p ps ->
+  exists v, hull (corners p) v /\ odd (edges_of (Solid rs)) (add (real place) v) = false.
+Proof.
+  unfold begins_outside. intros h p hp. rewrite forallb_forall in h. specialize (h p hp). destruct (corners p) as [|v vs]; [discriminate|].
+  apply negb_true_iff in h. rewrite qodd_ok in h. exists (real v). split; [apply corner; now left|]. rewrite <- h. f_equal.
+  unfold padd, add, real; simpl. now rewrite !Q2R_add.
+Qed.
+
+(* What holds of one point of a part holds of the whole part, out to its reach, if no edge comes near. *)
+Lemma whole_part_even es (place : vec -> vec) cs r v y x : closed es -> 0 <= r -> (forall u a b, place (mix u a b) = mix u (place a) (place b)) ->
+  (forall z q, hull cs z -> dot (sub q (place z)) (sub q (place z)) <= r -> off es q) -> hull cs v -> hull cs y ->
+  dot (sub x (place y)) (sub x (place y)) <= r -> odd es (place v) = false -> odd es x = false.
+Proof.
+  intros cl r0 affine far hv hy hx h.
+  assert (at_part : forall z, hull cs z -> off es (place z)).
+  { intros z hz. apply (far z _ hz). replace (dot (sub (place z) (place z)) (sub (place z) (place z))) with 0 by (unfold dot, sub; simpl; ring). assumption. }
+  assert (b : odd es (place y) = false).
+  { apply (straight_even es (place v)); [assumption| |assumption]. intros u hu. rewrite <- affine. apply at_part. now apply chord. }
+  apply (straight_even es (place y)); [assumption| |exact b]. intros u hu. apply (far y _ hy). set (c := place y) in *.
+  replace (dot (sub (mix u c x) c) (sub (mix u c x) c)) with (u * u * dot (sub x c) (sub x c)) by (unfold dot, sub, mix, add, scale; simpl; ring).
+  pose proof (dot_self (sub x c)). assert (u * u <= 1) by nra. nra.
+Qed.
+
 Theorem sweep_past_sound m o l : sweep_past m o l = true -> stays_out m o.
 Proof.
   unfold sweep_past. intro h. apply andb_true_iff in h. destruct h as [h b]. assert (k := past_edges m o l h).
   intros t s x ut hs c. split; [|intros e he; now apply (k t s x e)].
   intros o' [eo|[]]. subst o'. destruct o as [w|rs]; [exact I|]. set (es := edges_of (Solid rs)) in *.
   assert (cl : closed es) by apply rings_closed. destruct c as [p [y [hp [hy dy]]]].
-  simpl in b. rewrite forallb_forall in b. specialize (b p hp). destruct (corners p) as [|v vs] eqn:ev; [discriminate|].
-  apply negb_true_iff in b. rewrite qodd_ok in b.
-  assert (ev' : real (padd (start m) v) = add (real (start m)) (real v)) by (unfold padd, add, real; simpl; now rewrite !Q2R_add). rewrite ev' in b.
-  assert (hv : hull (corners p) (real v)) by (rewrite ev; apply corner; now left). rewrite <- ev in hy.
+  destruct (begins_outside_ok _ _ _ b p hp) as [v [hv bv]]. fold es in bv.
   assert (r0 : 0 <= Q2R (reach p) * Q2R (reach p)) by nra.
-  assert (here : forall t s z, under_way m t -> 0 <= s <= 1 -> hull (corners p) z -> off es (add (at_time m t s) z)).
-  { intros t' s' z ut' hs' hz e he. apply (k t' s' _ e ut' hs'); [|exact he]. exists p, z. split; [assumption|]. split; [assumption|]. cbv zeta.
-    replace (dot (sub (add (at_time m t' s') z) (add (at_time m t' s') z)) (sub (add (at_time m t' s') z) (add (at_time m t' s') z))) with 0; [assumption|].
-    unfold dot, sub, add; simpl; ring. }
-  (* Along the trip, within the part, and out to its reach. *)
-  assert (b1 : odd es (add (at_time m t s) (real v)) = false).
-  { apply (straight_even es (add (real (start m)) (real v))); [assumption| |exact b].
-    intros u hu. unfold under_way in ut. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))) as [e|n].
-    - replace (mix u (add (real (start m)) (real v)) (add (at_time m t s) (real v))) with (add (at_time m t (u * s)) (real v)).
-      + apply here; [assumption|nra|assumption].
-      + unfold at_time. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))); [|contradiction]. unfold mix, add, scale; simpl. f_equal; ring.
-    - replace (mix u (add (real (start m)) (real v)) (add (at_time m t s) (real v))) with (add (at_time m (Q2R (leave m) + u * (t - Q2R (leave m))) s) (real v)).
-      + apply here; [|assumption|assumption]. unfold under_way. split; [nra|]. assert (u * (t - Q2R (leave m)) <= 1 * (t - Q2R (leave m))) by (apply Rmult_le_compat_r; lra). lra.
-      + unfold at_time. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))); [contradiction|]. unfold mix, add, scale; simpl. f_equal; field; lra. }
-  assert (b2 : odd es (add (at_time m t s) y) = false).
-  { apply (straight_even es (add (at_time m t s) (real v))); [assumption| |exact b1]. intros u hu.
-    replace (mix u (add (at_time m t s) (real v)) (add (at_time m t s) y)) with (add (at_time m t s) (mix u (real v) y))
-      by (unfold mix, add, scale; simpl; f_equal; ring).
-    apply here; [assumption|assumption|now apply chord]. }
-  apply (straight_even es (add (at_time m t s) y)); [assumption| |exact b2]. intros u hu e he.
-  apply (k t s _ e ut hs); [|exact he]. exists p, y. split; [assumption|]. split; [assumption|]. cbv zeta. cbv zeta in dy.
-  set (c := add (at_time m t s) y) in *.
-  replace (dot (sub (mix u c x) c) (sub (mix u c x) c)) with (u * u * dot (sub x c) (sub x c)) by (unfold dot, sub, mix, add, scale; simpl; ring).
-  pose proof (dot_self (sub x c)). assert (u * u <= 1) by nra. nra.
+  assert (far : forall t s z q, under_way m t -> 0 <= s <= 1 -> hull (corners p) z ->
+    dot (sub q (add (at_time m t s) z)) (sub q (add (at_time m t s) z)) <= Q2R (reach p) * Q2R (reach p) -> off es q).
+  { intros t' s' z q ut' hs' hz hq e he. apply (k t' s' _ e ut' hs'); [|exact he]. now exists p, z. }
+  apply (whole_part_even es (add (at_time m t s)) (corners p) (Q2R (reach p) * Q2R (reach p)) v y); try assumption.
+  { intros u a c. unfold mix, add, scale; simpl. f_equal; ring. }
+  { intros z q. now apply far. }
+  (* Along the trip. *)
+  assert (here : forall t s, under_way m t -> 0 <= s <= 1 -> off es (add (at_time m t s) v)).
+  { intros t' s' ut' hs'. apply (far t' s' v); [assumption|assumption|assumption|].
+    replace (dot (sub (add (at_time m t' s') v) (add (at_time m t' s') v)) (sub (add (at_time m t' s') v) (add (at_time m t' s') v))) with 0
+      by (unfold dot, sub; simpl; ring). assumption. }
+  apply (straight_even es (add (real (start m)) v)); [assumption| |exact bv].
+  intros u hu. unfold under_way in ut. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))) as [e|n].
+  - replace (mix u (add (real (start m)) v) (add (at_time m t s) v)) with (add (at_time m t (u * s)) v).
+    + apply here; [assumption|nra].
+    + unfold at_time. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))); [|contradiction]. unfold mix, add, scale; simpl. f_equal; ring.
+  - replace (mix u (add (real (start m)) v) (add (at_time m t s) v)) with (add (at_time m (Q2R (leave m) + u * (t - Q2R (leave m))) s) v).
+    + apply here; [|assumption]. unfold under_way. split; [nra|]. assert (u * (t - Q2R (leave m)) <= 1 * (t - Q2R (leave m))) by (apply Rmult_le_compat_r; lra). lra.
+    + unfold at_time. destruct (Req_EM_T (Q2R (leave m)) (Q2R (arrive m))); [contradiction|]. unfold mix, add, scale; simpl. f_equal; field; lra.
 Qed.

@@ -144,6 +144,18 @@ Definition stays_out (a : trip) (o : obstacle) := forall t s x, under_way a t ->
 (* A direction that parts two of them, numbered from 0 (of an obstacle: its edges), between two moments. *)
 Record separation := { part_no : nat; other_no : nat; since : Q; until : Q; direction : point; width : Q }.
 
+(* --- Turn: such a body drives and turns at once, at constant rates in its own frame, past an obstacle --- *)
+Record drive := { sets_out : Q; halts : Q; place_then : point; heads : point;   (* velocity at the start, m/s *)
+  turns : Q; body_parts : list part }.                  (* rad/s; corners as they lie at the start *)
+Definition left_of (v : vec) : vec := (- snd v, fst v).  (* a quarter turn to the left *)
+Definition driven (d : drive) (t : R) (y : vec) : vec := (* where the point y of the body is after t s *)
+  let w := Q2R (turns d) in let v := real (heads d) in
+  let way := if Req_EM_T w 0 then scale t v else add (scale (sin (w * t) / w) v) (scale ((1 - cos (w * t)) / w) (left_of v)) in
+  add (add (real (place_then d)) way) (add (scale (cos (w * t)) y) (scale (sin (w * t)) (left_of y))).
+Definition drives_clear (d : drive) (o : obstacle) := forall t p y x,
+  0 <= t <= Q2R (halts d) - Q2R (sets_out d) -> In p (body_parts d) -> hull (corners p) y ->
+  (let e := sub x (driven d t y) in dot e e <= Q2R (reach p) * Q2R (reach p)) -> outside [o] x /\ forall e, In e (edges_of o) -> ~ on e x.
+
 (* --- The promises --- *)
 Module Type Verifier.
   Parameter half_plane_holds : half_plane -> bool.
@@ -183,4 +195,6 @@ Module Type Verifier.
   Parameter sweep_sound : forall a b l, sweep a b l = true -> never_meet a b.
   Parameter sweep_past : trip -> obstacle -> list separation -> bool.
   Parameter sweep_past_sound : forall a o l, sweep_past a o l = true -> stays_out a o.
+  Parameter turn_past : drive -> obstacle -> list separation -> bool.
+  Parameter turn_past_sound : forall d o l, turn_past d o l = true -> drives_clear d o.
 End Verifier.

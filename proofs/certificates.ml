@@ -178,19 +178,27 @@ let route c =
 (* --- Bodies that never meet, in JSON --- *)
 exception Not_covered of string
 
-let trip q m =
-  let known k = List.mem k ["from"; "to"; "body"] in
-  (match m with
-   | Json.Obj members -> List.iter (fun (k, _) -> if not (known k) then raise (Not_covered ("a motion with \"" ^ k ^ "\""))) members
-   | _ -> raise Json.Bad);
-  let timed = function Json.Arr [Json.Num t; Json.Num x; Json.Num y] -> (t, (q x, q y)) | _ -> raise Json.Bad in
-  let leave, start = timed (Json.get "from" m) and arrive, goal = timed (Json.get "to" m) in
+let with_only known = function
+  | Json.Obj members -> List.iter (fun (k, _) -> if not (List.mem k known) then raise (Not_covered ("a motion with \"" ^ k ^ "\""))) members
+  | _ -> raise Json.Bad
+let timed q = function Json.Arr [Json.Num t; Json.Num x; Json.Num y] -> (t, (q x, q y)) | _ -> raise Json.Bad
+let parts_of q m =
   let part p =
     let r = Json.(num (get "radius" p)) in
     if r < 0. then raise Json.Bad;
     { corners = List.map (plain q) (at_least 1 Json.(arr (get "corners" p))); reach = q r } in
+  List.map part (at_least 1 Json.(arr (get "body" m)))
+let trip q m =
+  with_only ["from"; "to"; "body"] m;
+  let leave, start = timed q (Json.get "from" m) and arrive, goal = timed q (Json.get "to" m) in
   if arrive < leave then raise Json.Bad;
-  { leave = q leave; arrive = q arrive; start; goal; parts = List.map part (at_least 1 Json.(arr (get "body" m))) }
+  { leave = q leave; arrive = q arrive; start; goal; parts = parts_of q m }
+(* Its corners and its velocity are in the axes of the world, as they are at the start. *)
+let drive q m =
+  with_only ["from"; "until"; "velocity"; "turn"; "body"] m;
+  let sets_out, place_then = timed q (Json.get "from" m) and halts = Json.(num (get "until" m)) in
+  if halts < sets_out then raise Json.Bad;
+  { sets_out = q sets_out; halts = q halts; place_then; heads = plain q (Json.get "velocity" m); turns = q Json.(num (get "turn" m)); body_parts = parts_of q m }
 
 let clear c =
   try
@@ -198,10 +206,11 @@ let clear c =
     let number k s = q Json.(num (get k s)) in
     let separation s = { part_no = Json.(count (get "part" s)); other_no = Json.(count (get "other" s));
       since = number "from" s; until = number "to" s; direction = plain q (Json.get "direction" s); width = number "margin" s } in
-    let a = trip q (Json.get "a" c) and separations = List.map separation Json.(arr (get "separations" c)) in
-    let proven = match Json.find "b" c, Json.find "obstacle" c with
-      | Some b, None -> Checked.sweep a (trip q b) separations
-      | None, Some o -> Checked.sweep_past a (obstacle q o) separations
+    let a = Json.get "a" c and separations = List.map separation Json.(arr (get "separations" c)) in
+    let proven = match Json.find "turn" a, Json.find "b" c, Json.find "obstacle" c with
+      | None, Some b, None -> Checked.sweep (trip q a) (trip q b) separations
+      | None, None, Some o -> Checked.sweep_past (trip q a) (obstacle q o) separations
+      | Some _, None, Some o -> Checked.turn_past (drive q a) (obstacle q o) separations
       | _ -> raise Json.Bad in
     if proven then "valid" else "not proven"
   with Json.Bad -> "not a certificate" | Not_covered what -> "not covered: " ^ what

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes certificates, every second one forged, with the verdicts of the checkers in C++, for the proven checker to
 // judge too: proof_cases COUNT SEED OUT. A quarter of COUNT each are half-planes and containments (lines.txt), routes
-// (routes.jsonl), bodies that never meet (clear.jsonl) and choices (problems.jsonl, answers.jsonl); a file NAME.valid
-// beside each has a 0 or 1 a line.
+// (routes.jsonl), bodies that never meet (clear.jsonl) and choices (problems.jsonl, answers.jsonl); a fortieth more are
+// bodies that turn (turning.jsonl). A file NAME.valid beside each has a 0 or 1 a line.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -13,6 +13,7 @@
 
 #include "exactvo/geometry/motion_certificate.h"
 #include "exactvo/geometry/routes.h"
+#include "exactvo/geometry/turning_motions.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/constraint.h"
 #include "exactvo/vo/containment.h"
@@ -25,6 +26,7 @@
 #include "support/motion_certificates.h"
 #include "support/route_certificates.h"
 #include "support/run.h"
+#include "support/turning_certificates.h"
 
 namespace exactvo {
 namespace {
@@ -226,6 +228,82 @@ void write_clear(std::size_t count, SeededRandom& random, const std::string& fol
   }
 }
 
+// --- Bodies that turn, as `exactvo monitor --certificates` writes them ---
+
+geometry::RigidBody body_at_random(SeededRandom& random) {
+  geometry::RigidBody body;
+  for (int parts = random.integer(1, 2); parts > 0; --parts) {
+    const Vec2 c = random.in_box(0.6);
+    std::vector<Vec2> corners{c};
+    if (random.integer(0, 1)) corners.push_back(c + Vec2{random.uniform(0.1, 0.6), 0.0});
+    if (corners.size() == 2 && random.integer(0, 1)) corners.push_back(c + Vec2{0.1, random.uniform(0.1, 0.6)});
+    const bool is_flat = corners.size() < 3;
+    body.push_back({corners, is_flat || random.integer(0, 1) ? random.uniform(0.01, 0.3) : 0.0});
+  }
+  return body;
+}
+
+geometry::TurningMotion drive_at_random(SeededRandom& random) {
+  constexpr double kTurns[] = {0.0, 1e-9, -1e-30, 15.0, -3.0};
+  const int turn = random.integer(0, 14);
+  const double start = random.uniform(-2.0, 2.0), time = random.integer(0, 9) ? random.uniform(0.0, 4.0) : 0.0;
+  return {
+      start, start + time, random.in_box(4.0), {random.in_box(2.0), turn < 5 ? kTurns[turn] : random.uniform(-2, 2)}};
+}
+
+/// A box round the centre: as a wall, and as a polygon with its inside.
+geometry::Ring box_round(Vec2 centre, double half) {
+  return {centre + Vec2{-half, -half}, centre + Vec2{half, -half}, centre + Vec2{half, half},
+          centre + Vec2{-half, half}};
+}
+
+geometry::Obstacle standing_at_random(SeededRandom& random, Vec2 at) {
+  const Vec2 c = random.in_box(6.0);
+  const geometry::Ring ring = box_round(random.integer(0, 3) ? c : at, random.uniform(0.3, 8.0));
+  switch (random.integer(0, 3)) {
+    case 0:
+      return geometry::Polyline{{c, c + random.in_box(3.0)}};
+    case 1:
+      return geometry::Polyline{{ring[0], ring[1], ring[2], ring[3], ring[0]}};
+    case 2:
+      return geometry::Polygon{{c, c + Vec2{random.uniform(0.5, 2.0), 0.0}, c + Vec2{0.3, random.uniform(0.5, 2.0)}},
+                               {}};
+    default:  // a wall of 1 m all round
+      const geometry::Ring outer =
+          box_round(0.5 * (ring[0] + ring[2]), ring[2].x - 0.5 * (ring[0].x + ring[2].x) + 1.0);
+      return geometry::Polygon{outer, {{ring[3], ring[2], ring[1], ring[0]}}};
+  }
+}
+
+std::optional<Json> turning_at_random(SeededRandom& random) {
+  const geometry::TurningMotion motion = drive_at_random(random);
+  const geometry::RigidBody body = body_at_random(random);
+  const geometry::Obstacle obstacle = standing_at_random(random, motion.at);
+  const auto certificate = geometry::certify(motion, body, obstacle);
+  if (!certificate || certificate->separations.size() > 60) return std::nullopt;  // each takes the check in C++ a while
+  return tools::turning_certificate_json(*certificate, motion, body, {"0", obstacle});
+}
+
+/// The ring of a wall as a polygon: what is within it is inside, however clear of its edges.
+bool fill(Json& obstacle) {
+  if (!obstacle.contains("polyline") || obstacle["polyline"].size() != 5) return false;
+  obstacle["polygon"] = obstacle["polyline"];
+  obstacle["polygon"].erase(4);
+  obstacle.erase("polyline");
+  return true;
+}
+
+void write_turning(std::size_t count, SeededRandom& random, const std::string& folder) {
+  Cases cases(folder, "turning", ".jsonl");
+  for (std::size_t k = 0; k < count;) {
+    auto certificate = turning_at_random(random);
+    if (!certificate) continue;
+    if (k % 2 && !(random.integer(0, 1) && fill((*certificate)["obstacle"]))) forge(*certificate, random);
+    cases.add(certificate->dump(), never_meet(*certificate));
+    ++k;
+  }
+}
+
 // --- Choices, as `exactvo lp` reads and prints them ---
 
 Json number_or_null(double bound) {
@@ -334,6 +412,7 @@ int main(int argc, char** argv) {
     write_lines(count / 4, random, out);
     write_routes(count / 4, random, out);
     write_clear(count / 4, random, out);
+    write_turning(count / 40, random, out);
     write_choices(count - count / 4 * 3, random, out);
     return 0;
   });

@@ -1,0 +1,334 @@
+(* SPDX-License-Identifier: GPL-3.0-or-later *)
+(* Certificates that a body which drives and turns stays clear of an obstacle: along a direction a corner goes as a
+   sinusoid does, which between two moments is nowhere lower than at these, but for its curvature. *)
+Require Import Reals QArith Qreals List Bool Arith ZArith Lra Psatz.
+From ExactVO Require Import Theorems Plane Parity Route Sine Sweep.
+Import ListNotations.
+Open Scope R_scope.
+
+(* --- A function whose second derivative is at most m --- *)
+Lemma dips f f1 f2 m a b t : (forall c, derivable_pt_lim f c (f1 c)) -> (forall c, derivable_pt_lim f1 c (f2 c)) -> (forall c, f2 c <= m) -> 0 <= m ->
+  a <= t <= b -> Rmin (f a) (f b) - m * ((b - a) * (b - a)) / 8 <= f t.
+Proof.
+  intros h1 h2 hm m0 ht. pose proof (Rmin_l (f a) (f b)). pose proof (Rmin_r (f a) (f b)).
+  assert (0 <= m * ((b - a) * (b - a))) by (apply Rmult_le_pos; nra).
+  destruct (Req_dec a t) as [e|na]; [subst; lra|]. destruct (Req_dec b t) as [e|nb]; [subst; lra|].
+  assert (hg : forall c, derivable_pt_lim (fun x => f x - m / 2 * (x * x)) c (f1 c - m * c)).
+  { intro c. apply (derivable_pt_lim_minus f (fun x => m / 2 * (x * x))); [apply h1|].
+    replace (m * c) with (m / 2 * (1 * c + c * 1)) by field.
+    apply (derivable_pt_lim_scal (fun x => x * x)), (derivable_pt_lim_mult id id); apply derivable_pt_lim_id. }
+  destruct (MVT_cor2 _ _ a t ltac:(lra) (fun c _ => hg c)) as [c [ec hc]]. destruct (MVT_cor2 _ _ t b ltac:(lra) (fun c _ => hg c)) as [d [ed hd]].
+  destruct (MVT_cor2 f1 f2 c d ltac:(lra) (fun c _ => h2 c)) as [u [eu hu]]. specialize (hm u).
+  assert (k : f1 d - m * d <= f1 c - m * c) by nra. clear h1 h2 hg eu.
+  set (p := f1 d - m * d) in *. set (q := f1 c - m * c) in *. clearbody p q.
+  assert (l : (f b - f t - m / 2 * (b * b - t * t)) * (t - a) <= (f t - f a - m / 2 * (t * t - a * a)) * (b - t)).
+  { replace (f b - f t - m / 2 * (b * b - t * t)) with (p * (b - t)) by lra. replace (f t - f a - m / 2 * (t * t - a * a)) with (q * (t - a)) by lra.
+    replace (p * (b - t) * (t - a)) with (p * ((b - t) * (t - a))) by ring. replace (q * (t - a) * (b - t)) with (q * ((b - t) * (t - a))) by ring.
+    apply Rmult_le_compat_r; nra. }
+  assert (low : (Rmin (f a) (f b)) * (b - a) <= f a * (b - t) + f b * (t - a)) by nra.
+  assert (between : (t - a) * (b - t) <= (b - a) * (b - a) / 4) by (pose proof (Rle_0_sqr (b - t - (t - a))) as sq; unfold Rsqr in sq; nra).
+  apply Rmult_le_reg_r with (b - a); [lra|].
+  assert (bent : m / 2 * ((b - a) * ((t - a) * (b - t))) <= m * ((b - a) * (b - a)) / 8 * (b - a)).
+  { replace (m * ((b - a) * (b - a)) / 8 * (b - a)) with (m / 2 * ((b - a) * ((b - a) * (b - a) / 4))) by field.
+    apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; lra. }
+  assert (e : (f t - f a - m / 2 * (t * t - a * a)) * (b - t) - (f b - f t - m / 2 * (b * b - t * t)) * (t - a)
+    = f t * (b - a) - (f a * (b - t) + f b * (t - a)) + m / 2 * ((b - a) * ((t - a) * (b - t)))) by field.
+  lra.
+Qed.
+
+(* --- The place of a point of the body along a direction --- *)
+Definition wave (a d b c w t : R) := a + d * t + b * sin (w * t) + c * cos (w * t).
+Lemma wave_slope a d b c w t : derivable_pt_lim (wave a d b c w) t (d + w * (b * cos (w * t) - c * sin (w * t))).
+Proof.
+  unfold wave. assert (inner : derivable_pt_lim (fun t => w * t) t (w * 1)) by (apply (derivable_pt_lim_scal id), derivable_pt_lim_id).
+  replace (d + w * (b * cos (w * t) - c * sin (w * t))) with (0 + d * 1 + b * (cos (w * t) * (w * 1)) + c * (- sin (w * t) * (w * 1))) by ring.
+  apply (derivable_pt_lim_plus (fun t => a + d * t + b * sin (w * t))).
+  - apply (derivable_pt_lim_plus (fun t => a + d * t)).
+    + apply (derivable_pt_lim_plus (fun _ => a)); [apply derivable_pt_lim_const|apply (derivable_pt_lim_scal id), derivable_pt_lim_id].
+    + apply (derivable_pt_lim_scal (fun t => sin (w * t))), (derivable_pt_lim_comp (fun t => w * t) sin); [assumption|apply derivable_pt_lim_sin].
+  - apply (derivable_pt_lim_scal (fun t => cos (w * t))), (derivable_pt_lim_comp (fun t => w * t) cos); [assumption|apply derivable_pt_lim_cos].
+Qed.
+Lemma wave_bend b c w t m : 0 <= m -> (w * w * (b * b + c * c)) * (w * w) <= m * m ->
+  0 + w * (- w * c * cos (w * t) - w * b * sin (w * t)) <= m.
+Proof.
+  intros m0 h. apply square_le; [assumption|]. apply Rle_trans with (2 := h).
+  pose proof (sin2_cos2 (w * t)) as one. unfold Rsqr in one. set (s := sin (w * t)) in *. set (k := cos (w * t)) in *.
+  replace ((0 + w * (- w * c * k - w * b * s)) * (0 + w * (- w * c * k - w * b * s))) with ((w * w) * (w * w) * ((c * k + b * s) * (c * k + b * s))) by ring.
+  replace (w * w * (b * b + c * c) * (w * w)) with ((w * w) * (w * w) * (b * b + c * c)) by ring.
+  apply Rmult_le_compat_l; [nra|]. pose proof (cauchy_schwarz (c, b) (k, s)) as cs. unfold dot in cs; simpl in cs. nra.
+Qed.
+
+Definition moved (v : vec) (w : R) (y : vec) : vec := add v (scale w (left_of y)).   (* its velocity at the start *)
+Lemma driven_along d n y : let w := Q2R (turns d) in exists a e b c : R,
+  (forall t, dot n (driven d t y) = wave a e b c w t) /\ w * w * (b * b + c * c) * (w * w) = w * w * (dot n n * dot (moved (real (heads d)) w y) (moved (real (heads d)) w y)).
+Proof.
+  intro w. set (v := real (heads d)). set (o := real (place_then d)). destruct (Req_dec w 0) as [z|z].
+  - exists (dot n o), (dot n v), (dot n (left_of y)), (dot n y). split; [|rewrite z; ring].
+    intro t. unfold driven, wave. fold w v o. destruct (Req_EM_T w 0); [|contradiction]. unfold dot, add, scale; simpl. ring.
+  - exists (dot n o + dot n (left_of v) / w), 0, (dot n v / w + dot n (left_of y)), (dot n y - dot n (left_of v) / w). split.
+    + intro t. unfold driven, wave. fold w v o. destruct (Req_EM_T w 0); [contradiction|]. unfold dot, add, scale; simpl. field. assumption.
+    + unfold moved, dot, add, scale, left_of; simpl. field. assumption.
+Qed.
+
+Lemma driven_dips d n y m a b t : let u := moved (real (heads d)) (Q2R (turns d)) y in 0 <= m ->
+  Q2R (turns d) * Q2R (turns d) * (dot n n * dot u u) <= m * m -> a <= t <= b ->
+  Rmin (dot n (driven d a y)) (dot n (driven d b y)) - m * ((b - a) * (b - a)) / 8 <= dot n (driven d t y).
+Proof.
+  intros u m0 hm ht. destruct (driven_along d n y) as [k [e [p [q [h bend]]]]]. fold u in bend. rewrite !h. rewrite <- bend in hm.
+  set (w := Q2R (turns d)) in *.
+  apply (dips _ (wave e 0 (- w * q) (w * p) w) (fun t => 0 + w * (- w * q * cos (w * t) - w * p * sin (w * t)))); try assumption.
+  - intro c. pose proof (wave_slope k e p q w c) as s. replace (wave e 0 (- w * q) (w * p) w c) with (e + w * (p * cos (w * c) - q * sin (w * c))); [assumption|]. unfold wave. ring.
+  - intro c. apply wave_slope.
+  - intro c. now apply (wave_bend p q w c m).
+Qed.
+
+Lemma derivable_near f f1 t e : derivable_pt_lim f t f1 -> 0 < e -> exists k, 0 < k /\ forall s, Rabs (s - t) < k -> Rabs (f s - f t) < e.
+Proof.
+  intros h e0. assert (c : continuity_pt f t) by (apply derivable_continuous_pt; now exists f1).
+  destruct (c e e0) as [k [k0 hk]]. exists k. split; [assumption|]. intros s hs. destruct (Req_dec s t) as [q|n].
+  - subst. now rewrite Rminus_diag_eq, Rabs_R0.
+  - apply (hk s). split; [|assumption]. split; [exact I|]. now apply not_eq_sym.
+Qed.
+Lemma driven_continuous d y l : continuous (fun u => driven d (u * l) y).
+Proof.
+  intros t _ e e0.
+  assert (along : forall n, exists k, 0 < k /\ forall s, Rabs (s - t) < k -> Rabs (dot n (driven d (s * l) y) - dot n (driven d (t * l) y)) < e).
+  { intro n. destruct (driven_along d n y) as [a [b [p [q [h _]]]]].
+    destruct (derivable_near (wave a b p q (Q2R (turns d))) _ (t * l) e (wave_slope _ _ _ _ _ _) e0) as [k [k0 hk]].
+    assert (l0 : 0 < Rabs l + 1) by (pose proof (Rabs_pos l); lra). exists (k / (Rabs l + 1)). split; [now apply Rdiv_lt_0_compat|].
+    intros s hs. rewrite !h. apply hk. replace (s * l - t * l) with ((s - t) * l) by ring. rewrite Rabs_mult.
+    apply Rle_lt_trans with (Rabs (s - t) * (Rabs l + 1)); [apply Rmult_le_compat_l; [apply Rabs_pos|lra]|].
+    apply Rmult_lt_compat_r with (r := Rabs l + 1) in hs; [|assumption]. replace (k / (Rabs l + 1) * (Rabs l + 1)) with k in hs by (field; lra). assumption. }
+  destruct (along (1, 0)) as [k [k0 hk]]. destruct (along (0, 1)) as [m [m0 hm]]. exists (Rmin k m). split; [now apply Rmin_glb_lt|].
+  intros s _ hs. pose proof (Rmin_l k m). pose proof (Rmin_r k m). specialize (hk s ltac:(lra)). specialize (hm s ltac:(lra)).
+  unfold dot in hk, hm; simpl in hk, hm. rewrite !Rmult_0_l, !Rmult_1_l in hk, hm. unfold near. split; [rewrite !Rplus_0_r in hk|rewrite !Rplus_0_l in hm]; assumption.
+Qed.
+Lemma driven_affine d t s x y : driven d t (mix s x y) = mix s (driven d t x) (driven d t y).
+Proof. unfold driven, mix, add, scale, left_of; simpl. f_equal; ring. Qed.
+Lemma driven_at_start d y : driven d 0 y = add (real (place_then d)) y.
+Proof.
+  unfold driven. rewrite !Rmult_0_r, sin_0, cos_0. destruct y, (Req_EM_T (Q2R (turns d)) 0); unfold add, scale, left_of; simpl; f_equal; field; assumption.
+Qed.
+
+(* --- Places in fractions, times the turn rate, which is no divisor then; a body that does not turn is at `times` = 1 --- *)
+Definition qabs (a : Q) : Q := if qle 0 a then a else qopp a.
+Definition unity (a : Q) : Q := Qmake (Zpos (Qden a)) (Qden a).   (* 1, over the denominator of a *)
+Definition pscale (k : Q) (a : point) : point := (qmul k (fst a), qmul k (snd a)).
+Definition straight (d : drive) : bool := qeq (turns d) 0.
+Definition times (d : drive) : Q := if straight d then unity (turns d) else qabs (turns d).
+Definition aside (d : drive) : point := pscale (if qle 0 (turns d) then unity (turns d) else qopp (unity (turns d))) (pturn (heads d)).
+Definition hub (d : drive) : point := padd (pscale (times d) (place_then d)) (aside d).
+Definition arm (d : drive) (q : point) : point := if straight d then pscale (times d) q else psub (pscale (times d) q) (aside d).
+Definition pose (g : positive) (d : drive) (passed : Q) : option (point * near_circle) :=
+  if straight d then Some (padd (pscale (times d) (place_then d)) (pscale passed (heads d)), (0, Zpos g, 0)%Z)
+  else match circle g (qmul (turns d) passed) with Some c => Some (hub d, c) | None => None end.
+
+Lemma Q2R_abs a : Q2R (qabs a) = Rabs (Q2R a).
+Proof.
+  unfold qabs. destruct (qle 0 a) eqn:h.
+  - apply qle_R in h. rewrite Q2R_0 in h. rewrite Rabs_right; lra.
+  - assert (l : qlt a 0 = true) by (unfold qlt; now rewrite h). apply qlt_R in l. rewrite Q2R_0 in l. rewrite Q2R_neg, Rabs_left; lra.
+Qed.
+Lemma Q2R_unity a : Q2R (unity a) = 1.
+Proof. unfold unity, Q2R; simpl. field. apply IZR_neq. discriminate. Qed.
+Lemma real_scale k a : real (pscale k a) = scale (Q2R k) (real a).
+Proof. unfold real, pscale, scale; simpl. now rewrite !Q2R_mul. Qed.
+Lemma real_add a b : real (padd a b) = add (real a) (real b).
+Proof. unfold real, padd, add; simpl. now rewrite !Q2R_add. Qed.
+Lemma real_turn a : real (pturn a) = left_of (real a).
+Proof. unfold real, pturn, left_of; simpl. now rewrite Q2R_neg. Qed.
+Lemma straight_ok d : straight d = true <-> Q2R (turns d) = 0.
+Proof. unfold straight. rewrite qeq_iff, Q2R_0. tauto. Qed.
+Lemma times_ok d : 0 < Q2R (times d) /\ (Q2R (turns d) <> 0 -> Q2R (times d) = Rabs (Q2R (turns d))).
+Proof.
+  unfold times. destruct (straight d) eqn:h.
+  - apply straight_ok in h. rewrite Q2R_unity. split; [lra|intro n; contradiction].
+  - rewrite Q2R_abs. assert (n : Q2R (turns d) <> 0) by (intro n; apply straight_ok in n; congruence). split; [now apply Rabs_pos_lt|reflexivity].
+Qed.
+Lemma aside_ok d : exists sign, sign * Q2R (turns d) = Rabs (Q2R (turns d)) /\ real (aside d) = scale sign (left_of (real (heads d))).
+Proof.
+  unfold aside. destruct (qle 0 (turns d)) eqn:h.
+  - exists 1. apply qle_R in h. rewrite Q2R_0 in h. rewrite real_scale, real_turn, Q2R_unity, Rabs_right by lra. split; [ring|reflexivity].
+  - assert (l : qlt (turns d) 0 = true) by (unfold qlt; now rewrite h). apply qlt_R in l. rewrite Q2R_0 in l.
+    exists (-1). rewrite real_scale, real_turn, Q2R_neg, Q2R_unity, Rabs_left by lra. split; [ring|]. f_equal.
+Qed.
+
+Lemma pose_ok g d passed z c : pose g d passed = Some (z, c) -> exists si co, encloses g c si co /\ forall q,
+  scale (Q2R (times d)) (driven d (Q2R passed) (real q)) = add (real z) (add (scale co (real (arm d q))) (scale si (left_of (real (arm d q))))).
+Proof.
+  unfold pose, arm. destruct (straight d) eqn:h; intro e.
+  - injection e as e1 e2. subst. exists 0, 1. split.
+    + unfold encloses. rewrite Rmult_0_l, Rmult_1_l, !Rminus_diag_eq by reflexivity. rewrite Rabs_R0. lra.
+    + intro q. unfold times. rewrite h. apply straight_ok in h. rewrite !real_add, !real_scale, Q2R_unity. unfold driven.
+      destruct (Req_EM_T (Q2R (turns d)) 0); [|contradiction]. rewrite h, Rmult_0_l, sin_0, cos_0. unfold add, scale, left_of; simpl. f_equal; ring.
+  - destruct (circle g (qmul (turns d) passed)) as [k|] eqn:f; [|discriminate]. injection e as e1 e2. subst. apply circle_ok in f. rewrite Q2R_mul in f.
+    assert (n : Q2R (turns d) <> 0) by (intro n; apply straight_ok in n; congruence). destruct (times_ok d) as [_ t]. specialize (t n).
+    exists (sin (Q2R (turns d) * Q2R passed)), (cos (Q2R (turns d) * Q2R passed)). split; [assumption|]. intro q.
+    destruct (aside_ok d) as [sign [es ea]]. unfold hub. rewrite real_sub, !real_add, !real_scale, ea, t, <- es. unfold driven.
+    destruct (Req_EM_T (Q2R (turns d)) 0); [contradiction|]. unfold add, sub, scale, left_of; simpl. f_equal; field; assumption.
+Qed.
+
+(* --- How far, times g and `times`, a corner is at least beyond what lies up to `far` along n --- *)
+Definition gap_of (g : positive) (n : point) (far : Q) (z : point) (c : near_circle) (p : point) : Q := let '(s, k, e) := c in
+  let a := pdot n p in let b := pdot n (pturn p) in
+  qsub (qadd (qmul (Qmake (Zpos g) 1) (qsub (pdot n z) far)) (qadd (qmul (Qmake k 1) a) (qmul (Qmake s 1) b))) (qmul (Qmake e 1) (qadd (qabs a) (qabs b))).
+Lemma Q2R_whole a : Q2R (Qmake a 1) = IZR a.
+Proof. unfold Q2R; simpl. lra. Qed.
+Lemma near_times x y e a : Rabs (x - y) <= e -> y * a - e * Rabs a <= x * a.
+Proof.
+  intro h. assert (k : Rabs ((x - y) * a) <= e * Rabs a) by (rewrite Rabs_mult; apply Rmult_le_compat_r; [apply Rabs_pos|assumption]).
+  pose proof (Rabs_pos ((x - y) * a)). unfold Rabs at 1 in k. destruct (Rcase_abs ((x - y) * a)); nra.
+Qed.
+Lemma gap_of_ok g n far z c p si co : encloses g c si co ->
+  Q2R (gap_of g n far z c p) <= IZR (Zpos g) * (dot (real n) (add (real z) (add (scale co (real p)) (scale si (left_of (real p))))) - Q2R far).
+Proof.
+  destruct c as [[s k] e]. unfold encloses, gap_of. intros [hs hk].
+  rewrite Q2R_sub, !Q2R_add, !Q2R_mul, Q2R_add, Q2R_sub, !Q2R_abs, !Q2R_whole, !Q2R_dot, real_turn, !dot_add, !dot_scale.
+  set (a := dot (real n) (real p)). set (b := dot (real n) (left_of (real p))).
+  pose proof (near_times _ _ _ a hk). pose proof (near_times _ _ _ b hs). lra.
+Qed.
+
+(* --- Its speed, from above, and how far it strays from a straight way --- *)
+Definition fine : positive := Pos.pow 2 128.
+Definition speed2 (d : drive) (q : point) : Q := let u := padd (pscale (unity (turns d)) (heads d)) (pscale (turns d) (pturn q)) in pdot u u.
+Definition speed (d : drive) (q : point) : Q := Qmake (Z.sqrt (up (fine * fine) (speed2 d q)) + 1) fine.
+Definition speed_known (d : drive) (q : point) : bool := let s := speed d q in qle 0 s && qle (speed2 d q) (qmul s s).
+Definition bend (d : drive) (q : point) : Q := qmul (qmul (qmul (times d) (qabs (turns d))) (speed d q)) (1 # 8).
+Lemma speed_ok d q : speed_known d q = true -> 0 <= Q2R (speed d q) /\
+  let u := moved (real (heads d)) (Q2R (turns d)) (real q) in dot u u <= Q2R (speed d q) * Q2R (speed d q).
+Proof.
+  unfold speed_known. cbv zeta. set (s := speed d q). unfold speed2. intro h. apply andb_true_iff in h. destruct h as [h k]. apply qle_R in h, k. rewrite Q2R_0 in h.
+  rewrite Q2R_mul, Q2R_dot, real_add, !real_scale, real_turn, Q2R_unity in k. split; [assumption|].
+  replace (moved (real (heads d)) (Q2R (turns d)) (real q)) with (add (scale 1 (real (heads d))) (scale (Q2R (turns d)) (left_of (real q)))); [assumption|].
+  unfold moved, add, scale; simpl. f_equal; ring.
+Qed.
+
+(* --- One separation --- *)
+Record prepared := { its_reach : Q; its_arms : list (point * Q) }.
+Definition prepare (d : drive) (p : part) : prepared :=
+  {| its_reach := qmul (times d) (reach p); its_arms := map (fun q => (arm d q, bend d q)) (corners p) |}.
+Definition times_edge (d : drive) (e : edge) : edge := (pscale (times d) (fst e), pscale (times d) (snd e)).
+Definition clears (g : positive) (d : drive) (p : prepared) (e : edge) (s : separation) : bool :=
+  qle 0 (width s) &&
+  match pose g d (qsub (since s) (sets_out d)), pose g d (qsub (until s) (sets_out d)) with
+  | Some (z0, c0), Some (z1, c1) =>
+      let n := direction s in let far := qmax (pdot n (fst e)) (pdot n (snd e)) in
+      let span := qsub (until s) (since s) in let span2 := qmul span span in let whole := Qmake (Zpos g) 1 in let w := qmul (times d) (width s) in
+      forallb (fun c =>
+        let b := qmul (snd c) span2 in let r := qmul whole (qadd (lift (Qden b) (its_reach p)) b) in let w := qmul whole (lift (Qden b) w) in
+        wide n r w (Some (gap_of g n far z0 c0 (fst c))) && wide n r w (Some (gap_of g n far z1 c1 (fst c)))) (its_arms p)
+  | _, _ => false
+  end.
+
+Lemma root_times g r n : 0 <= r -> 0 < g -> r * r * dot n n < g * g -> r * sqrt (dot n n) < g.
+Proof.
+  intros r0 g0 h. pose proof (dot_self n) as nn. pose proof (sqrt_sqrt (dot n n) nn). pose proof (sqrt_pos (dot n n)).
+  destruct (Rlt_or_le (r * sqrt (dot n n)) g); [assumption|]. exfalso. set (k := sqrt (dot n n)) in *.
+  assert (g * g <= (r * k) * (r * k)) by (apply Rmult_le_compat; lra). nra.
+Qed.
+
+Lemma clears_ok g d p e s : clears g d (prepare d p) (times_edge d e) s = true -> 0 <= Q2R (reach p) -> (forall q, In q (corners p) -> speed_known d q = true) ->
+  forall t, Q2R (since s) - Q2R (sets_out d) <= t <= Q2R (until s) - Q2R (sets_out d) -> forall q x, In q (corners p) -> on e x ->
+  Q2R (reach p) * sqrt (dot (real (direction s)) (real (direction s))) < dot (real (direction s)) (driven d t (real q)) - dot (real (direction s)) x.
+Proof.
+  unfold clears. intros h r0 known t ht q x hq hx. apply andb_true_iff in h. destruct h as [w0 h]. apply qle_R in w0. rewrite Q2R_0 in w0.
+  destruct (pose g d (qsub (since s) (sets_out d))) as [[z0 c0]|] eqn:e0; [|discriminate].
+  destruct (pose g d (qsub (until s) (sets_out d))) as [[z1 c1]|] eqn:e1; [|discriminate].
+  cbv zeta in h. rewrite forallb_forall in h. specialize (h (arm d q, bend d q) (in_map _ _ _ hq)). cbn [fst snd its_reach prepare] in h.
+  set (n := direction s) in *. set (far := qmax _ _) in h. set (span := qsub (until s) (since s)) in *. set (whole := Qmake (Zpos g) 1) in *.
+  set (b := qmul (bend d q) (qmul span span)) in *. set (r := qmul whole (qadd _ b)) in *. set (w := qmul whole (lift _ _)) in *.
+  apply andb_true_iff in h. destruct h as [h0 h1].
+  apply pose_ok in e0, e1. destruct e0 as [s0 [k0 [n0 p0]]], e1 as [s1 [k1 [n1 p1]]]. specialize (p0 q). specialize (p1 q). rewrite Q2R_sub in p0, p1.
+  destruct (times_ok d) as [t0 _]. destruct (speed_ok d q (known q hq)) as [v0 v]. cbv zeta in v.
+  assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity).
+  assert (eb : Q2R (bend d q) = Q2R (times d) * Rabs (Q2R (turns d)) * Q2R (speed d q) / 8).
+  { unfold bend. rewrite !Q2R_mul, Q2R_abs. unfold Q2R at 4; simpl. field. }
+  assert (b0 : 0 <= Q2R (bend d q)).
+  { rewrite eb. pose proof (Rabs_pos (Q2R (turns d))). assert (0 <= Q2R (times d) * Rabs (Q2R (turns d)) * Q2R (speed d q)) by (apply Rmult_le_pos; [apply Rmult_le_pos|]; lra). lra. }
+  assert (sp : Q2R span = Q2R (until s) - Q2R (since s)) by (unfold span; apply Q2R_sub).
+  assert (er : Q2R r = IZR (Zpos g) * (Q2R (times d) * Q2R (reach p) + Q2R (bend d q) * (Q2R span * Q2R span))).
+  { unfold r, whole, b. now rewrite Q2R_mul, Q2R_whole, Q2R_add, Q2R_lift, !Q2R_mul. }
+  assert (r0' : 0 <= Q2R (times d) * Q2R (reach p) + Q2R (bend d q) * (Q2R span * Q2R span)).
+  { apply Rplus_le_le_0_compat; [apply Rmult_le_pos; lra|apply Rmult_le_pos; [assumption|nra]]. }
+  assert (rr : 0 <= Q2R r) by (rewrite er; apply Rmult_le_pos; lra).
+  assert (ww : 0 <= Q2R w) by (unfold w, whole; rewrite Q2R_mul, Q2R_whole, Q2R_lift, Q2R_mul; apply Rmult_le_pos; [lra|apply Rmult_le_pos; lra]).
+  destruct (wide_ok _ _ _ _ rr ww h0) as [g0 [f0 [l0 m0]]]. destruct (wide_ok _ _ _ _ rr ww h1) as [g1 [f1 [l1 m1]]].
+  injection f0 as f0. injection f1 as f1. pose proof (gap_of_ok g n far z0 c0 (arm d q) s0 k0 n0) as a0. pose proof (gap_of_ok g n far z1 c1 (arm d q) s1 k1 n1) as a1.
+  rewrite f0, <- p0 in a0. rewrite f1, <- p1 in a1. rewrite dot_scale in a0, a1.
+  apply root_times in m0; [|assumption|assumption]. apply root_times in m1; [|assumption|assumption]. rewrite er in m0, m1.
+  set (N := sqrt (dot (real n) (real n))) in *. assert (N0 : 0 <= N) by apply sqrt_pos.
+  assert (NN : N * N = dot (real n) (real n)) by (apply sqrt_sqrt, dot_self).
+  set (T := Q2R (times d)) in *. set (G := IZR (Zpos g)) in *. set (R0 := Q2R (reach p)) in *. set (L := Q2R (bend d q)) in *. set (S := Q2R span) in *.
+  set (ta := Q2R (since s) - Q2R (sets_out d)) in *. set (tb := Q2R (until s) - Q2R (sets_out d)) in *.
+  assert (low : forall f, G * (T * R0 + L * (S * S)) * N < G * (T * f - Q2R far) -> (T * R0 + L * (S * S)) * N < T * f - Q2R far).
+  { intros f hf. apply Rmult_lt_reg_l with G; [assumption|]. lra. }
+  assert (fa := low _ (Rlt_le_trans _ _ _ m0 a0)). assert (fb := low _ (Rlt_le_trans _ _ _ m1 a1)).
+  assert (edge_low : T * dot (real n) x <= Q2R far).
+  { rewrite <- dot_scale. unfold far. rewrite Q2R_max, !Q2R_dot. unfold times_edge; cbn [fst snd]. rewrite !real_scale, !dot_scale. fold T.
+    assert (hb : dot (real n) x <= Rmax (dot (real n) (real (fst e))) (dot (real n) (real (snd e)))).
+    { apply hull_below with (2 := hx). intros y [ey|[ey|[]]]; subst; [apply Rmax_l|apply Rmax_r]. }
+    rewrite (RmaxRmult _ _ T (Rlt_le _ _ t0)). apply Rmult_le_compat_l; lra. }
+  pose proof (driven_dips d (real n) (real q) (N * (Rabs (Q2R (turns d)) * Q2R (speed d q))) ta tb t) as dip. cbv zeta in dip.
+  assert (dip' : Rmin (dot (real n) (driven d ta (real q))) (dot (real n) (driven d tb (real q))) - N * (Rabs (Q2R (turns d)) * Q2R (speed d q)) * ((tb - ta) * (tb - ta)) / 8
+    <= dot (real n) (driven d t (real q))).
+  { apply dip; [| |assumption].
+    - apply Rmult_le_pos; [assumption|]. apply Rmult_le_pos; [apply Rabs_pos|assumption].
+    - set (W := Q2R (turns d)) in *. set (V := Q2R (speed d q)) in *. assert (WW : Rabs W * Rabs W = W * W) by (rewrite <- Rabs_mult; apply Rabs_right; nra).
+      replace (N * (Rabs W * V) * (N * (Rabs W * V))) with ((Rabs W * Rabs W) * ((N * N) * (V * V))) by ring. rewrite WW, NN.
+      apply Rmult_le_compat_l; [nra|]. apply Rmult_le_compat_l; [apply dot_self|assumption]. }
+  clear dip. assert (eS : tb - ta = S) by (rewrite sp; unfold ta, tb; ring). rewrite eS in dip'.
+  set (F := dot (real n) (driven d t (real q))) in *. set (fA := dot (real n) (driven d ta (real q))) in *. set (fB := dot (real n) (driven d tb (real q))) in *.
+  assert (both : (T * R0 + L * (S * S)) * N < T * Rmin fA fB - Q2R far) by (unfold Rmin; destruct (Rle_dec fA fB); assumption).
+  assert (curved : T * (N * (Rabs (Q2R (turns d)) * Q2R (speed d q)) * (S * S) / 8) = L * (S * S) * N) by (rewrite eb; field).
+  apply Rmult_lt_reg_l with T; [assumption|]. apply Rmult_le_compat_l with (r := T) in dip'; [|lra].
+  rewrite Rmult_minus_distr_l in dip'. rewrite curved in dip'. lra.
+Qed.
+
+(* --- All parts and edges, at all moments --- *)
+Definition turn_past (d : drive) (o : obstacle) (l : list separation) : bool :=
+  let es := edges_of o in
+  qle (qmul (qabs (turns d)) (qsub (halts d) (sets_out d))) 64
+  && forallb (fun p => qle 0 (reach p) && forallb (speed_known d) (corners p)) (body_parts d)
+  && all_taken (clears grain d) (sets_out d) (halts d) (pairs (map (prepare d) (body_parts d)) (map (times_edge d) es)) l
+  && begins_outside (place_then d) (body_parts d) o es.
+
+Lemma hull_over (f : vec -> R) c ps : (forall x y s, f (mix s x y) = (1 - s) * f x + s * f y) -> (forall p, In p ps -> c < f (real p)) -> forall x, hull ps x -> c < f x.
+Proof.
+  intros affine h x hx. induction hx as [p hp|x y s _ ix _ iy hs]; [now apply h|]. rewrite affine.
+  destruct (Req_dec s 1) as [e|n]; [subst; lra|]. assert (0 < 1 - s) by lra. nra.
+Qed.
+
+Theorem turn_past_sound d o l : turn_past d o l = true -> drives_clear d o.
+Proof.
+  unfold turn_past. set (es := edges_of o). intro h.
+  apply andb_true_iff in h; destruct h as [h starts]. apply andb_true_iff in h; destruct h as [h taken]. apply andb_true_iff in h; destruct h as [_ parts].
+  rewrite forallb_forall in parts.
+  assert (edges : forall t p y x e, 0 <= t <= Q2R (halts d) - Q2R (sets_out d) -> In p (body_parts d) -> hull (corners p) y ->
+    dot (sub x (driven d t y)) (sub x (driven d t y)) <= Q2R (reach p) * Q2R (reach p) -> In e es -> ~ on e x).
+  { intros t p y x e ht hp hy hx he ox. assert (good := parts p hp). apply andb_true_iff in good. destruct good as [r0 known].
+    apply qle_R in r0. rewrite Q2R_0 in r0. rewrite forallb_forall in known.
+    destruct (all_taken_fits _ _ _ _ _ _ taken (prepare d p) (times_edge d e) (Q2R (sets_out d) + t)) as [s [hs [s1 [s2 s3]]]];
+      [now apply in_map|now apply in_map|lra|].
+    assert (k := clears_ok _ _ _ _ _ hs r0 known t ltac:(lra)). set (n := real (direction s)) in *.
+    assert (over : Q2R (reach p) * sqrt (dot n n) < dot n (driven d t y) - dot n x).
+    { apply (hull_over (fun y => dot n (driven d t y) - dot n x) _ (corners p)); [|intros q hq; now apply k|assumption].
+      intros a b u. rewrite driven_affine, dot_mix. ring. }
+    rewrite <- dot_sub in over. pose proof (sqrt_pos (dot n n)) as N0. pose proof (sqrt_sqrt (dot n n) (dot_self n)) as NN.
+    assert (far := far_strict n (sub (driven d t y) x) (Q2R (reach p)) (dot n (sub (driven d t y) x))).
+    assert (Q2R (reach p) * Q2R (reach p) < dot (sub (driven d t y) x) (sub (driven d t y) x)).
+    { set (N := sqrt (dot n n)) in *. assert (0 <= Q2R (reach p) * N) by (apply Rmult_le_pos; lra). apply far; [lra| |lra].
+      rewrite <- NN. replace (Q2R (reach p) * Q2R (reach p) * (N * N)) with ((Q2R (reach p) * N) * (Q2R (reach p) * N)) by ring. apply Rmult_le_0_lt_compat; lra. }
+    replace (dot (sub x (driven d t y)) (sub x (driven d t y))) with (dot (sub (driven d t y) x) (sub (driven d t y) x)) in hx by (unfold dot, sub; simpl; ring). lra. }
+  intros t p y x ht hp hy hx. cbv zeta in hx. split; [|intros e he; now apply (edges t p y x e)].
+  intros o' [eo|[]]. subst o'. destruct o as [w|rs]; [exact I|].
+  destruct (begins_outside_ok _ _ _ starts p hp) as [v [hv bv]]. fold es in bv. rewrite <- driven_at_start in bv.
+  assert (r0 : 0 <= Q2R (reach p) * Q2R (reach p)) by nra. assert (cl : closed es) by apply rings_closed.
+  apply (whole_part_even es (driven d t) (corners p) (Q2R (reach p) * Q2R (reach p)) v y); try assumption.
+  - intros u a b. apply driven_affine.
+  - intros z q hz hq e he. now apply (edges t p z q e).
+  - rewrite <- bv. symmetry. replace (odd es (driven d 0 v)) with (odd es (driven d (0 * t) v)) by (now rewrite Rmult_0_l).
+    replace (odd es (driven d t v)) with (odd es (driven d (1 * t) v)) by (now rewrite Rmult_1_l).
+    apply (odd_path es (fun u => driven d (u * t) v) cl (driven_continuous d v t)).
+    intros u hu e he. apply (edges (u * t) p v _ e); try assumption; [nra|].
+    replace (dot _ _) with 0; [assumption|]. unfold dot, sub; simpl. ring.
+Qed.
