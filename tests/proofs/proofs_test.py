@@ -72,7 +72,7 @@ class Tools:
 
 def axioms(tools):
     theorems = re.findall(r"Parameter (\w+_sound)", (tools.source / "proofs/Theorems.v").read_text())
-    require(len(theorems) >= 17, "theorems found:", theorems)
+    require(len(theorems) >= 18, "theorems found:", theorems)
     guide = (tools.source / "docs/guide/proofs.md").read_text()
     listed = set(re.findall(r"^\| `([\w.]+)` \|", guide[guide.index("## Axioms"):], re.M))
     require(listed, "the guide lists no axioms")
