@@ -26,7 +26,6 @@
 #include "support/motion_certificates.h"
 #include "support/route_certificates.h"
 #include "support/run.h"
-#include "support/turning_certificates.h"
 
 namespace exactvo {
 namespace {
@@ -281,7 +280,7 @@ std::optional<Json> turning_at_random(SeededRandom& random) {
   const geometry::Obstacle obstacle = standing_at_random(random, motion.at);
   const auto certificate = geometry::certify(motion, body, obstacle);
   if (!certificate || certificate->separations.size() > 60) return std::nullopt;  // each takes the check in C++ a while
-  return tools::turning_certificate_json(*certificate, motion, body, {"0", obstacle});
+  return tools::certificate_json(*certificate, motion, body, {"0", obstacle});
 }
 
 /// The ring of a wall as a polygon: what is within it is inside, however clear of its edges.
