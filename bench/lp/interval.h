@@ -17,7 +17,7 @@ struct Interval {
 
 /// The interval between two measurements that holds the true median with a probability of 95 % or more, whatever the
 /// distribution: below the k-th smallest of n it lies with that of fewer than k heads in n throws. Of five measurements
-/// or fewer, their range (of five: 94 %). REQUIRES: one measurement.
+/// or fewer, their range (of five: 94 %). REQUIRES: 1 to 1,000 measurements.
 inline Interval interval_of_median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();

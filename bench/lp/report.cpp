@@ -283,25 +283,29 @@ std::string of_context(const json& context, const char* key) {
   return escaped(found->is_string() ? found->get<std::string>() : found->dump());
 }
 
-/// An entry shares the rank of the one before where their intervals overlap.
+/// An entry shares the rank of its first entry where their intervals overlap.
 void write_ranking(std::ostream& page, const json& arena) {
   const json& context = arena.at("context");
-  page
-      << "<h2>Ranking</h2>\n<p>Processor " << of_context(context, "cpu") << ", SIMD target "
-      << of_context(context, "simd_target") << ", compiler " << of_context(context, "compiler")
-      << ". Times as fast as the textbook float solver: the geometric mean over the sets, its median over the rounds "
-         "and "
-         "the interval that holds that median with 95 % certainty. Entries whose intervals overlap share a rank; those "
-         "that took part in fewer sets follow, and are ranked among themselves.</p>\n"
-      << "<table><tr><th>rank</th><th class=\"words\">solver</th><th>sets</th><th>times as fast</th><th>95 %</th>"
-         "<th>wrong verdicts</th></tr>\n";
+  page << "<h2>Ranking</h2>\n<p>Processor " << of_context(context, "cpu") << ", SIMD target "
+       << of_context(context, "simd_target") << ", compiler " << of_context(context, "compiler")
+       << ". Times as fast as the textbook float solver: the geometric mean over the sets, its median over the rounds "
+          "and "
+          "the interval that holds that median with 95 % certainty. Entries share the rank of the first of them whose "
+          "interval theirs overlaps; those "
+          "that took part in fewer sets follow, and are ranked among themselves.</p>\n"
+       << "<table><tr><th>rank</th><th class=\"words\">solver</th><th>sets</th><th>times as fast</th><th>95 %</th>"
+          "<th>wrong verdicts</th></tr>\n";
   const std::vector<Standing> standings = standings_of(arena);
   std::size_t rank = 0, place = 0;
+  double leader = 0.0;  // the low end of the first of the rank
   for (std::size_t k = 0; k < standings.size(); ++k) {
     const Standing& s = standings[k];
     const bool is_first = k == 0 || standings[k - 1].sets != s.sets;
     place = is_first ? 1 : place + 1;
-    if (is_first || s.interval.high < standings[k - 1].interval.low) rank = place;
+    if (is_first || s.interval.high < leader) {
+      rank = place;
+      leader = s.interval.low;
+    }
     page << "<tr><td>" << rank << "</td><td class=\"words\">" << escaped(s.solver) << "</td><td>" << s.sets
          << "</td><td>" << number("%.3g", s.ratio) << "</td><td>" << number("%.3g", s.interval.low)
          << number(" to %.3g", s.interval.high) << "</td><td class=\"" << (s.wrong > 0.0 ? "bad" : "good") << "\">"

@@ -7,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 
 namespace exactvo::lp {
@@ -126,6 +127,58 @@ TEST(Solve, SoftConstraintBeyondTheDiscGoesAsNearAsItCan) {
   const Solution s = solve(p);
   expect_at(s, Status::relaxed, {0.6, 0.8});
   EXPECT_NEAR(s.violation, 2.0, kRounding);
+}
+
+// A hard wall opposite a soft one: the whole wall violates the soft one alike, and of it the nearest is wanted.
+TEST(Solve, AmongVelocitiesThatViolateLeastTheNearestIsTaken) {
+  Problem p = in_disc(3.0, {-1.35, 0.98});
+  add(p, {0.8, -0.6}, 0.39, Priority::soft);
+  add(p, {0.0, 1.0}, 1.12, Priority::soft);
+  add(p, {-0.8, 0.6}, 0.87, Priority::hard);
+  EXPECT_LT(norm(solve(p).velocity - Vec2{-0.7116, 0.5012}), 1e-9);
+  Problem longer = in_disc(10.0, {-11.0, 7.0});
+  add(longer, {6.0, -2.0}, 4.0, Priority::soft);
+  add(longer, {-42.0, 14.0}, 28.0, Priority::hard);
+  EXPECT_LT(norm(solve(longer).velocity - Vec2{0.4, 3.2}), 1e-9);
+}
+
+TEST(Solve, OppositeConstraintsOfEveryKindAreAnsweredAsByExactArithmetic) {
+  constexpr unsigned kSeed = 20;
+  std::mt19937 random(kSeed);
+  const Vec2 directions[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6, 0.8}, {-0.6, -0.8}, {0.8, -0.6}, {-0.8, 0.6}};
+  std::uniform_int_distribution<int> count(2, 6), direction(0, 7), kind(0, 2), length(0, 3);
+  std::uniform_real_distribution<double> offset(-1.0, 1.5), wish(-3.0, 3.0);
+  std::size_t relaxed = 0, infeasible = 0;
+  for (int k = 0; k < 4000; ++k) {
+    Problem p = in_disc(3.0, {wish(random), wish(random)});
+    for (int m = count(random); m > 0; --m) {
+      const double size = std::ldexp(1.0, length(random) == 0 ? 3 : 0);
+      add(p, size * directions[direction(random)], size * offset(random),
+          kind(random) == 0 ? Priority::hard : Priority::soft);
+    }
+    const Solution s = solve(p), exact = solve_exact(p).solution;
+    ASSERT_STREQ(name(s.status), name(exact.status)) << "problem " << k << " of seed " << kSeed;
+    ASSERT_LT(norm(s.velocity - exact.velocity), 1e-9) << "problem " << k << " of seed " << kSeed;
+    relaxed += s.status == Status::relaxed;
+    infeasible += s.status == Status::infeasible;
+  }
+  EXPECT_GT(relaxed, 1000u);
+  EXPECT_GT(infeasible, 100u);
+}
+
+// Scaling that would round is not done: a component of 2^-1000 is more than nothing.
+TEST(Solve, NormalsOfVeryDifferentLengthsKeepTheirSmallComponents) {
+  Problem p = in_disc(10.0, {0.0, -1.0});
+  add(p, {0.0, -0x1p290}, -5.0 * 0x1p290);
+  add(p, {1.0, 0x1p-1000}, 1.0);
+  const Proven answer = solve_exact(p);
+  ASSERT_EQ(answer.solution.status, Status::optimal);
+  EXPECT_TRUE(answer.certificate);
+  for (const Constraint& c : p.constraints) EXPECT_LE(geometry::violation(c.half_plane, answer.solution.velocity), 0.0);
+  Problem flat = in_disc(1000.0, {0.0, 0.0});
+  add(flat, {1e-308, 0.0}, 1e-306);
+  const Solution s = solve(flat);
+  for (std::size_t k = 0; k < s.active_count; ++k) EXPECT_TRUE(std::isfinite(s.active[k].multiplier));
 }
 
 TEST(Solve, ContradictingHardConstraintsAreInfeasible) {

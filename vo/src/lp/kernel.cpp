@@ -35,8 +35,8 @@ using geometry::kInfinity;
 
 constexpr std::size_t kSidesOfBox = 4;
 
-/// Without a disc the kernel gets one this many times as large as the box, or as the speeds of the data: an answer that
-/// lies on it is none. Vertices of sharp angles lie far away, but the slack grows with the disc.
+/// Without a disc the kernel gets one this many times as large as the box, or as the speeds of the data: an answer on
+/// that disc is rejected. Vertices of sharp angles lie far away, but the slack grows with the disc.
 constexpr double kBeyondBox = 2.0, kBeyondData = 8.0, kFarBeyondData = 0x1p20;
 
 /// Violations count in units of |n|: with normals that differ by more they are not those that the kernel compares.
@@ -49,14 +49,10 @@ constexpr double kFar = 0x1p20;
 /// Which constraints there are, and which of them may give.
 enum class Part { all, hard_ones_give };
 
-bool is_bounded(const SpeedBound& b) {
-  return std::isfinite(b.disc) || (std::isfinite(b.box_x) && std::isfinite(b.box_y));
-}
-
 double disc_for_kernel(const Problem& problem, double beyond_data) {
   const SpeedBound& b = problem.bound;
   if (std::isfinite(b.disc)) return b.disc;
-  return is_bounded(b) ? kBeyondBox * std::hypot(b.box_x, b.box_y) : beyond_data * largest_speed(problem);
+  return bound_is_finite(b) ? kBeyondBox * std::hypot(b.box_x, b.box_y) : beyond_data * largest_speed(problem);
 }
 
 Vec2 multiplied(Vec2 v, int exponent) {
@@ -180,8 +176,8 @@ class Vertex {
         disc_(problem.bound.disc * (1.0 - 0.5 * slack_units * kInwardSlack)),
         slack_(slack_units * kInwardSlack * largest_speed(problem)) {}
 
-  /// Nothing where they do not meet. The line that the search from the optimum of the disc alone takes later, as it is
-  /// violated less there, becomes the first.
+  /// Nothing where they do not meet. The line that is violated less at the optimum of the disc alone becomes the
+  /// first, so that the velocity does not depend on the search.
   std::optional<Vec2> of(Solution& s) const {
     if (s.active_count == 0) return problem_.preferred;
     if (s.active[0].binding == kDisc) std::swap(s.active[0], s.active[s.active_count - 1]);
@@ -240,9 +236,24 @@ void set_velocity(const Problem& problem, Solution& s) {
   }
 }
 
+/// Whether two of what binds are opposite to each other, up to rounding. A whole stretch of velocities then violates
+/// least, of which the kernel has one, not the nearest to `preferred`.
+bool leaves_a_stretch(const Problem& problem, const Solution& s) {
+  constexpr double kOpposite = 0x1p-40;
+  for (std::size_t i = 0; i < s.active_count; ++i)
+    for (std::size_t j = i + 1; j < s.active_count; ++j) {
+      if (s.active[i].binding == kDisc || s.active[j].binding == kDisc) continue;
+      const Vec2 a = half_plane_at(problem, s.active[i].binding).normal;
+      const Vec2 b = half_plane_at(problem, s.active[j].binding).normal;
+      const Vec2 ua = a / std::hypot(a.x, a.y), ub = b / std::hypot(b.x, b.y);
+      if (dot(ua, ub) < 0.0 && std::abs(cross(ua, ub)) <= kOpposite) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
-bool find(const Problem& problem, SolveMemory& memory, Solution& s) {
+bool find_candidate(const Problem& problem, SolveMemory& memory, Solution& s) {
   if (problem.objective == Objective::nearest && holds(problem, Status::optimal, problem.preferred)) {
     s = {problem.preferred, Status::optimal, {}, 0, 0.0};
     return true;
@@ -252,7 +263,8 @@ bool find(const Problem& problem, SolveMemory& memory, Solution& s) {
     Kernel kernel(problem, arrays, beyond_data);
     return kernel.run(Part::all, 0.0, s) || kernel.run(Part::hard_ones_give, 0.0, s);
   };
-  if (!is_settled(kBeyondData) && (is_bounded(problem.bound) || !is_settled(kFarBeyondData))) return false;
+  if (!is_settled(kBeyondData) && (bound_is_finite(problem.bound) || !is_settled(kFarBeyondData))) return false;
+  if (s.status != Status::optimal && leaves_a_stretch(problem, s)) return false;
   if (s.status == Status::optimal) set_velocity(problem, s);
   s.violation = s.status == Status::optimal ? 0.0 : violation_that_counts(problem, s.status, s.velocity);
   set_multipliers(problem, s);
@@ -282,7 +294,7 @@ SolveMemory& memory_of_thread() {
 
 bool solve(const Problem& problem, SolveMemory& memory, Solution& answer) {
   require_well_formed(problem);
-  return find(problem, memory, answer) && is_proven_by_multipliers(problem, answer);
+  return find_candidate(problem, memory, answer) && is_proven_by_multipliers(problem, answer);
 }
 
 Solution solve(const Problem& problem) {

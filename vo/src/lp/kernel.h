@@ -13,7 +13,7 @@ namespace exactvo::lp {
 
 /// A candidate for the answer, not proven; false where the kernel does not settle the problem.
 /// REQUIRES: a well-formed problem.
-bool find(const Problem& problem, SolveMemory& memory, Solution& answer);
+bool find_candidate(const Problem& problem, SolveMemory& memory, Solution& answer);
 
 /// Memory of the calling thread, for calls that have none of their own.
 SolveMemory& memory_of_thread();

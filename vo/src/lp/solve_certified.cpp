@@ -2,7 +2,10 @@
 // Answers with their proofs (certificate.h): by exact arithmetic, or by multipliers in doubles where these do.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
@@ -165,19 +168,27 @@ int exponent_of_normals(const Problem& problem) {
 /// Up to here the squares and products of normals and offsets are far inside the range of doubles.
 constexpr int kPlainExponent = 100;
 
-/// Every constraint multiplied by 2^-exponent: exact but for underflow.
-Problem scaled(Problem problem, int exponent) {
+/// Every constraint multiplied by 2^-exponent; nothing where that would round.
+std::optional<Problem> scaled(Problem problem, int exponent) {
+  bool is_exact = true;
+  const auto scale = [&](double& x) {
+    const double before = x;
+    x = std::ldexp(x, -exponent);
+    is_exact = is_exact && std::ldexp(x, exponent) == before;
+  };
   for (Constraint& c : problem.constraints) {
-    HalfPlane& h = c.half_plane;
-    h = {{std::ldexp(h.normal.x, -exponent), std::ldexp(h.normal.y, -exponent)}, std::ldexp(h.offset, -exponent)};
+    scale(c.half_plane.normal.x);
+    scale(c.half_plane.normal.y);
+    scale(c.half_plane.offset);
   }
-  return problem;
+  return is_exact ? std::optional<Problem>(std::move(problem)) : std::nullopt;
 }
 
 /// The answer to `problem` of the one to `scaled` of it; without a certificate where numbers leave the range of double.
 Proven scaled_back(const Problem& problem, Proven answer, int exponent) {
   for (ActiveConstraint& a : answer.solution.active)
-    if (!is_speed_bound(a.binding)) a.multiplier = std::ldexp(a.multiplier, -exponent);
+    if (!is_speed_bound(a.binding))
+      a.multiplier = std::min(std::ldexp(a.multiplier, -exponent), std::numeric_limits<double>::max());
   answer.solution.violation = std::ldexp(answer.solution.violation, exponent);
   if (!answer.certificate) return answer;
   Certificate& c = *answer.certificate;
@@ -205,16 +216,14 @@ Proven solve_exact(const Problem& problem) {
   require_well_formed(problem);
   const int exponent = exponent_of_normals(problem);
   if (std::abs(exponent) <= kPlainExponent) return solve_exact_in_range(problem);
-  const Problem in_range = scaled(problem, exponent);
-  const bool vanish = std::any_of(in_range.constraints.begin(), in_range.constraints.end(),
-                                  [](const Constraint& c) { return c.half_plane.normal == Vec2{}; });
-  return vanish ? solve_exact_in_range(problem) : scaled_back(problem, solve_exact_in_range(in_range), exponent);
+  const std::optional<Problem> in_range = scaled(problem, exponent);
+  return in_range ? scaled_back(problem, solve_exact_in_range(*in_range), exponent) : solve_exact_in_range(problem);
 }
 
 Proven solve_certified(const Problem& problem) {
   require_well_formed(problem);
   Solution solution;
-  return find(problem, memory_of_thread(), solution) ? certified(problem, solution) : solve_exact(problem);
+  return find_candidate(problem, memory_of_thread(), solution) ? certified(problem, solution) : solve_exact(problem);
 }
 
 Proven certified(const Problem& problem, const Solution& solution) {

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The active-set searches in exact arithmetic. The same search as active_set.h: a violated line enters, and the
+/// The active-set searches in exact arithmetic. The same search as that of the kernel (lanes/single.cpp): a violated line enters, and the
 /// optimum of the working set of a few lines is found on its boundary. Here every sign is exact, so the objective grows
 /// strictly with each round and no basis comes twice: the search ends on any input. Doubles only choose which line is
 /// looked at first.

@@ -28,7 +28,7 @@ inline constexpr double kSlackUnits = 24.0, kNoiseUnits = 8.0, kDiscUnits = 8.0;
 inline constexpr double kOnDisc = 0x1p-40;
 
 /// The range in which squares of speeds, and products of two such squares, are ordinary numbers of T with all their
-/// digits. Lanes whose disc or preferred velocity leaves it go to the scalar solver.
+/// digits. Lanes whose disc or preferred velocity leaves it go to `solve`.
 template <class T>
 inline constexpr T kLeastSquare = static_cast<T>(sizeof(T) == 8 ? 0x1p-400 : 0x1p-50);
 template <class T>
@@ -38,7 +38,7 @@ inline constexpr T kMostSquare = static_cast<T>(sizeof(T) == 8 ? 0x1p500 : 0x1p6
 template <class T>
 inline constexpr T kParallel = static_cast<T>(sizeof(T) == 8 ? 1e-300 : 1e-36);
 
-/// Rounds after which a lane is left to the scalar solver; recorded problems need at most a dozen.
+/// Rounds after which a lane is left to `solve`; recorded problems need at most a dozen.
 inline constexpr int kMostLockstepRounds = 40;
 
 /// Where a thread keeps its unfinished problems: kept between calls.

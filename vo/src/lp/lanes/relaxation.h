@@ -137,7 +137,7 @@ class Descent {
  public:
   explicit HWY_INLINE Descent(Pack<D>& pack) : p_(pack), unsettled(pack.none()) {}
 
-  /// Searches to the end in the lanes in `moving`. Lanes that end `unsettled` are for the scalar solver.
+  /// Searches to the end in the lanes in `moving`. Lanes that end `unsettled` are for `solve`.
   template <bool kHard, bool kIndex>
   HWY_INLINE void run(const Rows<T>& rows, M moving) {
     const M fresh = hn::And(same(p_.entering, p_.first), moving);

@@ -4,11 +4,11 @@
 /// \file
 /// Many problems at once, one a SIMD lane (Highway picks the widest target at run time: SSE4, AVX2, AVX-512, NEON).
 ///
-/// The same search as the scalar solver: the most violated line enters, the optimum of the working set of a few lines
+/// The same search as `solve`: the most violated line enters, the optimum of the working set of a few lines
 /// follows. Lanes never mix and no operation is fused, so in double every target and every number of threads gives the
 /// same bits. Rounded inward like `solve`; a verdict is heuristic in the last digits. Lanes that the lockstep search
 /// cannot settle (too many rounds, contradicting hard lines, speeds whose squares leave the range of T: below 2^-200 or
-/// above 2^250 m/s, of float 2^-25 and 2^30) go to the scalar solver. Float answers from there are moved inward once
+/// above 2^250 m/s, of float 2^-25 and 2^30) go to `solve`. Float answers from there are moved inward once
 /// more, by up to three steps of float, and are `no_interior` where that does not do.
 
 #include <cstddef>
@@ -57,7 +57,7 @@ struct BatchAnswers {
 
 /// How many problems left the lockstep search.
 struct BatchCounts {
-  std::size_t scalar = 0;  ///< problems that the lockstep search handed to the scalar solver
+  std::size_t scalar = 0;  ///< problems that the lockstep search handed to `solve`
   std::size_t exact = 0;   ///< those among them that needed exact arithmetic; only with `proven`
 };
 
