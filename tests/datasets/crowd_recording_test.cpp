@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/crowd_recording.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -343,6 +344,27 @@ TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
   const AuditReport still_there = along_x(7.6, 0.0), apart = along_x(7.4, 0.0);
   EXPECT_GT(found(still_there, "#1 overlaps moving obstacle 'body 2'"), 5U);
   EXPECT_TRUE(apart.clean());
+}
+
+// A scene has the polygon round an ellipse: a robot between the two overlaps no ellipse.
+TEST_F(CrowdRecordings, EllipsesAreLeftOutWhereOverlapsAreDecided) {
+  const std::filesystem::path path = folder_ / "e.evr";
+  formation::Crowd crowd;
+  crowd.add_kind({0.3, 20.0, 5.0, 15.0, 10});
+  crowd.add_body(geometry::Ellipse{{0.0, 0.0}, 5.0, 0.0, 5.0});
+  crowd.add_body(geometry::Disc{{20.0, 0.0}, 1.0});
+  crowd.add_robot({5.305, 0.0});
+  CrowdRecorder recorder(path, Scenario(), 1);
+  for (std::size_t step = 0; step < 3; ++step) {
+    crowd.step();
+    add_state_of(crowd, step, recorder);
+  }
+  recorder.finish();
+  TrajectoryReader reader(path.string(), {});
+  reader.read([](const TrajectoryRow&) {});
+  ASSERT_EQ(reader.file().obstacles.size(), 1U);
+  EXPECT_EQ(reader.file().obstacles[0].id, body_name(1));
+  EXPECT_THAT(reader.file().notes, testing::Contains("1 ellipse left out"));
 }
 
 TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {

@@ -36,6 +36,12 @@ Outcome checked(const std::string& text, const std::string& arguments) {
   return here.run("check t.csv " + arguments);
 }
 
+TEST(CheckVerb, APageAndCertificatesAreTwoFiles) {
+  const Outcome same = checked(kCrossing, "--radius 0.25 --page x.html --certificates ./x.html");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_THAT(same.err, HasSubstr("another file than --certificates writes"));
+}
+
 // --- Events ---
 
 TEST(CheckVerb, FindsWhatHappensBetweenTwoRows) {

@@ -90,6 +90,19 @@ TEST(CrowdVerb, ManyRobotsAreRunWithoutRecordedDecisionsUnlessSomethingNeedsThem
   }
 }
 
+// What `explain` computes again is the run that was made.
+TEST(CrowdVerb, MetricsNameTheLivenessThatTheRunHad) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  for (const char* liveness : {"off", "bias", "plan"}) {
+    const Outcome run =
+        here.run(std::string("simulate ring.json --json --decisions none --guidance none --liveness ") + liveness);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json said = json::parse(run.out)["liveness"];
+    EXPECT_EQ(said.is_null() ? "off" : said.get<std::string>(), liveness);
+  }
+}
+
 /// Members that both kinds of run have, in one order.
 TEST(CrowdVerb, MetricsHaveTheSameMembersWithAndWithoutDecisions) {
   const Workplace here;

@@ -60,7 +60,7 @@ geometry::Obstacle outline_of(const geometry::ConvexShape& shape) {
 void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
   for (std::size_t k = 0; k < head.bodies.size(); ++k) {
     const CrowdBodyRecord& body = head.bodies[k];
-    const std::string id = "body " + std::to_string(k + 1);
+    const std::string id = body_name(k);
     std::optional<geometry::Disc> disc;
     if (const auto* d = std::get_if<geometry::Disc>(&body.shape)) disc = *d;
     if (body.moves)
@@ -71,6 +71,10 @@ void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
 }
 
 }  // namespace
+
+std::string body_name(std::size_t body) {
+  return "body " + std::to_string(body + 1);
+}
 
 std::string CrowdRecordingHead::name_of(std::size_t robot) const {
   return ids.empty() ? "#" + std::to_string(robot + 1) : ids[robot];

@@ -108,7 +108,8 @@ RunInfo run_info(const formation::Scenario& scenario, formation::SimulationOptio
     info.integrator = name(options.integrator);
   }
   const formation::Guidance guidance = guidance_of(scenario, options);
-  const formation::Liveness liveness = liveness_of(scenario, options);
+  const formation::Liveness liveness =
+      has_decisions ? liveness_of(scenario, options) : crowd_liveness(scenario, options);
   if (guidance != formation::Guidance::none) info.guidance = name(guidance);
   if (liveness != formation::Liveness::off) info.liveness = name(liveness);
   if (!has_decisions)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 #include <pugixml.hpp>
+#include <set>
+#include <variant>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
@@ -166,6 +168,20 @@ void begin(const formation::Scenario& scenario, TrajectorySink& out) {
     file.notes.push_back(geometry::counted(scenario.moving_obstacles.size(), "moving obstacle") + " left out");
 }
 
+/// Recordings have ellipses that `scene_of` makes polygons round: too large to say that a body overlaps one.
+void leave_out_ellipses(const CrowdRecordingHead& head, TrajectoryFile& file) {
+  std::set<std::string> ellipses;
+  for (std::size_t k = 0; k < head.bodies.size(); ++k)
+    if (!head.bodies[k].moves && std::holds_alternative<geometry::Ellipse>(head.bodies[k].shape))
+      ellipses.insert(body_name(k));
+  if (ellipses.empty()) return;
+  std::vector<formation::SceneObstacle>& obstacles = file.obstacles;
+  obstacles.erase(std::remove_if(obstacles.begin(), obstacles.end(),
+                                 [&](const formation::SceneObstacle& o) { return ellipses.count(o.id) > 0; }),
+                  obstacles.end());
+  file.notes.push_back(geometry::counted(ellipses.size(), "ellipse") + " left out");
+}
+
 }  // namespace
 
 bool looks_like_trajnet(std::string_view beginning) {
@@ -248,6 +264,7 @@ void read_crowd_trajectories(const std::filesystem::path& path, TrajectorySink& 
   CrowdRecordingReader reader(path);
   const CrowdRecordingHead& head = reader.head();
   begin(scene_of(head).scenario, out);
+  leave_out_ellipses(head, out.file());
   CrowdRow row;
   for (std::uint64_t number = 1; reader.next(row); ++number) {
     call_wait_hook();

@@ -486,6 +486,11 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   return problems;
 }
 
+Liveness crowd_liveness(const Scenario& scenario, const SimulationOptions& options) {
+  const Liveness wanted = options.liveness.value_or(scenario.liveness);
+  return options.steering && wanted == Liveness::plan ? Liveness::bias : wanted;
+}
+
 RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, RunSink* sink) {
   const std::vector<ScenarioProblem> problems = crowd_problems(scenario);
   EXACTVO_REQUIRE(problems.empty(), problems.front().pointer + ": " + problems.front().found);
@@ -497,8 +502,7 @@ RunReport run_crowd(const Scenario& scenario, const SimulationOptions& options, 
   EXACTVO_REQUIRE(promises_between_robots(options.method), std::string("method: ") + name(options.method) +
                                                                ", expected orca, which a crowd drives by; `simulate` "
                                                                "has the other methods");
-  Liveness liveness = options.liveness.value_or(scenario.liveness);
-  if (options.steering && liveness == Liveness::plan) liveness = Liveness::bias;
+  const Liveness liveness = crowd_liveness(scenario, options);
   RobotsOfRun robots(scenario, guide ? &*guide : nullptr, liveness, room_at_ends_of(scenario, liveness),
                      scenario.horizons.orca, TakenOnTheWay::passed_beside);
   RunSink* const first_sink = options.ranks && options.ranks->rank() > 0 ? nullptr : sink;

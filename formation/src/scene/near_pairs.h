@@ -57,7 +57,8 @@ class NearPairsOfMoving {
   template <class Visit>
   void for_each(const std::vector<geometry::Vec2>& places, double reach, double room, const Visit& visit) {
     if (places.size() <= kFewPlaces || !std::isfinite(reach + room)) return for_each_near_pair(places, reach, visit);
-    if (!suffice(places, reach)) look_up(places, reach + room);
+    const bool are_too_many = reach_ > 2.0 * (reach + room);  // after a step that asked farther
+    if (are_too_many || !suffice(places, reach)) look_up(places, reach + room);
     for (const auto& [i, j] : pairs_) visit(i, j);
   }
 

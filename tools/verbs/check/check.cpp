@@ -78,6 +78,9 @@ void check_flags(const CheckFlags& flags) {
     if (!file.empty()) others.emplace_back(file);
   check_figure_name("--figure", flags.figure, others);
   if (!flags.page.empty()) check_page_name("--page", flags.page, others);
+  if (!flags.page.empty() && std::filesystem::path(flags.page).lexically_normal() ==
+                                 std::filesystem::path(flags.certificates).lexically_normal())
+    throw UsageError("--page", flags.page, "another file than --certificates writes");
   if (flags.certificates.empty()) return;
   for (const std::string& file : flags.files) refuse_input_as_output(file, "", "--certificates", flags.certificates);
   if (!flags.map.empty()) refuse_input_as_output(flags.map, flags.reading.format, "--certificates", flags.certificates);

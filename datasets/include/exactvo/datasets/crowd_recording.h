@@ -145,6 +145,9 @@ CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
 /// follow one another are a wall; an ellipse is the polygon of 48 corners round it.
 RecordingFile scene_of(const CrowdRecordingHead& head);
 
+/// What a body is called there, by its number from 0: "body 1" is the first.
+std::string body_name(std::size_t body);
+
 /// Whether a file is one by its name, FILE.evr.
 bool is_crowd_recording(const std::filesystem::path& path);
 

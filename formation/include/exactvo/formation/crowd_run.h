@@ -35,6 +35,9 @@ namespace exactvo::formation {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
+/// The liveness of such a run: that of `options` or of the scenario; with a user's steering no robot reserves places.
+Liveness crowd_liveness(const Scenario& scenario, const SimulationOptions& options);
+
 /// The ranks computed different states, seen at a snapshot or at the end: the C libraries of their machines round the
 /// elementary functions differently, or a machine is broken.
 class RanksDiffer : public std::runtime_error {
