@@ -409,6 +409,25 @@ void expect_setup_refused(const Change& change, NavigatorProblem problem, const 
   expect_refused([&] { Navigator(setup, {{6, 0}}); }, problem, words);
 }
 
+TEST(NavigatorErrors, StatesOfWheelsThatNoDriveHas) {
+  NavigatorSetup setup;
+  DifferentialDrive& drive = setup.drive.emplace();
+  drive.wheel_separation = 0.05;
+  drive.max_wheel_speed = 1.0;
+  drive.max_wheel_acceleration = 5.0;
+  drive.reference = 0.2;
+  drive.body_radius = 0.1;
+  drive.max_angular_speed = 20.0;
+  setup.time_step = 0.1;
+  Navigator navigator(setup, {{6, 0}});
+  const auto decide = [&](Vec2 heading, WheelSpeeds wheels) { navigator.decide({0.0, {}, {}, {heading, wheels}}, {}); };
+  using P = NavigatorProblem;
+  expect_refused([&] { decide({1, 0}, {-1.0, 1.0}); }, P::out_of_range, "less than a half turn");
+  expect_refused([&] { decide({1.1, 0}, {}); }, P::out_of_range, "heading");
+  expect_refused([&] { neighbour_on_wheels(1, drive, 0.1, {}, {{2, 0}, {}}); }, P::out_of_range, "heading");
+  decide({1, 0}, {0.1, 0.1});
+}
+
 TEST(NavigatorErrors, SetupsOutOfRange) {
   using P = NavigatorProblem;
   expect_setup_refused([](auto& s) { s.radius = -1.0; }, P::out_of_range, "radius: found -1");

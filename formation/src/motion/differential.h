@@ -35,7 +35,7 @@ Vec2 turned(Vec2 heading, double turn);
 /// The velocity u of the twist that led to this heading with these wheels, up to rounding. REQUIRES: the wheels turn
 /// the robot by less than a half turn in a step.
 Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnWheels& now);
-/// What is preferred to drive straight back would be braked to a stand: it is turned aside by a degree, to where it
+/// A preferred velocity straight backwards would only brake the robot: it is turned by a degree, to the side where it
 /// points already or else to the left, until the heading has come round.
 Vec2 turned_aside(Vec2 heading, Vec2 preferred);
 
@@ -48,7 +48,7 @@ class WheelLimits {
   /// `braking_time`: s.
   WheelLimits(const DifferentialDrive& drive, double time_step, double braking_time);
 
-  /// m/s: to the side and back it goes so fast at most; 0 where the braking time is too short for its wheels.
+  /// m/s: the largest speed sideways and backwards; 0 where the braking time is too short for its wheels.
   double side_speed() const { return side_; }
   /// Half-planes of velocities: the polygon inside the convex set, turned by the heading, and the change of the wheels'
   /// speeds, rounded; `braked`, the velocity after a step of braking, satisfies them.
@@ -76,8 +76,8 @@ struct WheelsNow {
 
 /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist of what `decision` chose breaks a
 /// limit, what is preferred is drawn towards `braked` until it does not; `choose` decides again for what is preferred.
-/// Where half-planes are in the way of that, they count as contradictory: those that it falls back to hold for braking,
-/// whose twist keeps all limits.
+/// Where half-planes forbid that, the decision becomes `relaxed`, and the caller falls back to half-planes that braking
+/// satisfies; the twist of braking keeps all limits.
 template <class Choose>
 void keep_wheels_within_limits(const WheelsNow& wheels, Vec2 braked, Decision& decision, const Choose& choose) {
   const Vec2 wish = decision.chosen;
@@ -87,7 +87,7 @@ void keep_wheels_within_limits(const WheelsNow& wheels, Vec2 braked, Decision& d
   };
   for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
     if (is_done()) return;
-    choose(wish + share * (braked - wish));
+    choose(share == 1.0 ? braked : wish + share * (braked - wish));
   }
   if (!is_done()) decision.status = lp::Status::relaxed;
 }

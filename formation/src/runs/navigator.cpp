@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/navigator.h"
-#include "exactvo/formation/disc_obstacle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/excerpt.h"
+#include "exactvo/geometry/pi.h"
 #include "motion/differential.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
@@ -109,6 +110,21 @@ void require_none(const std::vector<ScenarioProblem>& problems) {
   refuse(is_number ? Problem::out_of_range : Problem::not_finite, first.pointer.substr(1), first.found, first.expected);
 }
 
+/// Heading of length 1 and wheels that turn a robot by less than a half turn in a step: what one robot knows of itself
+/// and another of it is the same.
+OnWheels usable(const DifferentialDrive& drive, double time_step, const OnWheels& given) {
+  constexpr double kUnit = 1e-6;
+  require_vector(given.heading, nullptr, 0, "heading");
+  if (std::fabs(norm(given.heading) - 1.0) > kUnit)
+    refuse(Problem::out_of_range, "heading", number(given.heading), "a vector of length 1");
+  const Vec2 wheels{given.speeds.left, given.speeds.right};
+  require_vector(wheels, nullptr, 0, "wheels");
+  if (!(std::fabs(wheels.y - wheels.x) * time_step < geometry::kPi * drive.wheel_separation))
+    refuse(Problem::out_of_range, "wheels", number(wheels),
+           "speeds that turn the robot by less than a half turn in a step");
+  return {given.heading / norm(given.heading), given.speeds};
+}
+
 /// As a scenario of this robot alone, at rest, is validated.
 void require_drive(const NavigatorSetup& setup) {
   Scenario s;
@@ -191,7 +207,8 @@ Neighbour neighbour_on_wheels(std::size_t id, const DifferentialDrive& drive, do
                               const OnWheels& wheels) {
   Robot robot;
   put_on_wheels(robot, drive, time_step);
-  return {id, axle + drive.reference * wheels.heading, velocity_before(drive, time_step, wheels), robot.radius,
+  const OnWheels now = usable(drive, time_step, wheels);
+  return {id, axle + drive.reference * now.heading, velocity_before(drive, time_step, now), robot.radius,
           robot.max_speed};
 }
 
@@ -312,7 +329,10 @@ class Navigator::Core {
     choose(wish);
     if (limits_) keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose);
     // Within less room than there is between doubles: braking satisfies all of them.
-    if (decision_.status != lp::Status::optimal) choose(braked.velocity);
+    if (decision_.status == lp::Status::optimal) return;
+    choose(braked.velocity);
+    if (limits_ && !limits_->allows(on_wheels_.state.heading, on_wheels_.state.speeds, decision_.chosen))
+      decision_.status = lp::Status::relaxed;  // data from which no braking is possible
   }
   bool is_in_sight(const Neighbour& n) const {
     return norm(n.position - now_.position) <=
@@ -322,19 +342,16 @@ class Navigator::Core {
   bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(robot_, goal_, arrival_tolerance_); }
 
   NavigatorState of_reference_point(const NavigatorState& given) {
-    constexpr double kUnit = 1e-6, kRounding = 1.0 + 1e-9;
+    constexpr double kRounding = 1.0 + 1e-9;
     const DifferentialDrive& drive = *robot_.drive;
     require_vector(given.position, nullptr, 0, "position");
-    require_vector(given.wheels.heading, nullptr, 0, "heading");
-    if (std::fabs(norm(given.wheels.heading) - 1.0) > kUnit)
-      refuse(Problem::out_of_range, "heading", number(given.wheels.heading), "a vector of length 1");
     const Vec2 wheels{given.wheels.speeds.left, given.wheels.speeds.right};
     require_vector(wheels, nullptr, 0, "wheels");
     if (std::max(std::fabs(wheels.x), std::fabs(wheels.y)) > kRounding * drive.max_wheel_speed)
       refuse(Problem::out_of_range, "wheels", number(wheels),
              "speeds within max_wheel_speed, " + number(drive.max_wheel_speed));
     NavigatorState now = given;
-    now.wheels.heading = given.wheels.heading / norm(given.wheels.heading);
+    now.wheels = usable(drive, rules_.time_step, given.wheels);
     now.position = given.position + drive.reference * now.wheels.heading;
     now.velocity = velocity_before(drive, rules_.time_step, now.wheels);
     on_wheels_ = {&*limits_, now.wheels};

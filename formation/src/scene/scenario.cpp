@@ -12,6 +12,7 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/round_polygon.h"
 #include "exactvo/geometry/told_apart.h"
 #include "motion/differential.h"
@@ -265,6 +266,9 @@ void check_drive(const Scenario& s, std::size_t i, Checker& c) {
   if (!c.problems.empty()) return;
   c.require(d.max_wheel_speed * s.time_step < d.reference, at + "reference", show(d.reference),
             "more than a step of max_wheel_speed, " + show(d.max_wheel_speed * s.time_step) + " (m)");
+  const double turns = std::min(2.0 * d.max_wheel_speed, d.wheel_separation * d.max_angular_speed) * s.time_step;
+  c.require(turns < geometry::kPi * d.wheel_separation, at + "max_angular_speed", show(d.max_angular_speed),
+            "less than " + show(geometry::kPi / s.time_step) + ", so that a step is less than a half turn (rad/s)");
   Robot made = r;
   if (c.problems.empty()) put_on_wheels(made, d, s.time_step);
   c.require(made.position == r.position && made.radius == r.radius && made.max_speed == r.max_speed, robot,
