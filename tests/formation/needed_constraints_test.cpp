@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -188,6 +190,15 @@ TEST_P(NeededHalfPlanes, SayWhetherAnyIsViolatedOnAWay) {
   EXPECT_LT(met, asked);
 }
 
+/// The half-planes that bind, with their multipliers. Two obstacles that share an edge have the same half-plane, and
+/// either may be named.
+std::set<std::array<double, 4>> binding(const RobotStep& step) {
+  std::set<std::array<double, 4>> found;
+  for (const DecisionConstraint& c : step.constraints)
+    if (c.active) found.insert({c.half_plane.normal.x, c.half_plane.normal.y, c.half_plane.offset, c.multiplier});
+  return found;
+}
+
 TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
   const Sight sight(std::get<0>(GetParam()), std::get<1>(GetParam()));
   datasets::CounterRandom random(4);
@@ -208,11 +219,9 @@ TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
     EXPECT_EQ(of_needed.violation, of_all.violation);
     EXPECT_EQ(of_needed.uncertified, of_all.uncertified);
     ASSERT_EQ(of_needed.constraints.size(), of_all.constraints.size());
-    for (std::size_t i = 0; i < of_all.constraints.size(); ++i) {
+    for (std::size_t i = 0; i < of_all.constraints.size(); ++i)
       EXPECT_EQ(of_needed.constraints[i].body, of_all.constraints[i].body);
-      EXPECT_EQ(of_needed.constraints[i].active, of_all.constraints[i].active);
-      EXPECT_EQ(of_needed.constraints[i].multiplier, of_all.constraints[i].multiplier);
-    }
+    EXPECT_EQ(binding(of_needed), binding(of_all));
   }
 }
 
