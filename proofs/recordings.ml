@@ -202,7 +202,7 @@ let recording file text =
     if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points: that bodies and wheels follow, audit asks"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
-      "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices, and that the scenario is the one that was meant"];
+      "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices and from one another in time, and that the scenario is the one that was meant"];
     brakes := Braking.start !scenario;
     prepare (Certificates.bits_needed !scenario) in
   let row r =

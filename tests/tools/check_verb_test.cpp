@@ -42,6 +42,31 @@ TEST(CheckVerb, APageAndCertificatesAreTwoFiles) {
   EXPECT_THAT(same.err, HasSubstr("another file than --certificates writes"));
 }
 
+// A decimal comma makes a row longer than the header.
+TEST(CheckVerb, RowsThatAreLongerThanTheHeaderAreRefused) {
+  const Outcome longer = checked("t,id,x,y\n0,A,0,5,0,5\n0,B,0,6,0,5\n", "--radius 0.2");
+  EXPECT_EQ(longer.status, 2);
+  EXPECT_THAT(longer.err, AllOf(HasSubstr("6 fields"), HasSubstr("4 fields, as the header has")));
+  EXPECT_EQ(checked("t,id,x,y\n0,A,0,5,\n1,A,0,6,\n", "--radius 0.2").status, 0) << "a comma at the end of each row";
+}
+
+TEST(CheckVerb, DiscsOfAScenarioAreExact) {
+  const Workplace here;
+  here.write("sc.json", R"({"name": "s", "robots": [{"id": "r", "position": [9, 9], "goal": [9, 8]}],
+    "obstacles": [{"id": "post", "disc": {"centre": [0, 0], "radius": 0.8}}]})");
+  here.write("t.csv", "t,id,x,y\n0,A,-5,1.2025\n1,A,5,1.2025\n");
+  EXPECT_EQ(here.run("check t.csv --radius 0.4 --map sc.json").status, 0);
+  EXPECT_EQ(here.run("check t.csv --radius 0.403 --map sc.json").status, 1);
+}
+
+TEST(CheckVerb, AMapWithoutObstaclesIsNamed) {
+  const Workplace here;
+  here.write("t.csv", kCrossing);
+  here.write("pt.wkt", "POINT(1.5 0)\n");
+  const Outcome outcome = here.run("check t.csv --radius 0.1 --map pt.wkt");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 feature skipped"), HasSubstr("no obstacle in it")));
+}
+
 // --- Events ---
 
 TEST(CheckVerb, FindsWhatHappensBetweenTwoRows) {

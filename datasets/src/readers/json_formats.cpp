@@ -28,7 +28,9 @@ geometry::Ring to_ring(const JsonCursor& at) {
 
 RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
   const RawKind kind = geometry::has_interior(obstacle.shape) ? RawKind::polygon : RawKind::polyline;
-  return {kind, obstacle.id, "obstacle " + obstacle.id, courses_of(obstacle.shape)};
+  RawGeometry raw{kind, obstacle.id, "obstacle " + obstacle.id, courses_of(obstacle.shape)};
+  raw.disc = obstacle.disc;
+  return raw;
 }
 
 /// A scenario may name another as an obstacle file; one that names itself, or one that names it, has no end.
@@ -86,7 +88,8 @@ void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) 
   const auto discs = std::count_if(loaded.scenario.obstacles.begin(), loaded.scenario.obstacles.end(),
                                    [](const formation::SceneObstacle& o) { return o.disc.has_value(); });
   if (discs > 0)
-    out.note("", geometry::counted(static_cast<std::size_t>(discs), "disc") + " read as polygons of 32 corners");
+    out.note("", geometry::counted(static_cast<std::size_t>(discs), "disc") +
+                     ", for check and monitor exact, for other verbs polygons of 32 corners");
   const std::size_t moving = loaded.scenario.moving_obstacles.size();
   if (moving > 0) out.note("", geometry::counted(moving, "moving obstacle") + " left out, for lack of a fixed place");
 }

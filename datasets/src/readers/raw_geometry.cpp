@@ -323,7 +323,7 @@ void Collector::keep(const RawGeometry& raw, std::string id, geometry::Obstacle 
   std::vector<formation::SceneObstacle>& kept = result_.obstacles;
   // By quarters: a million polygons in a vector that doubles take twice the room, and thrice while it grows.
   if (kept.size() == kept.capacity()) kept.reserve(kept.size() + kept.size() / 4 + 16);
-  kept.push_back({std::move(id), std::move(shape)});
+  kept.push_back({std::move(id), std::move(shape), raw.disc});
   if (!options_.keep_properties) return;
   const bool is_first = result_.properties.empty() && (!raw.properties.id.empty() || !raw.properties.members.empty());
   if (!is_first && result_.properties.empty()) return;

@@ -41,6 +41,7 @@ struct RawGeometry {
   std::optional<AsWritten> as_written{};         ///< none where `rings` stand in the file
   FeatureProperties properties{};                ///< only where `ReadOptions::keep_properties` asks for them
   Winding winding = Winding::counter_clockwise;  ///< as the format demands it
+  std::optional<geometry::Disc> disc{};          ///< round which the polygon is
 };
 
 /// Part `number`, from 0, of a geometry; the second and later ones have it behind their ids and places.

@@ -151,9 +151,11 @@ class TableRows {
 
   /// Frames a second, where the file says; units of length in m.
   double frame_rate = 0.0, unit = 1.0;
+  bool has_names = false;  ///< a row has no more fields than the header; an empty one may follow
 
   void add(const std::vector<std::string_view>& fields, std::uint64_t line) {
-    if (fields.size() < count_)
+    const bool ends_in_a_comma = fields.size() == count_ + 1 && fields.back().empty();
+    if (fields.size() < count_ || (has_names && fields.size() > count_ && !ends_in_a_comma))
       out_.refuse(DataCode::wrong_count, line, std::to_string(fields.size()) + " fields",
                   std::to_string(count_) + " fields, as the header has");
     const auto number = [&](Column c, const char* what) { return out_.number(fields[columns_[c]], what, line); };
@@ -228,6 +230,7 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
       out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60),
                  "a header with the columns t,id,x,y and, where there is one, theta");
     rows.emplace(columns, fields.size(), Ids::texts, out);
+    rows->has_names = true;
   }
 }
 

@@ -160,6 +160,9 @@ const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec
   if (!setup.drive) require_none(field_problems(setup.radius, setup.max_speed));
   require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
   if (setup.acceleration) require_positive(*setup.acceleration, nullptr, 0, "acceleration");
+  if (setup.acceleration && setup.drive)
+    refuse(Problem::out_of_range, "acceleration", number(*setup.acceleration),
+           "none with a drive, whose wheels have max_wheel_acceleration");
   if (setup.braking_time) require_positive(*setup.braking_time, nullptr, 0, "braking_time");
   if (rules_of(setup).has_brakes() && !setup.cooperates)
     refuse(Problem::out_of_range, "cooperates", "false", kWithBrakes);
@@ -198,7 +201,7 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
   setup.arrival_tolerance = scenario.arrival_tolerance;
   setup.neighbour_distance = scenario.neighbour_distance;
   setup.drive = r.drive;
-  if (scenario.acceleration) setup.acceleration = scenario.acceleration->max;
+  if (scenario.acceleration && !r.drive) setup.acceleration = scenario.acceleration->max;
   if (const double tau = braking_time_of(scenario); tau > 0.0) setup.braking_time = tau;  // of all robots
   return setup;
 }

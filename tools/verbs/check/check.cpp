@@ -145,7 +145,7 @@ CheckMap map_of(const CheckFlags& flags, const TrajectoryFile& file) {
     datasets::ReadOptions reading = reading_options(flags.reading, "--map-format");
     reading.keep_going = false;
     datasets::ObstacleFile content = datasets::read_obstacles(flags.map, reading);
-    say_notes(content);
+    say_map(content);
     map.name = flags.map;
     map.obstacles = std::move(content.obstacles);
     std::error_code error;

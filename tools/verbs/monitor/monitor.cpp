@@ -294,7 +294,7 @@ MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obsta
     datasets::ReadOptions reading = reading_options(flags.reading, "--map-format");
     reading.keep_going = false;
     datasets::ObstacleFile content = datasets::read_obstacles(flags.map, reading);
-    say_notes(content);
+    say_map(content);
     setup.obstacles = std::move(content.obstacles);
   }
   for (const formation::SceneObstacle& o : setup.obstacles) obstacles.push_back(o.id);

@@ -285,4 +285,12 @@ void say_notes(const datasets::ObstacleFile& file) {
   }
 }
 
+void say_map(const datasets::ObstacleFile& file) {
+  say_notes(file);
+  if (file.counts.passed_over > 0)
+    message(shown(fmt::format("{}: {} skipped: points and empty geometries are no obstacles", file.file,
+                              geometry::counted(file.counts.passed_over, "feature"))));
+  if (file.obstacles.empty()) message(shown(file.file + ": no obstacle in it"));
+}
+
 }  // namespace exactvo::tools

@@ -115,4 +115,7 @@ void say_projection(const datasets::ObstacleFile& file);
 /// That, and what the notes say of the file as a whole: units that were assumed, unknown cells, its extent.
 void say_notes(const datasets::ObstacleFile& file);
 
+/// For a map: the notes, how many features are no obstacles, and that there is none where there is none.
+void say_map(const datasets::ObstacleFile& file);
+
 }  // namespace exactvo::tools

@@ -28,12 +28,6 @@ namespace {
 
 // --- The map ---
 
-/// What concerns the file as a whole, such as moving obstacles that are left out.
-void say_all_notes(const datasets::ObstacleFile& content) {
-  say_notes(content);
-  if (content.obstacles.empty()) message(content.file + ": no obstacle in it");
-}
-
 CellPlaces cells_of(const std::string& file, const datasets::ReadOptions& reading, const std::string& cell_point) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
@@ -217,7 +211,7 @@ std::string AskedMap::name_of(std::size_t obstacle) const {
 
 AskedMap read_asked_map(const std::string& file, const datasets::ReadOptions& reading, const std::string& cell_point) {
   datasets::ObstacleFile content = datasets::read_obstacles(file, reading);
-  say_all_notes(content);
+  say_map(content);
   AskedMap map{file, content.format, std::move(content.obstacles), {}, std::nullopt};
   if (map.format == "movingai-map") {
     map.cells = cells_of(file, reading, cell_point);
