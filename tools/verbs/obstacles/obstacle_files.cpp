@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "exactvo/datasets/input_files.h"
+#include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/terminal.h"
