@@ -12,10 +12,6 @@
 namespace exactvo::lp {
 namespace {
 
-bool bound_is_finite(const SpeedBound& b) {
-  return std::isfinite(b.disc) || (std::isfinite(b.box_x) && std::isfinite(b.box_y));
-}
-
 bool bound_is_not_empty(const SpeedBound& b) {
   return b.disc >= 0.0 && b.box_x >= 0.0 && b.box_y >= 0.0;
 }
@@ -30,6 +26,10 @@ std::string words(std::size_t index, const HalfPlane& h) {
 }
 
 }  // namespace
+
+bool bound_is_finite(const SpeedBound& b) {
+  return std::isfinite(b.disc) || (std::isfinite(b.box_x) && std::isfinite(b.box_y));
+}
 
 void require_well_formed(const Problem& problem) {
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {

@@ -21,6 +21,9 @@ inline constexpr double kSlacks[] = {1.0, 8.0, 64.0, 512.0};
 /// Normals of | |normal| - 1 | up to this are taken as they are (solve.h, batch.h).
 inline constexpr double kUnitLength = 0x1p-10;
 
+/// Whether a disc, or both sides of the box, bound the speed.
+bool bound_is_finite(const SpeedBound& bound);
+
 /// A side of the box as a unit half-plane n.v >= -width. REQUIRES: a side of the box.
 HalfPlane side_of_box(const SpeedBound& bound, BindingKind side);
 
