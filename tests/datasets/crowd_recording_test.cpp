@@ -18,11 +18,15 @@
 #include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/speed_profile.h"
 #include "refusal.h"
+#include "support/forged_crowd.h"
 #include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
 namespace {
 
+using exactvo::test::fnv1a;
+using exactvo::test::ForgedCrowd;
+using exactvo::test::in_bytes;
 using formation::RunReport;
 using formation::Scenario;
 using formation::SimulationOptions;
@@ -80,7 +84,7 @@ std::size_t found(const AuditReport& audit, const std::string& words) {
   }));
 }
 
-/// Whether the robot of "row 7: R overlaps ..." kept its half-planes from that row to the next.
+/// Whether the robot of "row 7: R overlaps ..." kept its half-planes up to that row, and from it to the next.
 bool was_kept(const std::filesystem::path& path, const std::string& finding) {
   std::size_t colon = 0;
   const std::size_t from = std::stoul(finding.substr(4), &colon);
@@ -88,10 +92,14 @@ bool was_kept(const std::filesystem::path& path, const std::string& finding) {
   const std::string id = finding.substr(begin, finding.find(' ', begin) - begin);
   CrowdRecordingReader reader(path);
   CrowdRow row;
-  for (std::size_t k = 0; k <= from + 1; ++k) EXPECT_TRUE(reader.next(row));
   std::size_t robot = 0;
   while (reader.head().name_of(robot) != id) ++robot;
-  return row.kept[robot] != 0;
+  bool kept = true;
+  for (std::size_t k = 0; k <= from + 1; ++k) {
+    EXPECT_TRUE(reader.next(row));
+    if (k >= from && row.kept[robot] == 0) kept = false;
+  }
+  return kept;
 }
 
 /// Keeps what a run shows.
@@ -186,14 +194,15 @@ TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
   const AuditReport audit = audit_recording(folder_ / "c.evr");
   EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
   EXPECT_EQ(audit.rows, run.steps + 1);
-  EXPECT_EQ(audit.steps, run.steps * 120);
+  EXPECT_EQ(audit.steps, (run.steps + 1) * 120) << "the first row, and each step";
   EXPECT_EQ(audit[AuditPoint::sequence].proven, run.steps * 120);
-  EXPECT_EQ(audit.robot_questions, run.steps * 120 * 119);
-  EXPECT_EQ(audit.obstacle_questions, run.steps * 120 * 2) << "the block, and the wall";
+  EXPECT_EQ(audit.robot_questions, (run.steps + 1) * 120 * 119);
+  EXPECT_EQ(audit.obstacle_questions, (run.steps + 1) * 120 * 2) << "the block, and the wall";
   const AuditReport some = audit_recording(folder_ / "c.evr", nullptr, 2000);
   EXPECT_TRUE(some.clean());
   EXPECT_GT(some.steps, 1000U);
   EXPECT_LT(some.steps, 4000U);
+  EXPECT_EQ(some.left_out, audit.steps - some.steps);
 }
 
 /// The state of a crowd that no run has made.
@@ -297,15 +306,18 @@ TEST_F(PutRobots, ExactContactIsClear) {
 TEST_F(PutRobots, AnAuditFindsRobotsThatComeNearerToAnEdgeThatTheyTouched) {
   for (const std::uint32_t every : {1U, 4U}) {
     const auto far = [](double x) { return std::pair(Vec2{x, 0}, Vec2{30, 0}); };
-    const AuditReport nearer = audit_of([&](double k) { return far(1.7 + 0.01 * k); }, every);
+    const AuditReport nearer = audit_of([&](double k) { return far(1.5 + 0.01 * k); }, every);
     EXPECT_GT(found(nearer, "a overlaps obstacle 'wall 1'"), 2U);
     EXPECT_FALSE(nearer.clean());
-    const AuditReport rests = audit_of([&](double) { return far(1.7); }, every);
-    EXPECT_EQ(found(rests, "'wall 1'"), 1U) << "the step that leads there: " << rests.findings.front();
-    const AuditReport leaves = audit_of([&](double k) { return far(1.7 - 0.01 * k); }, every);
-    EXPECT_EQ(found(leaves, "'wall 1'"), 1U);
+    const AuditReport rests = audit_of([&](double) { return far(1.5); }, every);
+    EXPECT_EQ(found(rests, "'wall 1'"), 0U);
+    const AuditReport leaves = audit_of([&](double k) { return far(1.51 - 0.01 * k); }, every);
+    EXPECT_EQ(found(leaves, "'wall 1'"), 0U);
+    const AuditReport deep = audit_of([&](double) { return far(1.7); }, every);
+    EXPECT_GT(found(deep, "a overlaps obstacle 'wall 1'"), 4U);
     const AuditReport on_it = audit_of([&](double) { return far(2.0); }, every);
-    EXPECT_GT(on_it.unproven, 3U);
+    EXPECT_GT(on_it.collisions, 3U);
+    EXPECT_EQ(on_it.unproven, 0U);
   }
 }
 
@@ -337,10 +349,11 @@ TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
   const AuditReport through = audit_beside_bodies(path, [](double k) { return Vec2{0.0, -3.0 + 0.49 * k}; });
   EXPECT_GT(through.collisions, 1U);
   EXPECT_GT(found(through, "#1 overlaps obstacle 'body 1'"), 1U);
-  const AuditReport nearer = along_x(1.4, -0.01), rests = along_x(1.4, 0.0), leaves = along_x(1.3, 0.01);
+  const AuditReport nearer = along_x(1.5, -0.01), rests = along_x(1.5, 0.0), leaves = along_x(1.5, 0.01);
   EXPECT_GT(found(nearer, "#1 overlaps obstacle 'body 1'"), 5U);
-  EXPECT_EQ(rests.collisions, 0U) << rests.findings.front();
-  EXPECT_EQ(leaves.collisions, 0U) << leaves.findings.front();
+  EXPECT_EQ(rests.collisions, 0U);
+  EXPECT_EQ(leaves.collisions, 0U);
+  EXPECT_EQ(along_x(1.4, 0.01).collisions, 11U) << "10 cm inside at the beginning";
   const AuditReport still_there = along_x(7.6, 0.0), apart = along_x(7.4, 0.0);
   EXPECT_GT(found(still_there, "#1 overlaps moving obstacle 'body 2'"), 5U);
   EXPECT_TRUE(apart.clean());
@@ -444,16 +457,6 @@ std::uint64_t number_at(const std::string& bytes, std::size_t at) {
   std::uint64_t number = 0;
   std::memcpy(&number, bytes.data() + at, sizeof number);
   return number;
-}
-
-std::string in_bytes(std::uint64_t number) {
-  return {reinterpret_cast<const char*>(&number), sizeof number};
-}
-
-std::uint64_t fnv1a(const std::string& bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
 }
 
 TEST_F(CrowdRecordings, ABodyThatMovesAndIsSaidToRestIsRefuted) {
@@ -561,6 +564,114 @@ TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {
     EXPECT_EQ(refusal_of([&] { rows_of(put("b.evr", mark + whole.substr(8))); }).code(), DataCode::format_syntax);
   expect_refusal(refusal_of([&] { rows_of(put("b.evr", "EXACTVR4" + whole.substr(8))); }), DataCode::format_syntax,
                  "byte 0");
+}
+
+// --- Recordings that no run has made ---
+
+class ForgedCrowds : public CrowdRecordings {
+ protected:
+  AuditReport audit_of(const ForgedCrowd& crowd, std::size_t sample = 0) const {
+    return audit_recording(put("forged.evr", bytes_of(crowd)), nullptr, sample);
+  }
+};
+
+/// A wall along the y axis.
+ForgedCrowd::Edge wall_at(double x) {
+  return {x, -5.0, x, 5.0};
+}
+
+/// The motions that are proven, refuted and open.
+std::vector<std::size_t> motions_of(const AuditReport& audit) {
+  const PointCount& motions = audit[AuditPoint::motions];
+  return {motions.proven, motions.refuted, motions.open};
+}
+using Counts = std::vector<std::size_t>;
+
+constexpr double kLattice = 0x1p10;  // steps in a metre
+
+ForgedCrowd::Place at_x(double x) {
+  return {static_cast<std::int64_t>(x * kLattice), 0};
+}
+
+TEST_F(ForgedCrowds, ARobotDeepInAnObstacleIsRefutedInEveryRow) {
+  ForgedCrowd crowd;
+  for (std::uint32_t step = 0; step < 5; ++step) crowd.rows.push_back({step, {at_x(0)}, {}});
+  ForgedCrowd in_disc = crowd;
+  crowd.edges = {wall_at(0.1)};
+  EXPECT_EQ(motions_of(audit_of(crowd)), (Counts{0, 5, 0}));
+  for (ForgedCrowd::Row& row : in_disc.rows) row.bodies = {{0, 0}};
+  for (const bool moves : {false, true}) {
+    in_disc.bodies = {{moves, 0, {1.2, 0.0, 1.0}}};
+    EXPECT_EQ(motions_of(audit_of(in_disc)), (Counts{0, 5, 0})) << moves;
+  }
+}
+
+TEST_F(ForgedCrowds, ContactIsClearHoweverFarRowsAreApart) {
+  for (const std::uint32_t steps : {1U, 1000U, 1'000'000U}) {
+    ForgedCrowd crowd{{{0, {at_x(0)}, {}}, {steps, {at_x(0)}, {}}}};
+    crowd.edges = {wall_at(0.3)};
+    const AuditReport audit = audit_of(crowd);
+    EXPECT_EQ(motions_of(audit), (Counts{2, 0, 0})) << steps;
+    EXPECT_EQ(audit.ends_only, steps > 1 ? 1U : 0U);
+  }
+}
+
+// Rounding adds up from step to step, up to a share of the radius.
+TEST_F(ForgedCrowds, WhatTouchesComesNoNearerThanRoundingExplains) {
+  const auto counts = [&](std::uint32_t steps, double to) {
+    ForgedCrowd crowd{{{0, {at_x(0)}, {}}, {steps, {at_x(to)}, {}}}};
+    crowd.edges = {wall_at(0.3)};
+    return motions_of(audit_of(crowd));
+  };
+  EXPECT_EQ(counts(1, 0.002), (Counts{1, 1, 0})) << "2 mm in a step";
+  EXPECT_EQ(counts(500, 0.002), (Counts{2, 0, 0}));
+  EXPECT_EQ(counts(500, 0.005), (Counts{1, 0, 1})) << "more than 1 % of the radius";
+  EXPECT_EQ(counts(500, 0.24), (Counts{1, 1, 0})) << "24 cm inside";
+}
+
+TEST_F(ForgedCrowds, TheFirstRowIsAskedByItself) {
+  ForgedCrowd crowd{{{0, {at_x(0), at_x(0.001)}, {}}}};
+  crowd.kind_of = {0, 0};
+  EXPECT_EQ(motions_of(audit_of(crowd)), (Counts{0, 2, 0}));
+  crowd.rows[0].robots[1] = at_x(0.75);
+  EXPECT_EQ(motions_of(audit_of(crowd)), (Counts{2, 0, 0}));
+  crowd.rows[0].step = 700;
+  expect_refusal(refusal_of([&] { audit_of(crowd); }), DataCode::format_syntax, "row 0");
+  crowd.rows.clear();
+  const DataError no_rows = refusal_of([&] { audit_of(crowd); });
+  EXPECT_EQ(no_rows.code(), DataCode::format_syntax);
+  EXPECT_EQ(no_rows.found(), "no row");
+  crowd.is_whole = false;
+  EXPECT_EQ(audit_of(crowd).cut_off.size(), 1U);
+}
+
+TEST_F(ForgedCrowds, ABodyThatTouchesMayLeaveAndNotDriveThrough) {
+  for (const auto& [by, expected] : {std::pair(1.0, Counts{2, 0, 0}), std::pair(-2.7, Counts{1, 1, 0})}) {
+    ForgedCrowd crowd{{{0, {at_x(0)}, {{0, 0}}}, {1, {at_x(0)}, {at_x(by)}}}};
+    crowd.bodies = {{true, 0, {1.3, 0.0, 1.0}}};
+    EXPECT_EQ(motions_of(audit_of(crowd)), expected) << by;
+  }
+}
+
+TEST_F(ForgedCrowds, WhatIsNotJudgedIsCountedAndSaid) {
+  const auto says = [](const AuditReport& audit, const std::string& words) {
+    const std::vector<std::string> all = not_audited(audit);
+    return std::any_of(all.begin(), all.end(),
+                       [&](const std::string& s) { return s.find(words) != std::string::npos; });
+  };
+  ForgedCrowd crowd;
+  for (const std::uint32_t step : {0U, 1U, 5U, 9U}) crowd.rows.push_back({step, {at_x(0)}, {}});
+  const AuditReport audit = audit_of(crowd);
+  EXPECT_EQ(audit.ends_only, 2U);
+  EXPECT_TRUE(says(audit, "of 2 motions only the ends are judged"));
+  EXPECT_TRUE(says(audit, "radii, speed limits, edges and bodies"));
+  EXPECT_FALSE(says(audit, "--sample"));
+  const AuditReport some = audit_of(crowd, 1);
+  EXPECT_EQ(some.steps + some.left_out, 4U);
+  EXPECT_GT(some.left_out, 0U);
+  EXPECT_TRUE(says(some, "that --sample left out"));
+  const Scenario scenario;
+  EXPECT_THROW(audit_recording(folder_ / "forged.evr", &scenario), std::logic_error);
 }
 
 TEST(CrowdProblems, WhatACrowdCannotRunIsNamed) {

@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <functional>
 #include <optional>
 
+#include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "support/forged_crowd.h"
 #include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
@@ -264,6 +268,65 @@ TEST_F(HostileTasks, AScenarioNestedTooDeeplyIsRefused) {
   } catch (const DataError& error) {
     EXPECT_EQ(error.code(), DataCode::nesting);
   }
+}
+
+using HostileCrowds = TemporaryFolder;
+
+/// Numbers of heads and rows that no arithmetic in doubles bears; those at the limit are audited.
+TEST_F(HostileCrowds, NumbersBeyondTheLimitAreRefused) {
+  using exactvo::test::ForgedCrowd;
+  constexpr double kHuge = 1e308, kLimit = 0x1p100;
+  const auto with = [](const std::function<void(ForgedCrowd&)>& change) {
+    ForgedCrowd crowd;
+    crowd.kind_of = {0, 0};
+    for (const std::uint32_t step : {0U, 2U}) crowd.rows.push_back({step, {{0, 0}, {4096, 1}}, {}});
+    change(crowd);
+    for (ForgedCrowd::Row& row : crowd.rows) row.bodies.resize(crowd.bodies.size(), {0, 0});
+    return crowd;
+  };
+  const auto all = [&](double v) {
+    return std::vector<ForgedCrowd>{with([&](ForgedCrowd& c) { c.time_step = v / 2; }),
+                                    with([&](ForgedCrowd& c) { c.position_step = v * 0x1p-30; }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.kinds = {{v, 1.0}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.kinds = {{0.3, v}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.kinds = {{v, v}}, c.time_step = v / 2, c.position_step = v * 0x1p-30;
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.edges = {{v, 0, -v, 0}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.edges = {{v, 0, v, 1}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.bodies = {{false, 0, {v, 0, v}}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.bodies = {{true, 0, {v, 0, v}}};
+                                    }),
+                                    with([&](ForgedCrowd& c) {
+                                      c.bodies = {{false, 3, {0, v, v, -v, v}}};
+                                    })};
+  };
+  std::size_t refused = 0, audited = 0;
+  for (const double v : {kHuge, std::nextafter(kLimit, kHuge)})
+    for (const ForgedCrowd& crowd : all(v)) {
+      try {
+        audit_recording(put("huge.evr", bytes_of(crowd)));
+        ADD_FAILURE() << v << " was taken";
+      } catch (const DataError& error) {
+        EXPECT_STREQ(code_name(error.code()), "E_RANGE") << error.what();
+        EXPECT_NE(error.place(), "");
+        ++refused;
+      }
+    }
+  for (const ForgedCrowd& crowd : all(kLimit)) audited += audit_recording(put("large.evr", bytes_of(crowd))).rows;
+  EXPECT_EQ(refused, 20U);
+  EXPECT_EQ(audited, 20U);
 }
 
 }  // namespace

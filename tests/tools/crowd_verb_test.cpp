@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "run_program.h"
+#include "support/forged_crowd.h"
 
 namespace exactvo::test {
 namespace {
@@ -39,7 +40,7 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
 
   const Outcome audit = here.run("audit ring.evr --json");
   EXPECT_EQ(audit.status, 0) << audit.out;
-  EXPECT_EQ(json::parse(audit.out)["steps"], 40 * metrics["steps"].get<int>());
+  EXPECT_EQ(json::parse(audit.out)["steps"], 40 * (metrics["steps"].get<int>() + 1));
   EXPECT_EQ(here.run("audit ring.evr --sample 100").status, 0);
   EXPECT_EQ(here.run("convert ring.evr ring.csv").status, 0);
   EXPECT_THAT(here.read("ring.csv"), HasSubstr("\n0,0,0,20,0,1,\"G1/1\"\n"));
@@ -261,6 +262,21 @@ TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
   EXPECT_THAT(cut.err, HasSubstr("[E_CUT_OFF]"));
   EXPECT_EQ(here.run("audit all --scenario one.json").status, 2);
   EXPECT_EQ(here.run("audit all/one --sample 100").status, 2);
+}
+
+TEST(CrowdVerb, AuditOfACutOffFileFailsByWhatIsRefutedOrOpenFirst) {
+  const Workplace here;
+  const auto status_of = [&](std::int64_t to) {
+    ForgedCrowd crowd{{{0, {{0, 0}}, {}}, {500, {{to, 0}}, {}}}, {{0.3, -5, 0.3, 5}}};
+    crowd.is_whole = false;
+    here.write("cut.evr", bytes_of(crowd));
+    const Outcome outcome = here.run("audit cut.evr");
+    EXPECT_THAT(outcome.err, HasSubstr("[E_CUT_OFF]"));
+    return outcome.status;
+  };
+  EXPECT_EQ(status_of(0), 2) << "clear";
+  EXPECT_EQ(status_of(5), 1) << "open";
+  EXPECT_EQ(status_of(250), 1) << "refuted";
 }
 
 TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {

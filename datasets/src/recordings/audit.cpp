@@ -9,6 +9,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/require.h"
 #include "files/sha256.h"
 #include "generators/counter_random.h"
 #include "json/json_text.h"
@@ -296,7 +297,17 @@ std::size_t motions_in(const std::filesystem::path& path) {
   CrowdRecordingReader reader(path);
   std::size_t rows = 0;
   for (CrowdRow row; reader.next(row);) ++rows;
-  return rows > 0 ? (rows - 1) * reader.head().kind_of.size() : 0;
+  return rows * reader.head().kind_of.size();
+}
+
+/// The first row is of the start, and the others follow in time.
+void require_in_order(const std::string& file, std::size_t row, std::size_t before, std::size_t step) {
+  const std::string found = "step " + std::to_string(step);
+  if (row == 0 && step != 0)
+    throw DataError(DataCode::format_syntax, file, "row 0", found, "the start of the run, step 0");
+  if (row > 0 && step <= before)
+    throw DataError(DataCode::format_syntax, file, "row " + std::to_string(row), found,
+                    "a row after that of step " + std::to_string(before));
 }
 
 /// A recording of places: how robots move, by the points that need no decisions.
@@ -308,22 +319,26 @@ AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) 
   AuditedRun run(file, tally);
   run.has_places_only = true;
   run.one_of = one_of;
-  const std::unique_ptr<RowAudit> points[] = {audit_sequence(run), audit_motions(run)};
+  const std::unique_ptr<RowAudit> sequence = audit_sequence(run), motions = audit_motions(run);
   RowStates before;
   for (CrowdRow row; reader.next(row); ++tally.report.rows) {
     call_wait_hook();
     RowStates now = states_of(reader.head(), row);
+    require_in_order(path.string(), tally.report.rows, before.step, now.step);
     for (std::size_t k = 0; k < reader.head().bodies.size(); ++k)
       if (!reader.head().bodies[k].moves && reader.head().displacement(row, k) != geometry::Vec2{})
         tally.refuted(AuditPoint::sequence,
                       at_row(tally.report.rows, "body " + std::to_string(k + 1) + " has moved, and stands still"));
-    if (tally.report.rows > 0 && now.step <= before.step)
-      throw DataError(DataCode::format_syntax, path.string(), "step " + std::to_string(now.step),
-                      "a row after that of step " + std::to_string(before.step), "rows in the order of time");
-    if (tally.report.rows > 0)
-      for (const auto& point : points) point->check_states(tally.report.rows - 1, before, now);
+    if (tally.report.rows == 0) {
+      motions->check_states(0, now, now);
+    } else {
+      sequence->check_states(tally.report.rows - 1, before, now);
+      motions->check_states(tally.report.rows - 1, before, now);
+    }
     before = std::move(now);
   }
+  if (tally.report.rows == 0 && !reader.is_cut_off())
+    throw DataError(DataCode::format_syntax, path.string(), "", "no row", "the start of the run at least");
   AuditReport report = finished(std::move(tally));
   report.has_places = true;
   if (!reader.is_cut_off()) return report;
@@ -351,9 +366,13 @@ const char* name(AuditPoint point) {
   return kNames[static_cast<std::size_t>(point)];
 }
 
+bool AuditReport::fails() const {
+  return (*this)[AuditPoint::motions].open > 0 ||
+         std::any_of(points.begin(), points.end(), [](const PointCount& p) { return p.refuted > 0; });
+}
+
 bool AuditReport::clean() const {
-  const bool refuted = std::any_of(points.begin(), points.end(), [](const PointCount& p) { return p.refuted > 0; });
-  return !refuted && (*this)[AuditPoint::motions].open == 0 && cut_off.empty();
+  return !fails() && cut_off.empty();
 }
 
 AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario) {
@@ -364,7 +383,10 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario,
                             std::size_t sample) {
-  if (is_crowd_recording(path)) return audit_places(path, sample);
+  if (is_crowd_recording(path)) {
+    EXACTVO_REQUIRE(!scenario, "a scenario to compare with " + path.string() + ", which contains none");
+    return audit_places(path, sample);
+  }
   SealedLines lines(path);
   RecordingFile run;
   RunAudit audit(run, scenario);
@@ -390,7 +412,8 @@ void add(AuditReport& sum, const AuditReport& other) {
   for (std::size_t AuditReport::*count :
        {&AuditReport::rows, &AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps,
         &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
-        &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
+        &AuditReport::ends_only, &AuditReport::left_out, &AuditReport::obstacle_questions,
+        &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
   for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
                                   &AuditReport::without_pairs, &AuditReport::has_places})
@@ -405,8 +428,16 @@ void add(AuditReport& sum, const AuditReport& other) {
 
 std::vector<std::string> not_audited(const AuditReport& report) {
   std::vector<std::string> words;
-  if (report.has_places)
+  if (report.has_places) {
     words.emplace_back("decisions and goals of recordings without them, and whether their runs are whole");
+    words.emplace_back(
+        "that radii, speed limits, edges and bodies in a recording of a crowd are those of its scenario, and its marks "
+        "of half-planes that were kept");
+  }
+  if (report.ends_only > 0)
+    words.emplace_back("how robots came from one row to the next where these are several steps apart: of " +
+                       geometry::counted(report.ends_only, "motion") + " only the ends are judged");
+  if (report.left_out > 0) words.push_back(geometry::counted(report.left_out, "motion") + " that --sample left out");
   if (report.has_places && report[AuditPoint::scenario].asked() == 0) return words;
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
@@ -464,6 +495,8 @@ std::string to_json(const AuditReport& report) {
   json.member("half_planes", report.half_planes - std::min(report.half_planes, report.unsafe));
   json.member("clear_steps", report.steps - report.collisions - report.unproven);
   json.member("curved_steps", report.curved_steps);
+  json.member_if(report.has_places, "ends_only", report.ends_only);
+  json.member_if(report.has_places, "left_out", report.left_out);
   json.member("against_obstacles", report.obstacle_questions);
   json.member("against_moving_obstacles", report.moving_questions);
   json.member("against_robots", report.robot_questions);

@@ -57,10 +57,13 @@ namespace {
 
 constexpr double kRoundedUp = 1.0 + 0x1p-50;  // of a sum of radii
 
-/// Nearer than this share of the numbers involved, a crowd may take a robot and an obstacle for touching
-/// (formation/crowd.h: 40 u in float). Of such an obstacle it promises less: the robot comes no nearer to one at rest,
-/// up to this share again, and is apart from one that moves at the end of the step.
+/// Nearer to contact than this share of the numbers involved, a crowd may take a robot and an obstacle for touching
+/// (formation/crowd.h: 40 u in float). Of such an obstacle it promises less: the robot comes no nearer in a step, up to
+/// this share again, and is apart from one that moves at the end of it.
 constexpr double kTouches = 40.0 * 0x1p-24;
+
+/// Of a radius: what a robot that touches comes nearer by is rounding up to this share, and no more.
+constexpr double kMostRounding = 0.01;
 
 double one_norm(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
@@ -116,11 +119,13 @@ class MotionAudit : public RowAudit {
     lay_out();
     lay_out_moving();
     row_ = row;
-    const bool are_parting = run_.scenario.separate && has_places_only_;
-    if (are_parting && row == 0) part(0, from);
     AuditReport& report = run_.tally.report;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (!run_.is_asked(row, i)) continue;
+      if (!run_.is_asked(row, i)) {
+        ++report.left_out;
+        continue;
+      }
+      if (to.step > from.step + 1) ++report.ends_only;
       if (!is_straight_) ++report.curved_steps;
       Answer answer;
       meet_obstacles(i, answer);
@@ -135,7 +140,6 @@ class MotionAudit : public RowAudit {
       else
         run_.tally.proven(AuditPoint::motions);
     }
-    if (are_parting) part(row + 1, to);
   }
 
  private:
@@ -219,20 +223,29 @@ class MotionAudit : public RowAudit {
     return first == Verdict::clear ? test(over(end, end)) : first;
   }
 
-  /// m: how near the robot may come to what is that far away, in this box, both as it sees them.
+  /// m: how near a robot of a crowd may come to what is that far away at the row before, in this box, both as it sees
+  /// them. Its radius where it does not touch that there, or overlaps it by more than rounding.
   double allowed(std::size_t i, double distance, const Box& seen) const {
     const double lengths = one_norm(seen.low) + one_norm(seen.high) + radius(i);
-    if (!has_places_only_ || distance >= radius(i) + kTouches * lengths) return radius(i);
-    const double way = (to_->time - from_->time) * run_.scenario.robots[i].max_speed;
-    const auto steps = static_cast<double>(to_->step - from_->step);
+    if (std::fabs(distance - radius(i)) > kTouches * lengths) return radius(i);
+    const double way = run_.scenario.time_step * run_.scenario.robots[i].max_speed;
+    const auto steps = static_cast<double>(std::max<std::size_t>(1, to_->step - from_->step));
     return std::min(distance, radius(i)) - kTouches * steps * (lengths + 4.0 * way);
   }
   /// The same of an obstacle as a whole, seen from `at`.
   double allowed(std::size_t i, const RationalObstacle& o, Vec2 at) const {
-    const double distance = !has_places_only_ ? 0.0
-                            : o.disc          ? norm(at - o.disc->disc.center) - o.disc->disc.radius
-                                              : geometry::signed_distance(*o.obstacle, at);
+    const double distance =
+        o.disc ? norm(at - o.disc->disc.center) - o.disc->disc.radius : geometry::signed_distance(*o.obstacle, at);
     return allowed(i, distance, {o.box.low - at, o.box.high - at});
+  }
+
+  /// `asked(least)`: the verdict where the robot may come as near as it is allowed to, but no nearer than `least`. What
+  /// comes nearer than rounding explains, and no nearer than allowed, is open.
+  template <class Asked>
+  Verdict allowing(std::size_t i, const Asked& asked) const {
+    const Verdict verdict = asked((1.0 - kMostRounding) * radius(i));
+    if (verdict == Verdict::clear) return verdict;
+    return asked(0.0) == Verdict::meets ? Verdict::meets : Verdict::unknown;
   }
 
   void meet_obstacles(std::size_t i, Answer& answer) {
@@ -246,8 +259,6 @@ class MotionAudit : public RowAudit {
     if (are_apart(boxes_[i], o.box, radius(i))) return Verdict::clear;
     const Vec2 at = from_->robots[i].position;
     const bool is_solid = geometry::has_interior(*o.obstacle);
-    const double reach = is_solid ? allowed(i, o, at) : radius(i);
-    if (!(reach > 0.0)) return Verdict::unknown;
     if (o.disc && is_straight_ &&
         is_surely_more(geometry::distance(way(i), o.disc->disc.center), o.box, boxes_[i],
                        radius(i) + o.disc->disc.radius))
@@ -257,17 +268,26 @@ class MotionAudit : public RowAudit {
       const Segment& edge = o.segments[k];
       const bool is_apart =
           is_straight_ && !o.disc && is_surely_more(geometry::distance(edge, way(i)), o.boxes[k], boxes_[i], radius(i));
-      if (is_apart) continue;
-      const double near = is_solid ? reach
-                                   : allowed(i, has_places_only_ ? geometry::distance(edge, at) : 0.0,
-                                             {o.boxes[k].low - at, o.boxes[k].high - at});
-      if (!(near > 0.0)) return Verdict::unknown;
-      edges.push_back({k, Rational(near)});
+      if (!is_apart) edges.push_back({k, Rational(radius(i))});
     }
     if (edges.empty() && !is_solid) return Verdict::clear;
-    const Rational r(reach);
-    return decided([&](const Rational& s, const Rational& e) { return motion(i).over(s, e); },
-                   [&](const Chord& chord) { return against(chord, o, edges, r); }, Rational(0), Rational(1));
+    const auto asked = [&](const Rational& reach) {
+      return decided([&](const Rational& s, const Rational& e) { return motion(i).over(s, e); },
+                     [&](const Chord& chord) { return against(chord, o, edges, reach); }, Rational(0), Rational(1));
+    };
+    const Verdict verdict = asked(Rational(radius(i)));
+    if (verdict == Verdict::clear || !has_places_only_) return verdict;
+    const double of_whole = is_solid ? allowed(i, o, at) : radius(i);
+    return allowing(i, [&](double least) {
+      for (NearEdge& edge : edges) {
+        const Box& box = o.boxes[edge.edge];
+        const double near =
+            is_solid ? of_whole
+                     : allowed(i, geometry::distance(o.segments[edge.edge], at), {box.low - at, box.high - at});
+        edge.reach = Rational(std::max(least, near));
+      }
+      return asked(Rational(std::max(least, of_whole)));
+    });
   }
 
   /// Piece after piece of the obstacle's way, seen from the obstacle.
@@ -284,13 +304,20 @@ class MotionAudit : public RowAudit {
     const RationalObstacle& o = moving_[k];
     const Box seen = box_of(motion(i).over(piece.start, piece.end) - piece.chord);
     if (are_apart(seen, o.box, radius(i))) return Verdict::clear;
-    const Rational r(radius(i));
     std::vector<NearEdge> edges;
-    for (const std::size_t edge : o.near(seen, radius(i))) edges.push_back({edge, r});
+    for (const std::size_t edge : o.near(seen, radius(i))) edges.push_back({edge, Rational(radius(i))});
     const auto over = [&](const Rational& s, const Rational& e) { return motion(i).over(s, e) - carried(k, s, e); };
-    const auto test = [&](const Chord& chord) { return against(chord, o, edges, r); };
-    const bool touches = has_places_only_ && allowed(i, o, from_->robots[i].position - from_->moved[k]) != radius(i);
-    return decided(over, test, touches ? piece.end : piece.start, piece.end);
+    const auto asked = [&](const Rational& start, double reach) {
+      const Rational r(reach);
+      for (NearEdge& edge : edges) edge.reach = r;
+      return decided(
+          over, [&](const Chord& chord) { return against(chord, o, edges, r); }, start, piece.end);
+    };
+    const Verdict verdict = asked(piece.start, radius(i));
+    if (verdict == Verdict::clear || !has_places_only_) return verdict;
+    const double near = allowed(i, o, from_->robots[i].position - from_->moved[k]);
+    if (to_ != from_ && asked(piece.end, radius(i)) != Verdict::clear) return Verdict::meets;
+    return allowing(i, [&](double least) { return asked(piece.start, std::max(least, near)); });
   }
 
   void meet_robots(std::size_t i, Answer& answer) {
@@ -323,12 +350,6 @@ class MotionAudit : public RowAudit {
 
   Straight relative(std::size_t i, std::size_t j) {
     return motion(i).seen_from(motion(j)).over(Rational(0), Rational(1)).way;
-  }
-
-  void part(std::size_t row, const RowStates& states) {
-    std::vector<Vec2> places;
-    for (const auto& robot : states.robots) places.push_back(robot.position);
-    part(row, states.time, places);
   }
 
   /// Pairs that overlap in the first row, and of these the ones that still do.

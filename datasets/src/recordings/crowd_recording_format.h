@@ -5,6 +5,7 @@
 /// The bytes of a recording of a crowd (docs/guide/crowd-recordings.md): a mark, the head, rows, the end, each a block
 /// behind its size and checksum. crowd_recording_write.cpp writes them, crowd_recording_read.cpp reads them.
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -51,6 +52,13 @@ class CrowdBytes {
     skip(sizeof value);
     return value;
   }
+  /// A finite number of which `factor` times as much is no more than kLargestCoordinate.
+  double number(const char* what, double factor = 1.0) {
+    const auto value = get<double>();
+    if (!std::isfinite(value)) refuse(std::string(what) + " that is not finite");
+    require_in_range(value, factor, what);
+    return value;
+  }
   std::string text(std::size_t size) {
     need(size);
     std::string out(left_.substr(0, size));
@@ -74,6 +82,8 @@ class CrowdBytes {
   void require(bool holds, const char* found) const {
     if (!holds) refuse(found);
   }
+  /// E_RANGE where `value` times `factor` is beyond kLargestCoordinate.
+  void require_in_range(double value, double factor, const char* what) const;
   [[noreturn]] void refuse(const std::string& found) const;
 
  private:
@@ -97,7 +107,8 @@ void append_id(std::string& to, std::string_view id, std::string_view before);
 /// `ids`: those of all robots, as `append_id` writes them, or none; head.ids is not looked at.
 std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids);
 
-/// Throws DataError (E_FORMAT_SYNTAX) where it is not as `to_bytes` writes it, or did in an earlier version.
+/// Throws DataError where it is not as `to_bytes` writes it, or did in an earlier version (E_FORMAT_SYNTAX), or has
+/// numbers beyond kLargestCoordinate (E_RANGE).
 CrowdRecordingHead to_head(CrowdBytes in, unsigned version);
 
 }  // namespace exactvo::datasets

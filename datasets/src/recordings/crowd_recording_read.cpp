@@ -14,7 +14,9 @@
 #include <unordered_set>
 #include <vector>
 
+#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/shape_numbers.h"
+#include "exactvo/geometry/told_apart.h"
 #include "files/text_file.h"
 
 namespace exactvo::datasets {
@@ -30,10 +32,7 @@ CrowdBodyRecord get_body(CrowdBytes& in) {
   const auto count = in.get<std::uint32_t>();
   in.require(moves <= 1, "a body that neither moves nor rests");
   std::vector<double> v;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    v.push_back(in.get<double>());
-    in.require(std::isfinite(v.back()), "a body that is nowhere");
-  }
+  for (std::uint32_t k = 0; k < count; ++k) v.push_back(in.number("a number of a body"));
   const std::optional<geometry::ConvexShape> shape = geometry::shape_of(kind, v);
   in.require(shape && geometry::is_valid(*shape), "a body of no shape");
   body.moves = moves == 1;
@@ -41,10 +40,7 @@ CrowdBodyRecord get_body(CrowdBytes& in) {
   return body;
 }
 
-bool is_positive(double v) {
-  return std::isfinite(v) && v > 0.0;
-}
-
+constexpr std::int64_t kFarthestRobot = std::int64_t{1} << 30;
 constexpr std::int64_t kFarthestBody = std::int64_t{1} << 52;
 
 }  // namespace
@@ -71,6 +67,15 @@ void append_difference(std::string& to, std::int64_t difference) {
 void CrowdBytes::refuse(const std::string& found) const {
   throw DataError(DataCode::format_syntax, file_, "byte " + std::to_string(at_), found,
                   "what simulate --record has written");
+}
+
+void CrowdBytes::require_in_range(double value, double factor, const char* what) const {
+  const double found = std::fabs(value) * factor;
+  if (!(found <= kLargestCoordinate))
+    throw DataError(
+        DataCode::out_of_range, file_, "byte " + std::to_string(at_),
+        what + (" of " + geometry::lossless(value)) + (factor == 1.0 ? "" : " times " + geometry::lossless(factor)),
+        "no more than 2^100");
 }
 
 unsigned crowd_version(std::string_view mark) {
@@ -136,16 +141,16 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
   const auto length = in.get<std::uint32_t>();
   in.require(length <= kLongestName, "a name of more than 1000 bytes");
   head.scenario = in.text(length);
-  head.time_step = in.get<double>();
-  head.position_step = in.get<double>();
-  in.require(is_positive(head.time_step) && is_positive(head.position_step), "a step that is not positive");
+  head.time_step = in.number("a time step");
+  head.position_step = in.number("a lattice step", static_cast<double>(kFarthestRobot));
+  in.require(head.time_step > 0.0 && head.position_step > 0.0, "a step that is not positive");
   head.every = in.get<std::uint32_t>();
   in.require(head.every > 0, "a row every 0 steps");
   const auto kinds = in.get<std::uint32_t>();
   in.require(kinds <= kMostKinds, "more than 2^14 kinds");
   for (std::uint32_t k = 0; k < kinds; ++k) {
-    const auto radius = in.get<double>(), speed = in.get<double>();
-    in.require(is_positive(radius) && is_positive(speed), "a kind that no crowd has");
+    const double radius = in.number("a radius"), speed = in.number("a greatest speed");
+    in.require(radius > 0.0 && speed > 0.0, "a kind that no crowd has");
     head.kinds.push_back({radius, speed});
   }
   const auto robots = in.get<std::uint32_t>();
@@ -158,10 +163,7 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
   in.require(edges <= kMostEdges, "more than 2^24 edges");
   for (std::uint32_t k = 0; k < edges; ++k) {
     double v[4];
-    for (double& number : v) {
-      number = in.get<double>();
-      in.require(std::isfinite(number), "an edge that is nowhere");
-    }
+    for (double& number : v) number = in.number("a coordinate of an edge");
     head.edges.push_back({{v[0], v[1]}, {v[2], v[3]}});
   }
   if (version >= 2) {
@@ -273,10 +275,11 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
   if (tag != kCrowdRow) p.bytes().refuse("what begins neither a row nor the end");
   CrowdBytes in = p.bytes();
   p.row.step = in.get<std::uint32_t>();
+  in.require_in_range(p.head.time_step, p.row.step, "a time");
   for (std::vector<std::int32_t>* column : {&p.row.x, &p.row.y})
     for (std::int32_t& value : *column) {
       const std::int64_t next = value + in.difference();
-      in.require(std::abs(next) <= std::int64_t{1} << 30, "a position beyond the lattice");
+      in.require(std::abs(next) <= kFarthestRobot, "a position beyond the lattice");
       value = static_cast<std::int32_t>(next);
     }
   for (std::vector<std::int64_t>* column : {&p.row.body_x, &p.row.body_y})

@@ -125,10 +125,8 @@ ExitCode audit_recordings(const AuditFlags& flags) {
   const datasets::AuditReport all = audited(flags, files, scenario ? &*scenario : nullptr);
   print(flags.json ? datasets::to_json(all) + "\n" : summary(all));
   for (const std::string& words : all.cut_off) error_message(words);
-  const bool is_refuted =
-      std::any_of(all.points.begin(), all.points.end(), [](const datasets::PointCount& n) { return n.refuted > 0; });
-  if (!all.cut_off.empty() && !is_refuted) return ExitCode::bad_input;
-  return all.clean() ? ExitCode::success : ExitCode::negative;
+  if (all.fails()) return ExitCode::negative;
+  return all.cut_off.empty() ? ExitCode::success : ExitCode::bad_input;
 }
 
 // --- Certificates ---

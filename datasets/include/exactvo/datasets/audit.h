@@ -23,17 +23,15 @@
 ///  (7) motions       every motion from row to row, as it was driven, keeps clear of obstacles, of moving obstacles
 ///                    where they are meanwhile, and of the other robots;
 ///  (8) plans         every joint plan begins where its robots were, and no move of it comes nearer to an obstacle or
-///                    to another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded).
-///  (9) braking       where the scenario has an acceleration: no velocity changes by more than A dt, the braking time
-///  is
-///                    long enough to stop, nothing is relaxed, and in every row every robot could have braked from its
-///                    choice on without touching anything: its way [x, x + tau v] keeps clear of obstacles, and so do
-///                    the ways of two robots that brake alike, of each other.
-///  (10) kinematics   robots on wheels: in each step the heading turns, and the wheels run, as the constant twist has
-///  it
-///                    that takes the reference point where it was to go; wheels keep their speed and its change, the
-///                    axle its greatest angular and backward speed; the disc about the reference point holds the body
-///                    and what the point strays from its straight way, so that (7) is about the body too.
+///                    to another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded);
+///  (9) braking       where robots have an acceleration, or are on wheels: no velocity changes by more than A dt (on
+///                    wheels (10) asks that), the braking time is long enough to stop, nothing is relaxed, and in every
+///                    row every robot could have braked from its choice on without touching anything: its way
+///                    [x, x + tau v] keeps clear of obstacles, and so do the ways of two robots that brake alike, of
+///                    each other;
+///  (10) kinematics   for robots on wheels, heading and wheel speeds of each row follow from the constant twist that
+///                    moves the reference point as chosen; wheel speeds, their changes, turning and reversing are
+///                    within their limits; the disc about the reference point holds the body at every moment.
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
@@ -96,15 +94,19 @@ struct AuditReport {
   /// For each recording that ends early: where, and the findings in the rows that are there. They are no whole run.
   std::vector<std::string> cut_off;
 
-  std::size_t half_planes = 0;        ///< of (4): certified ones of obstacles
-  std::size_t unsafe = 0;             ///< of (4): refuted
-  std::size_t steps = 0;              ///< of (7): a robot's motion from one row to the next
+  std::size_t half_planes = 0;  ///< of (4): certified ones of obstacles
+  std::size_t unsafe = 0;       ///< of (4): refuted
+  /// Of (7): a robot's motion from one row to the next; in a recording of a crowd also a robot's place in the first
+  /// row.
+  std::size_t steps = 0;
   std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
   std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
   std::size_t inconsistencies = 0;    ///< refuted of (1) and (6)
   std::vector<std::string> findings;  ///< in words: the first refuted and the first open ones of each point
 
-  std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
+  std::size_t curved_steps = 0;  ///< of the steps, those that were not driven in a straight line
+  std::size_t ends_only = 0;     ///< of the steps, motions between rows several time steps apart: only ends judged
+  std::size_t left_out = 0;      ///< motions that `sample` left out; they are none of the steps
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
   std::size_t moving_questions = 0;    ///< of them, a step and a moving obstacle
   std::size_t robot_questions = 0;     ///< of them, a step and another robot
@@ -121,7 +123,9 @@ struct AuditReport {
   bool has_places = false;          ///< a crowd's recording, which has no decisions
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 
-  /// Nothing is refuted, no motion open, and no recording ends early.
+  /// Something is refuted, or a motion open.
+  bool fails() const;
+  /// It does not fail, and no recording ends early.
   bool clean() const;
 };
 /// Findings of one point and one recording: this many refuted and this many open ones; PointCount counts the others.
@@ -137,10 +141,12 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 /// are there are audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
 ///
 /// A recording of a crowd, FILE.evr (crowd_recording.h), has places alone: (6) is that no robot moves farther
-/// than its speed allows, (7) is asked as it stands between rows of consecutive steps, and else of the rows. An
-/// obstacle at rest that a robot touches at a row, to within 40 u of the numbers involved (u = 2^-24), it must not come
-/// nearer to, by more than that; a moving one must be apart at the next row. `sample`: about this many motions, spread
-/// evenly over robots and rows; 0: all.
+/// than its speed allows, (7) is asked as it stands between rows of consecutive steps, and else of the rows; of the
+/// first row by itself. Where a robot touches an obstacle at a row, to within 40 u of the numbers involved (u = 2^-24),
+/// it may come as much nearer in each step up to the next row, to 99 % of its radius; nearer is open. One that moves
+/// must be apart at the next row. `sample`: about this many motions, spread evenly over robots and rows; 0: all. Throws
+/// DataError where there is no row, or the first is not that of step 0. REQUIRES: no `scenario`, which it can't be
+/// compared with.
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr,
                             std::size_t sample = 0);
 
