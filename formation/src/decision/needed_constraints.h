@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// The static half-planes of one decision, built as far as it needs them: what is left out changes no bit of it.
+/// The static half-planes of one decision, built as far as it needs them: what is left out changes no bit of it, unless
+/// three lines meet there up to rounding (obstacles that share an edge). Then it is optimal too, a rounding error away.
 
 #include <vector>
 
