@@ -69,14 +69,14 @@ let certificates file text =
   Printf.printf "%s, %d valid%s\n" (counted (List.length all) "certificate") valid (if !none > 0 then Printf.sprintf ", %d none" !none else "");
   valid = List.length all
 
-(* Whether the velocity of a choice breaks no half-plane, nor the speed bound, by more than a rounding error: 2^-48 of the largest terms. *)
+(* Whether the velocity of a choice breaks no half-plane, nor the speed bound, by more than 2^-40 of the largest terms. *)
 let nearly program c =
   let size r = Q.add (Q.abs (to_q (fst r.row_normal))) (Q.abs (to_q (snd r.row_normal))) in
   let speed = Q.add (Q.abs (to_q (fst c.velocity))) (Q.abs (to_q (snd c.velocity))) in
   let unit = List.fold_left (fun m r -> Q.max m (Q.add (Q.mul (size r) speed) (Q.abs (to_q r.row_offset)))) Q.zero program.rows in
-  let give = Q.div_2exp unit 48 in
+  let give = Q.div_2exp unit 40 in
   let lowered r = { r with row_offset = of_q (Q.sub (to_q r.row_offset) give) } in
-  let raised = Option.map (fun b -> let x = to_q b in of_q (Q.add x (Q.div_2exp x 48))) in
+  let raised = Option.map (fun b -> let x = to_q b in of_q (Q.add x (Q.div_2exp x 40))) in
   Checked.pinned { rows = List.map lowered program.rows; disc = raised program.disc; box_x = raised program.box_x; box_y = raised program.box_y;
     wish = program.wish } c.velocity
 

@@ -587,7 +587,9 @@ def differential(tools):
         verdicts = re.findall(r"^\d+: (.*)$", done.stdout, re.M)
         require(len(verdicts) == len(expected) >= tools.flags.count // (40 if name == "turning" else 4), name, len(verdicts), len(expected), done.stderr)
         for line, ours, theirs in zip((tools.folder / file).read_text().splitlines(), verdicts, expected):
-            require((ours == "valid") == theirs, name, "seed", tools.flags.seed, "proven:", ours, "C++:", theirs, line)
+            # Of no-interior answers the certificate says nothing of the velocity, which exactvo-verify asks for too.
+            stricter = ours == "not proven" and theirs and '"status":"no-interior"' in line
+            require((ours == "valid") == theirs or stricter, name, "seed", tools.flags.seed, "proven:", ours, "C++:", theirs, line)
         require(0.2 < sum(expected) / len(expected) < 0.9, name, "hardly anything is forged, or real:", sum(expected), len(expected))
         if name == "routes":  # and the one in Python, which is slow
             some = (tools.folder / file).read_text().splitlines(True)[:MOST_IN_PYTHON]
