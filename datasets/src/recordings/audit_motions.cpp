@@ -62,7 +62,7 @@ constexpr double kRoundedUp = 1.0 + 0x1p-50;  // of a sum of radii
 /// this share again, and is apart from one that moves at the end of it.
 constexpr double kTouches = 40.0 * 0x1p-24;
 
-/// Of a radius: what a robot that touches comes nearer by is rounding up to this share, and no more.
+/// A robot that touches may come nearer by rounding: by this share of its radius at most.
 constexpr double kMostRounding = 0.01;
 
 double one_norm(Vec2 v) {
@@ -406,7 +406,7 @@ class MotionAudit : public RowAudit {
   std::size_t row_ = 0;
   std::set<std::pair<std::size_t, std::size_t>> parting_, nearer_;   ///< nearer_: pairs that came nearer while parting
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> told_;  ///< where in the report each pair stands
-  // Of a step.
+  // The step that is judged.
   const RowStates *from_ = nullptr, *to_ = nullptr;
   std::vector<std::unique_ptr<StepMotion>> motions_;
   std::vector<Box> boxes_;  ///< round the robots' ways

@@ -139,7 +139,7 @@ struct AuditedRun {
   PlacesInRows places;
   AuditTally& tally;
   bool has_places_only = false;  ///< its rows are places of a crowd, on a lattice, without decisions
-  std::size_t one_of = 1;        ///< of its motions one in about so many is looked at
+  std::size_t one_of = 1;        ///< about one motion in this many is judged
 };
 
 /// Where robots are in a row, and how they move.

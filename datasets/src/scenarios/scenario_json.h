@@ -31,7 +31,7 @@ void members(Codec& json, For<Codec, formation::DifferentialDrive>& drive) {
   json.member_if(drive.reference > 0.0, "reference", drive.reference);
 }
 
-/// Of a robot on wheels position and radius are those of its axle and body, in the drive.
+/// A robot on wheels is written with the position of its axle and the radius of its body, which stand in its drive.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Robot>& robot) {
   if constexpr (!Codec::kReads) {
