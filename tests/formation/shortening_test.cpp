@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "joint_problems.h"
 #include "liveness/distances.h"
@@ -192,86 +193,14 @@ TEST(Timetable, IsNearToWhatIsDriven) {
   EXPECT_GE(found, 9);
 }
 
-/// Against every position, with few radii exactly, with many never earlier; as bits and as lists.
-TEST(StandingRobots, SameAsLookingAtEveryStay) {
-  SeededRandom random(test::seed_of_run(65));
-  const Walls walls({});
-  std::size_t found = 0, later = 0;
-  for (const int kinds : {1, 3, 12}) {
-    Problem p(walls, 12, random);
-    for (std::size_t i = 0; i < p.joint.radii.size(); ++i)
-      p.joint.radii[i] = 0.3 + 0.01 * static_cast<double>(i % static_cast<std::size_t>(kinds));
-    constexpr int kLast = 300;
-    struct Stay {
-      std::size_t robot;
-      PlaceNumber place;
-      int first, last;
-    };
-    std::vector<Stay> stays;
-    const std::size_t words = static_cast<std::size_t>(std::min(kinds, 4)) * (kLast / 64 + 1) * p.map.size();
-    StandingRobots standing(p.joint, words), in_lists(p.joint, words - 1);
-    for (const int last : {2 * kLast, kLast})  // twice: what was there before is forgotten
-      for (StandingRobots* robots : {&standing, &in_lists}) robots->clear(static_cast<std::size_t>(last));
-    ASSERT_EQ(standing.words(), words);
-    ASSERT_EQ(in_lists.words(), 0u);
-    for (std::size_t i = 0; i < p.joint.radii.size(); ++i)
-      for (int first = 0; first <= kLast;) {
-        const int last = std::min(kLast, first + random.integer(0, i % 2 == 0 ? 200 : 20));
-        stays.push_back({i, static_cast<PlaceNumber>(random.integer(0, 5)), first, last});
-        for (StandingRobots* robots : {&standing, &in_lists})
-          robots->add(i, stays.back().place, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
-        first = last + 1 + random.integer(0, 70);
-      }
-    for (int k = 0; k < 500; ++k) {
-      const double radius = random.uniform(0.1, 0.6);
-      std::vector<RoadmapEdges::NearPlace> near;
-      for (PlaceNumber place = 0; place < 6; ++place)
-        if (random.integer(0, 2) > 0) near.push_back({place, static_cast<float>(random.uniform(0.0, 1.2))});
-      std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.squared < b.squared; });
-      const int first = random.integer(0, kLast), last = random.integer(first, kLast);
-      const auto is_clear = [&](int position) {
-        return std::none_of(stays.begin(), stays.end(), [&](const Stay& s) {
-          const double wanted = (1.0 + kPlannedGap) * (radius + p.joint.radii[s.robot]);
-          return s.first <= position && position <= s.last && std::any_of(near.begin(), near.end(), [&](const auto& n) {
-                   return n.place == s.place && n.squared < kSingleRounding * wanted * wanted;
-                 });
-        });
-      };
-      int expected = first;
-      while (expected <= last && !is_clear(expected)) ++expected;
-      const std::size_t position =
-          standing.first_clear(radius, near, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
-      const bool is_found = position <= static_cast<std::size_t>(last);
-      const std::size_t by_lists =
-          in_lists.first_clear(radius, near, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
-      ASSERT_EQ(by_lists <= static_cast<std::size_t>(last), is_found);
-      if (is_found) {
-        ASSERT_EQ(by_lists, position);
-      }
-      if (kinds <= 4) {
-        ASSERT_EQ(is_found, expected <= last);
-      }
-      if (!is_found) continue;
-      ++found;
-      if (kinds <= 4) {
-        ASSERT_EQ(position, static_cast<std::size_t>(expected));
-      }
-      ASSERT_TRUE(is_clear(static_cast<int>(position)));
-      later += position > static_cast<std::size_t>(first);
-    }
-  }
-  EXPECT_GT(found, 300u);
-  EXPECT_GT(later, 100u);
-}
-
 /// Against every position and place: whether a robot can stand there while the others make their next move, and
 /// whether somebody stands near a way.
 TEST(SafeIntervals, SameAsLookingAtEveryMove) {
   SeededRandom random(test::seed_of_run(64));
-  std::size_t safe_moves = 0, unsafe_moves = 0;
+  std::size_t safe_moves = 0, unsafe_moves = 0, waits = 0;
   for (int k = 0; k < 10; ++k) {
     const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
-    const Problem p(walls, 3 + random.integer(0, 6), random);
+    const Problem p(walls, 3 + random.integer(0, 6), random, {0.5, 0.5, 0.4});
     const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
     if (answer.end != SearchEnd::found) continue;
     const std::size_t robot = static_cast<std::size_t>(random.integer(0, static_cast<int>(p.joint.radii.size()) - 1));
@@ -287,6 +216,7 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
       return wanted * wanted;
     };
     std::vector<PlaceNumber> at = p.joint.starts;
+    std::map<PlaceNumber, std::size_t> clear_since;  // by place: where the search for the next clear position began
     for (std::size_t position = 0; position <= others.moves.size(); ++position) {
       for (PlaceNumber here = 0; here < p.map.size(); here += 3) {
         const PlaceNumber to = p.map.ways(here).empty() ? here : p.map.ways(here).front();
@@ -301,8 +231,16 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
             is_close = is_close || std::fabs(squared - keep) < 1e-5;
           }
           const auto& near = edges.near_places(edges.number(here, to));
-          if (!is_close) {
+          if (is_close) {
+            clear_since.erase(here);
+          } else {
             ASSERT_EQ(safe.first_clear(near, position, position) == position, is_clear);
+            const std::size_t began = clear_since.try_emplace(here, position).first->second;
+            if (is_clear) {
+              ASSERT_EQ(safe.first_clear(near, began, others.moves.size()), position);
+              waits += began < position;
+              clear_since.erase(here);
+            }
           }
         }
         if (position == others.moves.size()) continue;
@@ -320,6 +258,7 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
   }
   EXPECT_GT(safe_moves, 1000u);
   EXPECT_GT(unsafe_moves, 100u);
+  EXPECT_GT(waits, 50u);
 }
 
 }  // namespace

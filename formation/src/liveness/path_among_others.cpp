@@ -9,146 +9,53 @@
 #include "liveness/distances.h"
 
 namespace exactvo::formation::detail {
-namespace {
-
-constexpr std::size_t kBits = 64;
-constexpr std::uint64_t kAll = ~std::uint64_t{0};
-
-/// Squared, m2: what is nearer is too near for robots with that sum of radii.
-double squared_reach(double radii) {
-  const double wanted = (1.0 + kPlannedGap) * radii;
-  return kSingleRounding * wanted * wanted;
-}
-
-}  // namespace
-
-StandingRobots::StandingRobots(const JointProblem& problem, std::size_t most_words)
-    : problem_(problem), most_words_(most_words) {
-  constexpr std::size_t kMostLayers = 4;
-  std::vector<double> radii = problem.radii;
-  std::sort(radii.begin(), radii.end());
-  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
-  const std::size_t count = std::min(radii.size(), kMostLayers);
-  for (std::size_t k = 1; k <= count; ++k) layers_.push_back({radii[k * radii.size() / count - 1]});
-  for (const double radius : problem.radii) {
-    const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& l) { return l.radius >= radius; });
-    layer_of_.push_back(static_cast<std::size_t>(found - layers_.begin()));
-  }
-}
-
-void StandingRobots::clear(std::size_t count) {
-  const std::size_t places = problem_.map->size(), words = (count / kBits + 1) * places;
-  has_bits_ = layers_.size() * words <= most_words_;
-  for (Layer& layer : layers_) {
-    if (has_bits_) {
-      layer.taken.assign(words, 0);
-      layer.until.assign(words, 0);
-      continue;
-    }
-    layer = {layer.radius};
-    layer.stays.resize(places);
-  }
-}
-
-void StandingRobots::add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last) {
-  Layer& layer = layers_[layer_of_[robot]];
-  if (has_bits_) return add_bits(layer, problem_.map->size(), place, first, last);
-  add_stay(layer.stays[place], first, last);
-}
-
-/// Merged with those that it meets or follows on: of a sequence of moves mostly the last one, or none.
-void StandingRobots::add_stay(std::vector<Stay>& stays, std::size_t first, std::size_t last) {
-  Stay stay{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
-  const auto begin = std::partition_point(stays.begin(), stays.end(), [&](Stay s) { return s.last + 1 < stay.first; });
-  const auto end = std::partition_point(begin, stays.end(), [&](Stay s) { return s.first <= stay.last + 1; });
-  if (begin != end) stay = {std::min(stay.first, begin->first), std::max(stay.last, (end - 1)->last)};
-  stays.insert(stays.erase(begin, end), stay);
-}
-
-void StandingRobots::add_bits(Layer& layer, std::size_t places, PlaceNumber place, std::size_t first,
-                              std::size_t last) {
-  for (std::size_t w = first / kBits; w <= last / kBits; ++w) {
-    const std::uint64_t from = w == first / kBits ? kAll << first % kBits : kAll;
-    const std::uint64_t to = w == last / kBits ? kAll >> (kBits - 1 - last % kBits) : kAll;
-    const std::size_t word = w * places + place;
-    layer.taken[word] |= from & to;
-    layer.until[word] = std::max(layer.until[word], static_cast<std::uint32_t>(last + 1));
-  }
-}
-
-std::size_t StandingRobots::first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near,
-                                        std::size_t first, std::size_t last) const {
-  while (!has_bits_ && first <= last) {
-    const std::size_t next = after_stays(radius, near, first);
-    if (next == first) return first;
-    first = next;
-  }
-  while (first <= last) {
-    std::uint64_t taken = (std::uint64_t{1} << first % kBits) - 1;
-    const std::size_t next = add_taken(radius, near, first / kBits, taken);
-    if (taken != kAll) return first / kBits * kBits + static_cast<std::size_t>(__builtin_ctzll(~taken));
-    first = next;
-  }
-  return first;
-}
-
-std::size_t StandingRobots::add_taken(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t word,
-                                      std::uint64_t& taken) const {
-  for (const Layer& layer : layers_) {
-    const std::size_t begin = word * problem_.map->size();
-    const double reach = squared_reach(radius + layer.radius);
-    for (const RoadmapEdges::NearPlace& n : near) {  // the nearest first
-      if (!(n.squared < reach)) break;
-      const std::uint64_t here = layer.taken[begin + n.place];
-      taken |= here;
-      if (taken == kAll) return here == kAll ? layer.until[begin + n.place] : (word + 1) * kBits;
-    }
-  }
-  return (word + 1) * kBits;
-}
-
-std::size_t StandingRobots::after_stays(double radius, const std::vector<RoadmapEdges::NearPlace>& near,
-                                        std::size_t position) const {
-  for (const Layer& layer : layers_) {
-    const double reach = squared_reach(radius + layer.radius);
-    for (const RoadmapEdges::NearPlace& n : near) {  // the nearest first
-      if (!(n.squared < reach)) break;
-      const std::vector<Stay>& stays = layer.stays[n.place];
-      const auto stay = std::partition_point(stays.begin(), stays.end(), [&](Stay s) { return s.last < position; });
-      if (stay != stays.end() && stay->first <= position) return stay->last + std::size_t{1};
-    }
-  }
-  return position;
-}
 
 SafeIntervals::SafeIntervals(const JointProblem& problem)
-    : problem_(problem), standing_(problem), passed_(problem.map->size()), first_(problem.map->size()) {}
+    : problem_(problem), passed_(problem.map->size()), stays_(problem.map->size()), first_(problem.map->size()) {}
+
+double SafeIntervals::squared_reach(std::size_t other) const {
+  const double wanted = (1.0 + kPlannedGap) * (problem_.radii[robot_] + problem_.radii[other]);
+  return kSingleRounding * wanted * wanted;
+}
 
 void SafeIntervals::set(std::size_t robot, const Timetable& others, const RoadmapEdges& edges) {
   robot_ = robot;
   count_ = others.moves.size();
   for (auto& list : passed_) list.clear();
-  standing_.clear(count_);
+  for (auto& list : stays_) list.clear();
   std::vector<PlaceNumber> at = problem_.starts;
   std::vector<std::size_t> since(at.size(), 0);
   for (std::size_t k = 0; k < count_; ++k) {
     const JointMove& m = others.moves[k].move;
-    const double reach = squared_reach(problem_.radii[robot] + problem_.radii[m.robot]);
+    const double reach = squared_reach(m.robot);
     for (const RoadmapEdges::NearPlace& n : edges.near_places(others.moves[k].edge)) {
       if (!(n.squared < reach)) break;
       passed_[n.place].push_back(static_cast<std::uint32_t>(k));
     }
-    standing_.add(m.robot, m.from, since[m.robot], k);
+    stays_[m.from].push_back({since[m.robot], k, reach});
     at[m.robot] = m.to;
     since[m.robot] = k + 1;
   }
   for (std::size_t i = 0; i < at.size(); ++i)
-    if (i != robot) standing_.add(i, at[i], since[i], count_);
+    if (i != robot) stays_[at[i]].push_back({since[i], count_, squared_reach(i)});
   size_ = 0;
   for (PlaceNumber p = 0; p < passed_.size(); ++p) {
     first_[p] = size_;
     size_ += passed_[p].size() + 1;
   }
+}
+
+std::size_t SafeIntervals::first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
+                                       std::size_t last) const {
+  for (std::size_t before = last + 1; first <= last && first != before;) {
+    before = first;
+    for (const RoadmapEdges::NearPlace& n : near) {
+      const std::vector<Stay>& stays = stays_[n.place];
+      const auto s = std::partition_point(stays.begin(), stays.end(), [&](const Stay& t) { return t.last < first; });
+      if (s != stays.end() && s->first <= first && n.squared < s->reach) first = s->last + 1;
+    }
+  }
+  return first;
 }
 
 std::size_t SafeIntervals::at(PlaceNumber place, std::size_t position) const {
@@ -166,7 +73,7 @@ std::optional<std::vector<JointMove>> PathAmongOthers::moves_with(std::size_t ro
                                                                   const std::vector<float>& to_goal, double bound) {
   const Query query{robot, &others, &to_goal, bound};
   safe_.set(robot, others, edges_);
-  work_ += safe_.size() + safe_.words() / 8;
+  work_ += safe_.size() + others.moves.size();
   arrivals_.clear();
   open_.clear();
   soonest_.assign(safe_.size(), geometry::kInfinity);

@@ -18,82 +18,38 @@
 
 namespace exactvo::formation::detail {
 
-/// Who stands where before which move of the others: bits by place and position, for each of up to four radii. Where
-/// there are more, some robots count as larger than they are, so that a clear position may be missed, never made up.
-/// Where the bits would take too much memory, lists by place say the same, more slowly.
-class StandingRobots {
- public:
-  /// Words of 64 bits; each has a number of 32 bits beside it, so that all take 48 MiB.
-  static constexpr std::size_t kMostWords = std::size_t{1} << 22;
-
-  explicit StandingRobots(const JointProblem& problem, std::size_t most_words = kMostWords);
-
-  /// Forgets all; there are `count` + 1 positions.
-  void clear(std::size_t count);
-  /// One that stands there from position `first` to `last`.
-  void add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last);
-  /// The first position from `first` to `last` at which a robot of that radius, m, can go along an edge: nobody stands
-  /// too near to it. `near`: the places near the edge. More than `last` where there is no such position.
-  std::size_t first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
-                          std::size_t last) const;
-  /// How many words of 64 bits there are; none where there are lists.
-  std::size_t words() const { return layers_.size() * layers_.front().taken.size(); }
-
- private:
-  /// Positions at which somebody stands on a place.
-  struct Stay {
-    std::uint32_t first, last;
-  };
-  /// Robots that count as equally large. Bits are by 64 positions and place, or else stays by place: ascending, with a
-  /// position between any two.
-  struct Layer {
-    double radius;  ///< m, that its robots count as
-    std::vector<std::uint64_t> taken = {};
-    std::vector<std::uint32_t> until = {};  ///< the position after the last stay that meets them
-    std::vector<std::vector<Stay>> stays = {};
-  };
-
-  static void add_bits(Layer& layer, std::size_t places, PlaceNumber place, std::size_t first, std::size_t last);
-  static void add_stay(std::vector<Stay>& stays, std::size_t first, std::size_t last);
-  /// Adds those of the 64 positions that are taken, if not all are. Where to go on if they are.
-  std::size_t add_taken(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t word,
-                        std::uint64_t& taken) const;
-  /// The position after a stay too near to the edge that holds this one; this one itself if there is none.
-  std::size_t after_stays(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t position) const;
-
-  const JointProblem& problem_;
-  std::size_t most_words_;
-  bool has_bits_ = true;
-  std::vector<Layer> layers_;
-  std::vector<std::size_t> layer_of_;  ///< by robot
-};
-
-/// Between which moves of the others a robot can stand on a place. Intervals of all places are numbered together.
+/// Between which moves of the others a robot can stand on a place, and when it can go along an edge. Intervals of all
+/// places are numbered together.
 class SafeIntervals {
  public:
+  /// Keeps a reference to the problem.
   explicit SafeIntervals(const JointProblem& problem);
 
   void set(std::size_t robot, const Timetable& others, const RoadmapEdges& edges);
 
   std::size_t last_position() const { return count_; }
   std::size_t size() const { return size_; }
-  /// As of StandingRobots: what it takes to fill them counts as work.
-  std::size_t words() const { return standing_.words(); }
   /// The interval of the place that holds a position.
   std::size_t at(PlaceNumber place, std::size_t position) const;
   /// The last position of an interval of the place.
   std::size_t last(PlaceNumber place, std::size_t interval) const;
-  /// The first position from `first` to `last` at which the robot can go along an edge, whose near places these are;
-  /// more than `last` where there is none.
-  std::size_t first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first, std::size_t last) const {
-    return standing_.first_clear(problem_.radii[robot_], near, first, last);
-  }
+  /// The first position from `first` to `last` at which no other robot stands too near to an edge, whose near places
+  /// these are; more than `last` where there is none.
+  std::size_t first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first, std::size_t last) const;
 
  private:
+  /// Positions at which another robot stands on a place.
+  struct Stay {
+    std::size_t first, last;
+    double reach;  ///< m2: edges at a smaller squared distance are too near
+  };
+
+  double squared_reach(std::size_t other) const;
+
   const JointProblem& problem_;
-  StandingRobots standing_;
   std::size_t robot_ = 0, count_ = 0, size_ = 0;
   std::vector<std::vector<std::uint32_t>> passed_;  ///< by place: the moves that come near it
+  std::vector<std::vector<Stay>> stays_;            ///< by place, one after the other
   std::vector<std::size_t> first_;                  ///< by place: its first interval
 };
 

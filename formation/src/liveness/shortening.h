@@ -3,7 +3,7 @@
 
 /// \file
 /// Joint plans that take less time (liveness, rule R3): one robot after the other gets another path among the moves of
-/// all others, or the moves of all robots within a time window are planned again. A change that takes longer is undone.
+/// all others. A change that takes longer is undone.
 ///
 /// Large neighbourhood search (Li, Chen, Harabor, Stuckey and Koenig, "Anytime Multi-Agent Path Finding via Large
 /// Neighborhood Search", IJCAI 2021). Heuristic: how long a sequence takes is what its timetable says.
