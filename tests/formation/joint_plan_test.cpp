@@ -4,11 +4,9 @@
 #include <pthread.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <set>
-#include <thread>
 
 #include "decision/decision.h"
 #include "exactvo/formation/simulation.h"
@@ -91,65 +89,49 @@ TEST(JointSearch, Property4_TheSameSeedGivesTheSameMoves) {
   EXPECT_EQ(a.calls, b.calls);
 }
 
-/// One thread takes the searches in turn; more take some ahead, which count only where one would have done the same.
 /// The small budgets end within a search.
-TEST(PlanSearch, AnyNumberOfThreadsFindsTheSamePlan) {
+TEST(PlanSearch, IsDeterministicAndGoesOnWithOtherSeeds) {
   SeededRandom random(test::seed_of_run(77));
   std::size_t planned = 0, spent = 0;
   for (int k = 0; k < 24; ++k) {
     const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
     Problem p(walls, 2 + random.integer(0, 12), random);
     const std::size_t calls = random.integer(0, 1) == 0 ? random.integer(50, 3000) : 75000;
-    PlanSearch alone(1);
-    // The second goes on with the seeds where the first ended: these have to be the same too.
-    const PlanFound first[] = {alone.best_plan(p.joint, calls, k % 3 != 0), alone.best_plan(p.joint, calls, true)};
-    for (const int threads : {2, 3, 7}) {
-      PlanSearch several(threads);
-      const PlanFound again[] = {several.best_plan(p.joint, calls, k % 3 != 0),
-                                 several.best_plan(p.joint, calls, true)};
-      for (int n = 0; n < 2; ++n) {
-        ASSERT_EQ(first[n].end, again[n].end) << k << " with " << threads << " threads, " << calls << " calls";
-        ASSERT_EQ(first[n].nodes, again[n].nodes) << k << " with " << threads << " threads, " << calls << " calls";
-        ASSERT_EQ(first[n].plan.size(), again[n].plan.size()) << k;
-        for (std::size_t m = 0; m < first[n].plan.size(); ++m) {
-          const PlannedMove &a = first[n].plan[m], &b = again[n].plan[m];
-          ASSERT_TRUE(a.robot == b.robot && a.from == b.from && a.to == b.to && a.after == b.after) << k << " " << m;
-        }
+    PlanSearch one, other;
+    for (int n = 0; n < 2; ++n) {
+      const PlanFound first = one.best_plan(p.joint, calls, true), again = other.best_plan(p.joint, calls, true);
+      ASSERT_EQ(first.end, again.end) << k << ", " << calls << " calls";
+      ASSERT_EQ(first.nodes, again.nodes) << k << ", " << calls << " calls";
+      ASSERT_EQ(first.plan.size(), again.plan.size()) << k;
+      for (std::size_t m = 0; m < first.plan.size(); ++m) {
+        const PlannedMove &a = first.plan[m], &b = again.plan[m];
+        ASSERT_TRUE(a.robot == b.robot && a.from == b.from && a.to == b.to && a.after == b.after) << k << " " << m;
       }
-    }
-    for (const PlanFound& f : first) {
-      planned += f.end == PlanEnd::planned;
-      spent += f.end == PlanEnd::out_of_budget;
+      planned += first.end == PlanEnd::planned;
+      spent += first.end == PlanEnd::out_of_budget;
     }
   }
   EXPECT_GE(planned, 20u);
   EXPECT_GE(spent, 1u);
 }
 
-/// The question is not put by threads that help, which may not be the interpreter's. There is no plan, and the budget
-/// lasts for minutes. An exception is passed on.
-TEST(PlanSearch, OnlyTheCallersThreadIsAskedWhetherToStop) {
+/// There is no plan, and the budget lasts for minutes. An exception is passed on.
+TEST(PlanSearch, EndsWhenItIsStopped) {
   SeededRandom random(test::seed_of_run(78));
   Problem p(Walls({}), 12, random);
-  const std::thread::id caller = std::this_thread::get_id();
-  std::atomic<int> asked{0}, elsewhere{0};
-  const auto asks = [&] {
-    elsewhere += std::this_thread::get_id() != caller;
-    return ++asked > 60;
-  };
+  int asked = 0;
   constexpr std::size_t kMinutes = 1000000000;
-  p.joint.is_stopped = asks;
+  p.joint.is_stopped = [&] { return ++asked > 60; };
   p.joint.goals[1] = p.joint.goals[0];
-  EXPECT_EQ(PlanSearch(4).best_plan(p.joint, kMinutes, true).end, PlanEnd::out_of_budget);
+  EXPECT_EQ(PlanSearch().best_plan(p.joint, kMinutes, true).end, PlanEnd::out_of_budget);
   EXPECT_GT(asked, 60);
-  EXPECT_EQ(elsewhere, 0);
   struct Interrupted {};
   asked = 0;
   p.joint.is_stopped = [&] {
-    if (asks()) throw Interrupted();
+    if (++asked > 60) throw Interrupted();
     return false;
   };
-  EXPECT_THROW(PlanSearch(4).best_plan(p.joint, kMinutes, true), Interrupted);
+  EXPECT_THROW(PlanSearch().best_plan(p.joint, kMinutes, true), Interrupted);
 }
 
 /// Two in a dead end cannot change their order: every joint place is tried, and that there is no plan is said.
@@ -340,7 +322,7 @@ TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
   const ObstacleSpace open({});
   int asked = 0;
   const DecisionRules rules = rules_of(s, {});
-  Groups groups(s, rules, s.robots, open, true, 1, [&] { return ++asked > 300; });  // a few plans are enough
+  Groups groups(s, rules, s.robots, open, true, [&] { return ++asked > 300; });  // a few plans are enough
   const auto way_left = [](std::size_t) { return 3.0; };
   groups.begin_step(0.0, now, way_left);
   groups.end_step(row);

@@ -304,24 +304,6 @@ TEST(Liveness, PlansAreTheSameOnAnyNumberOfThreads) {
   }
 }
 
-/// With searches for plans on other threads.
-TEST(Liveness, ThreadsThatSearchForPlansChangeNothing) {
-  for (const Scenario& s : {test_scenes::street(18, 4.0), test_scenes::at_slots(test_scenes::street(14, 4.0))}) {
-    SimulationOptions options;
-    const Recording alone = simulate(s, options);
-    ASSERT_GT(alone.liveness.value().groups, 0u);
-    for (const int threads : {2, 5}) {
-      options.threads = threads;
-      const Recording run = simulate(s, options);
-      ASSERT_EQ(run.steps.size(), alone.steps.size()) << threads;
-      EXPECT_EQ(run.liveness->search_nodes, alone.liveness->search_nodes) << threads;
-      for (std::size_t k = 0; k < run.steps.size(); ++k)
-        for (std::size_t i = 0; i < s.robots.size(); ++i)
-          ASSERT_EQ(run.steps[k].robots[i].chosen, alone.steps[k].robots[i].chosen) << threads << " " << k << " " << i;
-    }
-  }
-}
-
 /// Robots far from a jam drive the same bits as without it, and the plan is for those of the jam alone.
 TEST(Liveness, AJamInOneCornerOfACrowdConcernsNobodyElse) {
   Scenario jammed = test_scenes::street(14, 3.0);

@@ -337,5 +337,20 @@ TEST(Passing, ItIsSaidBeforeTheRunAndAtItsEnd) {
   EXPECT_THAT(simulate(s).outcome, HasSubstr(words));
 }
 
+/// Robots in the open use up looks.
+TEST(Passing, RobotsInTheOpenChangeNoProofOfOthers) {
+  for (const int others : {0, 1, 4, 20}) {
+    Scenario s;
+    test_scenes::add_box(s, 4.0, 0.75);
+    test_scenes::add_robot(s, {-3, 0}, {3, 0});
+    for (int k = 0; k < others; ++k) test_scenes::add_robot(s, {100.0 * (k + 1), 0}, {100.0 * (k + 1), 5});
+    test_scenes::add_robot(s, {3, 0}, {-3, 0});
+    const std::vector<NoPassing> proofs = robots_without_passing(s);
+    ASSERT_EQ(proofs.size(), 1u) << others;
+    EXPECT_EQ(proofs[0].first, 0u);
+    EXPECT_EQ(proofs[0].second, static_cast<std::size_t>(others) + 1);
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::formation

@@ -11,7 +11,6 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/round_polygon.h"
-#include "preflight/open_way.h"
 #include "reach/reachability.h"
 #include "support/seeded_random.h"
 
@@ -319,27 +318,6 @@ TEST(Preflight, AgreesWithAFloodedGrid) {
   EXPECT_LT(open, 25);
 }
 
-/// A way that was found is one: no chain separates its ends, and no cells of a grid that are certainly taken do.
-TEST(OpenWay, IsFoundOnlyWhereNothingSeparates) {
-  test::SeededRandom random(test::seed_of_run(17));
-  constexpr double kDiagonal = 0.7072 * Flood::kCell;  // m
-  int found = 0, shut = 0;
-  for (int k = 0; k < 300; ++k) {
-    const Scenario s = random_scene(random);
-    const Vec2 start = s.robots[0].position, goal = s.robots[0].goals[0];
-    const bool separated = !detail::Reachability(detail::terrain_of(s)).reachable_place(kRadius, start, {goal, 0.0});
-    if (detail::OpenWay(s.obstacles).is_found(start, goal, kRadius)) {
-      EXPECT_FALSE(separated) << "case " << k;
-      EXPECT_TRUE(Flood(s, -kDiagonal).connects(start, goal)) << "case " << k;
-      ++found;
-    } else {
-      shut += separated;
-    }
-  }
-  EXPECT_GT(found, 20);
-  EXPECT_GT(shut, 20);
-}
-
 TEST(Preflight, RobotsThatHaveArrivedBeforeTheyMoveAreNamed) {
   Scenario s = scene({0.002, 0.001}, {{0.008, 0.001}}, {});  // metres and a map in millimetres, say
   s.robots.push_back(s.robots[0]);
@@ -389,36 +367,6 @@ TEST(Preflight, AFormationThatFollowsItsChoicesTooSlowlyIsWarnedOf) {
   EXPECT_THAT(warnings[0], HasSubstr("acceleration_bound = 1 m/s^2: a robot takes 3 s to stop"));
   bounded.formation->controller_options.acceleration_bound = 10.0;
   EXPECT_TRUE(warnings_before(bounded).empty());
-}
-
-/// Doors as narrow as the robot, or narrower by less than any grid would see, at odd angles and far from the origin.
-TEST(OpenWay, LeadsThroughNoDoorNarrowerThanTheRobot) {
-  test::SeededRandom random(test::seed_of_run(18));
-  int passed = 0;
-  for (int k = 0; k < 200; ++k) {
-    const Vec2 middle = random.in_box(k % 2 == 0 ? 1.0 : 1e4), through = random.direction();
-    const double wider = std::pow(10.0, random.uniform(-12.0, 0.3)) * (k % 3 == 0 ? 1.0 : -1.0);  // m
-    const double half = kRadius + 0.5 * std::max(wider, -1.9 * kRadius);
-    std::vector<SceneObstacle> walls;
-    for (const double side : {-1.0, 1.0})
-      walls.push_back({"wall", geometry::Polyline{{middle + side * half * perp(through),
-                                                   middle + side * (half + 1e3) * perp(through)}}});
-    const Vec2 start = middle - 3.0 * through, goal = middle + 3.0 * through;
-    const bool found = detail::OpenWay(walls).is_found(start, goal, kRadius);
-    EXPECT_FALSE(found && wider < 0.0) << "case " << k << ": a door narrower by " << -wider << " m";
-    passed += found;
-  }
-  EXPECT_GT(passed, 2);
-}
-
-TEST(OpenWay, AnEndInContactOrTooFarAwayHasNone) {
-  const std::vector<SceneObstacle> wall{{"wall", geometry::Polyline{{{0, 0}, {0, 4}}}}};
-  const detail::OpenWay open(wall);
-  EXPECT_TRUE(open.is_found({-3, 2}, {3, 2}, kRadius));
-  EXPECT_FALSE(open.is_found({-0.4, 2}, {3, 2}, kRadius)) << "the start touches";
-  EXPECT_FALSE(open.is_found({-3, 2}, {0.4, 2}, kRadius)) << "the goal touches";
-  EXPECT_FALSE(open.is_found({-3, 2}, {1e12, 2}, kRadius)) << "a lattice of too many places";
-  EXPECT_TRUE(detail::OpenWay({}).is_found({-3, 2}, {3, 2}, kRadius));
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 
 #include "joint_problems.h"
 #include "liveness/distances.h"
-#include "liveness/path_among_others.h"
 #include "liveness/timetable.h"
 
 namespace exactvo::formation::detail {

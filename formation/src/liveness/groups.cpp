@@ -73,7 +73,7 @@ Vec2 velocity_along(const DecisionRules& rules, double max_speed, Vec2 way) {
 }
 
 Groups::Groups(const Scenario& scenario, const DecisionRules& rules, const std::vector<Robot>& robots,
-               const FreeSpace& space, bool plans, int threads, std::function<bool()> is_stopped)
+               const FreeSpace& space, bool plans, std::function<bool()> is_stopped)
     : scenario_(scenario),
       rules_(rules),
       robots_(robots),
@@ -86,8 +86,7 @@ Groups::Groups(const Scenario& scenario, const DecisionRules& rules, const std::
       group_of_(robots.size(), kNone),
       wanted_(robots.size()),
       notes_(robots.size()),
-      tries_(robots, scenario.moving_obstacles),
-      search_(threads) {
+      tries_(robots, scenario.moving_obstacles) {
   for (const SceneObstacle& o : scenario.obstacles)
     for (const Vec2 p : geometry::vertices_of(o.shape)) scene_.add(p);
   for (const Robot& r : robots) {

@@ -66,11 +66,10 @@ class History {
 class Groups {
  public:
   /// `robots`: the scenario's as they are planned for, which may be larger or slower. All of these and `space` must
-  /// outlive the groups. Without `plans` stalls are noted and nothing is done about them. `threads`: that search for
-  /// plans, 0 for one per processor. `is_stopped` is asked while plans are made, which can take seconds: true ends that
-  /// without a plan.
+  /// outlive the groups. Without `plans` stalls are noted and nothing is done about them. `is_stopped` is asked while
+  /// plans are made, which can take seconds: true ends that without a plan.
   Groups(const Scenario& scenario, const DecisionRules& rules, const std::vector<Robot>& robots, const FreeSpace& space,
-         bool plans, int threads, std::function<bool()> is_stopped);
+         bool plans, std::function<bool()> is_stopped);
 
   /// Makes plans where they are due, and what members want. `way_left`: m, of a robot from where it is to its goal.
   void begin_step(double time, std::vector<RobotNow> now, const std::function<double(std::size_t)>& way_left);

@@ -5,7 +5,6 @@
 #include <boost/functional/hash.hpp>
 #include <cmath>
 #include <deque>
-#include <mutex>
 #include <unordered_map>
 #include <utility>
 
@@ -238,23 +237,13 @@ struct Node {
   std::deque<Constraints> open;  ///< to be tried, the least constrained first
 };
 
-bool is_stopped(const JointProblem& problem) {
-  return problem.is_stopped && problem.is_stopped();
-}
-
 }  // namespace
 
 struct JointSearch::Data {
-  Data(JointProblem p, Tasks* tasks) : problem(std::move(p)), distances(problem.goals.size()) {
+  explicit Data(JointProblem p) : problem(std::move(p)), distances(problem.goals.size()) {
     const auto length = [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem.map, a, b); };
-    const auto measure = [&](std::size_t first, std::size_t last, int) {
-      for (std::size_t i = first; i < last && !is_stopped(problem); ++i)
-        distances[i] = distances_to(*problem.map, problem.goals[i], problem.body(i), length);
-    };
-    if (tasks)
-      tasks->for_ranges(distances.size(), 1, measure);
-    else
-      measure(0, distances.size(), 0);
+    for (std::size_t i = 0; i < distances.size() && !problem.asks_to_stop(); ++i)
+      distances[i] = distances_to(*problem.map, problem.goals[i], problem.body(i), length);
   }
   /// Not where it was stopped.
   bool is_whole() const {
@@ -267,7 +256,7 @@ struct JointSearch::Data {
   }
   /// With lanes; some have none where it was stopped. REQUIRES: can_each_alone().
   const std::vector<std::vector<float>>& lanes() {
-    std::call_once(has_lanes, [&] { find_lanes(); });
+    if (in_lanes.empty()) find_lanes();
     return in_lanes;
   }
   void find_lanes() {
@@ -278,7 +267,7 @@ struct JointSearch::Data {
     std::vector<std::vector<PlaceNumber>> ways(distances.size());
     for (int round = 0; round < kRounds; ++round)
       for (std::size_t i = 0; i < distances.size(); ++i) {
-        if (is_stopped(problem)) return;
+        if (problem.asks_to_stop()) return;
         traffic.add(ways[i], -1.0);
         in_lanes[i] = distances_to(*problem.map, problem.goals[i], problem.body(i), cost);
         ways[i] = traffic.way_from(problem.starts[i], in_lanes[i]);
@@ -287,7 +276,6 @@ struct JointSearch::Data {
   }
   JointProblem problem;
   std::vector<std::vector<float>> distances, in_lanes;
-  std::once_flag has_lanes;
 };
 
 namespace {
@@ -372,8 +360,7 @@ void add_constraints(Node& node, const Constraints& so_far, const JointProblem& 
 
 }  // namespace
 
-JointSearch::JointSearch(JointProblem problem, Tasks* tasks)
-    : data_(std::make_unique<Data>(std::move(problem), tasks)) {}
+JointSearch::JointSearch(JointProblem problem) : data_(std::make_unique<Data>(std::move(problem))) {}
 JointSearch::~JointSearch() = default;
 
 JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by) {
@@ -398,8 +385,7 @@ JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget, Gui
       answer.moves = tree.moves_to(number);
       break;
     }
-    const bool is_cancelled = budget.cancelled && *budget.cancelled;
-    if (tree.size() > budget.nodes || generator.calls() > budget.calls || is_cancelled || is_stopped(problem)) {
+    if (tree.size() > budget.nodes || generator.calls() > budget.calls || problem.asks_to_stop()) {
       answer.end = SearchEnd::out_of_budget;
       break;
     }

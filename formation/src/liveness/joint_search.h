@@ -18,14 +18,12 @@
 ///  (3) after the last move each robot is at its goal;
 ///  (4) the same problem and seed give the same answer; budgets are counted, not timed.
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
 
 #include "liveness/roadmap.h"
-#include "tasks.h"
 
 namespace exactvo::formation::detail {
 
@@ -38,6 +36,7 @@ struct JointProblem {
   std::function<bool()> is_stopped = {};  ///< asked now and then: true ends every search out of budget
 
   double body(std::size_t robot) const { return bodies.empty() ? radii[robot] : bodies[robot]; }
+  bool asks_to_stop() const { return is_stopped && is_stopped(); }
 };
 
 struct JointMove {
@@ -48,7 +47,6 @@ struct JointMove {
 struct SearchBudget {
   std::size_t calls = 0;  ///< of the generator for a robot
   std::size_t nodes = 0;
-  const std::atomic<bool>* cancelled = nullptr;  ///< true ends the search out of budget, wherever it is
 };
 
 enum class SearchEnd {
@@ -69,12 +67,11 @@ enum class GuidedBy {
   lanes     ///< a way on which few come the other way
 };
 
-/// One problem, searched as often as wanted: with other seeds, other ways are tried first. Several threads may search
-/// at a time.
+/// One problem, searched as often as wanted: with other seeds, other ways are tried first.
 class JointSearch {
  public:
-  /// Keeps a reference to the map. What guides the searches is computed by `tasks`, without them by this thread.
-  explicit JointSearch(JointProblem problem, Tasks* tasks = nullptr);
+  /// Keeps a reference to the map.
+  explicit JointSearch(JointProblem problem);
   ~JointSearch();
 
   JointAnswer run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by = GuidedBy::lengths);

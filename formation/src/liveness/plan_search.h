@@ -2,20 +2,16 @@
 #pragma once
 
 /// \file
-/// The search for a joint plan (liveness, rule R3): searches with other seeds, one after the other or several at a
-/// time, until a counted budget is spent. It returns the shortest of the plans found.
+/// The search for a joint plan (liveness, rule R3): searches with other seeds, one after the other, until a counted
+/// budget is spent. It returns the shortest of the plans found.
 ///
 /// Restarted with growing limits, since the lengths of such searches are heavy-tailed (Luby, Sinclair and Zuckerman,
 /// "Optimal speedup of Las Vegas algorithms", Information Processing Letters 47, 1993).
-///
-/// The same plan with any number of threads: what is searched ahead counts only if the limits that the searches before
-/// it have left would have given the same.
 
 #include <cstdint>
 #include <vector>
 
 #include "liveness/plan.h"
-#include "tasks.h"
 
 namespace exactvo::formation::detail {
 
@@ -35,25 +31,15 @@ struct PlanFound {
   std::size_t nodes = 0;          ///< of all searches
 };
 
-/// One after the other: each goes on with the seeds where the last ended.
+/// Each search goes on with the seeds where the last ended.
 class PlanSearch {
  public:
-  /// `threads`: 0: as many as there are.
-  explicit PlanSearch(int threads) : tasks_(threads) {}
-
   /// `calls`: of the generator for a robot, at most, until there is a plan. `lanes`: whether every other search is
-  /// guided by lanes. `problem.is_stopped` is asked by this thread only.
-  PlanFound best_plan(JointProblem problem, std::size_t calls, bool lanes);
+  /// guided by lanes.
+  PlanFound best_plan(const JointProblem& problem, std::size_t calls, bool lanes);
 
  private:
-  struct Attempt;
-  /// The next searches, one for each thread. `growth`: of the limit of nodes, from one to the next.
-  std::vector<Attempt> searched(JointSearch& joint, const JointProblem& about, SearchBudget budget, double growth,
-                                bool lanes);
-
-  Tasks tasks_;
   std::uint64_t seed_ = 0;
-  double nodes_ = 0.0;  ///< of the next search
 };
 
 }  // namespace exactvo::formation::detail

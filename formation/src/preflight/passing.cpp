@@ -12,7 +12,6 @@
 
 #include "liveness/roadmap.h"
 #include "liveness/sweeps.h"
-#include "preflight/open_way.h"
 #include "preflight/preflight.h"
 #include "preflight/square_cover.h"
 #include "preflight/strip.h"
@@ -26,10 +25,8 @@ using detail::CoverWalls;
 using detail::GridSquare;
 using detail::kProductRoundedDown;
 using detail::SquareCover;
-using detail::SquareNumbers;
 
-constexpr std::size_t kMostLooks = 200000;  ///< at squares, in all: 0.1 s
-constexpr std::size_t kMostLooksOfCover = 8 * (detail::kMostSquares + 1);
+constexpr std::size_t kMostLooks = 200000;            ///< at squares, in all: 0.1 s
 constexpr std::size_t kMostPairs = 8000000;           ///< that are gone to, in all: half a second
 constexpr std::size_t kMostLooksOfStrips = 20000000;  ///< at walls and squares of strips, in all: 0.2 s
 constexpr double kCoarsestSquare = 0.25;              ///< side of a square, of the smaller radius
@@ -89,17 +86,11 @@ enum class Asked { for_room, for_room_with_gaps };
 
 class Proofs {
  public:
-  /// `spares`: makes no cover of a robot that stands in the open.
-  Proofs(const Scenario& scenario, Asked asked, bool spares)
+  Proofs(const Scenario& scenario, Asked asked)
       : scenario_(scenario),
         asked_(asked),
         walls_(scenario.obstacles),
-        open_(scenario.obstacles),
-        reach_(detail::terrain_of(scenario), 0.0, false),
-        spares_(spares) {}
-
-  /// Whether the covers that were spared could not have used up the looks: without sparing the same is found.
-  bool is_sure() const { return looks_left_ > spared_; }
+        reach_(detail::terrain_of(scenario), 0.0, false) {}
 
   /// Where a robot gets to that proofs are looked for about; else null. Who starts in a wall is pushed out of it:
   /// nothing holds it in its cover. Whose goal is out of reach has no use of passing.
@@ -112,8 +103,7 @@ class Proofs {
 
   bool is_in(const SquareCover& cover, std::size_t robot) const {
     const Vec2 p = scenario_.robots[robot].position;
-    return detail::fits_grid(p, cover.side) &&
-           cover.number.find(detail::square_at(p, cover.side)) != SquareNumbers::kUnknown;
+    return detail::fits_grid(p, cover.side) && cover.has(detail::square_at(p, cover.side));
   }
 
   /// That the two cannot pass, where each of them could reach its goal if the other were not there. REQUIRES: both have
@@ -162,10 +152,7 @@ class Proofs {
   /// Squares cover more than what can be reached: a goal behind a gap just too narrow may lie in them.
   bool is_out_of_reach(std::size_t robot) {
     const auto [known, is_new] = is_out_of_reach_.try_emplace(robot, false);
-    if (is_new)
-      known->second = !open_.is_found(scenario_.robots[robot].position, scenario_.robots[robot].goals[0],
-                                      scenario_.robots[robot].radius) &&
-                      is_proven_out_of_reach(robot);
+    if (is_new) known->second = is_proven_out_of_reach(robot);
     return known->second;
   }
 
@@ -211,16 +198,12 @@ class Proofs {
     for (const SquareCover& c : covers_)
       if (c.radius == r.radius && c.side == side && is_in(c, robot)) return c.is_whole ? &c : nullptr;
     if (looks_left_ == 0) return nullptr;
-    if (spares_ && walls_.leave_open(detail::square_at(r.position, side), side, r.radius)) {
-      spared_ += kMostLooksOfCover;
-      return nullptr;
-    }
     covers_.push_back(detail::cover_from(r.position, r.radius, side, walls_, looks_left_));
     return covers_.back().is_whole ? &covers_.back() : nullptr;
   }
 
   Traveller traveller(std::size_t robot, const SquareCover& cover) const {
-    return {&cover, cover.number.find(detail::square_at(scenario_.robots[robot].position, cover.side)),
+    return {&cover, cover.number.at(detail::key_of(detail::square_at(scenario_.robots[robot].position, cover.side))),
             squares_at_goal(robot, cover)};
   }
 
@@ -238,13 +221,10 @@ class Proofs {
   const Scenario& scenario_;
   Asked asked_;
   CoverWalls walls_;
-  detail::OpenWay open_;
   detail::Reachability reach_;                   ///< makes its map where it is asked
   std::map<std::size_t, bool> is_out_of_reach_;  ///< of robots that were asked for
   std::deque<SquareCover> covers_;
   std::size_t looks_left_ = kMostLooks, pairs_left_ = kMostPairs, looks_left_of_strips_ = kMostLooksOfStrips;
-  bool spares_;
-  std::size_t spared_ = 0;  ///< looks, at most
 };
 
 struct PairsFound {
@@ -252,35 +232,27 @@ struct PairsFound {
   bool none_have_little_room = true;  ///< no two robots: then no question finds a pair
 };
 
-/// Nothing where sparing could change what is found.
-std::optional<PairsFound> without_passing(const Scenario& scenario, Asked question, bool spares) {
-  Proofs proofs(scenario, question, spares);
-  const auto is_sure = [&] { return !spares || proofs.is_sure(); };
+PairsFound pairs_without(const Scenario& scenario, Asked question) {
+  if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return {};
+  Proofs proofs(scenario, question);
   struct InLittleRoom {
     std::size_t robot;
     const SquareCover* room;
   };
   std::vector<InLittleRoom> asked;
-  for (std::size_t i = 0; i < scenario.robots.size() && is_sure(); ++i)
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i)
     if (const SquareCover* room = proofs.little_room(i)) asked.push_back({i, room});
   // Finer squares cover less: who is in neither's coarsest ones is in none.
   const auto may_meet = [&](const InLittleRoom& a, const InLittleRoom& b) {
     return proofs.is_in(*a.room, b.robot) || proofs.is_in(*b.room, a.robot);
   };
   std::vector<NoPassing> all;
-  for (std::size_t k = 0; k < asked.size() && is_sure(); ++k)
+  for (std::size_t k = 0; k < asked.size(); ++k)
     for (std::size_t l = k + 1; l < asked.size(); ++l)
       if (may_meet(asked[k], asked[l]))
         if (std::optional<NoPassing> proof = proofs.of(asked[k].robot, asked[l].robot))
           all.push_back(std::move(*proof));
-  if (!is_sure()) return std::nullopt;
-  return PairsFound{std::move(all), asked.size() < 2};
-}
-
-PairsFound pairs_without(const Scenario& scenario, Asked question) {
-  if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return {};
-  if (std::optional<PairsFound> found = without_passing(scenario, question, true)) return std::move(*found);
-  return *without_passing(scenario, question, false);
+  return {std::move(all), asked.size() < 2};
 }
 
 }  // namespace

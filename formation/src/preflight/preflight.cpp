@@ -16,7 +16,6 @@
 #include "exactvo/geometry/told_apart.h"
 #include "motion/leader.h"
 #include "motion/moving_way.h"
-#include "preflight/open_way.h"
 #include "scene/goals.h"
 #include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
@@ -72,16 +71,13 @@ void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which,
   }
 }
 
-/// Returns where the robot gets to; nothing where that is not known. Where the map is there already, asking it is
-/// cheaper than looking for an open way. A goal that leaves the robot no room may be shut off as well: a smaller robot
-/// would not get there either, so the radius is not named.
-std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes, const OpenWay& open,
-                                   const Robot& robot, Vec2 from, const Target& t, Reachability& reach,
-                                   std::vector<std::string>& out) {
+/// Returns where the robot gets to; nothing where that is not known. A goal that leaves the robot no room may be shut
+/// off as well: a smaller robot would not get there either, so the radius is not named.
+std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, Vec2 from,
+                                   const Target& t, Reachability& reach, std::vector<std::string>& out) {
   const Destination to{t.place, t.reach};
   const std::vector<std::size_t> in_the_way = blocking(s, boxes, robot, t);
   if (in_the_way.empty()) {
-    if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
     if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
     if (!reach.is_proven_out_of_reach(robot.radius, from, to)) return std::nullopt;
   } else if (!reach.is_shut_off(robot.radius, from, t.place)) {
@@ -324,13 +320,11 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   std::vector<std::string> out;
   std::vector<Target> last;
   const ObstacleBoxes boxes(scenario.obstacles);
-  const OpenWay open(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
     Vec2 from = scenario.robots[i].position;  // and the last goal that it gets to
     for (const Target& t : targets)
-      if (const std::optional<Vec2> end =
-              warn_of_target(scenario, boxes, open, scenario.robots[i], from, t, reach, out))
+      if (const std::optional<Vec2> end = warn_of_target(scenario, boxes, scenario.robots[i], from, t, reach, out))
         from = *end;
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_goals_on_the_way(scenario, i, targets, out);

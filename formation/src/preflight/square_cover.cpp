@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "exactvo/geometry/distance.h"
-#include "preflight/open_window.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -39,17 +38,6 @@ bool CoverWalls::exclude(GridSquare q, double side, double radius) const {
   return exclude_hull({low, {high.x, low.y}, high, {low.x, high.y}}, radius);
 }
 
-bool CoverWalls::leave_open(GridSquare start, double side, double radius) const {
-  // Beyond it a coordinate of an edge could be off by a thousandth of a square.
-  constexpr double kMost = 0x1p40;
-  if (edges_.largest_with({}) > kMost * side) return false;
-  constexpr int kColumn = OpenWindow::kColumns / 2, kRow = OpenWindow::kRows / 2;
-  OpenWindow window(start.x - kColumn, start.y - kRow, side);
-  edges_.grid().for_each_meeting(window.box().grown(radius + 2.0 * side),
-                                 [&](std::size_t k) { window.take_away(edges_[k], radius); });
-  return window.has_more_than(kMostSquares + 1, kColumn, kRow);
-}
-
 bool CoverWalls::exclude_hull(std::initializer_list<Vec2> corners, double radius) const {
   double largest = 0.0;
   for (const Vec2 p : corners) largest = std::max(largest, edges_.largest_with(p));
@@ -68,22 +56,21 @@ SquareCover cover_from(Vec2 start, double radius, double side, const CoverWalls&
   cover.side = side;
   std::vector<GridSquare>& squares = cover.squares;
   squares.push_back(square_at(start, side));
-  cover.number.add(squares[0], 0);
+  cover.number.emplace(key_of(squares[0]), 0);
   for (std::size_t k = 0; k < squares.size(); ++k)
     for (const GridSquare q : squares_beside(squares[k])) {
-      if (cover.number.find(q) != SquareNumbers::kUnknown) continue;
+      if (cover.has(q)) continue;
       if (squares.size() > kMostSquares || looks == 0) return cover;
       --looks;
       if (walls.exclude(q, side, radius)) continue;
-      cover.number.add(q, static_cast<std::uint32_t>(squares.size()));
+      cover.number.emplace(key_of(q), static_cast<std::uint32_t>(squares.size()));
       squares.push_back(q);
     }
   cover.is_whole = true;
   for (const GridSquare middle : squares) {
     SquaresBeside& beside = cover.beside.emplace_back();
     for (const GridSquare q : squares_beside(middle))
-      if (const std::uint32_t known = cover.number.find(q); known != SquareNumbers::kUnknown)
-        beside.number[beside.count++] = known;
+      if (cover.has(q)) beside.number[beside.count++] = cover.number.at(key_of(q));
   }
   return cover;
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <unordered_map>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
@@ -35,37 +36,6 @@ bool fits_grid(Vec2 p, double side);
 /// One that contains the place. REQUIRES: it fits the grid.
 GridSquare square_at(Vec2 p, double side);
 
-/// The numbers of squares, by place. Most of the time of a cover goes into looking squares up: open addressing, in
-/// memory of one piece that is never more than half full.
-class SquareNumbers {
- public:
-  static constexpr std::uint32_t kUnknown = 0xffffffff;
-
-  SquareNumbers() : slots_(kSlots) {}
-
-  std::uint32_t find(GridSquare q) const { return slot(q).number; }
-  /// REQUIRES: the square is unknown.
-  void add(GridSquare q, std::uint32_t number) { slots_[place(q)] = {q, number}; }
-
- private:
-  struct Slot {
-    GridSquare square{};
-    std::uint32_t number = kUnknown;
-  };
-  static constexpr std::size_t kSlots = 16384;
-  static_assert(kSlots >= 2 * (kMostSquares + 2) && (kSlots & (kSlots - 1)) == 0, "a power of two, half of it empty");
-
-  const Slot& slot(GridSquare q) const { return slots_[place(q)]; }
-  /// Where the square stands, or would.
-  std::size_t place(GridSquare q) const {
-    std::size_t at = static_cast<std::size_t>(key_of(q) * 0x9e3779b97f4a7c15u >> 50);
-    while (slots_[at].number != kUnknown && key_of(slots_[at].square) != key_of(q)) at = (at + 1) % kSlots;
-    return at;
-  }
-
-  std::vector<Slot> slots_;
-};
-
 /// The squares that share a side or a corner with one.
 struct SquaresBeside {
   std::uint32_t count = 0;
@@ -80,8 +50,10 @@ struct SquareCover {
   double radius = 0.0, side = 0.0;
   bool is_whole = false;  ///< else there are more squares than are looked at
   std::vector<GridSquare> squares;
-  std::vector<SquaresBeside> beside;  ///< of each square; of none where the cover is not whole
-  SquareNumbers number;
+  std::vector<SquaresBeside> beside;                        ///< of each square; of none where the cover is not whole
+  std::unordered_map<std::uint64_t, std::uint32_t> number;  ///< of a square, by its key
+
+  bool has(GridSquare q) const { return number.count(key_of(q)) > 0; }
 };
 
 /// The edges of all obstacles.
@@ -96,10 +68,6 @@ class CoverWalls {
 
   /// The same of a single point.
   bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
-
-  /// Whether a disc that starts in the square has more than `kMostSquares` to go to, none of which is excluded; false
-  /// where that takes a closer look.
-  bool leave_open(GridSquare start, double side, double radius) const;
 
  private:
   bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const;

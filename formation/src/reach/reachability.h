@@ -54,7 +54,6 @@ class Reachability {
 
   /// Made at the first question and kept: of many scenes nobody asks for it.
   const geometry::RouteMap& map();
-  bool has_map() const { return map_.has_value(); }
 
   /// Made at the first question and kept. REQUIRES: no more than the largest radius of the robots and `most_extra`.
   const geometry::RoutePlan& plan(double radius);

@@ -65,7 +65,7 @@ class FormationRun {
             rules_, scenario.robots, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
     if (liveness_of(scenario, options) == Liveness::plan) {
-      plans_.emplace(scenario_, rules_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
+      plans_.emplace(scenario_, rules_, offsets_, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
     }
     const HorizonRule rule = switches_.horizon_clamp ? HorizonRule::clamped : HorizonRule::literal;

@@ -54,7 +54,7 @@ class KinematicSteps final : public Stepper {
         recording_(recording) {
     if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
-                      liveness_ == Liveness::plan, options.threads, [this] { return schedule_.is_stopped(now_); });
+                      liveness_ == Liveness::plan, [this] { return schedule_.is_stopped(now_); });
     for (const Robot& robot : scenario_.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);

@@ -50,7 +50,7 @@ double way_left(double distance, double diameter) {
 
 }  // namespace
 
-SlotPlans::SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets, int threads,
+SlotPlans::SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets,
                      std::function<bool()> is_stopped)
     : scenario_(scenario),
       offsets_(std::move(offsets)),
@@ -60,7 +60,7 @@ SlotPlans::SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::
       gap_to_obstacles_(kShareOfGap * gap_),
       larger_(larger_robots(scenario.robots, *scenario.formation, offsets_, gap_)),
       space_(scenario.obstacles),
-      groups_(scenario, rules, larger_, space_, true, threads, std::move(is_stopped)) {}
+      groups_(scenario, rules, larger_, space_, true, std::move(is_stopped)) {}
 
 double SlotPlans::room_of(std::size_t robot) const {
   return scenario_.robots[robot].radius + scenario_.margins.obstacle + 2.0 * kContactSkin;

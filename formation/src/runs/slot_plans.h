@@ -26,7 +26,7 @@ class SlotPlans {
  public:
   /// Scenario and rules must outlive it. `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups.
   /// REQUIRES: a formation.
-  SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets, int threads,
+  SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::vector<Vec2> offsets,
             std::function<bool()> is_stopped);
   SlotPlans(const SlotPlans&) = delete;  // groups refer to members
 
