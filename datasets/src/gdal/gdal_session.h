@@ -40,17 +40,21 @@ class GdalComplaints {
 
 void register_gdal_once();
 
-/// A file that GDAL makes in memory, gone with the object. A GeoPackage records when it was written: as long as it
-/// lives, that is `date` in this thread, so that equal content is equal bytes.
+/// A GeoPackage records when it was written: as long as this lives, that is one and the same moment in this thread, so
+/// that equal content is equal bytes.
+class FixedDate {
+ public:
+  FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"); }
+  ~FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr); }
+  FixedDate(const FixedDate&) = delete;
+  FixedDate& operator=(const FixedDate&) = delete;
+};
+
+/// A file that GDAL makes in memory, gone with the object.
 class MemoryFile {
  public:
-  MemoryFile(const std::string& extension, const char* date) : name_("/vsimem/" + unique_word() + extension) {
-    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", date);
-  }
-  ~MemoryFile() {
-    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr);
-    VSIUnlink(name_.c_str());
-  }
+  explicit MemoryFile(const std::string& extension) : name_("/vsimem/" + unique_word() + extension) {}
+  ~MemoryFile() { VSIUnlink(name_.c_str()); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
@@ -62,6 +66,7 @@ class MemoryFile {
   }
 
  private:
+  FixedDate date_;
   std::string name_;
 };
 

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "batch/formats/bytes.h"
+
 namespace exactvo::datasets::test {
 namespace {
 
@@ -50,6 +52,27 @@ TEST(BatchPart, ItsBytesCutShortAnywhereAreRefused) {
     if (length >= end_of_pictures) continue;
     EXPECT_THROW(batch::pictures_at_start(stream, "part"), DataError) << length;
   }
+}
+
+TEST(BatchPart, AFeaturesRowIsReadBackAsItsGeometryAndItsValues) {
+  batch::Feature feature;
+  feature.layer = 2;  // pieces
+  feature.is_polygon = true;
+  feature.rings = {{{0, 1}, {4, -2}, {3, 7}}, {{1, 1}, {2, 1}, {1, 2}}};
+  feature.fields = {{"key", std::string("in#0")}, {"number", std::int64_t{7}}};
+  std::string bytes;
+  batch::append_row(bytes, feature);
+  std::string_view rest = bytes;
+  const batch::Row row = batch::read_row(rest);
+  EXPECT_TRUE(rest.empty());
+  EXPECT_EQ(row.layer, 2u);
+  ASSERT_EQ(row.values.size(), 2u);
+  EXPECT_EQ(row.values[0], feature.fields[0].value);
+  EXPECT_EQ(row.values[1], feature.fields[1].value);
+  std::string_view geometry = row.geometry;
+  EXPECT_EQ(batch::take_raw<char>(geometry), 1) << "little-endian";
+  for (const std::uint32_t number : {3, 2, 4}) EXPECT_EQ(batch::take_raw<std::uint32_t>(geometry), number);
+  EXPECT_EQ(geometry.size(), (4 + 4) * sizeof(geometry::Vec2) + sizeof(std::uint32_t));
 }
 
 }  // namespace
