@@ -373,7 +373,7 @@ Times Session::times() const {
   times.seconds_of_jobs = 1e-9 * static_cast<double>(made.nanoseconds);
   times.obstacles = made.obstacles;
   times.vertices = made.vertices;
-  times.workers = processes_ * workers_of(run_);
+  times.workers = progress_.ranks * workers_of(run_);
   times.has_rates = run_.shards == 1;
   times.written_at = make_provenance({}, 0).written_at;
   return times;

@@ -4,8 +4,7 @@
 /// \file
 /// One process's part in a batch, an ordered pipeline over one journal (docs/adr/0014-batch-pipeline.md):
 ///
-///     claim    which inputs are this process's: all of them, every n-th (a shard), one after the other as the first
-///              rank says
+///     claim    which inputs are this process's: all of them, every n-th (a shard), a share by size (a rank)
 ///     read     one at a time, in order: input -> chunks of obstacles; what the journal has is not read again
 ///     work     any number at a time: chunk -> part (text, rows), which goes to the journal by a thread that waits for
 ///              the disk
@@ -58,8 +57,11 @@ class Session {
   Counts take_counts();
   /// What another process made for this one.
   void count(const Counts& more);
-  /// Says how many processes do the work instead of this one.
-  void joined_by(int processes) { processes_ = processes; }
+  /// This process does its share of the work, as one of `ranks`.
+  void be_rank(int rank, int ranks) {
+    progress_.rank = rank;
+    progress_.ranks = ranks;
+  }
   /// Puts everything together if all is there and no other process has.
   BatchResult finish();
 
@@ -90,7 +92,6 @@ class Session {
   Allowance waiting_{AsyncWriter::kMostBytesWaiting};  ///< of parts in memory that wait for their turn
   std::optional<std::size_t> last_merged_;             ///< an input
   AsyncWriter disk_;
-  int processes_ = 1;
   BatchProgress progress_;
   std::uint64_t bytes_done_ = 0;  ///< of inputs
   std::chrono::steady_clock::time_point start_;

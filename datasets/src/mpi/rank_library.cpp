@@ -37,16 +37,6 @@ long broadcast(long value) {
   return value;
 }
 
-void send(const long* values, int count, int to, int tag) {
-  MPI_Send(values, count, MPI_LONG, to, tag, MPI_COMM_WORLD);
-}
-
-int receive(long* values, int count, int tag) {
-  MPI_Status status;
-  MPI_Recv(values, count, MPI_LONG, MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &status);
-  return status.MPI_SOURCE;
-}
-
 void least_of_each(long* values, int count) {
   MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_LONG, MPI_MIN, MPI_COMM_WORLD);
 }
@@ -104,8 +94,8 @@ void broadcast_bytes(char* bytes, std::size_t count) {
 }  // namespace
 
 const RankLibrary& rank_library() {
-  static constexpr RankLibrary kLibrary{join,    leave,         rank,  size,   broadcast,      send,
-                                        receive, least_of_each, share, gather, broadcast_bytes};
+  static constexpr RankLibrary kLibrary{join,          leave, rank,   size,           broadcast,
+                                        least_of_each, share, gather, broadcast_bytes};
   return kLibrary;
 }
 

@@ -17,9 +17,6 @@ struct RankLibrary {
   int (*size)();
   /// From the first rank to all.
   long (*broadcast)(long value);
-  void (*send)(const long* values, int count, int to, int tag);
-  /// From any rank; returns which.
-  int (*receive)(long* values, int count, int tag);
   /// Each value becomes the least that any rank gives.
   void (*least_of_each)(long* values, int count);
   /// Rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all have all.
