@@ -58,7 +58,7 @@ TEST_F(Ranks, RanksGoOnWithWhatAProcessLeft) {
 
 TEST_F(Ranks, ADamagedPartEndsAllRanks) {
   ASSERT_EQ(batch("", "left", "--shard 1/2"), 0);
-  write_text(folder_ / "left" / ".parts" / "000000.input", "{");
+  write_text(folder_ / "left" / ".parts" / "000000.input", "{\n");
   EXPECT_EQ(batch("mpirun --oversubscribe -n 3", "left", "--resume"), 2) << log();
   EXPECT_NE(log().find("000000.input"), std::string::npos) << log();
 }

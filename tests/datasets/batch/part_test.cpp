@@ -36,6 +36,10 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   EXPECT_EQ(again.rows, part.rows);
   std::istringstream stream(bytes);
   EXPECT_EQ(batch::pictures_at_start(stream, "part"), part.pictures);
+  std::istringstream whole("facts\n" + bytes), longer("facts\n" + bytes + "x");
+  for (std::istringstream* file : {&whole, &longer}) file->ignore(6);
+  EXPECT_TRUE(batch::holds_whole_part(whole));
+  EXPECT_FALSE(batch::holds_whole_part(longer));
 }
 
 TEST(BatchPart, ItsBytesCutShortAnywhereAreRefused) {
@@ -48,6 +52,8 @@ TEST(BatchPart, ItsBytesCutShortAnywhereAreRefused) {
   const std::size_t end_of_pictures = bytes.find("<svg/>") + part.pictures.size();
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     EXPECT_THROW(batch::view_of_part(bytes.substr(0, length), "part"), DataError) << length;
+    std::istringstream cut(bytes.substr(0, length));
+    EXPECT_FALSE(batch::holds_whole_part(cut)) << length;
     std::istringstream stream(bytes.substr(0, length));
     if (length >= end_of_pictures) continue;
     EXPECT_THROW(batch::pictures_at_start(stream, "part"), DataError) << length;

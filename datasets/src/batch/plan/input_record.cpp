@@ -55,10 +55,12 @@ class RecordFile {
       : path_(journal.input_facts(input)), file_(path_, std::ios::binary) {
     if (!file_) throw cannot_read(path_, errno);
     std::getline(file_, line_);
+    is_whole_line_ = !file_.eof();
   }
 
   const fs::path& path() const { return path_; }
   const std::string& line() const { return line_; }
+  bool is_whole_line() const { return is_whole_line_; }
   /// What follows the line.
   std::istream& rest() { return file_; }
   bool has_part() { return file_.peek() != std::istream::traits_type::eof(); }
@@ -67,6 +69,7 @@ class RecordFile {
   fs::path path_;
   std::ifstream file_;
   std::string line_;
+  bool is_whole_line_ = false;
 };
 
 }  // namespace
@@ -124,6 +127,11 @@ InputFacts read_facts(const Journal& journal, std::size_t input) {
   return parse_facts(record.line(), record.path().string());
 }
 
+bool is_part_there(const Journal& journal, std::size_t input, std::size_t chunk) {
+  std::ifstream file(journal.part(input, chunk), std::ios::binary);
+  return file && holds_whole_part(file);
+}
+
 std::string read_part_bytes(const Journal& journal, std::size_t input, std::size_t chunk) {
   const fs::path path = journal.part(input, chunk);
   if (journal.is_there(path)) return read_text_file(path);
@@ -145,10 +153,11 @@ std::string read_pictures(const Journal& journal, std::size_t input) {
 bool is_through(const Journal& journal, std::size_t input) {
   if (!journal.is_there(journal.input_facts(input))) return false;
   RecordFile record(journal, input);
-  if (record.has_part()) return true;
+  if (!record.is_whole_line()) return false;
+  if (record.has_part()) return holds_whole_part(record.rest());
   const InputFacts facts = parse_facts(record.line(), record.path().string());
   for (std::size_t chunk = 0; chunk < facts.chunks; ++chunk) {
-    if (!journal.is_there(journal.part(input, chunk))) return false;
+    if (!is_part_there(journal, input, chunk)) return false;
   }
   return true;
 }

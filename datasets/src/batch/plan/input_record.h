@@ -45,12 +45,14 @@ InputFacts parse_facts(std::string_view json, const std::string& file);
 
 /// The facts alone; what follows them is not read.
 InputFacts read_facts(const Journal& journal, std::size_t input);
+/// Whether a chunk's part stands in a file of its own, whole.
+bool is_part_there(const Journal& journal, std::size_t input, std::size_t chunk);
 /// A chunk's part, wherever it stands.
 std::string read_part_bytes(const Journal& journal, std::size_t input, std::size_t chunk);
 /// The pictures of an input that has chunks; the rest of its first part is not read.
 std::string read_pictures(const Journal& journal, std::size_t input);
 
-/// Whether all of the input's parts and its facts are there.
+/// Whether all of the input's parts and its facts are there, whole.
 bool is_through(const Journal& journal, std::size_t input);
 
 }  // namespace exactvo::datasets::batch
