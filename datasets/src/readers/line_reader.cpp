@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "readers/line_reader.h"
 
-#include <charconv>
+#include <algorithm>
 
 #include "files/text_file.h"
 
@@ -9,15 +9,10 @@ namespace exactvo::datasets {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
-
-template <class T>
-bool parsed_whole(std::string_view field, T& value) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), value);
-  return result.ec == std::errc() && result.ptr == field.data() + field.size();
-}
-
 }  // namespace
+
+LineReader::LineReader(std::string text, const std::string& file)
+    : text_(std::move(text)), rest_(without_mark(text_)), file_(file) {}
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
@@ -37,13 +32,13 @@ bool LineReader::next_filled() {
 
 double LineReader::to_number(std::string_view field) const {
   double value = 0.0;
-  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
+  if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
   return value;
 }
 
 std::int64_t LineReader::to_integer(std::string_view field) const {
   std::int64_t value = 0;
-  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
+  if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
   return value;
 }
 
@@ -51,24 +46,37 @@ void LineReader::refuse(DataCode code, const std::string& found, const std::stri
   throw DataError(code, file_, place(), found, expected);
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = end;
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
+}
+
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
+  if (separator == ' ') {
+    for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+      fields.push_back(line.substr(at, end - at));
+      at = end;
+    }
+    return;
   }
-  return words;
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  return fields_of(line, ' ');
 }
 
 std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
+  split(line, separator, fields);
+  return fields;
 }
 
 std::optional<std::vector<std::string>> csv_fields_of(std::string_view line) {

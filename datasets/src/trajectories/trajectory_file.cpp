@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "files/system_error.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
+#include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
 
 namespace exactvo::datasets {
@@ -158,11 +158,8 @@ void TrajectorySink::refuse(DataCode code, std::uint64_t line, const std::string
 }
 
 double TrajectorySink::number(std::string_view field, const char* what, std::uint64_t line) const {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
   double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size())
-    refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
+  if (!parse_whole(field, value)) refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
   if (!std::isfinite(value))
     refuse(DataCode::not_finite, line, excerpt(field, 0), std::string("a finite number as ") + what);
   return value;
