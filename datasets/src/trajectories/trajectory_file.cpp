@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/trajectory_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/require.h"
-#include "files/system_error.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
 #include "readers/line_reader.h"
@@ -23,36 +19,6 @@ namespace exactvo::datasets {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
-
-/// What came through a pipe, in a file that goes with the object: a long one must not lie in memory.
-class SpooledInput {
- public:
-  explicit SpooledInput(const std::string& input) {
-    std::string path = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
-    const int descriptor = ::mkstemp(path.data());
-    if (descriptor < 0) throw cannot_write(path, errno);
-    ::close(descriptor);
-    path_ = path;
-    try {
-      copy_input(input, path_);
-    } catch (...) {
-      remove();
-      throw;
-    }
-  }
-  ~SpooledInput() { remove(); }
-  SpooledInput(const SpooledInput&) = delete;
-  SpooledInput& operator=(const SpooledInput&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  void remove() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  std::filesystem::path path_;
-};
 
 const TrajectoryFormat& format_named(const std::string& name, const std::string& file) {
   for (const TrajectoryFormat& format : trajectory_readers())
@@ -201,7 +167,7 @@ std::vector<std::string> trajectory_files_in(const std::filesystem::path& folder
 
 struct TrajectoryReader::State {
   TrajectoryOptions options;
-  std::optional<SpooledInput> spooled;
+  std::optional<CopyOfInput> spooled;        ///< a long one must not lie in memory
   std::vector<std::filesystem::path> paths;  ///< none: the columns
   TrajectoryColumns columns;
   const TrajectoryFormat* format = nullptr;
