@@ -40,14 +40,21 @@ class GdalComplaints {
 
 void register_gdal_once();
 
-/// A GeoPackage records when it was written: as long as this lives, that is one and the same moment in this thread, so
-/// that equal content is equal bytes.
-class FixedDate {
+/// An option of GDAL's, in this thread, as long as it lives.
+class ConfigOption {
  public:
-  FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"); }
-  ~FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr); }
-  FixedDate(const FixedDate&) = delete;
-  FixedDate& operator=(const FixedDate&) = delete;
+  ConfigOption(const char* name, const char* value) : name_(name) { CPLSetThreadLocalConfigOption(name, value); }
+  ~ConfigOption() { CPLSetThreadLocalConfigOption(name_, nullptr); }
+  ConfigOption(const ConfigOption&) = delete;
+  ConfigOption& operator=(const ConfigOption&) = delete;
+
+ private:
+  const char* name_;
+};
+
+/// A GeoPackage records when it was written: that is one and the same moment, so that equal content is equal bytes.
+struct FixedDate : ConfigOption {
+  FixedDate() : ConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z") {}
 };
 
 /// A file that GDAL makes in memory, gone with the object.

@@ -9,6 +9,9 @@
 #include <string>
 
 #include "batch/formats/bytes.h"
+#include "batch/formats/geopackage.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
 namespace {
@@ -79,6 +82,33 @@ TEST(BatchPart, AFeaturesRowIsReadBackAsItsGeometryAndItsValues) {
   EXPECT_EQ(batch::take_raw<char>(geometry), 1) << "little-endian";
   for (const std::uint32_t number : {3, 2, 4}) EXPECT_EQ(batch::take_raw<std::uint32_t>(geometry), number);
   EXPECT_EQ(geometry.size(), (4 + 4) * sizeof(geometry::Vec2) + sizeof(std::uint32_t));
+}
+
+class BatchPackage : public TemporaryFolder {};
+
+// From some number of features on GDAL builds spatial indices in another way.
+TEST_F(BatchPackage, ManyFeaturesAreAllThere) {
+  if (!built_with_gdal()) GTEST_SKIP() << "a build without GDAL";
+  constexpr std::size_t kFeatures = 250'000;
+  const auto package = batch::make_geopackage(folder_ / "many.gpkg", "{}");
+  batch::Feature feature;
+  feature.layer = 3;  // hulls
+  feature.is_polygon = true;
+  feature.fields = {{"key", std::string("in#0")}, {"area", 0.5}};
+  std::string rows;
+  for (std::size_t k = 0; k < kFeatures; ++k) {
+    const auto x = static_cast<double>(k);
+    feature.rings = {{{x, 0}, {x + 1, 0}, {x, 1}}};
+    append_row(rows, feature);
+  }
+  package->add(rows);
+  package->finish();
+  std::size_t count = 0;
+  ObstacleStream stream;
+  stream.obstacle = [&](formation::SceneObstacle, bool) { ++count; };
+  stream.rejected = [](const DataError& error) { throw error; };
+  read_obstacles(folder_ / "many.gpkg", {}, stream);
+  EXPECT_EQ(count, kFeatures);
 }
 
 }  // namespace

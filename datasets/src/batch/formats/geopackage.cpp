@@ -33,8 +33,6 @@ class WrittenGeoPackage final : public GeoPackage {
  public:
   WrittenGeoPackage(std::filesystem::path path, const std::string& provenance) : path_(std::move(path)) {
     register_gdal_once();
-    // GDAL's own files ask for no locks, which network mounts may not have: this process alone writes it.
-    CPLSetThreadLocalConfigOption("SQLITE_USE_OGR_VFS", "YES");
     call([&] {
       GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
       if (driver != nullptr) data_.reset(driver->Create(path_.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
@@ -45,7 +43,6 @@ class WrittenGeoPackage final : public GeoPackage {
       for (const Layer& layer : layers()) worked = worked && create_layer(layer);
       return worked && data_->StartTransaction() == OGRERR_NONE;
     });
-    CPLSetThreadLocalConfigOption("SQLITE_USE_OGR_VFS", nullptr);
   }
 
   void add(std::string_view rows) override {
@@ -68,6 +65,9 @@ class WrittenGeoPackage final : public GeoPackage {
  private:
   template <class Action>
   void call(const Action& action) {
+    // GDAL's own files ask for no locks, which network mounts may not have: this process alone writes it. Its thread
+    // for spatial indices cannot work on them.
+    const ConfigOption files("SQLITE_USE_OGR_VFS", "YES"), threads("OGR_GPKG_ALLOW_THREADED_RTREE", "NO");
     const FixedDate date;
     GdalComplaints complaints;
     const bool worked = action();
