@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 
 namespace exactvo::datasets {
@@ -44,6 +45,36 @@ std::int64_t LineReader::to_integer(std::string_view field) const {
 
 void LineReader::refuse(DataCode code, const std::string& found, const std::string& expected) const {
   throw DataError(code, file_, place(), found, expected);
+}
+
+std::vector<std::string> CsvTable::fields_of_line() const {
+  std::optional<std::vector<std::string>> fields = csv_fields_of(line());
+  if (!fields)
+    refuse(DataCode::format_syntax, "a quotation mark that is not closed where its field ends",
+           "fields as CSV quotes them: \"a, \"\"b\"\"\"");
+  return std::move(*fields);
+}
+
+void CsvTable::read_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected) {
+  if (!next_filled()) refuse(DataCode::format_syntax, "an empty file", expected);
+  const std::vector<std::string> names = fields_of_line();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (std::find(known.begin(), known.end(), names[k]) == known.end())
+      refuse(DataCode::key_unknown, "an unknown column \"" + names[k] + "\"", expected);
+    if (!columns_.emplace(names[k], k).second)
+      refuse(DataCode::json_duplicate_key, "column \"" + names[k] + "\" a second time", "each column once");
+  }
+  for (std::size_t k = 0; k < required; ++k)
+    if (!has(known[k])) refuse(DataCode::key_missing, "no column \"" + known[k] + "\"", expected);
+}
+
+bool CsvTable::next_row() {
+  if (!next_filled()) return false;
+  fields_ = fields_of_line();
+  if (fields_.size() != columns_.size())
+    refuse(DataCode::wrong_count, geometry::counted(fields_.size(), "field"),
+           std::to_string(columns_.size()) + ", as many as the header has");
+  return true;
 }
 
 std::string_view without_mark(std::string_view text) {

@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,6 +44,27 @@ class LineReader {
   const std::string& file_;
   std::string_view line_;
   std::size_t number_ = 0;
+};
+
+/// CSV with a header that names its columns.
+class CsvTable : public LineReader {
+ public:
+  using LineReader::LineReader;
+  /// Reads the header. `known`: the columns that there may be; the first `required` of them there must be. Refusals say
+  /// that `expected` was.
+  void read_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected);
+  /// To the next row that holds more than blanks; false at the end.
+  bool next_row();
+
+  bool has(const std::string& column) const { return columns_.count(column) > 0; }
+  /// REQUIRES: such a column, and a row.
+  const std::string& field(const std::string& column) const { return fields_[columns_.at(column)]; }
+
+ private:
+  std::vector<std::string> fields_of_line() const;
+
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::string> fields_;
 };
 
 /// Whether the whole field is a number; it may have a plus sign.

@@ -29,8 +29,6 @@ struct Input {
   InputHashes hashes;
   std::uint64_t size = 0;
 };
-template <>
-inline constexpr bool kOnOneLine<Input> = true;
 /// Its name and hashes.
 template <class Codec>
 void members(Codec& json, For<Codec, Input>& input) {
@@ -56,3 +54,6 @@ Inputs list_inputs(const std::vector<std::filesystem::path>& paths, const std::f
 InputHashes hashes_of_input(const std::filesystem::path& path, const std::string& format = {});
 
 }  // namespace exactvo::datasets::batch
+
+template <>
+inline constexpr bool exactvo::datasets::kOnOneLine<exactvo::datasets::batch::Input> = true;
