@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A batch over MPI ranks: each processes its share of the inputs, as shards do, and the first merges the parts.
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <optional>
@@ -85,13 +84,6 @@ void collect_counts(Ranks& ranks, Session& session) {
 }
 
 }  // namespace
-
-bool under_mpi() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE", "SLURM_MPI_TYPE"}) {
-    if (std::getenv(name) != nullptr) return true;
-  }
-  return false;
-}
 
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch) {
