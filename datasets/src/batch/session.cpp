@@ -330,18 +330,15 @@ BatchSummary Session::publish() {
   last->commit();
   journal_.publish("summary.json", is_output);
   summary.seconds = taken.seconds;
-  summary.obstacles_now = taken.obstacles;
-  summary.vertices_now = taken.vertices;
+  summary.obstacles_now = taken.made.obstacles;
+  summary.vertices_now = taken.made.vertices;
   return summary;
 }
 
 Times Session::times() const {
-  const Counts made = counted();
   Times times;
+  times.made = counted();
   times.seconds = 1e-9 * static_cast<double>(nanoseconds_since(start_));
-  times.seconds_of_jobs = 1e-9 * static_cast<double>(made.nanoseconds);
-  times.obstacles = made.obstacles;
-  times.vertices = made.vertices;
   times.workers = progress_.ranks * workers_of(run_);
   times.has_rates = run_.shards == 1;
   times.written_at = make_provenance({}, 0).written_at;

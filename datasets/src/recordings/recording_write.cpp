@@ -67,6 +67,12 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
   json.end_object();
 }
 
+struct CsvFile {
+  explicit CsvFile(const std::filesystem::path& path) : out(path) {}
+  AtomicFile out;
+  GrowingText text;  ///< of a row, in memory that it leaves to the next
+};
+
 // --- The trajectory as CSV ---
 
 /// Quoted where it must be.
@@ -233,20 +239,18 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
   writer.finish(file);
 }
 
-struct TrajectoryWriter::State {
+struct TrajectoryWriter::State : CsvFile {
   State(const std::filesystem::path& path, const formation::Scenario& scenario)
-      : out(path), has_leader(scenario.formation.has_value()) {
+      : CsvFile(path), has_leader(scenario.formation.has_value()) {
     for (const formation::Robot& robot : scenario.robots) {
       csv_ids.push_back(csv_text(robot.id));
       has_wheels = has_wheels || robot.drive;
     }
   }
 
-  AtomicFile out;
   std::vector<std::string> csv_ids;  ///< of the robots
   bool has_leader;
   bool has_wheels = false;  ///< some robot
-  GrowingText text;         ///< of a row, in memory that it leaves to the next
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
@@ -273,11 +277,8 @@ void TrajectoryWriter::finish(Durability durability) {
   state_->out.commit(durability);
 }
 
-struct LyapunovWriter::State {
-  explicit State(const std::filesystem::path& path) : out(path) {}
-
-  AtomicFile out;
-  GrowingText text;  ///< of a row, in memory that it leaves to the next
+struct LyapunovWriter::State : CsvFile {
+  using CsvFile::CsvFile;
 };
 
 LyapunovWriter::LyapunovWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {

@@ -37,15 +37,11 @@ const TrajectoryFormat& format_for(std::string_view beginning, const std::string
           boost::join(trajectory_formats(), ", "));
 }
 
-bool looks_like_crowd(std::string_view beginning) {
-  return begins_crowd_recording(beginning);
-}
-
 }  // namespace
 
 const std::vector<TrajectoryFormat>& trajectory_readers() {
   static const std::vector<TrajectoryFormat> kReaders{
-      {"crowd-recording", looks_like_crowd, read_crowd_trajectories},
+      {"crowd-recording", begins_crowd_recording, read_crowd_trajectories},
       {"jupedsim-sqlite", looks_like_sqlite, read_jupedsim_sqlite},
       {"recording", looks_like_recording, read_recorded_trajectories},
       {"trajnet", looks_like_trajnet, read_trajnet},

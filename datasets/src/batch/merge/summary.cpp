@@ -72,10 +72,12 @@ std::optional<double> rate(std::uint64_t count, const Times& times) {
 
 void append_times(JsonWriter& json, const Times& times) {
   json.key("times").begin_inline_object().member("written_at", times.written_at);
-  json.member("seconds", times.seconds).member("seconds_of_jobs", times.seconds_of_jobs);
-  json.member("workers", times.workers).member("obstacles", times.obstacles).member("vertices", times.vertices);
-  json.member("obstacles_per_second", rate(times.obstacles, times));
-  json.member("vertices_per_second", rate(times.vertices, times)).end_object();
+  json.member("seconds", times.seconds).member("seconds_of_jobs", 1e-9 * static_cast<double>(times.made.nanoseconds));
+  json.member("workers", times.workers)
+      .member("obstacles", times.made.obstacles)
+      .member("vertices", times.made.vertices);
+  json.member("obstacles_per_second", rate(times.made.obstacles, times));
+  json.member("vertices_per_second", rate(times.made.vertices, times)).end_object();
 }
 
 }  // namespace
