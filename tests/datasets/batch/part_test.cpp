@@ -86,7 +86,7 @@ TEST(BatchPart, AFeaturesRowIsReadBackAsItsGeometryAndItsValues) {
 
 class BatchPackage : public TemporaryFolder {};
 
-// From some number of features on GDAL builds spatial indices in another way.
+// From some number of features on GDAL would build spatial indices in a thread of its own.
 TEST_F(BatchPackage, ManyFeaturesAreAllThere) {
   if (!built_with_gdal()) GTEST_SKIP() << "a build without GDAL";
   constexpr std::size_t kFeatures = 250'000;

@@ -65,9 +65,8 @@ class WrittenGeoPackage final : public GeoPackage {
  private:
   template <class Action>
   void call(const Action& action) {
-    // GDAL's own files ask for no locks, which network mounts may not have: this process alone writes it. Its thread
-    // for spatial indices cannot work on them.
-    const ConfigOption files("SQLITE_USE_OGR_VFS", "YES"), threads("OGR_GPKG_ALLOW_THREADED_RTREE", "NO");
+    // GDAL's own files ask for no locks, which network mounts may not have: this process alone writes it.
+    const ConfigOption files("SQLITE_USE_OGR_VFS", "YES");
     const FixedDate date;
     GdalComplaints complaints;
     const bool worked = action();
@@ -81,7 +80,8 @@ class WrittenGeoPackage final : public GeoPackage {
     OGRSpatialReference metres;  // without one the format takes numbers for degrees
     metres.SetLocalCS("local metres");
     metres.SetLinearUnits("metre", 1.0);
-    OGRLayer* made = data_->CreateLayer(layer.name, &metres, wkbUnknown, nullptr);
+    const char* const options[] = {"SPATIAL_INDEX=NO", nullptr};
+    OGRLayer* made = data_->CreateLayer(layer.name, &metres, wkbUnknown, const_cast<char**>(options));
     bool worked = made != nullptr;
     for (const Field& field : layer.fields) {
       OGRFieldDefn definition(field.name, kTypes[field.value.index()]);
