@@ -37,8 +37,6 @@ class WrittenGeoPackage final : public GeoPackage {
       GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
       if (driver != nullptr) data_.reset(driver->Create(path_.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
       if (data_ == nullptr) return false;
-      data_->ExecuteSQL("PRAGMA journal_mode = OFF", nullptr, nullptr);
-      data_->ExecuteSQL("PRAGMA synchronous = OFF", nullptr, nullptr);
       bool worked = data_->SetMetadataItem("EXACTVO_PROVENANCE", provenance.c_str()) == CE_None;
       for (const Layer& layer : layers()) worked = worked && create_layer(layer);
       return worked && data_->StartTransaction() == OGRERR_NONE;
@@ -67,6 +65,7 @@ class WrittenGeoPackage final : public GeoPackage {
   void call(const Action& action) {
     // GDAL's own files ask for no locks, which network mounts may not have: this process alone writes it.
     const ConfigOption files("SQLITE_USE_OGR_VFS", "YES");
+    const ConfigOption pragmas("OGR_SQLITE_PRAGMA", "journal_mode=OFF,synchronous=OFF");
     const FixedDate date;
     GdalComplaints complaints;
     const bool worked = action();
