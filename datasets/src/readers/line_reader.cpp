@@ -44,7 +44,7 @@ std::int64_t LineReader::to_integer(std::string_view field) const {
 }
 
 void LineReader::refuse(DataCode code, const std::string& found, const std::string& expected) const {
-  throw DataError(code, file_, place(), found, expected);
+  throw DataError(code, file_, number_ == 0 ? "" : place(), found, expected);
 }
 
 std::vector<std::string> CsvTable::fields_of_line() const {
