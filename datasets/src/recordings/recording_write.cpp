@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/recording_file.h"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <utility>
@@ -114,30 +111,18 @@ void add_csv_row(GrowingText& row, const formation::Step& step, const formation:
 
 // --- Lyapunov functions as CSV ---
 
-/// With an exponent below 1e-4 and from 1e16 on only, where other texts have the shorter form.
-void add_plain_number(GrowingText& row, double number) {
-  const double size = std::abs(number);
-  const bool has_exponent = size != 0.0 && (size < 1e-4 || size >= 1e16);
-  const std::string_view shortest = shortest_text(number);
-  if (size != 0.0 && (shortest.find('e') != std::string_view::npos) == has_exponent) return row.add(shortest);
-  std::array<char, 32> text;
-  const auto form = has_exponent ? std::chars_format::scientific : std::chars_format::fixed;
-  const char* end = std::to_chars(text.data(), text.data() + text.size(), number, form).ptr;
-  row.add({text.data(), static_cast<std::size_t>(end - text.data())});
-}
-
 void add_csv_row(GrowingText& row, const formation::LyapunovRow& r) {
   const auto add = [&row](std::initializer_list<double> all) {
     for (const double number : all) {
       row.add(',');
-      add_plain_number(row, number);
+      row.add_number(number);
     }
   };
   const auto add_rates = [&](std::initializer_list<double> all) {
     if (r.has_rates) return add(all);
     for (std::size_t k = 0; k < all.size(); ++k) row.add(',');
   };
-  add_plain_number(row, r.time);
+  row.add_number(r.time);
   add({r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral});
   add_rates(
       {r.paper_rates.kinetic, r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate});
