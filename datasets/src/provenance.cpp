@@ -15,7 +15,7 @@
 #include "files/sha256.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
-#include "json/json_text.h"
+#include "provenance_json.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -85,42 +85,15 @@ Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t 
 
 std::string to_json(const Provenance& provenance) {
   JsonWriter json(JsonWriter::Layout::compact);
-  json.begin_object();
-  json.member("version", provenance.version).member("commit", provenance.commit);
-  json.member("compiler", provenance.compiler).member("build_type", provenance.build_type);
-  json.member("cgal", provenance.cgal).member("gmp", provenance.gmp).member("gdal", provenance.gdal);
-  json.member("seed", provenance.seed);
-  json.member("command_line", provenance.command_line);
-  json.key("inputs").begin_array();
-  for (const InputFile& input : provenance.inputs) {
-    json.begin_object().member("path", input.path).member("sha256", input.sha256).end_object();
-  }
-  json.end_array();
-  if (!provenance.written_at.empty()) json.member("written_at", provenance.written_at);
-  return json.end_object().take();
+  append_value(json, provenance);
+  return json.take();
 }
 
 Provenance parse_provenance(const std::string& json, const std::string& file_name) {
   const Json tree = parse_json(json, file_name);
-  try {
-    Provenance facts;
-    tree.at("version").get_to(facts.version);
-    tree.at("commit").get_to(facts.commit);
-    tree.at("compiler").get_to(facts.compiler);
-    tree.at("build_type").get_to(facts.build_type);
-    tree.at("cgal").get_to(facts.cgal);
-    tree.at("gmp").get_to(facts.gmp);
-    tree.at("gdal").get_to(facts.gdal);
-    tree.at("seed").get_to(facts.seed);
-    tree.at("command_line").get_to(facts.command_line);
-    for (const Json& input : tree.at("inputs")) {
-      facts.inputs.push_back({input.at("path").get<std::string>(), input.at("sha256").get<std::string>()});
-    }
-    facts.written_at = tree.value("written_at", "");
-    return facts;
-  } catch (const nlohmann::detail::exception& error) {
-    throw DataError(DataCode::wrong_type, file_name, "/provenance", error.what(), "provenance as ExactVO writes it");
-  }
+  Provenance facts;
+  read_value(JsonCursor(tree, file_name, ""), facts);
+  return facts;
 }
 
 }  // namespace exactvo::datasets

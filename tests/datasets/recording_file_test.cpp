@@ -397,8 +397,8 @@ TEST_F(RecordingFileTest, LyapunovFunctionsAreATable) {
   const std::string head = text.substr(0, text.find('\n'));
   EXPECT_EQ(std::count(head.begin(), head.end(), ','), 16);
   EXPECT_EQ(text.substr(head.size()),
-            "\n0.05,100000,1000000000000000,1e+16,-0,0.0001,-9.9e-05,0.625,1.25e+20,0,0,0,123456789.125,0,0,0,0\n"
-            "0.05,100000,1000000000000000,1e+16,-0,,,,,,0,0,123456789.125,,,,\n");
+            "\n0.05,1e+05,1e+15,1e+16,-0.0,1e-04,-9.9e-05,0.625,1.25e+20,0,0,0,123456789.125,0,0,0,0\n"
+            "0.05,1e+05,1e+15,1e+16,-0.0,,,,,,0,0,123456789.125,,,,\n");
 }
 
 TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {

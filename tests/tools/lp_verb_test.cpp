@@ -270,8 +270,8 @@ TEST(Lp, ATableIsRefusedWithItsLine) {
   const Workplace here;
   const std::string header = kHeader;
   const std::tuple<std::string, const char*, const char*> cases[] = {
-      {"problem,preferred_x\n", "line 1: found no column disc", "[E_KEY_MISSING]"},
-      {"preferred_x,preferred_x\n", "line 1: found two columns preferred_x", "[E_FORMAT_SYNTAX]"},
+      {"problem,preferred_x\n", "line 1: found no column \"disc\"", "[E_KEY_MISSING]"},
+      {"preferred_x,preferred_x\n", "line 1: found column \"preferred_x\" a second time", "[E_JSON_DUPLICATE_KEY]"},
       {"speed," + header, "line 1: found", "[E_KEY_UNKNOWN]"},
       {header + "a,2,2,0,-1,0\n", "line 2: found 6 fields, expected 8", "[E_COUNT]"},
       {header + "a,2,2,0,x,0,1,\n", "line 2: found", "[E_NUMBER]"},

@@ -192,23 +192,16 @@ void Session::merge_ahead() {
 }
 
 void Session::process(const std::vector<std::size_t>& inputs) {
-  std::exception_ptr failure;
-  try {
-    Coroutine<Piece> pieces([&](const GivePiece& give) {
-      for (const std::size_t input : inputs) read(input, give);
-    });
-    run_in_order(workers_of(run_), [&]() -> std::optional<OrderedTask> {
-      std::optional<Piece> next = pieces.next();
-      if (!next) return std::nullopt;
-      if (next->chunk) next->memory = memory_.take(memory_of(*next->chunk));
-      const auto piece = std::make_shared<Piece>(std::move(*next));
-      return OrderedTask{[this, piece] { work_on(*piece); }, [this, piece] { finish_piece(*piece); }};
-    });
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  disk_.finish();
-  if (failure) std::rethrow_exception(failure);
+  Coroutine<Piece> pieces([&](const GivePiece& give) {
+    for (const std::size_t input : inputs) read(input, give);
+  });
+  run_in_order(workers_of(run_), [&]() -> std::optional<OrderedTask> {
+    std::optional<Piece> next = pieces.next();
+    if (!next) return std::nullopt;
+    if (next->chunk) next->memory = memory_.take(memory_of(*next->chunk));
+    const auto piece = std::make_shared<Piece>(std::move(*next));
+    return OrderedTask{[this, piece] { work_on(*piece); }, [this, piece] { finish_piece(*piece); }};
+  });
 }
 
 /// In the reader's thread. Of an input that another run, or another process, has finished, parts are merged if
@@ -237,26 +230,14 @@ void Session::work_on(Piece& piece) {
   Part part = part_of(*piece.chunk, configuration_);
   piece.chunk.reset();
   Counts counts = part.counts;
-  const auto bytes = std::make_shared<const std::string>(to_bytes(std::move(part)));
+  const std::string bytes = to_bytes(std::move(part));
   counts.nanoseconds = nanoseconds_since(start);
   count(counts);
-  put_away(piece, bytes);
-}
-
-/// To the disk; and in memory until its turn to be merged, where there is room. Where there is none it is on disk when
-/// its turn comes.
-void Session::put_away(Piece& piece, const std::shared_ptr<const std::string>& part) {
-  const std::filesystem::path path =
-      piece.is_whole_input ? journal_.input_facts(piece.input) : journal_.part(piece.input, piece.number);
-  const std::string head = piece.is_whole_input ? to_json(*piece.facts) + "\n" : std::string();
-  const auto write = [this, path, head, part] { journal_.write(path, head.empty() ? *part : head + *part); };
+  if (piece.is_whole_input)
+    journal_.write(journal_.input_facts(piece.input), to_json(*piece.facts) + "\n" + bytes);
+  else
+    journal_.write(journal_.part(piece.input, piece.number), bytes);
   piece.memory.reset();
-  if (is_merging_) {
-    piece.memory = waiting_.try_to_take(part->size());
-    if (!piece.memory) return write();
-    piece.part = part;
-  }
-  disk_.run(write, part->size());
 }
 
 void Session::finish_piece(Piece& piece) {
@@ -266,23 +247,15 @@ void Session::finish_piece(Piece& piece) {
 }
 
 void Session::merge(const Piece& piece) {
-  const std::filesystem::path path = journal_.part(piece.input, piece.number);
-  if (piece.part) {
-    outputs_->add(view_of_part(*piece.part, path));
-  } else {
-    outputs_->add(view_of_part(read_part_bytes(journal_, piece.input, piece.number), path));
-  }
+  const std::string bytes = read_part_bytes(journal_, piece.input, piece.number);
+  outputs_->add(view_of_part(bytes, journal_.part(piece.input, piece.number)));
   last_merged_ = piece.input;
 }
 
-/// Its parts are with the thread that waits for the disk, or there. If they were merged and count for nothing, because
-/// the file is broken further on, what was merged is of no use.
+/// Its parts are there. If they were merged and count for nothing, because the file is broken further on, what was
+/// merged is of no use.
 void Session::finish_input(const Piece& last) {
-  if (!last.is_whole_input) {
-    disk_.run([this, path = journal_.input_facts(last.input),
-               text = to_json(*last.facts) + "\n"] { journal_.write(path, text); },
-              0);
-  }
+  if (!last.is_whole_input) journal_.write(journal_.input_facts(last.input), to_json(*last.facts) + "\n");
   if (last.facts->chunks > 0 || last_merged_ != last.input) return;
   is_merging_ = false;
   outputs_.reset();
@@ -290,12 +263,8 @@ void Session::finish_input(const Piece& last) {
 
 /// Parts of other bytes than the journal's must not be found by a resumption.
 void Session::refuse_changed_input(std::size_t input) {
-  disk_.run(
-      [folder = journal_.part(input, 0).parent_path()] {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder, ignored);
-      },
-      0);
+  std::error_code ignored;
+  std::filesystem::remove_all(journal_.part(input, 0).parent_path(), ignored);
   throw DataError(DataCode::other_run, identity_.inputs[input].name, "", "a file that changed under the batch",
                   "files that stay as they are; another --out, or an empty one");
 }
@@ -361,19 +330,16 @@ BatchSummary Session::publish() {
   last->commit();
   journal_.publish("summary.json", is_output);
   summary.seconds = taken.seconds;
-  summary.obstacles_now = taken.obstacles;
-  summary.vertices_now = taken.vertices;
+  summary.obstacles_now = taken.made.obstacles;
+  summary.vertices_now = taken.made.vertices;
   return summary;
 }
 
 Times Session::times() const {
-  const Counts made = counted();
   Times times;
+  times.made = counted();
   times.seconds = 1e-9 * static_cast<double>(nanoseconds_since(start_));
-  times.seconds_of_jobs = 1e-9 * static_cast<double>(made.nanoseconds);
-  times.obstacles = made.obstacles;
-  times.vertices = made.vertices;
-  times.workers = processes_ * workers_of(run_);
+  times.workers = progress_.ranks * workers_of(run_);
   times.has_rates = run_.shards == 1;
   times.written_at = make_provenance({}, 0).written_at;
   return times;

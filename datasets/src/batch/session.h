@@ -4,11 +4,9 @@
 /// \file
 /// One process's part in a batch, an ordered pipeline over one journal (docs/adr/0014-batch-pipeline.md):
 ///
-///     claim    which inputs are this process's: all of them, every n-th (a shard), one after the other as the first
-///              rank says
+///     claim    which inputs are this process's: all of them, every n-th (a shard), a share by size (a rank)
 ///     read     one at a time, in order: input -> chunks of obstacles; what the journal has is not read again
-///     work     any number at a time: chunk -> part (text, rows), which goes to the journal by a thread that waits for
-///              the disk
+///     work     any number at a time: chunk -> part (text, rows), which goes to the journal
 ///     finish   one at a time, in order: part -> outputs, if this process merges; the end of an input -> its facts
 ///
 /// At the end one process puts the outputs in their place. Whatever a kill leaves, the journal says what is missing.
@@ -24,7 +22,6 @@
 #include "batch/merge/outputs.h"
 #include "batch/merge/summary.h"
 #include "batch/plan/journal.h"
-#include "batch/work/async_writer.h"
 #include "batch/work/process.h"
 #include "exactvo/datasets/batch.h"
 
@@ -58,8 +55,11 @@ class Session {
   Counts take_counts();
   /// What another process made for this one.
   void count(const Counts& more);
-  /// Says how many processes do the work instead of this one.
-  void joined_by(int processes) { processes_ = processes; }
+  /// This process does its share of the work, as one of `ranks`.
+  void be_rank(int rank, int ranks) {
+    progress_.rank = rank;
+    progress_.ranks = ranks;
+  }
   /// Puts everything together if all is there and no other process has.
   BatchResult finish();
 
@@ -67,7 +67,6 @@ class Session {
   Counts counted() const;
   void read(std::size_t input, const GivePiece& give);
   void work_on(Piece& piece);
-  void put_away(Piece& piece, const std::shared_ptr<const std::string>& part);
   void finish_piece(Piece& piece);
   void merge(const Piece& piece);
   void finish_input(const Piece& last);
@@ -85,12 +84,9 @@ class Session {
   Allowance memory_;  ///< of chunks that are processed
   mutable std::mutex counting_;
   Counts counts_;
-  std::unique_ptr<Outputs> outputs_;                   ///< where parts are merged while others are made
-  std::atomic<bool> is_merging_{false};                ///< the same, for any thread
-  Allowance waiting_{AsyncWriter::kMostBytesWaiting};  ///< of parts in memory that wait for their turn
-  std::optional<std::size_t> last_merged_;             ///< an input
-  AsyncWriter disk_;
-  int processes_ = 1;
+  std::unique_ptr<Outputs> outputs_;        ///< where parts are merged while others are made
+  std::atomic<bool> is_merging_{false};     ///< the same, for any thread
+  std::optional<std::size_t> last_merged_;  ///< an input
   BatchProgress progress_;
   std::uint64_t bytes_done_ = 0;  ///< of inputs
   std::chrono::steady_clock::time_point start_;

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <fstream>
 #include <utility>
 
 #include "exactvo/datasets/part_folder.h"
@@ -190,8 +192,17 @@ void PartFolder::write(const std::filesystem::path& file, std::string_view bytes
     throw DataError(DataCode::file_unwritable, file.string(), "", "the folder removed during the run",
                     "a folder that stays where it is");
   }
-  // A rename that a power cut takes back is a part that is made again; no need to sync the folder each time.
-  write_file_atomically(file, bytes, Durability::content);
+  make_directories(file.parent_path());
+  std::filesystem::path temporary = file;
+  temporary += ".part." + unique_word();
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  const bool is_there = static_cast<bool>(out) && ::rename(temporary.c_str(), file.c_str()) == 0;
+  const int failed = errno;
+  if (is_there) return;
+  ::unlink(temporary.c_str());
+  throw cannot_write(file, failed);
 }
 
 void PartFolder::write_sealed(const std::filesystem::path& file, std::string_view key, std::string_view text) const {

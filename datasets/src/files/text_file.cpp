@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <fstream>
 
 #include "files/system_error.h"
@@ -154,15 +155,27 @@ std::string read_beginning(const std::filesystem::path& path, std::size_t count)
   return text;
 }
 
-void copy_input(const std::string& input, const std::filesystem::path& to) {
+CopyOfInput::CopyOfInput(Empty /*none*/, const std::filesystem::path& name) {
+  std::string folder = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) throw cannot_write(folder, errno);
+  path_ = folder / name.filename();
+}
+
+// The folder is there from the first constructor on, and goes with what this one throws.
+CopyOfInput::CopyOfInput(const std::string& input) : CopyOfInput(Empty(), input) {
   Input in = input == "-" ? Input() : Input(input);
-  std::ofstream out(to, std::ios::binary);
+  std::ofstream out(path_, std::ios::binary);
   for (std::string block; in.append(block, kBlock); block.clear()) {
     call_wait_hook();
     if (!out.write(block.data(), static_cast<std::streamsize>(block.size()))) break;
   }
   out.close();
-  if (!out) throw cannot_write(to, errno);
+  if (!out) throw cannot_write(path_, errno);
+}
+
+CopyOfInput::~CopyOfInput() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_.parent_path(), ignored);
 }
 
 std::string read_text_file(const std::filesystem::path& path) {

@@ -19,8 +19,23 @@ bool is_pipe(const std::filesystem::path& path);
 /// The first `count` bytes of a regular file, or all. Refuses a pipe as well: what was read of it would be lost.
 std::string read_beginning(const std::filesystem::path& path, std::size_t count);
 
-/// Copies a regular file, a pipe or standard input ("-") as it comes, in memory of one block. Throws DataError.
-void copy_input(const std::string& input, const std::filesystem::path& to);
+/// What comes through a pipe or standard input ("-"), as a file of the same name, gone with the object.
+class CopyOfInput {
+ public:
+  /// In memory of one block. Throws DataError.
+  explicit CopyOfInput(const std::string& input);
+  ~CopyOfInput();
+  CopyOfInput(const CopyOfInput&) = delete;
+  CopyOfInput& operator=(const CopyOfInput&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  struct Empty {};
+  CopyOfInput(Empty, const std::filesystem::path& name);
+
+  std::filesystem::path path_;  ///< in a folder of its own
+};
 
 /// "line 3, column 7", both from 1; columns count bytes.
 std::string line_and_column(std::string_view text, std::size_t byte);

@@ -40,17 +40,28 @@ class GdalComplaints {
 
 void register_gdal_once();
 
-/// A file that GDAL makes in memory, gone with the object. A GeoPackage records when it was written: as long as it
-/// lives, that is `date` in this thread, so that equal content is equal bytes.
+/// An option of GDAL's, in this thread, as long as it lives.
+class ConfigOption {
+ public:
+  ConfigOption(const char* name, const char* value) : name_(name) { CPLSetThreadLocalConfigOption(name, value); }
+  ~ConfigOption() { CPLSetThreadLocalConfigOption(name_, nullptr); }
+  ConfigOption(const ConfigOption&) = delete;
+  ConfigOption& operator=(const ConfigOption&) = delete;
+
+ private:
+  const char* name_;
+};
+
+/// A GeoPackage records when it was written: that is one and the same moment, so that equal content is equal bytes.
+struct FixedDate : ConfigOption {
+  FixedDate() : ConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z") {}
+};
+
+/// A file that GDAL makes in memory, gone with the object.
 class MemoryFile {
  public:
-  MemoryFile(const std::string& extension, const char* date) : name_("/vsimem/" + unique_word() + extension) {
-    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", date);
-  }
-  ~MemoryFile() {
-    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr);
-    VSIUnlink(name_.c_str());
-  }
+  explicit MemoryFile(const std::string& extension) : name_("/vsimem/" + unique_word() + extension) {}
+  ~MemoryFile() { VSIUnlink(name_.c_str()); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
@@ -62,6 +73,7 @@ class MemoryFile {
   }
 
  private:
+  FixedDate date_;
   std::string name_;
 };
 

@@ -42,7 +42,7 @@ class LayerWriter {
   }
 
   Written write(const Obstacles& obstacles) {
-    const MemoryFile memory(driver_ == "GPKG" ? ".gpkg" : ".fgb", "2000-01-01T00:00:00.000Z");
+    const MemoryFile memory(driver_ == "GPKG" ? ".gpkg" : ".fgb");
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_.c_str());
     refuse_unless(driver != nullptr);
     std::unique_ptr<GDALDataset> data(driver->Create(memory.name(), 0, 0, 0, GDT_Unknown, nullptr));

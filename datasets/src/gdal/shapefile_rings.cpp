@@ -17,8 +17,6 @@ namespace {
 using geometry::Ring;
 using geometry::Vec2;
 
-constexpr const char* kOption = "OGR_ORGANIZE_POLYGONS";
-
 struct ShapeRing {
   double doubled_area = 0.0;  ///< with its sign, about the first point
   geometry::Box box;
@@ -97,13 +95,6 @@ bool has_only_outer_rings(const OGRMultiPolygon& parts) {
 }
 
 }  // namespace
-
-RingsAsTheyStand::RingsAsTheyStand() {
-  CPLSetThreadLocalConfigOption(kOption, "SKIP");
-}
-RingsAsTheyStand::~RingsAsTheyStand() {
-  CPLSetThreadLocalConfigOption(kOption, nullptr);
-}
 
 bool is_of_rings_as_they_stand(const std::string& warning) {
   return warning.find("cannot be translated to Simple Geometry") != std::string::npos;

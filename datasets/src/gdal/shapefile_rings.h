@@ -12,16 +12,13 @@
 #include <vector>
 
 #include "exactvo/geometry/shapes.h"
+#include "gdal/gdal_session.h"
 
 namespace exactvo::datasets {
 
 /// While it lives, GDAL gives every ring of a Shapefile of polygons as a polygon of its own, in this thread.
-class RingsAsTheyStand {
- public:
-  RingsAsTheyStand();
-  ~RingsAsTheyStand();
-  RingsAsTheyStand(const RingsAsTheyStand&) = delete;
-  RingsAsTheyStand& operator=(const RingsAsTheyStand&) = delete;
+struct RingsAsTheyStand : ConfigOption {
+  RingsAsTheyStand() : ConfigOption("OGR_ORGANIZE_POLYGONS", "SKIP") {}
 };
 
 /// Whether GDAL warns that it did not group the rings of a record, as it was asked.

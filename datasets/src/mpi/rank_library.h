@@ -2,32 +2,18 @@
 #pragma once
 
 /// \file
-/// What is done with MPI, as one table of functions on whole numbers and bytes: a program either links them or loads
-/// them when it runs in ranks (modules/loader.cpp). A failure in one rank ends all of them, as a scheduler expects.
+/// What is done with MPI, as a table of functions: a program either links it or loads it when it runs in ranks
+/// (modules/loader.cpp). A failure in one rank ends all of them, as a scheduler expects.
 
-#include <cstddef>
+#include <memory>
+
+#include "exactvo/formation/ranks.h"
 
 namespace exactvo::datasets {
 
 struct RankLibrary {
-  /// Joins the other ranks; `leave` before the process ends.
-  void (*join)();
-  void (*leave)();
-  int (*rank)();
-  int (*size)();
-  /// From the first rank to all.
-  long (*broadcast)(long value);
-  void (*send)(const long* values, int count, int to, int tag);
-  /// From any rank; returns which.
-  int (*receive)(long* values, int count, int tag);
-  /// Each value becomes the least that any rank gives.
-  void (*least_of_each)(long* values, int count);
-  /// Rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all have all.
-  void (*share)(char* bytes, const std::size_t* ends);
-  /// The same, but only the first rank has all. The others give their own bytes alone, and it puts them together.
-  void (*gather)(char* bytes, const std::size_t* ends);
-  /// From the first rank to all.
-  void (*broadcast_bytes)(char* bytes, std::size_t count);
+  /// Joins the ranks that mpirun has started, until the object goes; once in a process.
+  std::unique_ptr<formation::Ranks> (*join)();
 };
 
 /// Throws DataError (E_FORMAT_UNAVAILABLE) where a program loads it and cannot.

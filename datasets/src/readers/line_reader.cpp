@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "readers/line_reader.h"
 
-#include <charconv>
+#include <algorithm>
 
+#include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 
 namespace exactvo::datasets {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
-
-template <class T>
-bool parsed_whole(std::string_view field, T& value) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), value);
-  return result.ec == std::errc() && result.ptr == field.data() + field.size();
-}
-
 }  // namespace
+
+LineReader::LineReader(std::string text, const std::string& file)
+    : text_(std::move(text)), rest_(without_mark(text_)), file_(file) {}
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
@@ -37,38 +33,81 @@ bool LineReader::next_filled() {
 
 double LineReader::to_number(std::string_view field) const {
   double value = 0.0;
-  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
+  if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
   return value;
 }
 
 std::int64_t LineReader::to_integer(std::string_view field) const {
   std::int64_t value = 0;
-  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
+  if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
   return value;
 }
 
 void LineReader::refuse(DataCode code, const std::string& found, const std::string& expected) const {
-  throw DataError(code, file_, place(), found, expected);
+  throw DataError(code, file_, number_ == 0 ? "" : place(), found, expected);
+}
+
+std::vector<std::string> CsvTable::fields_of_line() const {
+  std::optional<std::vector<std::string>> fields = csv_fields_of(line());
+  if (!fields)
+    refuse(DataCode::format_syntax, "a quotation mark that is not closed where its field ends",
+           "fields as CSV quotes them: \"a, \"\"b\"\"\"");
+  return std::move(*fields);
+}
+
+void CsvTable::read_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected) {
+  if (!next_filled()) refuse(DataCode::format_syntax, "an empty file", expected);
+  const std::vector<std::string> names = fields_of_line();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (std::find(known.begin(), known.end(), names[k]) == known.end())
+      refuse(DataCode::key_unknown, "an unknown column \"" + names[k] + "\"", expected);
+    if (!columns_.emplace(names[k], k).second)
+      refuse(DataCode::json_duplicate_key, "column \"" + names[k] + "\" a second time", "each column once");
+  }
+  for (std::size_t k = 0; k < required; ++k)
+    if (!has(known[k])) refuse(DataCode::key_missing, "no column \"" + known[k] + "\"", expected);
+}
+
+bool CsvTable::next_row() {
+  if (!next_filled()) return false;
+  fields_ = fields_of_line();
+  if (fields_.size() != columns_.size())
+    refuse(DataCode::wrong_count, geometry::counted(fields_.size(), "field"),
+           std::to_string(columns_.size()) + ", as many as the header has");
+  return true;
+}
+
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
+}
+
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+  fields.clear();
+  if (separator == ' ') {
+    for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+      fields.push_back(line.substr(at, end - at));
+      at = end;
+    }
+    return;
+  }
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = end;
-  }
-  return words;
+  return fields_of(line, ' ');
 }
 
 std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
+  split(line, separator, fields);
+  return fields;
 }
 
 std::optional<std::vector<std::string>> csv_fields_of(std::string_view line) {

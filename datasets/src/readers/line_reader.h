@@ -4,7 +4,9 @@
 /// \file
 /// A text a line at a time, and the fields of a line as numbers, with the line's number in every refusal.
 
+#include <charconv>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,11 +19,8 @@ namespace exactvo::datasets {
 
 class LineReader {
  public:
-  /// A byte order mark before the text, as spreadsheets write it, is left out.
-  LineReader(std::string text, const std::string& file) : text_(std::move(text)), rest_(text_), file_(file) {
-    constexpr std::string_view kMark = "\xEF\xBB\xBF";
-    if (rest_.substr(0, kMark.size()) == kMark) rest_.remove_prefix(kMark.size());
-  }
+  /// A byte order mark before the text is left out.
+  LineReader(std::string text, const std::string& file);
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
@@ -47,6 +46,40 @@ class LineReader {
   std::size_t number_ = 0;
 };
 
+/// CSV with a header that names its columns.
+class CsvTable : public LineReader {
+ public:
+  using LineReader::LineReader;
+  /// Reads the header. `known`: the columns that there may be; the first `required` of them there must be. Refusals say
+  /// that `expected` was.
+  void read_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected);
+  /// To the next row that holds more than blanks; false at the end.
+  bool next_row();
+
+  bool has(const std::string& column) const { return columns_.count(column) > 0; }
+  /// REQUIRES: such a column, and a row.
+  const std::string& field(const std::string& column) const { return fields_[columns_.at(column)]; }
+
+ private:
+  std::vector<std::string> fields_of_line() const;
+
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::string> fields_;
+};
+
+/// Whether the whole field is a number; it may have a plus sign.
+template <class T>
+bool parse_whole(std::string_view field, T& value) {
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), value);
+  return result.ec == std::errc() && result.ptr == field.data() + field.size();
+}
+
+/// Without a byte order mark, as spreadsheets write it.
+std::string_view without_mark(std::string_view text);
+
+/// As `words_of` where `separator` is a blank, else as `fields_of`, into memory that is used again.
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields);
 /// Split at every run of blanks and tabs.
 std::vector<std::string_view> words_of(std::string_view line);
 /// Split at every `separator`; blanks round a field are taken off.

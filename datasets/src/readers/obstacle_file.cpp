@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string/join.hpp>
-#include <cerrno>
-#include <cstdlib>
 #include <new>
 
-#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/require.h"
 #include "files/file_names.h"
-#include "files/system_error.h"
 #include "files/text_file.h"
 #include "gdal/vector_library.h"
 #include "readers/readers.h"
@@ -75,31 +71,6 @@ void refuse_nothing(const std::filesystem::path& path, const ReadOptions& option
   throw DataError(code, path.string(), "", "an empty file", "a file of obstacles");
 }
 
-/// What came through a pipe as a file of the same name, gone with the object: readers look at a file more than once.
-class CopyOfPipe {
- public:
-  explicit CopyOfPipe(const std::filesystem::path& pipe) {
-    const std::string bytes = read_text_file(pipe);
-    std::string folder = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
-    if (::mkdtemp(folder.data()) == nullptr) throw cannot_write(folder, errno);
-    folder_ = folder;
-    path_ = folder_ / pipe.filename();
-    write_file_atomically(path_, bytes, Durability::content);
-  }
-  ~CopyOfPipe() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  CopyOfPipe(const CopyOfPipe&) = delete;
-  CopyOfPipe& operator=(const CopyOfPipe&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path folder_;
-  std::filesystem::path path_;
-};
-
 /// `name` is what messages call the file.
 ObstacleFile read_regular(const std::filesystem::path& path, const std::string& name, const ReadOptions& options,
                           const ObstacleStream* stream) {
@@ -117,7 +88,7 @@ ObstacleFile read_regular(const std::filesystem::path& path, const std::string& 
 
 ObstacleFile read_into(const std::filesystem::path& path, const ReadOptions& options, const ObstacleStream* stream) {
   if (!is_pipe(path)) return read_regular(path, path.string(), options, stream);
-  const CopyOfPipe copy(path);
+  const CopyOfInput copy(path.string());  // readers look at a file more than once
   return read_regular(copy.path(), path.string(), options, stream);
 }
 

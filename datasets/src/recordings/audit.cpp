@@ -14,7 +14,7 @@
 #include "generators/counter_random.h"
 #include "json/json_text.h"
 #include "recordings/audit_points.h"
-#include "recordings/recording_lines.h"
+#include "recordings/codec.h"
 
 namespace exactvo::datasets {
 namespace {

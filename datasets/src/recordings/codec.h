@@ -6,6 +6,9 @@
 /// recording says beside its rows: the Lyapunov functions term by term, who collided, and why robots stopped.
 
 #include <cmath>
+#include <functional>
+#include <string>
+#include <string_view>
 
 #include "exactvo/datasets/recording_file.h"
 #include "json/json_text.h"
@@ -213,5 +216,13 @@ void members(Codec& json, For<Codec, RecordingFile>& file) {
   json.optional("collisions", file.collisions).member("wall_time", run.wall_time);
   json.member("written_at", file.info.provenance.written_at);
 }
+
+// --- Line by line, from a file, a pipe or a text ---
+
+/// Gives the next line without its \n, valid until the next call; false at the end.
+using NextLine = std::function<bool(std::string_view& line)>;
+
+/// `read_recording` of these lines into `run`, which is empty: rows go to `take`. `name` is used in messages.
+void read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take, RecordingFile& run);
 
 }  // namespace exactvo::datasets

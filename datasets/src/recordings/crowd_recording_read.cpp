@@ -2,12 +2,10 @@
 #include "recordings/crowd_recording_format.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -18,6 +16,7 @@
 #include "exactvo/geometry/shape_numbers.h"
 #include "exactvo/geometry/told_apart.h"
 #include "files/text_file.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 
@@ -305,52 +304,27 @@ bool begins_crowd_recording(std::string_view bytes) {
   return crowd_version(bytes.substr(0, kCrowdMarkSize)) > 0;
 }
 
-namespace {
-
-/// Lossless, as "%.17g" writes it, but sooner. The end.
-char* put_number(char* at, double number) {
-  constexpr std::size_t kRoom = 32;  // for any
-  constexpr int kDigits = std::numeric_limits<double>::max_digits10;
-  return std::to_chars(at, at + kRoom, number, std::chars_format::general, kDigits).ptr;
-}
-
-std::string place_text(std::size_t robot, double x, double y) {
-  char text[100];
-  char* end = text;
-  *end++ = ',';
-  end = std::to_chars(end, end + 20, robot).ptr;
-  for (const double number : {x, y}) *end++ = ',', end = put_number(end, number);
-  *end++ = ',';
-  return {text, end};
-}
-
-}  // namespace
-
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
   CrowdRecordingReader reader(from);
   const CrowdRecordingHead& head = reader.head();
   to.write(head.ids.empty() ? "step,time,robot,x,y,kept\n" : "step,time,robot,x,y,kept,id\n");
   std::vector<std::string> ends;
   for (const std::string& id : head.ids) ends.push_back("," + csv_quoted(id) + "\n");
-  std::vector<std::string> texts;  // of places in the last row: many robots rest
-  CrowdRow row, before;
+  CrowdRow row;
   CrowdTable table;
+  GrowingText text;
   for (; reader.next(row); ++table.rows) {
-    char line[160];
-    char* end = put_number(line, row.step);
-    *end++ = ',';
-    end = put_number(end, row.step * head.time_step);
-    const std::string_view time(line, static_cast<std::size_t>(end - line));
-    texts.resize(row.x.size());
+    const std::string time = std::to_string(row.step) + "," + number_text(row.step * head.time_step) + ",";
     for (std::size_t i = 0; i < row.x.size(); ++i) {
-      if (texts[i].empty() || row.x[i] != before.x[i] || row.y[i] != before.y[i])
-        texts[i] = place_text(i, head.position_step * row.x[i], head.position_step * row.y[i]);
-      to.write(time);
-      to.write(texts[i]);
-      to.write(row.kept[i] ? "1" : "0");
-      to.write(ends.empty() ? std::string_view("\n") : std::string_view(ends[i]));
+      text.clear();
+      const geometry::Vec2 place = head.place(row, i);
+      text.add(time);
+      text.add(std::to_string(i));
+      for (const double number : {place.x, place.y}) text.add(','), text.add_number(number);
+      text.add(row.kept[i] ? ",1" : ",0");
+      text.add(ends.empty() ? std::string_view("\n") : std::string_view(ends[i]));
+      to.write(text.view());
     }
-    std::swap(before, row);
   }
   table.cut_off = reader.is_cut_off();
   return table;

@@ -10,7 +10,6 @@
 #include "exactvo/geometry/counted.h"
 #include "json/json_text.h"
 #include "recordings/codec.h"
-#include "recordings/recording_lines.h"
 
 namespace exactvo::datasets {
 

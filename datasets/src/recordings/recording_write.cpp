@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/recording_file.h"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <initializer_list>
 #include <memory>
 #include <utility>
@@ -67,6 +64,12 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
   json.end_object();
 }
 
+struct CsvFile {
+  explicit CsvFile(const std::filesystem::path& path) : out(path) {}
+  AtomicFile out;
+  GrowingText text;  ///< of a row, in memory that it leaves to the next
+};
+
 // --- The trajectory as CSV ---
 
 /// Quoted where it must be.
@@ -108,30 +111,18 @@ void add_csv_row(GrowingText& row, const formation::Step& step, const formation:
 
 // --- Lyapunov functions as CSV ---
 
-/// With an exponent below 1e-4 and from 1e16 on only, where other texts have the shorter form.
-void add_plain_number(GrowingText& row, double number) {
-  const double size = std::abs(number);
-  const bool has_exponent = size != 0.0 && (size < 1e-4 || size >= 1e16);
-  const std::string_view shortest = shortest_text(number);
-  if (size != 0.0 && (shortest.find('e') != std::string_view::npos) == has_exponent) return row.add(shortest);
-  std::array<char, 32> text;
-  const auto form = has_exponent ? std::chars_format::scientific : std::chars_format::fixed;
-  const char* end = std::to_chars(text.data(), text.data() + text.size(), number, form).ptr;
-  row.add({text.data(), static_cast<std::size_t>(end - text.data())});
-}
-
 void add_csv_row(GrowingText& row, const formation::LyapunovRow& r) {
   const auto add = [&row](std::initializer_list<double> all) {
     for (const double number : all) {
       row.add(',');
-      add_plain_number(row, number);
+      row.add_number(number);
     }
   };
   const auto add_rates = [&](std::initializer_list<double> all) {
     if (r.has_rates) return add(all);
     for (std::size_t k = 0; k < all.size(); ++k) row.add(',');
   };
-  add_plain_number(row, r.time);
+  row.add_number(r.time);
   add({r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral});
   add_rates(
       {r.paper_rates.kinetic, r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate});
@@ -233,20 +224,18 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
   writer.finish(file);
 }
 
-struct TrajectoryWriter::State {
+struct TrajectoryWriter::State : CsvFile {
   State(const std::filesystem::path& path, const formation::Scenario& scenario)
-      : out(path), has_leader(scenario.formation.has_value()) {
+      : CsvFile(path), has_leader(scenario.formation.has_value()) {
     for (const formation::Robot& robot : scenario.robots) {
       csv_ids.push_back(csv_text(robot.id));
       has_wheels = has_wheels || robot.drive;
     }
   }
 
-  AtomicFile out;
   std::vector<std::string> csv_ids;  ///< of the robots
   bool has_leader;
   bool has_wheels = false;  ///< some robot
-  GrowingText text;         ///< of a row, in memory that it leaves to the next
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
@@ -273,11 +262,8 @@ void TrajectoryWriter::finish(Durability durability) {
   state_->out.commit(durability);
 }
 
-struct LyapunovWriter::State {
-  explicit State(const std::filesystem::path& path) : out(path) {}
-
-  AtomicFile out;
-  GrowingText text;  ///< of a row, in memory that it leaves to the next
+struct LyapunovWriter::State : CsvFile {
+  using CsvFile::CsvFile;
 };
 
 LyapunovWriter::LyapunovWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {

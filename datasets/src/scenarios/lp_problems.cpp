@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <iterator>
-#include <map>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -140,11 +138,12 @@ class Table {
   Table(const std::string& bytes, const std::string& file) : rows_(bytes, file) {}
 
   std::vector<lp::Problem> read() {
-    rows_.next_filled();
-    read_names();
+    rows_.read_header({"problem", "disc", "preferred_x", "preferred_y", "normal_x", "normal_y", "offset", "priority"},
+                      7,
+                      "a header with the columns problem, disc, preferred_x, preferred_y, normal_x, normal_y, offset "
+                      "and, where wanted, priority");
     std::vector<lp::Problem> problems;
-    while (rows_.next_filled()) {
-      read_fields();
+    while (rows_.next_row()) {
       if (problems.empty() || field("problem") != number_) {
         number_ = field("problem");
         problems.push_back(whole());
@@ -158,38 +157,7 @@ class Table {
   }
 
  private:
-  static constexpr const char* kNames[] = {"problem",  "disc",     "preferred_x", "preferred_y",
-                                           "normal_x", "normal_y", "offset"};
-  static constexpr const char* kColumns =
-      "a header with the columns problem, disc, preferred_x, preferred_y, normal_x, normal_y, offset and, where "
-      "wanted, "
-      "priority";
-
-  std::vector<std::string> fields_of_row() const {
-    std::optional<std::vector<std::string>> fields = csv_fields_of(rows_.line());
-    if (!fields) rows_.refuse(DataCode::format_syntax, std::string(rows_.line()), "quotation marks in pairs");
-    return std::move(*fields);
-  }
-
-  void read_names() {
-    const std::vector<std::string> names = fields_of_row();
-    for (std::size_t k = 0; k < names.size(); ++k)
-      if (!column_.emplace(names[k], k).second)
-        rows_.refuse(DataCode::format_syntax, "two columns " + names[k], kColumns);
-    for (const char* name : kNames)
-      if (column_.count(name) == 0) rows_.refuse(DataCode::key_missing, "no column " + std::string(name), kColumns);
-    const std::size_t known = std::size(kNames) + column_.count("priority");
-    if (column_.size() != known) rows_.refuse(DataCode::key_unknown, std::string(rows_.line()), kColumns);
-  }
-
-  void read_fields() {
-    fields_ = fields_of_row();
-    if (fields_.size() != column_.size())
-      rows_.refuse(DataCode::wrong_count, std::to_string(fields_.size()) + " fields",
-                   std::to_string(column_.size()) + ", as many as the header has");
-  }
-
-  const std::string& field(const char* name) const { return fields_[column_.at(name)]; }
+  const std::string& field(const char* name) const { return rows_.field(name); }
 
   double number(const char* name, double least = -kMost) const {
     const double value = rows_.to_number(field(name));
@@ -218,7 +186,7 @@ class Table {
     c.half_plane = {{number("normal_x"), number("normal_y")}, number("offset")};
     if (c.half_plane.normal == Vec2{})
       rows_.refuse(DataCode::out_of_range, "the normal 0, 0", "a normal that is not 0");
-    if (column_.count("priority") == 0) return c;
+    if (!rows_.has("priority")) return c;
     const std::string& priority = field("priority");
     if (priority == "soft") c.priority = lp::Priority::soft;
     if (priority != "soft" && priority != "hard" && !priority.empty())
@@ -228,9 +196,7 @@ class Table {
 
   static constexpr double kMost = 1e90;  // as in the schema
 
-  LineReader rows_;
-  std::map<std::string, std::size_t> column_;
-  std::vector<std::string> fields_;
+  CsvTable rows_;
   std::string number_;
 };
 

@@ -175,15 +175,7 @@ class ScenarioReader {
       if (list[k].contains("file")) {
         read_obstacle_file(list[k], pointer, scenario);
       } else {
-        const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
-        if (list[k].contains("disc")) {
-          scenario.obstacles.push_back(formation::disc_obstacle(id, to_disc(list[k].at("disc"), pointer)));
-          origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
-          continue;
-        }
-        ValidationResult checked = validate(to_raw(list[k], id, pointer));
-        refuse_unrepaired(checked, file_);
-        scenario.obstacles.push_back({id, std::move(checked.shape)});
+        scenario.obstacles.push_back(to_obstacle(list[k], list[k].value("id", "O" + std::to_string(k + 1)), pointer));
       }
       origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
     }
@@ -192,17 +184,17 @@ class ScenarioReader {
   void read_moving_obstacles(const Json& list, Scenario& scenario) {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const std::string pointer = "/moving_obstacles/" + std::to_string(k);
-      const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       formation::TimedPath motion = to_motion(list[k], pointer, scenario);
-      if (list[k].contains("disc")) {
-        scenario.moving_obstacles.push_back(
-            formation::moving_disc(id, to_disc(list[k].at("disc"), pointer), std::move(motion)));
-        continue;
-      }
-      ValidationResult checked = validate(to_raw(list[k], id, pointer));
-      refuse_unrepaired(checked, file_);
-      scenario.moving_obstacles.push_back({id, std::move(checked.shape), std::move(motion)});
+      formation::SceneObstacle o = to_obstacle(list[k], list[k].value("id", "M" + std::to_string(k + 1)), pointer);
+      scenario.moving_obstacles.push_back({std::move(o.id), std::move(o.shape), std::move(motion), o.disc});
     }
+  }
+
+  formation::SceneObstacle to_obstacle(const Json& object, const std::string& id, const std::string& pointer) const {
+    if (object.contains("disc")) return formation::disc_obstacle(id, to_disc(object.at("disc"), pointer));
+    ValidationResult checked = validate(to_raw(object, id, pointer));
+    refuse_unrepaired(checked, file_);
+    return {id, std::move(checked.shape), std::nullopt};
   }
 
   geometry::Disc to_disc(const Json& object, const std::string& pointer) const {

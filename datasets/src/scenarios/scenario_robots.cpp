@@ -112,36 +112,6 @@ class FreeRoom {
   std::unordered_map<Cell, std::vector<Vec2>, HashOfCell> taken_;
 };
 
-std::vector<std::string> fields_in(const LineReader& lines) {
-  std::optional<std::vector<std::string>> fields = csv_fields_of(lines.line());
-  if (!fields)
-    lines.refuse(DataCode::format_syntax, "a quotation mark that is not closed where its field ends",
-                 "fields as CSV quotes them: \"a, \"\"b\"\"\"");
-  return std::move(*fields);
-}
-
-/// The columns of a table of robots.
-struct Columns {
-  explicit Columns(const LineReader& lines) {
-    const std::vector<std::string> names = fields_in(lines);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      const std::string& name = names[k];
-      if (std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown))
-        lines.refuse(DataCode::key_unknown, "an unknown column \"" + name + "\"",
-                     "columns out of id, x, y, goal_x, goal_y, vx, vy, radius, max_speed");
-      if (!at.emplace(name, k).second)
-        lines.refuse(DataCode::json_duplicate_key, "column \"" + name + "\" a second time", "each column once");
-    }
-    for (const char* name : {"x", "y", "goal_x", "goal_y"})
-      if (at.count(name) == 0)
-        lines.refuse(DataCode::key_missing, std::string("no column \"") + name + "\"",
-                     "a header with x, y, goal_x and goal_y");
-  }
-
-  static constexpr const char* kKnown[] = {"id", "x", "y", "goal_x", "goal_y", "vx", "vy", "radius", "max_speed"};
-  std::map<std::string, std::size_t> at;
-};
-
 class RobotsReader {
  public:
   RobotsReader(const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
@@ -331,31 +301,24 @@ class RobotsReader {
     const std::filesystem::path path = base_dir_ / name;
     const std::string text = text_of(path), shown = path.string();
     if (std::find(out_.tables.begin(), out_.tables.end(), path) == out_.tables.end()) out_.tables.push_back(path);
-    LineReader lines(text, shown);
-    if (!lines.next())
-      throw DataError(DataCode::format_syntax, shown, "", "an empty file", "a header, then one robot per line");
-    const Columns columns(lines);
+    CsvTable table(text, shown);
+    table.read_header({"x", "y", "goal_x", "goal_y", "id", "vx", "vy", "radius", "max_speed"}, 4,
+                      "a header with x, y, goal_x and goal_y, and where wanted id, vx, vy, radius, max_speed");
     const std::size_t before = out_.robots.size();
-    while (lines.next()) {
-      if (trimmed(lines.line()).empty()) continue;
+    while (table.next_row()) {
       require_room_for(1, "file");
-      read_row(lines, columns);
+      read_row(table);
     }
     if (out_.robots.size() == before)
       throw DataError(DataCode::wrong_count, shown, "", "a header without robots", "at least one robot");
   }
 
-  void read_row(const LineReader& lines, const Columns& columns) {
-    const std::vector<std::string> fields = fields_in(lines);
-    if (fields.size() != columns.at.size())
-      lines.refuse(DataCode::wrong_count, geometry::counted(fields.size(), "field"),
-                   std::to_string(columns.at.size()) + ", as many as the header has");
+  void read_row(const CsvTable& table) {
     const auto number = [&](const char* name, double otherwise, double least, double most) {
-      const auto column = columns.at.find(name);
-      if (column == columns.at.end()) return otherwise;
-      const double value = lines.to_number(fields[column->second]);
+      if (!table.has(name)) return otherwise;
+      const double value = table.to_number(table.field(name));
       if (!(value >= least && value <= most))
-        lines.refuse(DataCode::out_of_range, std::string(name) + " " + fields[column->second],
+        table.refuse(DataCode::out_of_range, std::string(name) + " " + table.field(name),
                      "a number from " + in_words(least) + " to " + in_words(most));
       return value;
     };
@@ -364,10 +327,9 @@ class RobotsReader {
     robot.velocity = {number("vx", 0.0, -kLargest, kLargest), number("vy", 0.0, -kLargest, kLargest)};
     robot.radius = number("radius", robot.radius, 1e-300, kLargest);
     robot.max_speed = number("max_speed", robot.max_speed, 1e-300, kLargest);
-    const auto id = columns.at.find("id");
-    if (id == columns.at.end()) return;
-    if (fields[id->second].empty()) lines.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
-    robot.id = fields[id->second];
+    if (!table.has("id")) return;
+    if (table.field("id").empty()) table.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
+    robot.id = table.field("id");
   }
 
   static std::string in_words(double bound) {

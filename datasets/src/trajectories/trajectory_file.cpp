@@ -1,58 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/trajectory_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/require.h"
-#include "files/system_error.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
+#include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
 
 namespace exactvo::datasets {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
-
-/// What came through a pipe, in a file that goes with the object: a long one must not lie in memory.
-class SpooledInput {
- public:
-  explicit SpooledInput(const std::string& input) {
-    std::string path = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
-    const int descriptor = ::mkstemp(path.data());
-    if (descriptor < 0) throw cannot_write(path, errno);
-    ::close(descriptor);
-    path_ = path;
-    try {
-      copy_input(input, path_);
-    } catch (...) {
-      remove();
-      throw;
-    }
-  }
-  ~SpooledInput() { remove(); }
-  SpooledInput(const SpooledInput&) = delete;
-  SpooledInput& operator=(const SpooledInput&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  void remove() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  std::filesystem::path path_;
-};
 
 const TrajectoryFormat& format_named(const std::string& name, const std::string& file) {
   for (const TrajectoryFormat& format : trajectory_readers())
@@ -71,15 +37,11 @@ const TrajectoryFormat& format_for(std::string_view beginning, const std::string
           boost::join(trajectory_formats(), ", "));
 }
 
-bool looks_like_crowd(std::string_view beginning) {
-  return begins_crowd_recording(beginning);
-}
-
 }  // namespace
 
 const std::vector<TrajectoryFormat>& trajectory_readers() {
   static const std::vector<TrajectoryFormat> kReaders{
-      {"crowd-recording", looks_like_crowd, read_crowd_trajectories},
+      {"crowd-recording", begins_crowd_recording, read_crowd_trajectories},
       {"jupedsim-sqlite", looks_like_sqlite, read_jupedsim_sqlite},
       {"recording", looks_like_recording, read_recorded_trajectories},
       {"trajnet", looks_like_trajnet, read_trajnet},
@@ -158,11 +120,8 @@ void TrajectorySink::refuse(DataCode code, std::uint64_t line, const std::string
 }
 
 double TrajectorySink::number(std::string_view field, const char* what, std::uint64_t line) const {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
   double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size())
-    refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
+  if (!parse_whole(field, value)) refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
   if (!std::isfinite(value))
     refuse(DataCode::not_finite, line, excerpt(field, 0), std::string("a finite number as ") + what);
   return value;
@@ -204,7 +163,7 @@ std::vector<std::string> trajectory_files_in(const std::filesystem::path& folder
 
 struct TrajectoryReader::State {
   TrajectoryOptions options;
-  std::optional<SpooledInput> spooled;
+  std::optional<CopyOfInput> spooled;        ///< a long one must not lie in memory
   std::vector<std::filesystem::path> paths;  ///< none: the columns
   TrajectoryColumns columns;
   const TrajectoryFormat* format = nullptr;

@@ -19,18 +19,8 @@ namespace {
 /// Rows of one piece, which only show where it goes.
 constexpr int kSamples = 16;
 
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields;
-  for (;;) {
-    const std::size_t end = line.find(',');
-    fields.emplace_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
-}
-
 /// Where the powers of a coordinate stand.
-std::vector<std::size_t> powers_of(char coordinate, const std::vector<std::string>& header) {
+std::vector<std::size_t> powers_of(char coordinate, const std::vector<std::string_view>& header) {
   std::vector<std::size_t> columns;
   for (;;) {
     const std::string name = std::string(1, coordinate) + "^" + std::to_string(columns.size());
@@ -51,8 +41,8 @@ std::string_view without_comment_mark(std::string_view line) {
 }
 
 std::optional<Header> header_in(std::string_view line) {
-  const std::vector<std::string> names = fields_of(without_comment_mark(line));
-  const auto is_duration = [](const std::string& name) { return name == "duration" || name == "Duration"; };
+  const std::vector<std::string_view> names = fields_of(without_comment_mark(line), ',');
+  const auto is_duration = [](std::string_view name) { return name == "duration" || name == "Duration"; };
   const auto at = std::find_if(names.begin(), names.end(), is_duration);
   if (at == names.end()) return std::nullopt;
   Header header{names.size(), static_cast<std::size_t>(at - names.begin()), powers_of('x', names),
@@ -96,19 +86,20 @@ std::size_t agent_of(const std::filesystem::path& path, TrajectorySink& out) {
 /// The piece of a line.
 geometry::CurvedMotion piece_in(std::string_view text, const Header& header, double begin, std::uint64_t line,
                                 const TrajectorySink& out) {
-  const std::vector<std::string> fields = fields_of(text);
+  const std::vector<std::string_view> fields = fields_of(text, ',');
   if (fields.size() < header.count)
     out.refuse(DataCode::wrong_count, line, std::to_string(fields.size()) + " fields",
                std::to_string(header.count) + " fields, as the header has");
   const double duration = out.number(fields[header.duration], "a duration", line);
   if (!(duration > 0.0) || !(begin + duration > begin))
-    out.refuse(DataCode::out_of_range, line, fields[header.duration], "a duration above 0 s");
+    out.refuse(DataCode::out_of_range, line, std::string(fields[header.duration]), "a duration above 0 s");
   geometry::CurvedMotion curve{geometry::CurveBasis::powers, begin, begin + duration, {}};
   double power = 1.0;  // of the duration
   const auto coefficient = [&](std::size_t column) {
     const double c = out.scale() * out.number(fields[column], "a coefficient", line);
     if (!(std::fabs(c) * power <= kLargestCoordinate))
-      out.refuse(DataCode::out_of_range, line, fields[column] + " of a piece of " + fields[header.duration] + " s",
+      out.refuse(DataCode::out_of_range, line,
+                 std::string(fields[column]) + " of a piece of " + std::string(fields[header.duration]) + " s",
                  "terms up to 2^100 m");
     return c;
   };

@@ -3,50 +3,18 @@
 // columns of numbers (frame, id, x, y).
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 
 #include "exactvo/datasets/input_text.h"
+#include "files/file_names.h"
 #include "files/text_file.h"
 #include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
 
 namespace exactvo::datasets {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
-std::string_view without_mark(std::string_view text) {
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
-}
-
-/// The fields of a line, into memory that is used again. Blanks part fields where `separator` is one.
-void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-  fields.clear();
-  if (separator == ' ') {
-    constexpr std::string_view kBlanks = " \t\r";
-    for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
-      const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-      fields.push_back(line.substr(at, end - at));
-      at = end;
-    }
-    return;
-  }
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end + 1);
-  }
-}
 
 /// The first lines that are neither blank nor begin with `comment`.
 std::string_view first_line(std::string_view text, char comment = '\0') {
@@ -62,8 +30,7 @@ std::string_view first_line(std::string_view text, char comment = '\0') {
 
 bool is_number(std::string_view field) {
   double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return !field.empty() && error == std::errc() && end == field.data() + field.size();
+  return parse_whole(field, value);
 }
 
 /// How many numbers, and nothing else, a line holds, parted by blanks.
@@ -77,11 +44,8 @@ std::size_t numbers_in(std::string_view line) {
 /// numbers: elsewhere ids are texts, and 007 is another one than 7.
 std::string_view plain_id(std::string_view field, std::string& memory) {
   double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   constexpr double kLargestWhole = 0x1p53;
-  if (error != std::errc() || end != field.data() + field.size() || value != std::floor(value) ||
-      std::fabs(value) > kLargestWhole)
-    return field;
+  if (!parse_whole(field, value) || value != std::floor(value) || std::fabs(value) > kLargestWhole) return field;
   memory = std::to_string(static_cast<std::int64_t>(value));
   return memory;
 }
@@ -118,7 +82,7 @@ Columns columns_in(const std::vector<std::string_view>& header) {
   Columns columns;
   columns.fill(kNoColumn);
   std::vector<std::string> names;
-  for (const std::string_view field : header) names.push_back(lower_case(field));
+  for (const std::string_view field : header) names.push_back(lower_case(std::string(field)));
   for (std::size_t c = 0; c < kColumnKinds; ++c)
     for (const std::string& name : kColumnNames[c]) {
       const auto at = std::find(names.begin(), names.end(), name);
@@ -128,6 +92,18 @@ Columns columns_in(const std::vector<std::string_view>& header) {
     }
   return columns;
 }
+
+/// Of rows without a header: frames, ids and places alone.
+Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y) {
+  Columns columns;
+  columns.fill(kNoColumn);
+  columns[kFrameColumn] = frame;
+  columns[kIdColumn] = id;
+  columns[kXColumn] = x;
+  columns[kYColumn] = y;
+  return columns;
+}
+
 bool has_place_and_time(const Columns& c) {
   return c[kXColumn] != kNoColumn && c[kYColumn] != kNoColumn &&
          (c[kTimeColumn] != kNoColumn || c[kFrameColumn] != kNoColumn);
@@ -237,18 +213,13 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
 bool looks_like_jupedsim_text(std::string_view beginning) {
   const std::string_view text = without_mark(beginning);
   if (text.substr(0, 1) != "#") return false;
-  const std::string lower = lower_case(text);
+  const std::string lower = lower_case(std::string(text));
   return lower.find("framerate") != std::string::npos || lower.find("#id\t") != std::string::npos ||
          lower.find("# id ") != std::string::npos;
 }
 
 void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) {
-  Columns columns;
-  columns.fill(kNoColumn);
-  columns[kIdColumn] = 0;
-  columns[kFrameColumn] = 1;
-  columns[kXColumn] = 2;
-  columns[kYColumn] = 3;
+  Columns columns = numbered(1, 0, 2, 3);
   std::size_t count = 4;
   double frame_rate = 0.0, unit = 1.0;
   TextLines lines(path.string(), kLongestRow);
@@ -269,7 +240,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     }
     if (rows) continue;
     line = trimmed(line.substr(1));
-    const std::string lower = lower_case(line);
+    const std::string lower = lower_case(std::string(line));
     if (lower.rfind("framerate", 0) == 0) {
       const std::size_t number = lower.find_first_of("0123456789");
       if (number == std::string::npos)
@@ -286,7 +257,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     columns[kVxColumn] = columns[kVyColumn] = kNoColumn;
     count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
                           named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
-    if (lower_case(fields[named[kXColumn]]) == "x/cm") unit = kMetresOfCentimetre;
+    if (lower_case(std::string(fields[named[kXColumn]])) == "x/cm") unit = kMetresOfCentimetre;
   }
 }
 
@@ -297,13 +268,7 @@ bool looks_like_obsmat(std::string_view beginning) {
 
 void read_obsmat(const std::filesystem::path& path, TrajectorySink& out) {
   // frame, pedestrian, x, z, y, and three of the velocity
-  Columns columns;
-  columns.fill(kNoColumn);
-  columns[kFrameColumn] = 0;
-  columns[kIdColumn] = 1;
-  columns[kXColumn] = 2;
-  columns[kYColumn] = 4;
-  read_numbers(path, columns, 8, out);
+  read_numbers(path, numbered(0, 1, 2, 4), 8, out);
 }
 
 bool looks_like_four_columns(std::string_view beginning) {
@@ -311,13 +276,7 @@ bool looks_like_four_columns(std::string_view beginning) {
 }
 
 void read_four_columns(const std::filesystem::path& path, TrajectorySink& out) {
-  Columns columns;
-  columns.fill(kNoColumn);
-  columns[kFrameColumn] = 0;
-  columns[kIdColumn] = 1;
-  columns[kXColumn] = 2;
-  columns[kYColumn] = 3;
-  read_numbers(path, columns, 4, out);
+  read_numbers(path, numbered(0, 1, 2, 3), 4, out);
 }
 
 }  // namespace exactvo::datasets

@@ -430,25 +430,34 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   EXPECT_EQ(difference(out("whole"), out("ahead")), "");
 }
 
-TEST_F(Batches, ADamagedPartIsSaidWhereItIsMergedAndNothingIsPublished) {
+TEST_F(Batches, APartThatIsCutOffIsMadeAgain) {
   BatchRun shard = run_to("out");
   shard.shards = shard.shard = 6;  // stars.wkt, of several parts
   ASSERT_EQ(run_batch(plain_, shard).end, BatchEnd::incomplete);
   const fs::path part = out("out") / ".parts" / "000005" / "000001";
-  const std::string whole = text_of(part);
-  ASSERT_FALSE(whole.empty());
-  write_text(part, "no part");
+  ASSERT_GT(fs::file_size(part), 100u);
+  fs::resize_file(part, fs::file_size(part) - 1);
   BatchRun run = run_to("out");
   run.resume = true;
-  const DataError refused_part = refused(plain_, run);
-  EXPECT_EQ(refused_part.code(), DataCode::format_syntax);
-  EXPECT_EQ(refused_part.file(), part.string());
-  EXPECT_FALSE(fs::exists(out("out") / "summary.json"));
-  EXPECT_EQ(folders_on_their_way("out"), 0u);
-  write_text(part, whole);
   EXPECT_TRUE(run_batch(plain_, run).was_merged_ahead) << "parts that are there are merged in their turn";
   run_batch(plain_, run_to("whole"));
   EXPECT_EQ(difference(out("whole"), out("out")), "");
+}
+
+TEST_F(Batches, FactsThatAreCutOffAreMadeAgain) {
+  for (const std::string cut : {"000000.input", "000005.input"}) {
+    BatchRun shards = run_to(cut);
+    shards.shards = 7;
+    for (shards.shard = 1; shards.shard <= 6; ++shards.shard)
+      if (shards.shard != 2) run_batch(plain_, shards);
+    const fs::path facts = out(cut) / ".parts" / cut;
+    fs::resize_file(facts, fs::file_size(facts) - 1);
+    BatchRun run = run_to(cut);
+    run.resume = true;
+    EXPECT_EQ(run_batch(plain_, run).end, BatchEnd::complete);
+    if (!fs::exists(out("whole"))) run_batch(plain_, run_to("whole"));
+    EXPECT_EQ(difference(out("whole"), out(cut)), "") << cut;
+  }
 }
 
 TEST_F(Batches, AFileBrokenAfterPartsOfItWereBoundLeavesNothingOfThem) {

@@ -166,14 +166,15 @@ void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const
   const auto input = static_cast<double>(progress.input_bytes);
   const double factor =
       kMeasurementsOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
-  std::string text = fmt::format("{}, {}: about {} in {}", counted(progress.inputs, "file"), size_text(input),
-                                 size_text(factor * input), out);
+  std::string text =
+      fmt::format("{}{}, {}: about {} in {}", counted(progress.inputs, "file"),
+                  progress.ranks > 1 ? " in each rank" : "", size_text(input), size_text(factor * input), out);
   if (!c.geopackage) text += fmt::format("; --write geopackage adds about {}", size_text(kGeoPackageOfInput * input));
   if (!c.geojson) text += fmt::format("; --write geojson adds about {}", size_text(kGeoJsonOfInput * input));
   message(text);
   std::error_code error;
   const std::filesystem::space_info disk = std::filesystem::space(out, error);
-  if (!error && 2.0 * factor * input > static_cast<double>(disk.available))
+  if (!error && 2.0 * factor * input * progress.ranks > static_cast<double>(disk.available))
     message(fmt::format("warning: {} are free there, and twice the results are needed meanwhile",
                         size_text(static_cast<double>(disk.available))));
 }
@@ -277,8 +278,10 @@ ExitCode batch(const BatchFlags& flags) {
   ProgressLine line(1.0, "of the input");
   bool has_said_sizes = false;
   const auto watch = [&](const BatchProgress& progress) {
-    if (!std::exchange(has_said_sizes, true)) say_sizes(configuration, progress, flags.out);
-    show(progress, line);
+    if (progress.rank == 0) {
+      if (!std::exchange(has_said_sizes, true)) say_sizes(configuration, progress, flags.out);
+      show(progress, line);
+    }
     return !interrupted();
   };
   const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)

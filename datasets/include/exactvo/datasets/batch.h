@@ -74,6 +74,8 @@ struct BatchProgress {
   double share_done = 0.0;        ///< 0 to 1, by size of the inputs
   std::uint64_t obstacles = 0;    ///< so far, in this run
   std::string doing;              ///< the file under way
+  int rank = 0;                   ///< of this process among those of mpirun
+  int ranks = 1;                  ///< how many there are
 };
 
 /// How many, by how they ended.
@@ -152,8 +154,9 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
 bool under_mpi();
 
-/// The same over all ranks: the first hands out inputs one by one and merges the parts, the others process them. The
-/// result is that of the first rank; the others' is `incomplete`. REQUIRES: under_mpi().
+/// The same over all ranks: each processes a share of the inputs, about equal by their sizes, and asks its own watch;
+/// the first merges the parts. The result is that of the first rank; the others' is `incomplete`. REQUIRES:
+/// under_mpi().
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch = {});
 

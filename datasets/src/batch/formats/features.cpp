@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/formats/features.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "batch/formats/bytes.h"
@@ -190,15 +191,12 @@ void take(std::string_view& bytes, Number& number) {
   number = take_raw<Number>(bytes);
 }
 
-/// The head as GeometryHead says, then well-known binary (OGC 06-103r4, 8.2).
+/// Well-known binary (OGC 06-103r4, 8.2), in the byte order of the machines that this runs on.
 std::string geometry_of(const Feature& feature) {
+  constexpr char kLittleEndian = 1;
   constexpr std::uint32_t kLineString = 2;
   constexpr std::uint32_t kPolygon = 3;
-  GeometryHead head;
-  for (const Vec2 p : feature.rings.front()) head.add(p, p);
-  std::string bytes;
-  append_raw(bytes, head);
-  bytes += kLittleEndian;
+  std::string bytes(1, kLittleEndian);
   append_raw(bytes, feature.is_polygon ? kPolygon : kLineString);
   if (feature.is_polygon) append_raw(bytes, static_cast<std::uint32_t>(feature.rings.size()));
   for (const Ring& ring : feature.rings) {

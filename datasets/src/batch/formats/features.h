@@ -4,10 +4,8 @@
 /// \file
 /// What a batch writes of an obstacle for maps: features in layers, the same for GeoPackage and GeoJSON.
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -59,36 +57,12 @@ using Place = std::function<geometry::Ring(geometry::Ring)>;
 /// A line of GeoJSON, without comma or newline. The geometry is null where `place` throws.
 std::string to_geojson(const Feature& feature, const Place& place);
 
-/// As the machines are that this runs on: in well-known binary, and in the flags below.
-inline constexpr char kLittleEndian = 1;
-
-/// What a geometry of a GeoPackage begins with, byte for byte (OGC 12-128, 2.1.3); well-known binary follows. The
-/// extent is that of the line, or of the first ring, which goes round the others.
-struct GeometryHead {
-  char magic[2] = {'G', 'P'};
-  char version = 0;
-  char flags = kLittleEndian | 1 << 1;  ///< the extent is that of two dimensions
-  std::int32_t reference = 0;           ///< number of the reference system in its package; not known before
-  double min_x = std::numeric_limits<double>::infinity();
-  double max_x = -std::numeric_limits<double>::infinity();
-  double min_y = std::numeric_limits<double>::infinity();
-  double max_y = -std::numeric_limits<double>::infinity();
-
-  void add(geometry::Vec2 low, geometry::Vec2 high) {
-    min_x = std::min(min_x, low.x);
-    max_x = std::max(max_x, high.x);
-    min_y = std::min(min_y, low.y);
-    max_y = std::max(max_y, high.y);
-  }
-};
-static_assert(sizeof(GeometryHead) == 40, "no gaps");
-
 /// Appends the feature to `bytes` for `read_row`.
 void append_row(std::string& bytes, const Feature& feature);
 /// Takes the next one off the front. REQUIRES: what append_row wrote.
 struct Row {
   std::size_t layer = 0;
-  std::string_view geometry;  ///< as a GeoPackage has it, but for the reference system
+  std::string_view geometry;  ///< well-known binary
   std::vector<Value> values;
 };
 Row read_row(std::string_view& bytes);

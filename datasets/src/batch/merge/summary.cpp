@@ -56,6 +56,15 @@ void count_file(BatchTally& files, const InputFacts& facts) {
 
 // --- Writing ---
 
+/// The counts of obstacles, and of files.
+template <class Codec>
+void members(Codec& json, For<Codec, BatchSummary>& s) {
+  datasets::members(json, s.obstacles);
+  json.member("passed_over", s.passed_over).member("obstacles", s.obstacles_out).member("certified", s.certified);
+  json.member("uncertified", s.uncertified).member("vertices", s.vertices).member("no_half_plane", s.no_half_plane);
+  json.member("files", s.files);
+}
+
 std::optional<double> rate(std::uint64_t count, const Times& times) {
   if (!times.has_rates || count == 0 || !(times.seconds > 0.0)) return std::nullopt;
   return static_cast<double>(count) / times.seconds;
@@ -63,10 +72,12 @@ std::optional<double> rate(std::uint64_t count, const Times& times) {
 
 void append_times(JsonWriter& json, const Times& times) {
   json.key("times").begin_inline_object().member("written_at", times.written_at);
-  json.member("seconds", times.seconds).member("seconds_of_jobs", times.seconds_of_jobs);
-  json.member("workers", times.workers).member("obstacles", times.obstacles).member("vertices", times.vertices);
-  json.member("obstacles_per_second", rate(times.obstacles, times));
-  json.member("vertices_per_second", rate(times.vertices, times)).end_object();
+  json.member("seconds", times.seconds).member("seconds_of_jobs", 1e-9 * static_cast<double>(times.made.nanoseconds));
+  json.member("workers", times.workers)
+      .member("obstacles", times.made.obstacles)
+      .member("vertices", times.made.vertices);
+  json.member("obstacles_per_second", rate(times.made.obstacles, times));
+  json.member("vertices_per_second", rate(times.made.vertices, times)).end_object();
 }
 
 }  // namespace
@@ -88,20 +99,14 @@ std::string to_json(const BatchSummary& summary, const Identity& identity, const
                     const std::vector<InputFacts>& facts, const Times& times) {
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object();
-  append_tally(json, summary.obstacles);
-  json.member("passed_over", summary.passed_over).member("obstacles", summary.obstacles_out);
-  json.member("certified", summary.certified).member("uncertified", summary.uncertified);
-  json.member("vertices", summary.vertices).member("no_half_plane", summary.no_half_plane);
-  json.key("files").begin_inline_object();
-  append_tally(json, summary.files);
-  json.end_object();
+  members(json, summary);
   json.member("version", identity.version).member("commit", identity.commit);
   json.member("configuration_sha256", sha256_of(identity.configuration));
   json.key("configuration").raw(identity.configuration);
   json.key("inputs").begin_array();
   for (std::size_t k = 0; k < facts.size(); ++k) {
     json.begin_inline_object();
-    append_input(json, identity.inputs[k]);
+    members(json, identity.inputs[k]);
     json.key("facts").raw(to_json(facts[k])).end_object();
   }
   json.end_array();
@@ -124,27 +129,19 @@ std::string words_of(const InputFacts& facts) {
 }
 
 BatchSummary read_summary(const fs::path& out) {
-  const fs::path path = out / "summary.json";
-  const Json json = parse_json(read_text_file(path), path.string());
-  BatchSummary summary;
-  try {
-    summary.obstacles = tally_of(json);
-    summary.files = tally_of(json.at("files"));
-    json.at("passed_over").get_to(summary.passed_over);
-    json.at("obstacles").get_to(summary.obstacles_out);
-    json.at("certified").get_to(summary.certified);
-    json.at("uncertified").get_to(summary.uncertified);
-    json.at("vertices").get_to(summary.vertices);
-    json.at("no_half_plane").get_to(summary.no_half_plane);
-    for (const Json& input : json.at("inputs")) {
-      const Json& facts = input.at("facts");
-      add_notes(summary.notes, facts.at("notes").get<std::vector<std::string>>(), input.at("path").get<std::string>());
-      if (facts.at("outcome") == kRejected)
-        summary.rejected_files.push_back({input.at("path").get<std::string>(), facts.at("code").get<std::string>()});
-    }
-  } catch (const nlohmann::detail::exception& error) {
-    throw DataError(DataCode::wrong_type, path.string(), "", error.what(), "a summary as a batch writes it");
+  const std::string path = (out / "summary.json").string();
+  const Json json = parse_json(read_text_file(path), path);
+  const JsonCursor at(json, path, "");
+  Identity identity;
+  std::vector<InputFacts> facts;
+  const JsonCursor inputs = at.at("inputs");
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const JsonCursor input = inputs.at(k);
+    members(input, identity.inputs.emplace_back());
+    input.member("facts", facts.emplace_back());
   }
+  BatchSummary summary = summary_of(identity, facts);
+  members(at, summary);
   return summary;
 }
 

@@ -18,9 +18,7 @@ namespace exactvo::datasets::batch {
 /// What goes into it beside the counts: all that differs from run to run.
 struct Times {
   double seconds = 0.0;
-  double seconds_of_jobs = 0.0;  ///< of all workers together
-  std::uint64_t obstacles = 0;   ///< processed in this run
-  std::uint64_t vertices = 0;
+  Counts made;  ///< in this run
   int workers = 1;
   bool has_rates = true;  ///< not of a shard: what the others took is not known
   std::string written_at;

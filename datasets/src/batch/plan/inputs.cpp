@@ -158,14 +158,6 @@ bool InputHashes::operator==(const InputHashes& other) const {
          std::equal(read_with.begin(), read_with.end(), other.read_with.begin(), other.read_with.end(), same);
 }
 
-void append_input(JsonWriter& json, const Input& input) {
-  json.member("path", input.name).member("sha256", input.hashes.sha256);
-  if (input.hashes.read_with.empty()) return;
-  json.list("read_with", input.hashes.read_with, [&](const InputFile& file) {
-    json.begin_inline_object().member("path", file.path).member("sha256", file.sha256).end_object();
-  });
-}
-
 InputHashes hashes_of_input(const fs::path& path, const std::string& format) {
   InputHashes hashes{hash_of(path), {}};
   if (hashes.sha256.empty()) return hashes;

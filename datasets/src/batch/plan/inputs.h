@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "exactvo/datasets/batch.h"
-#include "exactvo/datasets/provenance.h"
-#include "json/json_text.h"
+#include "provenance_json.h"
 
 namespace exactvo::datasets::batch {
 
@@ -30,8 +29,12 @@ struct Input {
   InputHashes hashes;
   std::uint64_t size = 0;
 };
-/// The members "path", "sha256" and, where there is any, "read_with": [{"path", "sha256"}] of an object that is open.
-void append_input(JsonWriter& json, const Input& input);
+/// Its name and hashes.
+template <class Codec>
+void members(Codec& json, For<Codec, Input>& input) {
+  json.member("path", input.name).member("sha256", input.hashes.sha256);
+  json.member_if(!input.hashes.read_with.empty(), "read_with", input.hashes.read_with);
+}
 
 struct Inputs {
   std::vector<Input> files;  ///< at least one
@@ -51,3 +54,6 @@ Inputs list_inputs(const std::vector<std::filesystem::path>& paths, const std::f
 InputHashes hashes_of_input(const std::filesystem::path& path, const std::string& format = {});
 
 }  // namespace exactvo::datasets::batch
+
+template <>
+inline constexpr bool exactvo::datasets::kOnOneLine<exactvo::datasets::batch::Input> = true;

@@ -44,17 +44,10 @@ std::string text_at(const Json& object, const char* key) {
   return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
-InputHashes hashes_at(const Json& input) {
-  InputHashes hashes{text_at(input, "sha256"), {}};
-  const auto others = input.is_object() ? input.find("read_with") : input.end();
-  if (others == input.end() || !others->is_array()) return hashes;
-  for (const Json& file : *others) hashes.read_with.push_back({text_at(file, "path"), text_at(file, "sha256")});
-  return hashes;
-}
-
 void refuse_other_inputs(const Json& there, const Identity& identity, const fs::path& path) {
-  const auto at = there.find("inputs");
-  const std::size_t count = at != there.end() && at->is_array() ? at->size() : 0;
+  const std::string file = path.string();
+  const JsonCursor inputs = JsonCursor(there, file, "").at("inputs");
+  const std::size_t count = inputs.size();
   if (count != identity.inputs.size()) {
     throw other_run(
         path, "an output of " + geometry::counted(count, "input"),
@@ -62,8 +55,10 @@ void refuse_other_inputs(const Json& there, const Identity& identity, const fs::
   }
   for (std::size_t k = 0; k < count; ++k) {
     const Input& input = identity.inputs[k];
-    if (text_at((*at)[k], "path") == input.name && hashes_at((*at)[k]) == input.hashes) continue;
-    throw other_run(path, "an output of " + text_at((*at)[k], "path") + " as it was",
+    Input before;
+    read_value(inputs.at(k), before);
+    if (before.name == input.name && before.hashes == input.hashes) continue;
+    throw other_run(path, "an output of " + before.name + " as it was",
                     input.name + " as it is now; another --out, or an empty one");
   }
 }
@@ -148,14 +143,7 @@ std::string to_json(const Identity& identity) {
   json.begin_object().member("version", identity.version).member("commit", identity.commit);
   json.member("configuration_sha256", sha256_of(identity.configuration));
   json.key("configuration").raw(identity.configuration);
-  json.key("inputs").begin_array();
-  for (const Input& input : identity.inputs) {
-    json.begin_inline_object();
-    append_input(json, input);
-    json.end_object();
-  }
-  json.end_array();
-  return json.end_object().take() + "\n";
+  return json.member("inputs", identity.inputs).end_object().take() + "\n";
 }
 
 Journal::Journal(fs::path out)

@@ -10,8 +10,9 @@
 ///     final.WORD/       the outputs on their way; each process has a folder of its own
 ///     lock              locked by the one process that merges parts
 ///
-/// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to
-/// .parts.old in one step and removed; what a kill leaves of that, the next look removes.
+/// Every file appears whole; what a power cut has cut off counts as missing (`is_through`). When the outputs stand in
+/// OUT, summary.json last, .parts is renamed to .parts.old in one step and removed; what a kill leaves of that, the
+/// next look removes.
 
 #include <filesystem>
 #include <functional>

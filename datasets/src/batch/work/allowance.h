@@ -24,21 +24,12 @@ class Allowance {
   /// Waits until so much is free. What is more than all there is goes alone.
   Taken take(std::uint64_t bytes) {
     std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return has_room(bytes); });
-    return take_now(bytes);
-  }
-  /// Null where `take` would wait.
-  Taken try_to_take(std::uint64_t bytes) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return has_room(bytes) ? take_now(bytes) : nullptr;
-  }
-
- private:
-  bool has_room(std::uint64_t bytes) const { return most_ == 0 || taken_ == 0 || taken_ + bytes <= most_; }
-  Taken take_now(std::uint64_t bytes) {
+    changed_.wait(lock, [&] { return most_ == 0 || taken_ == 0 || taken_ + bytes <= most_; });
     taken_ += bytes;
     return {this, [this, bytes](const void*) { give_back(bytes); }};
   }
+
+ private:
   void give_back(std::uint64_t bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     taken_ -= bytes;

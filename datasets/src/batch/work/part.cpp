@@ -121,9 +121,9 @@ geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
   return options;
 }
 
-// --- Bytes: the magic line, the counts, then every text after its length ---
+// --- Bytes: the magic line, their number, the counts, then every text after its length ---
 
-constexpr std::string_view kMagic = "EXACTVO PART 4\n";
+constexpr std::string_view kMagic = "EXACTVO PART 5\n";
 using Number = std::uint64_t;
 
 constexpr std::size_t kNumbers = 4;
@@ -133,7 +133,7 @@ std::array<Number*, kNumbers> numbers_of(Counts& counts) {
 }
 
 /// The pictures come first: they alone are wanted again.
-constexpr std::size_t kBytesBeforePictures = kMagic.size() + (kNumbers + 1) * sizeof(Number);
+constexpr std::size_t kBytesBeforePictures = kMagic.size() + (kNumbers + 2) * sizeof(Number);
 
 template <class Text>
 std::vector<Text*> texts_of(PartOf<Text>& part) {
@@ -203,11 +203,12 @@ std::string to_bytes(Part part) {
   const auto numbers = numbers_of(part.counts);
   const std::vector<std::string*> texts = texts_of(part);
   // To the byte, so that a part is not moved while it grows.
-  std::size_t size = kMagic.size() + (numbers.size() + texts.size()) * sizeof(Number);
+  std::size_t size = kMagic.size() + (1 + numbers.size() + texts.size()) * sizeof(Number);
   for (const std::string* text : texts) size += text->size();
   std::string bytes;
   bytes.reserve(size);
   bytes += kMagic;
+  append_raw(bytes, static_cast<Number>(size));
   for (const Number* number : numbers) append_raw(bytes, *number);
   for (std::string* text : texts) {
     append_text<Number>(bytes, *text);
@@ -216,7 +217,19 @@ std::string to_bytes(Part part) {
   return bytes;
 }
 
+bool holds_whole_part(std::istream& bytes) {
+  const auto begin = bytes.tellg();
+  std::string head(kMagic.size() + sizeof(Number), '\0');
+  if (!bytes.read(head.data(), static_cast<std::streamsize>(head.size())) ||
+      head.compare(0, kMagic.size(), kMagic) != 0)
+    return false;
+  bytes.seekg(0, std::ios::end);
+  std::string_view size = std::string_view(head).substr(kMagic.size());
+  return static_cast<Number>(bytes.tellg() - begin) == take_raw<Number>(size);
+}
+
 PartView view_of_part(std::string_view bytes, const std::filesystem::path& path) {
+  const Number all = bytes.size();
   const auto take = [&](std::size_t length) {
     if (bytes.size() < length) refuse_part(path);
     return take_bytes(bytes, length);
@@ -226,6 +239,7 @@ PartView view_of_part(std::string_view bytes, const std::filesystem::path& path)
     return take_raw<Number>(raw);
   };
   if (take(std::min(bytes.size(), kMagic.size())) != kMagic) refuse_part(path);
+  if (take_number() != all) refuse_part(path);
   PartView part;
   part.features.resize(layers().size());
   for (Number* number : numbers_of(part.counts)) *number = take_number();

@@ -57,7 +57,10 @@ using PartView = PartOf<std::string_view>;  ///< looks into a part's bytes
 /// Deterministic: depends on the chunk and the configuration only.
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration);
 
+/// They say how many they are.
 std::string to_bytes(Part part);
+/// Whether what `bytes` are about to give is a part, as long as it says: a power cut may cut off what was written last.
+bool holds_whole_part(std::istream& bytes);
 
 /// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part; `path` is where they came from.
 PartView view_of_part(std::string_view bytes, const std::filesystem::path& path);

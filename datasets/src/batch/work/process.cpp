@@ -79,7 +79,7 @@ class Chunker {
     Piece piece{number_, next_};
     piece.has_part = true;
     first_ += chunk_.items.size();
-    if (!journal_.is_there(journal_.part(number_, next_))) piece.chunk = std::move(chunk_);
+    if (!is_part_there(journal_, number_, next_)) piece.chunk = std::move(chunk_);
     ++next_;
     return piece;
   }

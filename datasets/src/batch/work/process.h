@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -21,14 +20,13 @@ namespace exactvo::datasets::batch {
 /// A chunk on its way from the reader to the outputs, the end of an input, or both.
 struct Piece {
   std::size_t input = 0;
-  std::size_t number = 0;                     ///< of the chunk
-  bool has_part = false;                      ///< of a chunk: its part is on disk, or will be
-  std::optional<Chunk> chunk{};               ///< to be processed; none where the part is on disk
-  std::optional<InputFacts> facts{};          ///< this is the last piece of its input
-  bool is_whole_input = false;                ///< its only chunk: facts and part stand in one file
-  bool has_changed = false;                   ///< the input, since it was listed: what was given of it is worth nothing
-  Allowance::Taken memory{};                  ///< of a chunk that is to be processed, or of its part in memory
-  std::shared_ptr<const std::string> part{};  ///< while it waits in memory for its turn
+  std::size_t number = 0;             ///< of the chunk
+  bool has_part = false;              ///< of a chunk: its part is on disk, or will be
+  std::optional<Chunk> chunk{};       ///< to be processed; none where the part is on disk
+  std::optional<InputFacts> facts{};  ///< this is the last piece of its input
+  bool is_whole_input = false;        ///< its only chunk: facts and part stand in one file
+  bool has_changed = false;           ///< the input, since it was listed: what was given of it is worth nothing
+  Allowance::Taken memory{};          ///< of a chunk that is to be processed
 };
 
 /// What a chunk takes until its part is made.
