@@ -146,13 +146,6 @@ class CrowdEngine final : public CrowdCore {
       certify(begin, ends[own], 0, robots.safe_mx, robots.safe_my);
       share(ranks, ends, {&robots.safe_mx, &robots.safe_my});
       certify(begin, ends[own], 1, robots.next_mx, robots.next_my);
-      for_own_ranges(begin, ends[own], [this](std::size_t first, std::size_t last, Scratch& s) {
-        for (std::size_t i = first; i < last; ++i) {
-          const bool whole = robots.next_mx[i] == robots.wish_mx[i] && robots.next_my[i] == robots.wish_my[i];
-          s.counts.cut_short += !whole;
-          if (!whole) robots.next_kept[i] &= static_cast<std::uint8_t>(~Robots::kIsKept);
-        }
-      });
     } else {
       robots.next_mx = robots.wish_mx;
       robots.next_my = robots.wish_my;
@@ -273,7 +266,8 @@ class CrowdEngine final : public CrowdCore {
   }
 
   /// Of each lane what a table says of its kind; `otherwise` in lanes without a robot.
-  void put_by_kind(const Pack& pack, const std::vector<T>& table, T otherwise, T* by_lane) const {
+  template <class Value>
+  void put_by_kind(const Pack& pack, const std::vector<Value>& table, Value otherwise, Value* by_lane) const {
     std::fill(by_lane, by_lane + kPack, table[0]);
     for (std::size_t lane = 0; table_.is_mixed() && lane < pack.size(); ++lane)
       by_lane[lane] = table[robots.kind(pack.begin + lane)];
@@ -284,7 +278,7 @@ class CrowdEngine final : public CrowdCore {
 
   void decide_range(std::size_t first, std::size_t last, NearLists& lists, Scratch& s) {
     Pack packs[kGroupPacks];
-    lists.clear(last - first);
+    lists.clear();
     for (std::size_t b = first; b < last;) {
       std::size_t count = 0;
       for (; b < last && count < kGroupPacks; b = packs[count++].end) {
@@ -310,21 +304,17 @@ class CrowdEngine final : public CrowdCore {
   /// Who stands so near to the robots of a pack that the second level looks at the pair.
   void list_near(const Pack& pack, Scratch& s, NearLists& lists) const {
     const Timed timed(options.time_phases, s.phases.hard);
-    const Ranked& ranked = s.found.ranked;
-    const std::int32_t* const robot = s.found.others.robot;
+    alignas(64) float meeting[kPack] = {};
+    alignas(64) std::int32_t most[kPack];
+    put_by_kind(pack, table_.meeting, 0.0F, meeting);
+    put_by_kind(pack, table_.neighbours, 0, most);
+    std::uint32_t unknown = 0;
     for (std::size_t lane = 0; lane < pack.size(); ++lane) {
-      const auto kind = static_cast<std::size_t>(s.found.limits.kind[lane]);
-      const float meeting = table_.meeting[kind];
-      const auto most = static_cast<std::size_t>(table_.neighbours[kind]);
-      std::int32_t others[kMostNeighbours];
-      std::size_t count = 0;
-      for (; count < most && ranked.key[count + 1][lane] < meeting; ++count)
-        others[count] = robot[bits_of(ranked.key[count + 1][lane]) & kIndexBits];
-      if (count < most && pack.is_searched() && meeting <= table_.none[kind])
-        lists.add(pack.begin + lane, others, count);
-      else
-        lists.add_unknown();
+      const bool listed = pack.is_searched() && most[lane] > 0 && meeting[lane] <= s.found.limits.none[lane];
+      unknown |= std::uint32_t{!listed} << lane;
+      if (!listed) meeting[lane] = 0.0F;
     }
+    lists.add(pack.begin, pack.size(), s.found.others, s.found.ranked, meeting, most, unknown);
   }
 
   void lines_of(Pack& pack, std::size_t slot, Scratch& s) {

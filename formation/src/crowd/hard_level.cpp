@@ -12,9 +12,6 @@ using namespace crowd;
 
 namespace {
 
-/// Robots that are decided together.
-constexpr std::size_t kTogether = 64;
-
 /// Half a lattice step in both coordinates, sqrt(1/2), rounded up: half-planes are moved inward by it before the linear
 /// program, so that its answer can be rounded.
 constexpr double kHalfDiagonal = 0.7072;
@@ -50,6 +47,82 @@ const MotionRow* violated(const std::vector<MotionRow>& rows, Motion m) {
     if (!row.allows(m)) return &row;
   return nullptr;
 }
+
+/// Of the square of the disc: inside, whatever is rounded.
+constexpr double kWithinDisc = 1.0 - 0x1p-40;
+
+/// Lattice steps.
+struct Way {
+  double x, y;
+};
+
+/// The way nearest to a wish where one row binds or two: KKT. Heuristic in the last digits, like the linear program.
+class FewRows {
+ public:
+  explicit FewRows(Motion wish) : wish_{static_cast<double>(wish.x), static_cast<double>(wish.y)} {}
+
+  bool has_room() const { return count_ < kMost; }
+  void add(double x, double y, double least) {
+    const double along = x * wish_.x + y * wish_.y;
+    allow_wish_ &= along >= least;
+    rows_[count_++] = {x, y, least + kHalfDiagonal * std::sqrt(x * x + y * y)};
+  }
+  bool allow_wish() const { return allow_wish_; }
+
+  bool solve(double squared_disc, Way& found) const {
+    const std::size_t first = most_missing(wish_);
+    const Row& row = rows_[first];
+    const double share = row.missing(wish_) / row.times(row);
+    found = {wish_.x + share * row.x, wish_.y + share * row.y};
+    const std::size_t second = most_missing(found);
+    if (second != first && rows_[second].missing(found) > 0.0) {
+      if (!meet(row, rows_[second], found)) return false;
+      const std::size_t third = most_missing(found);
+      if (third != first && third != second && rows_[third].missing(found) > 0.0) return false;
+    }
+    return found.x * found.x + found.y * found.y <= squared_disc;
+  }
+
+ private:
+  /// Moved inward by kHalfDiagonal.
+  struct Row {
+    double x, y, least;
+
+    double missing(Way m) const { return least - (x * m.x + y * m.y); }
+    double times(const Row& other) const { return x * other.x + y * other.y; }
+  };
+
+  /// Where normals are nearer to parallel than this, the square of the sine, the linear program decides.
+  static constexpr double kParallel = 0x1p-10;
+
+  std::size_t most_missing(Way m) const {
+    std::size_t most = 0;
+    double missing = rows_[0].missing(m);
+    for (std::size_t k = 1; k < count_; ++k) {
+      const double its = rows_[k].missing(m);
+      if (its > missing) missing = its, most = k;
+    }
+    return most;
+  }
+
+  /// On both boundaries, if both pull the wish there.
+  bool meet(const Row& a, const Row& b, Way& found) const {
+    const double aa = a.times(a), bb = b.times(b), ab = a.times(b), cross = a.x * b.y - a.y * b.x,
+                 squared = cross * cross;
+    if (!(squared >= kParallel * aa * bb)) return false;
+    const double of_a = a.missing(wish_), of_b = b.missing(wish_);
+    const double pull_a = (of_a * bb - of_b * ab) / squared, pull_b = (of_b * aa - of_a * ab) / squared;
+    found = {wish_.x + (pull_a * a.x + pull_b * b.x), wish_.y + (pull_a * a.y + pull_b * b.y)};
+    return pull_a >= 0.0 && pull_b >= 0.0;
+  }
+
+  static constexpr std::size_t kMost = 16;
+
+  std::size_t count_ = 0;
+  Way wish_;
+  bool allow_wish_ = true;
+  Row rows_[kMost];
+};
 
 }  // namespace
 
@@ -87,85 +160,105 @@ template <class T>
 void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, NearLists& lists, HardBuffers& b,
                           OneRobotBuffers<T>& one, StepReport& counts, Robots& robots, std::int32_t* to_x,
                           std::int32_t* to_y) const {
-  const std::int32_t *wish_x = robots.wish_mx.data(), *wish_y = robots.wish_my.data();
-  const std::int32_t *safe_x = robots.safe_mx.data(), *safe_y = robots.safe_my.data();
-  const std::uint8_t* const listed = lists.count.data();
-  b.asked.resize(kTogether);
-  std::size_t list = 0, asked = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    to_x[i] = wish_x[i];
-    to_y[i] = wish_y[i];
-    if (round == 0 || safe_x[i] != wish_x[i] || safe_y[i] != wish_y[i]) b.asked[asked++] = {i, list};
-    if (listed[i - first] != NearLists::kUnknown) list += listed[i - first];
-    if (asked < kTogether && i + 1 < last) continue;
-    b.asked.resize(asked);
-    decide_asked(first, round, lists, b, one, counts, robots, to_x, to_y);
-    b.asked.resize(kTogether);
-    asked = 0;
-  }
-}
-
-template <class T>
-void HardLevel<T>::decide_asked(std::size_t first, int round, NearLists& lists, HardBuffers& b, OneRobotBuffers<T>& one,
-                                StepReport& counts, Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const {
-  find_near_pairs(robots, kinds_, first, b.asked, round == 0, lists, b.near);
-  put_pairs(round, b);
-  make_pair_rows(b.pairs);
-  std::size_t from = 0;
-  for (std::size_t k = 0; k < b.asked.size(); from = b.near.end[k++]) {
-    const std::size_t robot = b.asked[k].robot;
-    const std::uint8_t state = b.near.state[k];
-    if (round == 0) {
-      counts.overlapping += (state & NearPairs::kOverlaps) != 0;
-      if (state & NearPairs::kMeets) robots.next_kept[robot] |= Robots::kHasMet;
-    }
-    if ((state & NearPairs::kHindered) == 0) continue;
-    const Motion m = within_rows(robot, safe_of(robot, round), from, b.near.end[k], b, one);
+  std::copy(&robots.wish_mx[first], &robots.wish_mx[last], to_x + first);
+  std::copy(&robots.wish_my[first], &robots.wish_my[last], to_y + first);
+  find_cut(first, last, round, lists, b, robots);
+  counts.overlapping += round == 0 ? b.near.overlapping : 0;
+  for (const std::int32_t cut : b.near.cut) {
+    const auto robot = static_cast<std::size_t>(cut);
+    const bool stays = (b.near.state[robot - first] & NearPairs::kStays) != 0;
+    const Motion safe = safe_of(robot, round), m = stays ? safe : within_rows(robot, safe, b, one);
     to_x[robot] = m.x;
     to_y[robot] = m.y;
+    if (round == 0 || m == wish_of(robot)) continue;
+    ++counts.cut_short;
+    robots.next_kept[robot] &= static_cast<std::uint8_t>(~Robots::kIsKept);
   }
 }
 
-/// The pairs of all robots that are hindered.
+/// Into b.near the robots whose rows may not allow their wishes, with all their rows.
 template <class T>
-void HardLevel<T>::put_pairs(int round, HardBuffers& b) const {
-  const Robots& robots = crowd_.robots;
-  const std::size_t count = b.near.pairs();
-  MotionColumns columns{robots.id.data(),      robots.x.data(), robots.y.data(), robots.wish_mx.data(),
+void HardLevel<T>::find_cut(std::size_t first, std::size_t last, int round, NearLists& lists, HardBuffers& b,
+                            Robots& robots) const {
+  MotionColumns columns{robots.x.data(),       robots.y.data(), robots.wish_mx.data(),
                         robots.wish_my.data(), nullptr,         nullptr};
-  if (round > 0) columns.safe_x = robots.safe_mx.data(), columns.safe_y = robots.safe_my.data();
-  gather_pairs(columns, b.near.robot.data(), b.near.other.data(), count, b.pairs);
-  PairBlock* const blocks = b.pairs.blocks();
-  if (kinds_.size() == 1) {
-    for (std::size_t k = 0; k < count; k += kPack)
-      std::fill(blocks[k / kPack].radius, blocks[k / kPack].radius + kPack,
-                2.0 * static_cast<double>(kinds_[0].radius));
-    return;
+  if (round > 0) {
+    columns.safe_x = robots.safe_mx.data(), columns.safe_y = robots.safe_my.data();
+    b.near.find_again(robots, kinds_, first, last, lists);
+  } else {
+    b.near.find(robots, kinds_, first, last, lists);
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t own = robots.kind(static_cast<std::size_t>(b.near.robot[k])),
-                      its = robots.kind(static_cast<std::size_t>(b.near.other[k]));
-    blocks[k / kPack].radius[k % kPack] = static_cast<double>(kinds_[own].radius + kinds_[its].radius);
-  }
+  make_pair_rows(columns, b.near.pairs, 0);
+  b.near.judge_rows(robots);
+  if (round > 0) return;
+  const std::size_t open = b.near.pairs.size();
+  b.near.add_clear(robots, kinds_, lists);
+  make_pair_rows(columns, b.near.pairs, open);
 }
 
-/// The motion nearest to the wish that a robot's rows allow; those of pairs `first` to `last`.
+/// The motion nearest to the wish that a robot's rows allow, which are put into b.rows by the places of the others.
 template <class T>
-Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
-                                 OneRobotBuffers<T>& one) const {
-  bool found = true, grants = true;
-  for (std::size_t k = first; k < last; ++k) {
-    found &= b.pairs.found(k);
-    grants &= b.pairs.grants(k);
-  }
-  if (!found) return safe;
+Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const {
+  Motion few;
+  const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
+  const Few found = has_obstacles ? Few::not_found : nearest_of_few(robot, b.near, few);
+  if (found == Few::allowed) return few;
+  b.order.clear();
+  b.near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t other) {
+    b.order.push_back(static_cast<std::uint64_t>(other) << 32U | 2 * pair | std::uint64_t{!is_a});
+  });
+  std::sort(b.order.begin(), b.order.end());
+  b.rows.clear();
+  for (const std::uint64_t entry : b.order)
+    b.rows.push_back(b.near.pairs.row((entry & 0xFFFFFFFFU) / 2, entry % 2 == 0));
   const Motion wish = wish_of(robot);
-  if (grants) return wish;
-  b.rows.resize(last - first);
-  for (std::size_t k = first; k < last; ++k) b.rows[k - first] = b.pairs.row(k);
   if (violated(b.rows, wish) == nullptr) return wish;
+  if (found == Few::not_allowed) return rounded(robot, safe, few, 0, b, one);
   if (crowd_.reserved_ways.holds(crowd_.robots.id[robot])) return shortened(robot, safe, b, one);
-  return nearest(robot, safe, first, b, one);
+  const double per_step = 1.0 / table_.velocity_step;
+  const std::size_t obstacles = solve(robot, b, one);
+  return rounded(robot, safe, whole(b.answer.velocity.x * per_step, b.answer.velocity.y * per_step), obstacles, b, one);
+}
+
+/// Without obstacles nearly always one row binds, or two.
+template <class T>
+auto HardLevel<T>::nearest_of_few(std::size_t robot, const NearPairs& near, Motion& m) const -> Few {
+  m = wish_of(robot);
+  FewRows rows(m);
+  bool has_room = true;
+  near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t) {
+    const PairTable& p = near.pairs;
+    if (!(has_room &= rows.has_room())) return;
+    is_a ? rows.add(p.normal_x[pair], p.normal_y[pair], p.least_a[pair])
+         : rows.add(-p.normal_x[pair], -p.normal_y[pair], p.least_b[pair]);
+  });
+  if (!has_room) return Few::not_found;
+  if (!rows.allow_wish()) {
+    const double disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]) / table_.velocity_step;
+    Way found{};
+    if (!rows.solve(disc * disc * kWithinDisc, found)) return Few::not_found;
+    m = whole(found.x, found.y);
+    if (!is_slow_enough(robot, m)) return Few::not_allowed;
+  }
+  return allows(robot, near, m) ? Few::allowed : Few::not_allowed;
+}
+
+/// Whether all rows of a robot allow a motion. Exact.
+template <class T>
+bool HardLevel<T>::allows(std::size_t robot, const NearPairs& near, Motion m) const {
+  bool all = true;
+  near.for_pairs_of(robot,
+                    [&](std::size_t pair, bool is_a, std::int32_t) { all &= near.pairs.row(pair, is_a).allows(m); });
+  return all;
+}
+
+/// Than its kind allows and than longest_way says.
+template <class T>
+bool HardLevel<T>::is_slow_enough(std::size_t robot, Motion m) const {
+  const Motion wish = wish_of(robot);
+  const std::int64_t longest = longest_way(wish.x, wish.y);
+  return squared_length(m) <=
+         std::min(kinds_[crowd_.robots.kind(robot)].squared_speed, static_cast<double>(longest * longest));
 }
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
@@ -189,10 +282,9 @@ Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers
   return safe;
 }
 
-/// `first`: of the robot's pairs, whose rows are b.rows.
+/// Into b.answer the nearest velocity; how many half-planes of obstacles it keeps.
 template <class T>
-Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, HardBuffers& b,
-                             OneRobotBuffers<T>& one) const {
+std::size_t HardLevel<T>::solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const {
   const double unit = table_.velocity_step, inward = kHalfDiagonal * unit;
   const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
   const std::size_t obstacles = has_obstacles ? one_.put_obstacles(robot, one) : 0, hard = obstacles + b.rows.size();
@@ -206,10 +298,11 @@ Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, 
     b.offset[k] = static_cast<double>(one.row_c[k * kPack]);
   }
   for (std::size_t k = 0; k < b.rows.size(); ++k) {
-    const UnitRow row = b.pairs.unit_row(first + k);
-    b.x[obstacles + k] = row.x;
-    b.y[obstacles + k] = row.y;
-    b.offset[obstacles + k] = row.least * unit + inward;
+    const MotionRow& row = b.rows[k];
+    const double x = static_cast<double>(row.nx), y = static_cast<double>(row.ny), length = std::sqrt(x * x + y * y);
+    b.x[obstacles + k] = x / length;
+    b.y[obstacles + k] = y / length;
+    b.offset[obstacles + k] = static_cast<double>(row.least) / length * unit + inward;
   }
   for (std::size_t k = 0; k < moving; ++k) {
     const BodyLine& line = one.body_lines[one.still + k];
@@ -227,22 +320,17 @@ Motion HardLevel<T>::nearest(std::size_t robot, Motion safe, std::size_t first, 
   problem.preferred = {unit * wish.x, unit * wish.y};
   problem.disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]);
   lp::solve(problem, b.answer);
-  return rounded(robot, safe, obstacles, b, one);
+  return obstacles;
 }
 
-/// The answer of the linear program as a motion that satisfies all rows, or one on the way back to `safe`.
+/// Beside `first` a motion that satisfies all rows, or one on the way back to `safe`.
 template <class T>
-Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, std::size_t obstacles, const HardBuffers& b,
+Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, Motion first, std::size_t obstacles, const HardBuffers& b,
                              const OneRobotBuffers<T>& one) const {
-  const double fastest = kinds_[crowd_.robots.kind(robot)].squared_speed;
-  const Motion wish = wish_of(robot);
-  const std::int64_t longest = longest_way(wish.x, wish.y);
   const auto holds = [&](Motion m) {
-    return squared_length(m) <= std::min(fastest, static_cast<double>(longest * longest)) &&
-           violated(b.rows, m) == nullptr && (obstacles == 0 || one_.keeps_obstacles(robot, obstacles, one, m.x, m.y));
+    return is_slow_enough(robot, m) && violated(b.rows, m) == nullptr &&
+           (obstacles == 0 || one_.keeps_obstacles(robot, obstacles, one, m.x, m.y));
   };
-  const double per_step = 1.0 / table_.velocity_step;
-  const Motion first = whole(b.answer.velocity.x * per_step, b.answer.velocity.y * per_step);
   Motion m = first;
   for (int k = 0; k < kCorrections; ++k) {
     if (holds(m)) return m;

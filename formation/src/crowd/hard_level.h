@@ -26,9 +26,8 @@ namespace exactvo::formation {
 
 /// Of a thread.
 struct HardBuffers {
-  std::vector<crowd::AskedRobot> asked;  ///< robots that are decided together
   crowd::NearPairs near;
-  crowd::PairTable pairs;  ///< of those that are hindered, robot by robot
+  std::vector<std::uint64_t> order;  ///< of a robot's pairs: the place of the other, the pair, whether it is b of it
   std::vector<crowd::MotionRow> rows;
   std::vector<double> x, y, offset;  ///< of the linear program
   lp::Solution answer;
@@ -44,24 +43,26 @@ class HardLevel {
 
   /// The motions of robots, into `to_x` and `to_y` by robot. Their wishes, and those of all robots near them, stand in
   /// Robots::wish_mx and wish_my. `round`: 0: from rest on; says in Robots::next_kept which have met another; 1: from
-  /// Robots::safe_mx and safe_my on. `lists`: of these robots.
+  /// Robots::safe_mx and safe_my on, and says which are cut short. `lists`: of these robots.
   void decide(std::size_t first, std::size_t last, int round, crowd::NearLists& lists, HardBuffers& b,
               OneRobotBuffers<T>& one, StepReport& counts, crowd::Robots& robots, std::int32_t* to_x,
               std::int32_t* to_y) const;
 
  private:
+  enum class Few { allowed, not_allowed, not_found };
+
   crowd::Motion wish_of(std::size_t robot) const;
   crowd::Motion safe_of(std::size_t robot, int round) const;
-  void decide_asked(std::size_t first, int round, crowd::NearLists& lists, HardBuffers& b, OneRobotBuffers<T>& one,
-                    StepReport& counts, crowd::Robots& robots, std::int32_t* to_x, std::int32_t* to_y) const;
-  void put_pairs(int round, HardBuffers& b) const;
-  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, std::size_t first, std::size_t last, HardBuffers& b,
-                            OneRobotBuffers<T>& one) const;
-  crowd::Motion nearest(std::size_t robot, crowd::Motion safe, std::size_t first, HardBuffers& b,
-                        OneRobotBuffers<T>& one) const;
+  void find_cut(std::size_t first, std::size_t last, int round, crowd::NearLists& lists, HardBuffers& b,
+                crowd::Robots& robots) const;
+  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
+  Few nearest_of_few(std::size_t robot, const crowd::NearPairs& near, crowd::Motion& m) const;
+  bool allows(std::size_t robot, const crowd::NearPairs& near, crowd::Motion m) const;
+  bool is_slow_enough(std::size_t robot, crowd::Motion m) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
-  crowd::Motion rounded(std::size_t robot, crowd::Motion safe, std::size_t obstacles, const HardBuffers& b,
-                        const OneRobotBuffers<T>& one) const;
+  std::size_t solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const;
+  crowd::Motion rounded(std::size_t robot, crowd::Motion safe, crowd::Motion first, std::size_t obstacles,
+                        const HardBuffers& b, const OneRobotBuffers<T>& one) const;
 
   const CrowdCore& crowd_;
   const crowd::KindTable<T>& table_;

@@ -3,32 +3,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/near_pairs.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
-#ifndef EXACTVO_NEAR_PAIRS_ONCE
-#define EXACTVO_NEAR_PAIRS_ONCE
-namespace exactvo::formation::crowd {
-
-/// Lattice steps by which a motion may be longer than the wish: what rounding to the lattice adds, and some.
-inline constexpr std::int32_t kRoundingRoom = 4;
-
-enum class PairState { far, near, overlapping };
-
-/// By whole numbers.
-PairState state_of(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t i, std::size_t j);
-
-/// Behind the first `count` pairs of out.judged_other all robots that `i` could meet or that overlap it, in the order
-/// of their places; how many there are then. Leaves room for `more`.
-std::size_t look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t i, std::size_t count,
-                       std::size_t more, NearPairs& out);
-
-}  // namespace exactvo::formation::crowd
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
@@ -36,6 +15,7 @@ namespace exactvo::formation::crowd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, kPack>;
 using Words = hn::RebindToSigned<Floats>;
+using Halves = hn::Rebind<std::int16_t, Words>;
 using F = hn::Vec<Floats>;
 using W = hn::Vec<Words>;
 
@@ -45,10 +25,11 @@ constexpr float kWider = 1.0F + 0x1p-18F, kNarrower = 1.0F - 0x1p-18F;
 /// What (6) is asked to have left: of S, and steps.
 constexpr float kShareLeft = 0x1p-18F, kLeft = 1.0F;
 
-HWY_INLINE std::uint64_t bits_of_mask(hn::Mask<Floats> mask) {
+template <class M>
+HWY_INLINE std::uint32_t bits_of_mask(M mask) {
   std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Floats(), mask, bytes);
-  return bytes[0] | static_cast<std::uint64_t>(bytes[1]) << 8U;
+  hn::StoreMaskBits(Floats(), hn::RebindMask(Floats(), mask), bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
 /// longest_way.
@@ -58,114 +39,170 @@ HWY_INLINE F way_of(W wish_x, W wish_y) {
   return hn::ConvertTo(Floats(), hn::Add(bound, hn::Set(Words(), 1 + kRoundingRoom)));
 }
 
-/// The pairs of robots side by side. Writes whole registers.
-class PairLayout {
- public:
-  HWY_INLINE PairLayout(const Robots& robots, NearPairs& out) : robots_(robots), out_(out) {}
-
-  std::size_t count = 0;
-
-  /// The own columns of pairs from `count` to `end`.
-  HWY_INLINE void put_own(std::size_t robot, std::size_t end) const {
-    const Words d;
-    const W x = hn::Set(d, robots_.x[robot]), y = hn::Set(d, robots_.y[robot]);
-    const W wish_x = hn::Set(d, robots_.wish_mx[robot]), wish_y = hn::Set(d, robots_.wish_my[robot]);
-    std::int32_t *const own_x = out_.own_x.data(), *const own_y = out_.own_y.data();
-    std::int32_t *const own_wish_x = out_.own_wish_x.data(), *const own_wish_y = out_.own_wish_y.data();
-    for (std::size_t k = count; k < end; k += hn::Lanes(d)) {
-      hn::StoreU(x, d, own_x + k);
-      hn::StoreU(y, d, own_y + k);
-      hn::StoreU(wish_x, d, own_wish_x + k);
-      hn::StoreU(wish_y, d, own_wish_y + k);
-    }
-  }
-
-  HWY_INLINE void put_listed(std::size_t robot, const std::int16_t* away, std::size_t listed) const {
-    const Words d;
-    const W own = hn::Set(d, static_cast<std::int32_t>(robot));
-    std::int32_t* const to = out_.judged_other.data() + count;
-    for (std::size_t n = 0; n < listed; n += hn::Lanes(d))
-      hn::StoreU(hn::Add(own, hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::int16_t, Words>(), away + n))), d, to + n);
-  }
-
- private:
-  const Robots& robots_;
-  NearPairs& out_;
+/// Of pairs, a bit a lane.
+struct Judged {
+  std::uint32_t near = 0, clear = 0, doubtful = 0;
 };
 
-/// Whether the first `count` pairs could meet surely, or perhaps, and whether (6) holds: a bit each. Reads and writes
-/// to a multiple of kPack. `both_radii`: of any two robots, if there is one kind.
-template <bool kMixed>
-void judge(const Robots& robots, float both_radii, std::size_t count, NearPairs& pairs) {
-  const Floats d;
-  const Words words;
-  const F zero = hn::Zero(d);
-  std::uint64_t near = 0, clear = 0, doubtful = 0;
-  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    const W other = hn::LoadU(words, &pairs.judged_other[k]);
-    const W own_x = hn::LoadU(words, &pairs.own_wish_x[k]), own_y = hn::LoadU(words, &pairs.own_wish_y[k]);
+/// Robots, a lane each.
+class OwnLanes {
+ public:
+  HWY_INLINE OwnLanes(W x, W y, W wish_x, W wish_y)
+      : x_(x),
+        y_(y),
+        wish_x_(hn::ConvertTo(Floats(), wish_x)),
+        wish_y_(hn::ConvertTo(Floats(), wish_y)),
+        way_(way_of(wish_x, wish_y)) {}
+
+  /// Whether each could meet another robot surely, or perhaps, and whether (6) holds. `contact`: R.
+  HWY_INLINE Judged judge(const Robots& robots, W other, F contact) const {
+    const Floats d;
+    const Words words;
+    const F zero = hn::Zero(d);
     const W its_x = hn::GatherIndex(words, robots.wish_mx.data(), other),
             its_y = hn::GatherIndex(words, robots.wish_my.data(), other);
-    const F dx =
-        hn::ConvertTo(d, hn::Sub(hn::LoadU(words, &pairs.own_x[k]), hn::GatherIndex(words, robots.x.data(), other)));
-    const F dy =
-        hn::ConvertTo(d, hn::Sub(hn::LoadU(words, &pairs.own_y[k]), hn::GatherIndex(words, robots.y.data(), other)));
-    const F contact = kMixed ? hn::LoadU(d, &pairs.contact[k]) : hn::Set(d, both_radii);
+    const F dx = hn::ConvertTo(d, hn::Sub(x_, hn::GatherIndex(words, robots.x.data(), other)));
+    const F dy = hn::ConvertTo(d, hn::Sub(y_, hn::GatherIndex(words, robots.y.data(), other)));
     const F squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-    const F reach = hn::Add(contact, hn::Add(way_of(own_x, own_y), way_of(its_x, its_y)));
+    const F reach = hn::Add(contact, hn::Add(way_, way_of(its_x, its_y)));
     const F limit = hn::Mul(reach, reach);
     const F apart = hn::Max(hn::Set(d, 1.0F), hn::Sub(contact, hn::Set(d, static_cast<float>(kRoundedContact))));
     const auto perhaps = hn::Lt(squared, hn::Mul(limit, hn::Set(d, kWider)));
     const auto surely = hn::And(hn::Lt(squared, hn::Mul(limit, hn::Set(d, kNarrower))),
                                 hn::Gt(squared, hn::Mul(hn::Mul(apart, apart), hn::Set(d, kWider))));
-    const F own = hn::Add(hn::Mul(dx, hn::ConvertTo(d, own_x)), hn::Mul(dy, hn::ConvertTo(d, own_y)));
+    const F own = hn::Add(hn::Mul(dx, wish_x_), hn::Mul(dy, wish_y_));
     const F its = hn::Add(hn::Mul(dx, hn::ConvertTo(d, its_x)), hn::Mul(dy, hn::ConvertTo(d, its_y)));
     const F needs = hn::Add(hn::Max(zero, hn::Neg(own)), hn::Max(zero, its));
     const F distance = hn::Sqrt(squared);
     const F room = hn::Sub(hn::Sub(squared, hn::Mul(contact, distance)), needs);
     const F sum = hn::Add(distance, reach);
     const F left = hn::Mul(distance, hn::Add(hn::Mul(sum, hn::Set(d, kShareLeft)), hn::Set(d, kLeft)));
-    const std::size_t lane = k % kPack;
-    near |= bits_of_mask(surely) << lane;
-    doubtful |= bits_of_mask(hn::AndNot(surely, perhaps)) << lane;
-    clear |= bits_of_mask(hn::Ge(room, left)) << lane;
-    if (lane + hn::Lanes(d) < kPack && k + hn::Lanes(d) < count) continue;
-    const std::size_t byte = k / kPack * (kPack / 8);
-    std::memcpy(&pairs.near[byte], &near, kPack / 8);
-    std::memcpy(&pairs.clear[byte], &clear, kPack / 8);
-    std::memcpy(&pairs.doubtful[byte], &doubtful, kPack / 8);
-    near = clear = doubtful = 0;
+    return {bits_of_mask(surely), bits_of_mask(hn::Ge(room, left)), bits_of_mask(hn::AndNot(surely, perhaps))};
   }
+
+ private:
+  W x_, y_;
+  F wish_x_, wish_y_, way_;
+};
+
+/// R of lanes and the others, where there are several kinds.
+HWY_INLINE F mixed_contact(const Robots& robots, const std::vector<StepsOfKind>& kinds, const std::int32_t* own,
+                           W other) {
+  HWY_ALIGN std::int32_t others[kPack];
+  HWY_ALIGN float contact[kPack];
+  hn::Store(other, Words(), others);
+  for (std::size_t lane = 0; lane < hn::Lanes(Floats()); ++lane)
+    contact[lane] = static_cast<float>(kinds[robots.kind(static_cast<std::size_t>(own[lane]))].radius +
+                                       kinds[robots.kind(static_cast<std::size_t>(others[lane]))].radius);
+  return hn::Load(Floats(), contact);
 }
 
 template <bool kMixed>
-void lay_out_and_judge(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
-                       const std::vector<AskedRobot>& asked, bool first_round, const NearLists& lists, NearPairs& out) {
-  PairLayout pairs(robots, out);
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    const std::size_t robot = asked[k].robot, listed = lists.count[robot - begin];
-    std::size_t end = pairs.count;
-    if (listed == NearLists::kUnknown) {
-      end = look_round(robots, kinds, robot, pairs.count, kMostNeighbours * asked.size(), out);
-    } else if (first_round) {
-      end += listed;
-      pairs.put_listed(robot, lists.away.data() + asked[k].list, listed);
+void judge_lists(const Robots& robots, const std::vector<StepsOfKind>& kinds, NearLists& lists, std::uint16_t* clear,
+                 std::uint16_t* doubtful) {
+  const Floats d;
+  const Words words;
+  const F both_radii = hn::Set(d, static_cast<float>(2 * kinds[0].radius));
+  for (const NearLists::Lanes& pack : lists.packs) {
+    const std::size_t last_row = pack.first_row + pack.rows;
+    for (std::size_t row = pack.first_row; row < last_row; ++row) lists.near[row] = clear[row] = doubtful[row] = 0;
+    for (std::size_t lane = 0; lane < pack.size; lane += hn::Lanes(d)) {
+      const std::size_t at = static_cast<std::size_t>(pack.begin) + lane;
+      const OwnLanes own(hn::LoadU(words, &robots.x[at]), hn::LoadU(words, &robots.y[at]),
+                         hn::LoadU(words, &robots.wish_mx[at]), hn::LoadU(words, &robots.wish_my[at]));
+      const W number = hn::Iota(words, static_cast<std::int32_t>(at));
+      HWY_ALIGN std::int32_t numbers[kPack];
+      if constexpr (kMixed) hn::Store(number, words, numbers);
+      for (std::size_t row = pack.first_row; row < last_row; ++row) {
+        const W away = hn::PromoteTo(words, hn::LoadU(Halves(), &lists.away[row * kPack + lane]));
+        const W other = hn::Add(number, away);
+        const std::uint32_t there = bits_of_mask(hn::Ne(away, hn::Zero(words)));
+        if (there == 0) break;
+        const F contact = kMixed ? mixed_contact(robots, kinds, numbers, other) : both_radii;
+        const Judged j = own.judge(robots, other, contact);
+        lists.near[row] = static_cast<std::uint16_t>(lists.near[row] | (j.near & there) << lane);
+        clear[row] = static_cast<std::uint16_t>(clear[row] | (j.clear & there) << lane);
+        doubtful[row] = static_cast<std::uint16_t>(doubtful[row] | (j.doubtful & there) << lane);
+      }
     }
-    pairs.put_own(robot, end);
-    if constexpr (kMixed)
-      for (std::size_t n = pairs.count; n < end; ++n)
-        out.contact[n] = static_cast<float>(kinds[robots.kind(robot)].radius +
-                                            kinds[robots.kind(static_cast<std::size_t>(out.judged_other[n]))].radius);
-    out.judged_end[k] = pairs.count = end;
   }
-  for (std::size_t k = pairs.count; k % kPack != 0; ++k) out.judged_other[k] = 0;
-  judge<kMixed>(robots, static_cast<float>(2 * kinds[0].radius), pairs.count, out);
 }
 
-void judge_all(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
-               const std::vector<AskedRobot>& asked, bool first_round, const NearLists& lists, NearPairs& out) {
-  kinds.size() > 1 ? lay_out_and_judge<true>(robots, kinds, begin, asked, first_round, lists, out)
-                   : lay_out_and_judge<false>(robots, kinds, begin, asked, first_round, lists, out);
+void judge_all(const Robots& robots, const std::vector<StepsOfKind>& kinds, NearLists& lists, std::uint16_t* clear,
+               std::uint16_t* doubtful) {
+  kinds.size() > 1 ? judge_lists<true>(robots, kinds, lists, clear, doubtful)
+                   : judge_lists<false>(robots, kinds, lists, clear, doubtful);
+}
+
+/// Of each pack the lanes whose safe motion is not what they wish.
+void find_asked(const Robots& robots, const std::vector<NearLists::Lanes>& packs, std::uint16_t* asked) {
+  const Words d;
+  for (const NearLists::Lanes& pack : packs) {
+    std::uint32_t lanes = 0;
+    for (std::size_t lane = 0; lane < pack.size; lane += hn::Lanes(d)) {
+      const std::size_t at = static_cast<std::size_t>(pack.begin) + lane;
+      const auto in_x = hn::Ne(hn::LoadU(d, &robots.safe_mx[at]), hn::LoadU(d, &robots.wish_mx[at])),
+                 in_y = hn::Ne(hn::LoadU(d, &robots.safe_my[at]), hn::LoadU(d, &robots.wish_my[at]));
+      lanes |= bits_of_mask(hn::Or(in_x, in_y)) << lane;
+    }
+    *asked++ = static_cast<std::uint16_t>(lanes & ((1U << pack.size) - 1U));
+  }
+}
+
+/// One robot and `count` others, which are read to a multiple of kPack.
+void judge_one(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot,
+               const std::int32_t* others, std::size_t count, std::uint16_t* near, std::uint16_t* clear,
+               std::uint16_t* doubtful) {
+  const Words words;
+  const OwnLanes own(hn::Set(words, robots.x[robot]), hn::Set(words, robots.y[robot]),
+                     hn::Set(words, robots.wish_mx[robot]), hn::Set(words, robots.wish_my[robot]));
+  HWY_ALIGN std::int32_t numbers[kPack];
+  std::fill(numbers, numbers + kPack, static_cast<std::int32_t>(robot));
+  for (std::size_t k = 0; k < count; k += hn::Lanes(words)) {
+    const W other = hn::LoadU(words, others + k);
+    const Judged j = own.judge(robots, other, mixed_contact(robots, kinds, numbers, other));
+    const std::size_t lane = k % kPack, row = k / kPack;
+    if (lane == 0) near[row] = clear[row] = doubtful[row] = 0;
+    near[row] = static_cast<std::uint16_t>(near[row] | j.near << lane);
+    clear[row] = static_cast<std::uint16_t>(clear[row] | j.clear << lane);
+    doubtful[row] = static_cast<std::uint16_t>(doubtful[row] | j.doubtful << lane);
+  }
+}
+
+/// Writes rows from `away` on, which has room for as many as there can be, and how many there are.
+std::uint32_t list_lanes(std::size_t begin, const Candidates& others, const Ranked& ranked, const float* meeting,
+                         const std::int32_t* most, std::int16_t* away, std::size_t& rows) {
+  const Floats d;
+  const Words words;
+  std::uint32_t unknown = 0;
+  rows = 0;
+  for (int r = 1; r < kMostRanks; ++r) {
+    std::uint32_t any = 0;
+    for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
+      const F key = hn::LoadU(d, ranked.key[r] + lane);
+      const auto wanted = hn::LoadU(words, most + lane);
+      const auto rank = hn::Set(words, r);
+      const auto is_near = hn::RebindMask(words, hn::Lt(key, hn::LoadU(d, meeting + lane)));
+      const auto is_there = hn::AndNot(hn::Gt(rank, wanted), is_near);
+      const std::uint32_t bits = bits_of_mask(is_there);
+      any |= bits;
+      if (bits == 0) {
+        hn::StoreU(hn::Zero(Halves()), Halves(), away + rows * kPack + lane);
+        continue;
+      }
+      const W number = hn::And(hn::BitCast(words, key), hn::Set(words, kIndexBits));
+      const W robot = hn::GatherIndex(words, others.robot, hn::IfThenElseZero(is_there, number));
+      const W by =
+          hn::IfThenElseZero(is_there, hn::Sub(robot, hn::Iota(words, static_cast<std::int32_t>(begin + lane))));
+      const auto half = hn::DemoteTo(Halves(), by);
+      hn::StoreU(half, Halves(), away + rows * kPack + lane);
+      const auto far = hn::Ne(hn::PromoteTo(words, half), by), is_last = hn::And(is_there, hn::Eq(rank, wanted));
+      unknown |= bits_of_mask(hn::Or(far, is_last)) << lane;
+    }
+    if (any == 0) break;
+    ++rows;
+  }
+  return unknown;
 }
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
@@ -175,115 +212,16 @@ HWY_AFTER_NAMESPACE();
 namespace exactvo::formation::crowd {
 
 HWY_EXPORT(judge_all);
+HWY_EXPORT(find_asked);
+HWY_EXPORT(judge_one);
+HWY_EXPORT(list_lanes);
 
 namespace {
 
-/// Bits that are taken at once.
-constexpr std::size_t kBits = 32;
+enum class PairState { far, near, overlapping };
 
-/// A bit a pair.
-class Bits {
- public:
-  explicit Bits(const std::vector<std::uint8_t>& of) : of_(of.data()) {}
-
-  /// So many from `from` on, kBits at most.
-  std::uint64_t take(std::size_t from, std::size_t count) const {
-    std::uint64_t word = 0;
-    std::memcpy(&word, of_ + from / 8, sizeof word);
-    return word >> from % 8 & ((std::uint64_t{1} << count) - 1U);
-  }
-
- private:
-  const std::uint8_t* of_;
-};
-
-/// From bits to the pairs of hindered robots.
-class PairTaker {
- public:
-  PairTaker(const Robots& robots, const std::vector<StepsOfKind>& kinds, NearPairs& out)
-      : robots_(robots),
-        kinds_(kinds),
-        near_(out.near),
-        clear_(out.clear),
-        doubtful_(out.doubtful),
-        robot_(out.robot.data()),
-        other_(out.other.data()),
-        judged_(out.judged_other.data()) {}
-
-  /// Pairs `from` to `end` of those that were judged. `hinders`: whatever (6) says. `list`: of the robot; null if it
-  /// has none. Leaves in it what is taken.
-  std::uint8_t take(std::size_t robot, std::size_t from, std::size_t end, bool hinders, std::int16_t* list) {
-    const std::size_t first = count_;
-    std::uint64_t open = 0;
-    bool meets = false, overlaps = false;
-    for (std::size_t at = from; at < end; at += kBits) {
-      const std::size_t some = std::min(kBits, end - at);
-      std::uint64_t near = near_.take(at, some), doubtful = doubtful_.take(at, some);
-      for (; doubtful != 0; doubtful &= doubtful - 1) {
-        const auto n = static_cast<std::size_t>(__builtin_ctzll(doubtful));
-        const PairState state = state_of(robots_, kinds_, robot, static_cast<std::size_t>(judged_[at + n]));
-        near |= std::uint64_t{state == PairState::near} << n;
-        overlaps |= state == PairState::overlapping;
-      }
-      meets |= near != 0;
-      open |= near & ~clear_.take(at, some);
-      for (; near != 0; near &= near - 1)
-        other_[count_++] = judged_[at + static_cast<std::size_t>(__builtin_ctzll(near))];
-    }
-    const bool is_hindered = meets && (hinders || open != 0);
-    if (is_hindered)
-      put_in_order(robot, first, list, end - from);
-    else
-      count_ = first;
-    return static_cast<std::uint8_t>((meets ? NearPairs::kMeets : 0U) | (is_hindered ? NearPairs::kHindered : 0U) |
-                                     (overlaps ? NearPairs::kOverlaps : 0U));
-  }
-
-  /// A list that was cut.
-  std::uint8_t believe(std::size_t robot, const std::int16_t* list, std::size_t listed) {
-    for (std::size_t n = 0; n < listed && list[n] != 0; ++n, ++count_) {
-      robot_[count_] = static_cast<std::int32_t>(robot);
-      other_[count_] = static_cast<std::int32_t>(robot) + list[n];
-    }
-    return NearPairs::kMeets | NearPairs::kHindered;
-  }
-
-  std::size_t count() const { return count_; }
-
- private:
-  /// By the others' places; those from `first` on, into the list too.
-  void put_in_order(std::size_t robot, std::size_t first, std::int16_t* list, std::size_t listed) const {
-    const auto own = static_cast<std::int32_t>(robot);
-    for (std::size_t k = first; k < count_; ++k) {
-      const std::int32_t other = other_[k];
-      std::size_t at = k;
-      for (; at > first && other_[at - 1] > other; --at) {
-        other_[at] = other_[at - 1];
-        if (list) list[at - first] = list[at - 1 - first];
-      }
-      other_[at] = other;
-      robot_[k] = own;
-      if (list) list[at - first] = static_cast<std::int16_t>(other - own);
-    }
-    if (list && count_ - first < listed) list[count_ - first] = 0;
-  }
-
-  const Robots& robots_;
-  const std::vector<StepsOfKind>& kinds_;
-  Bits near_, clear_, doubtful_;
-  std::int32_t *robot_, *other_;
-  const std::int32_t* judged_;
-  std::size_t count_ = 0;
-};
-
-}  // namespace
-
-std::int64_t longest_way(std::int32_t wish_x, std::int32_t wish_y) {
-  const std::int64_t x = std::abs(wish_x), y = std::abs(wish_y);
-  return std::max(x, y) + std::min(x, y) / 2 + 1 + kRoundingRoom;
-}
-
-PairState state_of(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t i, std::size_t j) {
+/// Exact.
+PairState judged(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t i, std::size_t j) {
   const std::int64_t dx = std::int64_t{robots.x[i]} - robots.x[j], dy = std::int64_t{robots.y[i]} - robots.y[j];
   const std::int64_t contact = kinds[robots.kind(i)].radius + kinds[robots.kind(j)].radius;
   const std::int64_t reach =
@@ -293,59 +231,211 @@ PairState state_of(const Robots& robots, const std::vector<StepsOfKind>& kinds, 
   return squared >= apart * apart ? PairState::near : PairState::overlapping;
 }
 
-namespace {
+std::size_t lowest(std::uint32_t bits) {
+  return static_cast<std::size_t>(__builtin_ctz(bits));
+}
 
-/// For so many pairs that are judged.
-void make_room(std::size_t pairs, NearPairs& out) {
-  const std::size_t room = pairs + 2 * kPack;
-  if (out.judged_other.size() >= room) return;
-  for (auto* column : {&out.judged_other, &out.own_x, &out.own_y, &out.own_wish_x, &out.own_wish_y})
-    column->resize(2 * room);
-  out.contact.resize(2 * room);
-  for (auto* bits : {&out.near, &out.clear, &out.doubtful}) bits->resize(2 * room / 8 + sizeof(std::uint64_t));
+template <class Column>
+void grow(Column& column, std::size_t size) {
+  if (column.size() < size) column.resize(size + size / 4);
 }
 
 }  // namespace
 
-std::size_t look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t i, std::size_t count,
-                       std::size_t more, NearPairs& out) {
-  const Window at{robots.x[i], robots.x[i], robots.y[i], robots.y[i]};
-  const Cells cells = robots.cells_of(grown(at, kinds[robots.kind(i)].reach));
-  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
-    const Stretch stretch = robots.stretch(cells, row);
-    for (std::size_t j = stretch.from; j < stretch.to; ++j) {
-      if (j == i || state_of(robots, kinds, i, j) == PairState::far) continue;
-      make_room(count + 1 + more, out);
-      out.judged_other[count++] = static_cast<std::int32_t>(j);
-    }
-  }
-  return count;
+std::int64_t longest_way(std::int32_t wish_x, std::int32_t wish_y) {
+  const std::int64_t x = std::abs(wish_x), y = std::abs(wish_y);
+  return std::max(x, y) + std::min(x, y) / 2 + 1 + kRoundingRoom;
 }
 
-void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
-                     const std::vector<AskedRobot>& asked, bool first_round, NearLists& lists, NearPairs& out) {
-  out.end.resize(asked.size());
-  out.state.resize(asked.size());
-  out.judged_end.resize(asked.size());
-  const std::size_t listed_most = kMostNeighbours * asked.size();
-  make_room(listed_most, out);
-  HWY_DYNAMIC_DISPATCH(judge_all)(robots, kinds, begin, asked, first_round, lists, out);
-  const std::size_t most = kPack + listed_most + (asked.empty() ? 0 : out.judged_end.back());
-  if (out.robot.size() < most) out.robot.resize(2 * most), out.other.resize(2 * most);
-  PairTaker taker(robots, kinds, out);
-  std::size_t from = 0;
-  for (std::size_t k = 0; k < asked.size(); from = out.judged_end[k++]) {
-    const std::size_t robot = asked[k].robot, listed = lists.count[robot - begin];
-    std::int16_t* const list = lists.away.data() + asked[k].list;
-    if (first_round || listed == NearLists::kUnknown) {
-      out.state[k] =
-          taker.take(robot, from, out.judged_end[k], !first_round, listed == NearLists::kUnknown ? nullptr : list);
-    } else {
-      out.state[k] = taker.believe(robot, list, listed);
-    }
-    out.end[k] = taker.count();
+void NearLists::add(std::size_t begin, std::size_t size, const Candidates& others, const Ranked& ranked,
+                    const float* meeting, const std::int32_t* most, std::uint32_t unknown) {
+  grow(away, (rows_ + kMostRanks) * kPack);
+  grow(near, rows_ + kMostRanks);
+  std::size_t rows = 0;
+  unknown |= HWY_DYNAMIC_DISPATCH(list_lanes)(begin, others, ranked, meeting, most, away.data() + rows_ * kPack, rows);
+  packs.push_back({static_cast<std::int32_t>(begin), static_cast<std::uint32_t>(rows_),
+                   static_cast<std::uint16_t>(unknown), static_cast<std::uint8_t>(size),
+                   static_cast<std::uint8_t>(rows)});
+  rows_ += rows;
+}
+
+void NearPairs::start(std::size_t first, std::size_t last, bool is_first) {
+  first_ = first, last_ = last, is_first_ = is_first;
+  pairs.clear();
+  cut.clear();
+  overlapping = 0;
+  state.assign(last - first, 0);
+  last_of_.assign(last - first, -1);
+}
+
+HWY_INLINE void NearPairs::add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot,
+                               std::size_t other, bool of_both) {
+  const bool is_a = robots.id[robot] < robots.id[other];
+  const std::size_t pair = pairs.add(is_a ? robot : other, is_a ? other : robot);
+  if (kinds.size() > 1)
+    pairs.radii[pair] = static_cast<double>(kinds[robots.kind(robot)].radius + kinds[robots.kind(other)].radius);
+  if (before_.size() < 2 * pair + 2) before_.resize(4 * pair + 64);
+  const auto link = [this](std::size_t to, std::size_t entry) {
+    before_[entry] = last_of_[to - first_];
+    last_of_[to - first_] = static_cast<std::int32_t>(entry);
+  };
+  link(robot, 2 * pair + std::size_t{!is_a});
+  if (of_both) link(other, 2 * pair + std::size_t{is_a});
+}
+
+/// After the pairs from `from` on.
+void NearPairs::finish(const std::vector<StepsOfKind>& kinds, std::size_t from) {
+  if (kinds.size() == 1 && from < pairs.size())
+    std::fill(&pairs.radii[from], &pairs.radii[pairs.size()], 2.0 * static_cast<double>(kinds[0].radius));
+}
+
+/// Into round_ all robots that `robot` could meet or that overlap it, and what is judged of them.
+void NearPairs::look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot) {
+  round_.clear();
+  const Window at{robots.x[robot], robots.x[robot], robots.y[robot], robots.y[robot]};
+  const Cells cells = robots.cells_of(grown(at, kinds[robots.kind(robot)].reach));
+  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
+    const Stretch stretch = robots.stretch(cells, row);
+    for (std::size_t j = stretch.from; j < stretch.to; ++j)
+      if (j != robot && judged(robots, kinds, robot, j) != PairState::far)
+        round_.push_back(static_cast<std::int32_t>(j));
   }
-  for (std::size_t k = taker.count(); k % kPack != 0; ++k) out.robot[k] = out.other[k] = 0;  // read, but not used
+  const std::size_t count = round_.size(), rows = count / kPack + 1;
+  round_.resize(rows * kPack, static_cast<std::int32_t>(robot));
+  for (auto* bits : {&round_near_, &round_clear_, &round_doubtful_}) grow(*bits, rows);
+  HWY_DYNAMIC_DISPATCH(judge_one)
+  (robots, kinds, robot, round_.data(), count, round_near_.data(), round_clear_.data(), round_doubtful_.data());
+  round_.resize(count);
+}
+
+/// Robots without a list: where a pair is open, all of them. Whether there are any, open or not.
+bool NearPairs::add_of_unknown(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot) {
+  look_round(robots, kinds, robot);
+  const auto bit = [](const std::vector<std::uint16_t>& of, std::size_t k) {
+    return (of[k / kPack] >> k % kPack & 1) != 0;
+  };
+  std::size_t near = 0;
+  bool open = !is_first_, overlaps = false;
+  for (std::size_t k = 0; k < round_.size(); ++k) {
+    const auto other = static_cast<std::size_t>(round_[k]);
+    const PairState pair = bit(round_doubtful_, k) ? judged(robots, kinds, robot, other)
+                           : bit(round_near_, k)   ? PairState::near
+                                                   : PairState::far;
+    overlaps |= pair == PairState::overlapping;
+    if (pair != PairState::near) continue;
+    const bool is_clear = is_first_ && bit(round_clear_, k);
+    open |= !is_clear;
+    round_[near++] = is_clear ? -1 - round_[k] : round_[k];
+  }
+  overlapping += overlaps;
+  for (std::size_t k = 0; open && k < near; ++k) {
+    const bool is_clear = round_[k] < 0;
+    const auto other = static_cast<std::size_t>(is_clear ? -1 - round_[k] : round_[k]);
+    const bool both = !is_clear && is_asked(robots, other);
+    if (!both || other > robot) add(robots, kinds, robot, other, both);
+  }
+  return near > 0;
+}
+
+void NearPairs::find(Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
+                     NearLists& lists) {
+  start(first, last, true);
+  for (auto* bits : {&clear_, &doubtful_}) grow(*bits, lists.rows() + 1);
+  HWY_DYNAMIC_DISPATCH(judge_all)(robots, kinds, lists, clear_.data(), doubtful_.data());
+  for (const NearLists::Lanes& pack : lists.packs) take_pack(robots, kinds, pack, lists);
+  finish(kinds, 0);
+}
+
+void NearPairs::take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack,
+                          NearLists& lists) {
+  const std::uint32_t known = ~std::uint32_t{pack.unknown};
+  const auto begin = static_cast<std::size_t>(pack.begin);
+  std::uint32_t meets = 0, overlap = 0;
+  for (std::size_t row = pack.first_row; row < pack.first_row + std::size_t{pack.rows}; ++row) {
+    const std::int16_t* const away = &lists.away[row * kPack];
+    const auto other_of = [&](std::size_t lane) {
+      return static_cast<std::size_t>(pack.begin + static_cast<std::int32_t>(lane) + away[lane]);
+    };
+    std::uint32_t near = lists.near[row] & known;
+    for (std::uint32_t doubtful = doubtful_[row] & known; doubtful != 0; doubtful &= doubtful - 1) {
+      const std::size_t lane = lowest(doubtful);
+      const PairState pair = judged(robots, kinds, begin + lane, other_of(lane));
+      near |= std::uint32_t{pair == PairState::near} << lane;
+      overlap |= std::uint32_t{pair == PairState::overlapping} << lane;
+    }
+    lists.near[row] = static_cast<std::uint16_t>(near);
+    meets |= near;
+    std::uint32_t open = near & ~std::uint32_t{clear_[row]};
+    for (; open != 0; open &= open - 1) {
+      const std::size_t lane = lowest(open), other = other_of(lane);
+      const bool both = is_ours(other);
+      if (!both || other > begin + lane) add(robots, kinds, begin + lane, other, both);
+    }
+  }
+  overlapping += static_cast<std::size_t>(__builtin_popcount(overlap));
+  for (std::uint32_t lanes = pack.unknown; lanes != 0; lanes &= lanes - 1)
+    meets |= std::uint32_t{add_of_unknown(robots, kinds, begin + lowest(lanes))} << lowest(lanes);
+  for (; meets != 0; meets &= meets - 1) robots.next_kept[begin + lowest(meets)] |= Robots::kHasMet;
+}
+
+void NearPairs::add_clear(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists) {
+  if (cut.empty()) return;
+  const std::size_t from = pairs.size();
+  for (const NearLists::Lanes& pack : lists.packs) {
+    const auto begin = static_cast<std::size_t>(pack.begin);
+    std::uint32_t lanes = 0;
+    for (std::size_t lane = 0; lane < pack.size; ++lane)
+      lanes |= std::uint32_t{(state_of(begin + lane) & kCut) != 0} << lane;
+    lanes &= ~std::uint32_t{pack.unknown};
+    for (std::size_t row = pack.first_row; lanes != 0 && row < pack.first_row + std::size_t{pack.rows}; ++row)
+      for (std::uint32_t clear = lists.near[row] & clear_[row] & lanes; clear != 0; clear &= clear - 1) {
+        const std::size_t lane = lowest(clear);
+        const std::int32_t own = pack.begin + static_cast<std::int32_t>(lane);
+        add(robots, kinds, static_cast<std::size_t>(own),
+            static_cast<std::size_t>(own + lists.away[row * kPack + lane]), false);
+      }
+  }
+  finish(kinds, from);
+}
+
+void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first,
+                           std::size_t last, const NearLists& lists) {
+  start(first, last, false);
+  grow(asked_, lists.packs.size());
+  HWY_DYNAMIC_DISPATCH(find_asked)(robots, lists.packs, asked_.data());
+  for (std::size_t p = 0; p < lists.packs.size(); ++p) {
+    const std::uint32_t asked = asked_[p];
+    if (asked == 0) continue;
+    const NearLists::Lanes& pack = lists.packs[p];
+    const auto begin = static_cast<std::size_t>(pack.begin);
+    for (std::size_t row = pack.first_row; row < pack.first_row + std::size_t{pack.rows}; ++row)
+      for (std::uint32_t near = lists.near[row] & asked; near != 0; near &= near - 1) {
+        const std::size_t lane = lowest(near), robot = begin + lane;
+        const auto other =
+            static_cast<std::size_t>(pack.begin + static_cast<std::int32_t>(lane) + lists.away[row * kPack + lane]);
+        const bool both = is_asked(robots, other);
+        if (!both || other > robot) add(robots, kinds, robot, other, both);
+      }
+    for (std::uint32_t lanes = pack.unknown & asked; lanes != 0; lanes &= lanes - 1)
+      add_of_unknown(robots, kinds, begin + lowest(lanes));
+  }
+  finish(kinds, 0);
+}
+
+void NearPairs::cut_short(const Robots& robots, std::size_t robot, std::uint8_t how) {
+  if (!is_asked(robots, robot)) return;
+  std::uint8_t& own = state_of(robot);
+  if ((own & kCut) == 0) cut.push_back(static_cast<std::int32_t>(robot));
+  own |= kCut | how;
+}
+
+void NearPairs::judge_rows(const Robots& robots) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs.grants_both(k)) continue;
+    const std::uint8_t how = pairs.found(k) ? 0 : kStays;
+    if (!pairs.grants(k, true)) cut_short(robots, static_cast<std::size_t>(pairs.a[k]), how);
+    if (!pairs.grants(k, false)) cut_short(robots, static_cast<std::size_t>(pairs.b[k]), how);
+  }
 }
 
 }  // namespace exactvo::formation::crowd

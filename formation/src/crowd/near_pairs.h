@@ -7,7 +7,8 @@
 /// these leave open is judged in whole numbers.
 ///
 /// The search of the first level has listed the robots near each robot. Where its list may not have all that could be
-/// met, the robots in the window round a robot are looked at one by one.
+/// met, the robots in the window round a robot are looked at one by one. All that is judged of a pair is the same for
+/// both its robots, so one of them makes its rows, if both belong to the range.
 ///
 /// With the names of pair_row.h, at u = 0 and N = 2^20 D / |D| rounded to whole numbers, both wishes satisfy their rows
 /// if N.D - bar >= max(0, -N.w_a) + max(0, N.w_b). A component of N is off by 1/2, and bar <= R |N| + 4. So, with
@@ -19,6 +20,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/pair_row.h"
 #include "crowd/robots.h"
 
 namespace exactvo::formation::crowd {
@@ -39,69 +41,96 @@ inline constexpr std::int64_t kRoundedContact = 8;
 std::int64_t longest_way(std::int32_t wish_x, std::int32_t wish_y);
 inline constexpr double kLongerWay = 1.125, kWayMargin = 6.0;
 
-/// The robots near each robot of a range, as far as StepsOfKind::reach of its kind: the places of the others less its
-/// own. The first round of the second level leaves of each list of a hindered robot those that could be met, and then
-/// 0.
+/// Lattice steps by which a motion may be longer than the wish: what rounding to the lattice adds, and some.
+inline constexpr std::int32_t kRoundingRoom = 4;
+
+/// The robots near each robot of a range, as far as StepsOfKind::reach of its kind, pack by pack.
 class NearLists {
  public:
-  static constexpr std::uint8_t kUnknown = 255;
+  /// Robots that stand one after the other, a lane each. Row k holds of each lane one of the robots near it.
+  struct Lanes {
+    std::int32_t begin = 0;
+    std::uint32_t first_row = 0;
+    std::uint16_t unknown = 0;  ///< bit `lane`: may have others
+    std::uint8_t size = 0, rows = 0;
+  };
 
-  std::vector<std::int16_t> away;   ///< robot by robot; readable to kPack beyond each
-  std::vector<std::uint8_t> count;  ///< of each robot, or kUnknown: it may have others
+  std::vector<Lanes> packs;
+  std::vector<std::int16_t> away;   ///< by row and lane: the place of the other less its own; 0: none
+  std::vector<std::uint16_t> near;  ///< by row, bit `lane`: could be met; the first round writes it
 
-  /// Empties the lists; from now on they are of `robots` robots.
-  void clear(std::size_t robots) {
-    if (count.size() < robots) count.resize(robots);
-    listed_ = used_ = 0;
+  void clear() { packs.clear(), rows_ = 0; }
+  /// The next robots. `meeting`, `most`: by lane, squared lattice steps: who is nearer is near; neighbours that were
+  /// sought. Whoever has so many near it is unknown, as are the lanes of `unknown`.
+  void add(std::size_t begin, std::size_t size, const Candidates& others, const Ranked& ranked, const float* meeting,
+           const std::int32_t* most, std::uint32_t unknown);
+  std::size_t rows() const { return rows_; }
+  std::size_t bytes() const {
+    return away.capacity() * sizeof(std::int16_t) + near.capacity() * sizeof(std::uint16_t) +
+           packs.capacity() * sizeof(Lanes);
   }
-  /// Of the next robot, kMostNeighbours at most. `others`: their places.
-  void add(std::size_t robot, const std::int32_t* others, std::size_t others_count) {
-    if (away.size() < used_ + 2 * kPack) away.resize(2 * away.size() + 2 * kPack);
-    std::int16_t* const to = away.data() + used_;
-    for (std::size_t k = 0; k < others_count; ++k) {
-      const std::int32_t by = others[k] - static_cast<std::int32_t>(robot);
-      to[k] = static_cast<std::int16_t>(by);
-      if (to[k] != by) return add_unknown();
-    }
-    used_ += others_count;
-    count[listed_++] = static_cast<std::uint8_t>(others_count);
-  }
-  void add_unknown() { count[listed_++] = kUnknown; }
-  std::size_t bytes() const { return away.capacity() * sizeof(std::int16_t) + count.capacity(); }
 
  private:
-  std::size_t listed_ = 0, used_ = 0;
+  std::size_t rows_ = 0;
 };
 
-/// A robot, and where its list begins.
-struct AskedRobot {
-  std::size_t robot, list;
+/// Of the robots of a range the pairs whose rows are needed, each once. Of a thread.
+class NearPairs {
+ public:
+  static constexpr std::uint8_t kCut = 1,  ///< one of its rows may not allow its wish
+      kStays = 2;                          ///< one of its pairs has no row
+
+  PairTable pairs;
+  std::vector<std::uint8_t> state;  ///< by robot of the range
+  std::vector<std::int32_t> cut;    ///< those with kCut
+  std::size_t overlapping = 0;      ///< robots that another overlaps by more than kRoundedContact
+
+  /// Of robots `first` to `last`, whose lists are given, the pairs that (6) leaves open. Says in Robots::next_kept
+  /// which could meet another.
+  void find(Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
+            NearLists& lists);
+  /// All pairs of robots whose safe motion is not what they wish.
+  void find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
+                  const NearLists& lists);
+  /// Pairs have rows: says who is cut and who stays.
+  void judge_rows(const Robots& robots);
+  /// After `find`: the other pairs of those that are cut.
+  void add_clear(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists);
+
+  /// `what(pair, is_a, other)` for the pairs of a robot.
+  template <class Do>
+  void for_pairs_of(std::size_t robot, const Do& what) const {
+    for (std::int32_t e = last_of_[robot - first_]; e >= 0; e = before_[static_cast<std::size_t>(e)]) {
+      const auto pair = static_cast<std::size_t>(e) / 2;
+      const bool is_a = e % 2 == 0;
+      what(pair, is_a, is_a ? pairs.b[pair] : pairs.a[pair]);
+    }
+  }
+
+ private:
+  void start(std::size_t first, std::size_t last, bool is_first);
+  void take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack, NearLists& lists);
+  void look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
+  bool add_of_unknown(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
+  void finish(const std::vector<StepsOfKind>& kinds, std::size_t from);
+  void add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot, std::size_t other,
+           bool of_both);
+  void cut_short(const Robots& robots, std::size_t robot, std::uint8_t how);
+  bool is_asked(const Robots& robots, std::size_t robot) const {
+    return is_ours(robot) && (is_first_ || robots.safe_mx[robot] != robots.wish_mx[robot] ||
+                              robots.safe_my[robot] != robots.wish_my[robot]);
+  }
+  bool is_ours(std::size_t robot) const { return robot >= first_ && robot < last_; }
+  std::uint8_t& state_of(std::size_t robot) { return state[robot - first_]; }
+
+  std::size_t first_ = 0, last_ = 0;
+  bool is_first_ = true;                         ///< all are asked
+  std::vector<std::int32_t> last_of_;            ///< of each robot its last entry; -1: none
+  std::vector<std::int32_t> before_;             ///< of an entry, 2 pair + (0: of a, 1: of b), that before it
+  std::vector<std::uint16_t> clear_, doubtful_;  ///< by row of the lists
+  std::vector<std::uint16_t> asked_;             ///< by pack of the lists
+  Array<std::int32_t> round_;                    ///< robots round one
+  std::vector<std::uint16_t> round_near_, round_clear_, round_doubtful_;  ///< of these, by sixteen
 };
-
-/// What is found for some robots.
-struct NearPairs {
-  static constexpr std::uint8_t kMeets = 1,  ///< a robot could be met
-      kHindered = 2,                         ///< and then not all wishes are surely allowed
-      kOverlaps = 4;                         ///< another overlaps it by more than kRoundedContact
-
-  /// Pairs that could meet, of hindered robots, one robot after the other; robots up to a multiple of kPack.
-  Array<std::int32_t> robot, other;
-  std::vector<std::size_t> end;     ///< of each robot's pairs
-  std::vector<std::uint8_t> state;  ///< of each robot
-
-  // Pairs that are judged, robot by robot; arrays have room for kPack more.
-  Array<std::int32_t> judged_other, own_x, own_y, own_wish_x, own_wish_y;
-  Array<float> contact;                             ///< R, where there are several kinds
-  std::vector<std::size_t> judged_end;              ///< of each robot's
-  std::vector<std::uint8_t> near, clear, doubtful;  ///< a bit each
-
-  std::size_t pairs() const { return end.empty() ? 0 : end.back(); }
-};
-
-/// For each robot of `asked`, whose lists are in `lists`; the first robot there is `begin`. Pairs of a robot ascend by
-/// the other's place. `first_round`: (6) counts, and lists are cut. REQUIRES: in the second, robots that were hindered
-/// in the first.
-void find_near_pairs(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t begin,
-                     const std::vector<AskedRobot>& asked, bool first_round, NearLists& lists, NearPairs& out);
 
 }  // namespace exactvo::formation::crowd

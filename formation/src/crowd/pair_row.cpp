@@ -27,8 +27,8 @@ HWY_INLINE N number(double value) {
   return hn::Set(Numbers(), value);
 }
 
-HWY_INLINE N load(const std::int32_t* column) {
-  return hn::PromoteTo(Numbers(), hn::LoadU(Whole(), column));
+HWY_INLINE N gathered(const std::int32_t* column, hn::Vec<Whole> at) {
+  return hn::PromoteTo(Numbers(), hn::GatherIndex(Whole(), column, at));
 }
 
 HWY_INLINE std::uint32_t bits_of_mask(M mask) {
@@ -115,24 +115,31 @@ struct Split {
   HWY_INLINE M contents_both() const { return hn::Le(hn::Add(need_a, need_b), room); }
 };
 
+/// The rows of both robots.
+struct Rows {
+  Point normal;
+  N least_a, least_b;
+  hn::Vec<Whole> flags;
+};
+
 /// As many pairs as there are lanes.
 template <bool kAtRest>
 class PairLanes {
  public:
-  /// Those from lane k of a block on.
-  HWY_INLINE PairLanes(const PairBlock& t, std::size_t k)
-      : d_{load(t.dx + k), load(t.dy + k)},
-        wish_a_{load(t.wish_ax + k), load(t.wish_ay + k)},
-        wish_b_{load(t.wish_bx + k), load(t.wish_by + k)},
-        radius_(hn::Load(Numbers(), t.radius + k)) {
+  /// Of the robots at places a and b.
+  HWY_INLINE PairLanes(const MotionColumns& of, hn::Vec<Whole> a, hn::Vec<Whole> b, N radius)
+      : d_{difference(of.x, a, b), difference(of.y, a, b)},
+        wish_a_{gathered(of.wish_x, a), gathered(of.wish_y, a)},
+        wish_b_{gathered(of.wish_x, b), gathered(of.wish_y, b)},
+        radius_(radius) {
     if constexpr (kAtRest) {
       safe_a_ = safe_b_ = {number(0.0), number(0.0)};
       safe_end_ = d_;
       more_a_ = wish_a_;
       more_b_ = wish_b_;
     } else {
-      safe_a_ = {load(t.safe_ax + k), load(t.safe_ay + k)};
-      safe_b_ = {load(t.safe_bx + k), load(t.safe_by + k)};
+      safe_a_ = {gathered(of.safe_x, a), gathered(of.safe_y, a)};
+      safe_b_ = {gathered(of.safe_x, b), gathered(of.safe_y, b)};
       safe_end_ = d_ + safe_a_ - safe_b_;
       more_a_ = wish_a_ - safe_a_;
       more_b_ = wish_b_ - safe_b_;
@@ -195,30 +202,26 @@ class PairLanes {
     return hn::Min(hn::Max(part, number(0.0)), s.room);
   }
 
-  /// Into lanes k and after of a block the rows of a normal that separates, elsewhere `otherwise` as normals of rows
-  /// through 0.
-  HWY_INLINE void put_rows(const Split& s, Point otherwise, PairBlock& to, std::size_t k) const {
-    const Numbers d;
-    const N zero = number(0.0), part = part_a(s), rest = hn::Sub(s.room, part);
-    const M is_a = hn::Ne(load(to.is_a + k), zero);
-    Point normal = choose(is_a, s.normal, {hn::Neg(s.normal.x), hn::Neg(s.normal.y)});
-    N least = hn::Neg(hn::IfThenElse(is_a, part, rest));
-    if constexpr (!kAtRest) least = hn::Add(dot(normal, choose(is_a, safe_a_, safe_b_)), least);
-    const M grants = hn::And(s.separates, hn::Ge(dot(normal, choose(is_a, wish_a_, wish_b_)), least));
-    otherwise = choose(is_a, otherwise, {hn::Neg(otherwise.x), hn::Neg(otherwise.y)});
-    normal = choose(s.separates, normal, otherwise);
-    const M found = hn::Or(hn::Ne(normal.x, zero), hn::Ne(normal.y, zero));
-    hn::Store(normal.x, d, to.normal_x + k);
-    hn::Store(normal.y, d, to.normal_y + k);
-    least = hn::IfThenElseZero(s.separates, least);
-    hn::Store(least, d, to.least + k);
-    const N length = hn::Sqrt(dot(normal, normal));
-    hn::Store(hn::Div(normal.x, length), d, to.unit_x + k);
-    hn::Store(hn::Div(normal.y, length), d, to.unit_y + k);
-    hn::Store(hn::Div(least, length), d, to.unit_least + k);
-    if (k == 0) to.found = to.grants = 0;
-    to.found |= bits_of_mask(found) << k;
-    to.grants |= bits_of_mask(grants) << k;
+  /// The rows of a normal that separates, elsewhere `otherwise` as the normal of rows through 0.
+  HWY_INLINE Rows rows(const Split& s, Point otherwise) const {
+    const N zero = number(0.0), part = part_a(s);
+    N least_a = hn::Neg(part), least_b = hn::Sub(part, s.room);
+    if constexpr (!kAtRest) {
+      least_a = hn::Add(dot(s.normal, safe_a_), least_a);
+      least_b = hn::Sub(least_b, dot(s.normal, safe_b_));
+    }
+    const M grants_a = hn::And(s.separates, hn::Ge(dot(s.normal, wish_a_), least_a)),
+            grants_b = hn::And(s.separates, hn::Ge(hn::Neg(dot(s.normal, wish_b_)), least_b));
+    Rows r;
+    r.normal = choose(s.separates, s.normal, otherwise);
+    r.least_a = hn::IfThenElseZero(s.separates, least_a);
+    r.least_b = hn::IfThenElseZero(s.separates, least_b);
+    const M found = hn::Or(hn::Ne(r.normal.x, zero), hn::Ne(r.normal.y, zero));
+    const auto flag = [](M m, std::int32_t value) { return hn::IfThenElseZero(m, number(value)); };
+    r.flags = hn::DemoteTo(Whole(),
+                           hn::Add(flag(found, PairTable::kFound),
+                                   hn::Add(flag(grants_a, PairTable::kGrantsA), flag(grants_b, PairTable::kGrantsB))));
+    return r;
   }
 
   /// Lemma 3. In one place: the lower id leaves to the left. Where u is not rest: no normal.
@@ -233,6 +236,11 @@ class PairLanes {
   }
 
  private:
+  static HWY_INLINE N difference(const std::int32_t* column, hn::Vec<Whole> a, hn::Vec<Whole> b) {
+    const Whole d;
+    return hn::PromoteTo(Numbers(), hn::Sub(hn::GatherIndex(d, column, a), hn::GatherIndex(d, column, b)));
+  }
+
   static HWY_INLINE void take(M lanes, const Split& from, Split& to) {
     to.normal = choose(lanes, from.normal, to.normal);
     to.room = hn::IfThenElse(lanes, from.room, to.room);
@@ -245,154 +253,119 @@ class PairLanes {
   N radius_;
 };
 
-/// Pairs that wait for better rows until a block of them is full. Normals of rows stand for directions before.
+/// Rows along the centres, which are the best ones where both wishes have room; of the other pairs those of the normal
+/// that hinders least, or of one on the way from it to the centres.
 template <bool kAtRest>
-class Waiting {
+class RowMaker {
  public:
-  explicit Waiting(PairBlock* of) : of_(of) {}
+  RowMaker(const MotionColumns& robots, PairTable& pairs) : robots_(robots), pairs_(pairs) {}
 
-  PairBlock block = {};
-
-  bool empty() const { return count_ == 0; }
-  std::size_t count() const { return count_; }
-  bool is_full() const { return count_ == kPack; }
-  /// Where pair k comes from.
-  std::size_t at(std::size_t k) const { return at_[k]; }
-  /// Takes a pair that comes from `at` from place k of a block; where.
-  std::size_t add(std::size_t at, const PairBlock& from, std::size_t k) {
-    block.copy(count_, from, k, kAtRest);
-    at_[count_] = at;
-    return count_++;
-  }
-  /// The rows of pairs that have some, to where they come from.
-  void give_back() {
-    for (std::size_t k = 0; k < count_; ++k) {
-      if ((block.found >> k & 1U) == 0) continue;
-      const std::size_t to = at_[k] % kPack;
-      PairBlock& out = of_[at_[k] / kPack];
-      out.normal_x[to] = block.normal_x[k];
-      out.normal_y[to] = block.normal_y[k];
-      out.least[to] = block.least[k];
-      out.unit_x[to] = block.unit_x[k];
-      out.unit_y[to] = block.unit_y[k];
-      out.unit_least[to] = block.unit_least[k];
-      out.found |= 1U << to;
-      out.grants = (out.grants & ~(1U << to)) | (block.grants >> k & 1U) << to;
+  void make(std::size_t first) {
+    std::size_t open = 0;
+    for (std::size_t k = first; k < pairs_.size(); k += hn::Lanes(Numbers())) {
+      const Lanes lanes(robots_, hn::LoadU(Whole(), &pairs_.a[k]), hn::LoadU(Whole(), &pairs_.b[k]),
+                        hn::LoadU(Numbers(), &pairs_.radii[k]));
+      const Split s = lanes.split_along(lanes.centre());
+      put(lanes.rows(s, lanes.last_resort()), k);
+      std::uint32_t rest = bits_of_mask(hn::Not(hn::And(s.separates, s.contents_both())));
+      rest &= lanes_of(pairs_.size() - k);
+      for (; rest != 0; rest &= rest - 1) pairs_.open[open++] = static_cast<std::int32_t>(k) + __builtin_ctz(rest);
     }
-    count_ = 0;
+    const std::size_t left = make_wanted(open);
+    make_bent(left);
   }
 
  private:
-  PairBlock* of_;
-  std::size_t at_[kPack], count_ = 0;
-};
+  using Lanes = PairLanes<kAtRest>;
 
-/// Pairs that have no room for both wishes along their centres: the normal that hinders least, or one on the way from
-/// it to the centres.
-template <bool kAtRest>
-class Hindered {
- public:
-  explicit Hindered(PairBlock* of) : wait_(of), bend_(of) {}
-
-  void add(std::size_t at, const PairBlock& block, std::size_t k) {
-    wait_.add(at, block, k);
-    if (wait_.is_full()) make_wanted();
+  /// Bits of the lanes that hold one of `count` pairs.
+  static HWY_INLINE std::uint32_t lanes_of(std::size_t count) {
+    return (1U << std::min(count, hn::Lanes(Numbers()))) - 1U;
   }
 
-  void finish() {
-    if (!wait_.empty()) make_wanted();
-    if (!bend_.empty()) make_bent();
-  }
-
- private:
-  HWY_INLINE void make_wanted() {
-    PairBlock& block = wait_.block;
+  HWY_INLINE void put(const Rows& rows, std::size_t k) const {
     const Numbers d;
-    for (std::size_t k = 0; k < wait_.count(); k += hn::Lanes(d)) {
-      const PairLanes<kAtRest> pairs(block, k);
-      const Point wanted = pairs.wanted();
-      const Split s = pairs.split_along(wanted);
-      pairs.put_rows(s, {number(0.0), number(0.0)}, block, k);
-      std::uint32_t rest = bits_of_mask(hn::Not(s.separates));
-      if (wait_.count() - k < hn::Lanes(d)) rest &= (1U << (wait_.count() - k)) - 1U;
+    hn::StoreU(rows.normal.x, d, &pairs_.normal_x[k]);
+    hn::StoreU(rows.normal.y, d, &pairs_.normal_y[k]);
+    hn::StoreU(rows.least_a, d, &pairs_.least_a[k]);
+    hn::StoreU(rows.least_b, d, &pairs_.least_b[k]);
+    hn::StoreU(rows.flags, Whole(), &pairs_.flags[k]);
+  }
+
+  /// Those from place k of `open` on.
+  HWY_INLINE Lanes open_lanes(std::size_t k) const {
+    const Whole d;
+    const auto pair = hn::LoadU(d, &pairs_.open[k]);
+    const auto wide = hn::PromoteTo(hn::RebindToSigned<Numbers>(), pair);
+    return {robots_, hn::GatherIndex(d, pairs_.a.data(), pair), hn::GatherIndex(d, pairs_.b.data(), pair),
+            hn::GatherIndex(Numbers(), pairs_.radii.data(), wide)};
+  }
+
+  /// The rows of `lanes` to the open pairs from place k on.
+  HWY_INLINE void put_open(const Rows& rows, std::uint32_t lanes, std::size_t k) const {
+    const Numbers d;
+    HWY_ALIGN double x[kPack], y[kPack], least_a[kPack], least_b[kPack];
+    HWY_ALIGN std::int32_t flags[kPack];
+    hn::Store(rows.normal.x, d, x);
+    hn::Store(rows.normal.y, d, y);
+    hn::Store(rows.least_a, d, least_a);
+    hn::Store(rows.least_b, d, least_b);
+    hn::Store(rows.flags, Whole(), flags);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+      const auto pair = static_cast<std::size_t>(pairs_.open[k + lane]);
+      pairs_.normal_x[pair] = x[lane], pairs_.normal_y[pair] = y[lane];
+      pairs_.least_a[pair] = least_a[lane], pairs_.least_b[pair] = least_b[lane];
+      pairs_.flags[pair] = flags[lane];
+    }
+  }
+
+  /// Places to a multiple of the lanes.
+  void fill_open(std::size_t count) const {
+    for (std::size_t k = count; k < count + kPack; ++k) pairs_.open[k] = 0;
+  }
+
+  /// Leaves in `open` pairs whose wanted normal does not separate, and that in wanted_x and wanted_y; how many.
+  HWY_INLINE std::size_t make_wanted(std::size_t count) {
+    const Numbers d;
+    std::size_t left = 0;
+    fill_open(count);
+    for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+      const Lanes lanes = open_lanes(k);
+      const Point wanted = lanes.wanted();
+      const Split s = lanes.split_along(wanted);
+      const std::uint32_t there = lanes_of(count - k), separates = bits_of_mask(s.separates);
+      put_open(lanes.rows(s, {number(0.0), number(0.0)}), separates & there, k);
+      std::uint32_t rest = ~separates & there;
       if (rest == 0) continue;
-      alignas(64) double x[kPack], y[kPack];
+      HWY_ALIGN double x[kPack], y[kPack];
       hn::Store(wanted.x, d, x);
       hn::Store(wanted.y, d, y);
-      for (; rest != 0; rest &= rest - 1) {
+      for (; rest != 0; rest &= rest - 1, ++left) {
         const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
-        const std::size_t to = bend_.add(wait_.at(k + lane), block, k + lane);
-        bend_.block.normal_x[to] = x[lane];
-        bend_.block.normal_y[to] = y[lane];
-        if (bend_.is_full()) make_bent();
+        pairs_.open[left] = pairs_.open[k + lane];
+        pairs_.wanted_x[left] = x[lane], pairs_.wanted_y[left] = y[lane];
       }
     }
-    wait_.give_back();
+    return left;
   }
 
-  HWY_INLINE void make_bent() {
-    PairBlock& block = bend_.block;
+  HWY_INLINE void make_bent(std::size_t count) {
     const Numbers d;
-    for (std::size_t k = 0; k < bend_.count(); k += hn::Lanes(d)) {
-      const PairLanes<kAtRest> pairs(block, k);
-      const Point wanted = {hn::Load(d, block.normal_x + k), hn::Load(d, block.normal_y + k)};
-      pairs.put_rows(pairs.bent(wanted), {number(0.0), number(0.0)}, block, k);
+    fill_open(count);
+    for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+      const Lanes lanes = open_lanes(k);
+      const Split s = lanes.bent({hn::LoadU(d, &pairs_.wanted_x[k]), hn::LoadU(d, &pairs_.wanted_y[k])});
+      put_open(lanes.rows(s, {number(0.0), number(0.0)}), bits_of_mask(s.separates) & lanes_of(count - k), k);
     }
-    bend_.give_back();
   }
 
-  Waiting<kAtRest> wait_, bend_;
+  const MotionColumns& robots_;
+  PairTable& pairs_;
 };
 
-/// Rows along the centres, which are the best ones where both wishes have room; of the other pairs those of the best
-/// normal that separates.
-template <bool kAtRest>
-void make_rows(PairBlock* blocks, std::size_t count) {
-  Hindered<kAtRest> hindered(blocks);
-  for (std::size_t k = 0; k < count; k += hn::Lanes(Numbers())) {
-    PairBlock& block = blocks[k / kPack];
-    const std::size_t lane = k % kPack;
-    const PairLanes<kAtRest> pairs(block, lane);
-    const Split s = pairs.split_along(pairs.centre());
-    pairs.put_rows(s, pairs.last_resort(), block, lane);
-    std::uint32_t rest = bits_of_mask(hn::Not(hn::And(s.separates, s.contents_both())));
-    if (count - k < hn::Lanes(Numbers())) rest &= (1U << (count - k)) - 1U;
-    for (; rest != 0; rest &= rest - 1) {
-      const auto at = static_cast<std::size_t>(__builtin_ctz(rest));
-      hindered.add(k + at, block, lane + at);
-    }
-  }
-  hindered.finish();
-}
-
-void gather(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
-            PairBlock* to) {
-  using Words = hn::CappedTag<std::int32_t, kPack>;
-  const Words d;
-  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    PairBlock& block = to[k / kPack];
-    const std::size_t lane = k % kPack;
-    const auto own = hn::LoadU(d, robot + k), its = hn::LoadU(d, other + k);
-    const auto is_a = hn::Lt(hn::GatherIndex(d, from.id, own), hn::GatherIndex(d, from.id, its));
-    const auto a = hn::IfThenElse(is_a, own, its), b = hn::IfThenElse(is_a, its, own);
-    const auto put = [&](auto value, std::int32_t* column) { hn::Store(value, d, column + lane); };
-    put(hn::VecFromMask(d, is_a), block.is_a);
-    put(hn::Sub(hn::GatherIndex(d, from.x, a), hn::GatherIndex(d, from.x, b)), block.dx);
-    put(hn::Sub(hn::GatherIndex(d, from.y, a), hn::GatherIndex(d, from.y, b)), block.dy);
-    put(hn::GatherIndex(d, from.wish_x, a), block.wish_ax);
-    put(hn::GatherIndex(d, from.wish_y, a), block.wish_ay);
-    put(hn::GatherIndex(d, from.wish_x, b), block.wish_bx);
-    put(hn::GatherIndex(d, from.wish_y, b), block.wish_by);
-    if (from.safe_x == nullptr) continue;
-    put(hn::GatherIndex(d, from.safe_x, a), block.safe_ax);
-    put(hn::GatherIndex(d, from.safe_y, a), block.safe_ay);
-    put(hn::GatherIndex(d, from.safe_x, b), block.safe_bx);
-    put(hn::GatherIndex(d, from.safe_y, b), block.safe_by);
-  }
-}
-
-void make_all_rows(PairBlock* blocks, std::size_t count, bool at_rest) {
-  at_rest ? make_rows<true>(blocks, count) : make_rows<false>(blocks, count);
+void make_all_rows(const MotionColumns& robots, PairTable& pairs, std::size_t first) {
+  robots.safe_x == nullptr ? RowMaker<true>(robots, pairs).make(first) : RowMaker<false>(robots, pairs).make(first);
 }
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
@@ -401,37 +374,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace exactvo::formation::crowd {
 
-HWY_EXPORT(gather);
 HWY_EXPORT(make_all_rows);
 
-void PairBlock::copy(std::size_t k, const PairBlock& of, std::size_t from, bool at_rest) {
-  dx[k] = of.dx[from], dy[k] = of.dy[from], radius[k] = of.radius[from], is_a[k] = of.is_a[from];
-  wish_ax[k] = of.wish_ax[from], wish_ay[k] = of.wish_ay[from];
-  wish_bx[k] = of.wish_bx[from], wish_by[k] = of.wish_by[from];
-  if (at_rest) return;
-  safe_ax[k] = of.safe_ax[from], safe_ay[k] = of.safe_ay[from];
-  safe_bx[k] = of.safe_bx[from], safe_by[k] = of.safe_by[from];
+void PairTable::make_room() {
+  const std::size_t room = 2 * a.size() + 4 * kPack;
+  for (auto* column : {&a, &b, &flags, &open}) column->resize(room);
+  for (auto* column : {&radii, &normal_x, &normal_y, &least_a, &least_b, &wanted_x, &wanted_y}) column->resize(room);
 }
 
-void PairTable::put(std::size_t k, const PairInStep& pair, bool is_a) {
-  PairBlock& to = blocks_[k / kPack];
-  const std::size_t at = k % kPack;
-  to.dx[at] = static_cast<std::int32_t>(pair.dx), to.dy[at] = static_cast<std::int32_t>(pair.dy);
-  to.radius[at] = static_cast<double>(pair.radius), to.is_a[at] = is_a ? -1 : 0;
-  to.wish_ax[at] = pair.wish_a.x, to.wish_ay[at] = pair.wish_a.y;
-  to.wish_bx[at] = pair.wish_b.x, to.wish_by[at] = pair.wish_b.y;
-  to.safe_ax[at] = pair.safe_a.x, to.safe_ay[at] = pair.safe_a.y;
-  to.safe_bx[at] = pair.safe_b.x, to.safe_by[at] = pair.safe_b.y;
-}
-
-void gather_pairs(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
-                  PairTable& to) {
-  to.lay_out(count, from.safe_x == nullptr);
-  HWY_DYNAMIC_DISPATCH(gather)(from, robot, other, count, to.blocks());
-}
-
-void make_pair_rows(PairTable& pairs) {
-  HWY_DYNAMIC_DISPATCH(make_all_rows)(pairs.blocks(), pairs.size(), pairs.at_rest());
+void make_pair_rows(const MotionColumns& robots, PairTable& pairs, std::size_t first) {
+  pairs.pad();
+  HWY_DYNAMIC_DISPATCH(make_all_rows)(robots, pairs, first);
 }
 
 }  // namespace exactvo::formation::crowd

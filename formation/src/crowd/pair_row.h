@@ -48,82 +48,59 @@ struct MotionRow {
   bool allows(Motion m) const { return at(m) >= least; }
 };
 
-/// A row over the length of its normal, rounded: |(x, y)| = 1, least in lattice steps.
-struct UnitRow {
-  double x, y, least;
-};
-
-/// A pair in the order of ids.
-struct PairInStep {
-  std::int64_t dx = 0, dy = 0;  ///< p_a - p_b, below 2^31
-  std::int64_t radius = 0;      ///< R, below 2^32
-  Motion wish_a, wish_b;        ///< below 2^23
-  Motion safe_a, safe_b;        ///< u
-};
-
-/// Columns of robots that pairs are gathered from.
+/// Columns of robots: places below 2^30, motions below 2^23. R of two robots is below 2^32.
 struct MotionColumns {
-  const std::int32_t *id = nullptr, *x = nullptr, *y = nullptr, *wish_x = nullptr, *wish_y = nullptr;
+  const std::int32_t *x = nullptr, *y = nullptr, *wish_x = nullptr, *wish_y = nullptr;
   const std::int32_t *safe_x = nullptr, *safe_y = nullptr;  ///< u; null: rest
 };
 
-/// kPack pairs in columns; of each the row of one of its robots, the one that decides.
-struct PairBlock {
-  alignas(64) std::int32_t dx[kPack], dy[kPack];
-  std::int32_t wish_ax[kPack], wish_ay[kPack], wish_bx[kPack], wish_by[kPack];
-  std::int32_t safe_ax[kPack], safe_ay[kPack], safe_bx[kPack], safe_by[kPack];  ///< only where u is not rest
-  std::int32_t is_a[kPack];                                                     ///< -1: a decides, 0: b does
-  double radius[kPack];
-  double normal_x[kPack], normal_y[kPack], least[kPack];  ///< of the row, whole
-  double unit_x[kPack], unit_y[kPack], unit_least[kPack];
-  std::uint32_t found = 0;   ///< bit k: pair k has a row; without one both robots have to keep u
-  std::uint32_t grants = 0;  ///< bit k: its row surely allows the wish
-
-  /// Puts pair `from` of another block to k.
-  void copy(std::size_t k, const PairBlock& of, std::size_t from, bool at_rest);
-};
-
-/// Pairs, and their rows.
+/// Pairs, each in the order of ids, and the rows of both its robots.
 class PairTable {
  public:
   std::size_t size() const { return size_; }
-  bool at_rest() const { return at_rest_; }
-  /// The number of pairs, which are then put into `blocks`, and whether their u are all rest.
-  void lay_out(std::size_t pairs, bool at_rest) {
-    size_ = pairs, at_rest_ = at_rest;
-    if (blocks_.size() * kPack < pairs) blocks_.resize(pairs / kPack + 1 + blocks_.size());
+  void clear() { size_ = 0; }
+  /// Of the robots at two places of the columns; its number. R is left to the caller.
+  std::size_t add(std::size_t robot_a, std::size_t robot_b) {
+    if (size_ + 2 * kPack > a.size()) make_room();
+    a[size_] = static_cast<std::int32_t>(robot_a);
+    b[size_] = static_cast<std::int32_t>(robot_b);
+    return size_++;
   }
-  PairBlock* blocks() { return blocks_.data(); }
-  /// Pair k, of which a or b decides.
-  void put(std::size_t k, const PairInStep& pair, bool is_a);
+  /// After the last pair there is room for kPack more, which are read, but not used.
+  void pad() {
+    if (a.empty()) make_room();
+    for (std::size_t k = size_; k < size_ + kPack; ++k) a[k] = b[k] = 0;
+  }
 
-  bool found(std::size_t k) const { return (block(k).found >> k % kPack & 1U) != 0; }
-  bool grants(std::size_t k) const { return (block(k).grants >> k % kPack & 1U) != 0; }
-  MotionRow row(std::size_t k) const {
-    const std::size_t at = k % kPack;
-    return {static_cast<std::int64_t>(block(k).normal_x[at]), static_cast<std::int64_t>(block(k).normal_y[at]),
-            static_cast<std::int64_t>(block(k).least[at])};
+  /// Without a row both robots have to keep u.
+  bool found(std::size_t k) const { return (flags[k] & kFound) != 0; }
+  /// Its row surely allows the wish.
+  bool grants(std::size_t k, bool of_a) const { return (flags[k] & (of_a ? kGrantsA : kGrantsB)) != 0; }
+  bool grants_both(std::size_t k) const { return flags[k] == (kFound | kGrantsA | kGrantsB); }
+  MotionRow row(std::size_t k, bool of_a) const {
+    const auto x = static_cast<std::int64_t>(normal_x[k]), y = static_cast<std::int64_t>(normal_y[k]);
+    return of_a ? MotionRow{x, y, static_cast<std::int64_t>(least_a[k])}
+                : MotionRow{-x, -y, static_cast<std::int64_t>(least_b[k])};
   }
-  UnitRow unit_row(std::size_t k) const {
-    const std::size_t at = k % kPack;
-    return {block(k).unit_x[at], block(k).unit_y[at], block(k).unit_least[at]};
-  }
+
+  static constexpr std::int32_t kFound = 1, kGrantsA = 2, kGrantsB = 4;
+
+  Array<std::int32_t> a, b;          ///< places of robots
+  Array<double> radii;               ///< R
+  Array<double> normal_x, normal_y;  ///< N, whole
+  Array<double> least_a, least_b;    ///< of the rows, whole
+  Array<std::int32_t> flags;
+  Array<std::int32_t> open;          ///< pairs that wait for better rows
+  Array<double> wanted_x, wanted_y;  ///< their directions
 
  private:
-  const PairBlock& block(std::size_t k) const { return blocks_[k / kPack]; }
+  void make_room();
 
-  Array<PairBlock> blocks_;
   std::size_t size_ = 0;
-  bool at_rest_ = true;
 };
 
-/// Lays out the pairs of robot[k], which decide, with other[k], all but their radii; both arrays are read to a multiple
-/// of kPack.
-void gather_pairs(const MotionColumns& from, const std::int32_t* robot, const std::int32_t* other, std::size_t count,
-                  PairTable& to);
-
-/// Makes the rows of all pairs. Exact. REQUIRES: of every pair u = 0, or a motion for which it had rows at an earlier
-/// u.
-void make_pair_rows(PairTable& pairs);
+/// Makes the rows of the pairs from `first` on. Exact. REQUIRES: of every pair u = 0, or a motion for which it had rows
+/// at an earlier u.
+void make_pair_rows(const MotionColumns& robots, PairTable& pairs, std::size_t first);
 
 }  // namespace exactvo::formation::crowd

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -76,42 +77,72 @@ class Cluster {
   std::vector<double> longest_;
 };
 
+using Pairs = std::set<std::pair<std::int32_t, std::int32_t>>;
+
 struct Found {
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  std::vector<std::uint8_t> state;
+  Pairs pairs;  ///< of robots with one that (6) leaves open, all of them, by robot and other
+  std::vector<bool> meets, hindered;
+  std::size_t overlapping = 0;
 };
 
-/// From lists of all robots, or from the windows round them.
-Found find(const Cluster& c, bool listed, bool first_round) {
+/// As the search leaves them, in packs of `together`, or unknown.
+NearLists lists_of(const Cluster& c, bool listed, std::size_t together) {
   NearLists lists;
-  lists.clear(c.robots.size());
-  std::vector<AskedRobot> asked;
-  std::size_t list = 0;
-  for (std::size_t i = 0; i < c.robots.size(); ++i) {
-    std::vector<std::int32_t> others;
-    for (std::size_t j = c.robots.size(); j-- > 0;)
-      if (j != i &&
-          std::hypot(c.robots.x[i] - c.robots.x[j], c.robots.y[i] - c.robots.y[j]) <= c.kinds[c.robots.kind(i)].reach)
-        others.push_back(static_cast<std::int32_t>(j));
-    asked.push_back({i, list});
-    if (listed && others.size() <= kMostNeighbours) {
-      lists.add(i, others.data(), others.size());
-      list += others.size();
-    } else {
-      lists.add_unknown();
+  auto others = std::make_unique<Candidates>();
+  others->count = c.robots.size();
+  for (std::size_t j = 0; j < c.robots.size(); ++j) others->robot[j] = static_cast<std::int32_t>(j);
+  constexpr float kNear = 0.25F, kMeeting = 1.0F;
+  for (std::size_t begin = 0; begin < c.robots.size(); begin += together) {
+    const std::size_t size = std::min(together, c.robots.size() - begin);
+    auto ranked = std::make_unique<Ranked>();
+    for (auto& row : ranked->key) std::fill(row, row + kPack, kMeeting);
+    float meeting[kPack] = {};
+    std::int32_t most[kPack] = {};
+    for (std::size_t lane = 0; lane < size; ++lane) {
+      const std::size_t i = begin + lane;
+      meeting[lane] = listed ? kMeeting : 0.0F;
+      most[lane] = kMostNeighbours;
+      std::size_t rank = 0;
+      for (std::size_t j = c.robots.size(); j-- > 0;) {
+        const double far = std::hypot(c.robots.x[i] - c.robots.x[j], c.robots.y[i] - c.robots.y[j]);
+        if (j == i || far > c.kinds[c.robots.kind(i)].reach || rank + 1 == kMostRanks) continue;
+        ranked->key[++rank][lane] = float_of((bits_of(kNear) & ~kIndexBits) | static_cast<std::int32_t>(j));
+      }
     }
+    lists.add(begin, size, *others, *ranked, meeting, most, listed ? 0U : (1U << size) - 1U);
   }
-  NearPairs out;
-  find_near_pairs(c.robots, c.kinds, 0, asked, true, lists, out);
-  if (!first_round) {
-    std::vector<AskedRobot> again;
-    for (std::size_t k = 0; k < asked.size(); ++k)
-      if (out.state[k] & NearPairs::kHindered) again.push_back(asked[k]);
-    find_near_pairs(c.robots, c.kinds, 0, again, false, lists, out);
-  }
+  return lists;
+}
+
+void take_pairs(const NearPairs& near, std::size_t robots, Pairs& to) {
+  for (std::size_t i = 0; i < robots; ++i)
+    near.for_pairs_of(i, [&](std::size_t pair, bool is_a, std::int32_t other) {
+      EXPECT_EQ(is_a ? near.pairs.a[pair] : near.pairs.b[pair], static_cast<std::int32_t>(i));
+      EXPECT_TRUE(to.emplace(static_cast<std::int32_t>(i), other).second) << "twice";
+    });
+}
+
+Found find(Cluster& c, bool listed, bool first_round, std::size_t together = kPack) {
+  NearLists lists = lists_of(c, listed, together);
+  std::fill(c.robots.next_kept.begin(), c.robots.next_kept.end(), std::uint8_t{0});
+  NearPairs near;
+  near.find(c.robots, c.kinds, 0, c.robots.size(), lists);
   Found found;
-  for (std::size_t k = 0; k < out.pairs(); ++k) found.pairs.emplace_back(out.robot[k], out.other[k]);
-  found.state = out.state;
+  found.overlapping = near.overlapping;
+  for (std::size_t i = 0; i < c.robots.size(); ++i) {
+    bool any = false;
+    near.for_pairs_of(i, [&](std::size_t, bool, std::int32_t) { any = true; });
+    found.hindered.push_back(any);
+    found.meets.push_back((c.robots.next_kept[i] & Robots::kHasMet) != 0);
+    if (any) near.state[i] = NearPairs::kCut, near.cut.push_back(static_cast<std::int32_t>(i));
+    c.robots.safe_mx[i] = c.robots.wish_mx[i] + any;
+    c.robots.safe_my[i] = c.robots.wish_my[i];
+  }
+  if (first_round)
+    near.add_clear(c.robots, c.kinds, lists);
+  else
+    near.find_again(c.robots, c.kinds, 0, c.robots.size(), lists);
+  take_pairs(near, c.robots.size(), found.pairs);
   return found;
 }
 
@@ -130,49 +161,45 @@ Pair judged(const Cluster& c, std::size_t i, std::size_t j) {
 /// Whether the rows of a pair at rest allow both wishes.
 bool allows_both(const Cluster& c, std::size_t i, std::size_t j) {
   const Robots& r = c.robots;
-  PairInStep p;
-  p.dx = std::int64_t{r.x[i]} - r.x[j], p.dy = std::int64_t{r.y[i]} - r.y[j];
-  p.radius = c.kinds[r.kind(i)].radius + c.kinds[r.kind(j)].radius;
-  p.wish_a = {r.wish_mx[i], r.wish_my[i]}, p.wish_b = {r.wish_mx[j], r.wish_my[j]};
   PairTable table;
-  table.lay_out(2, true);
-  table.put(0, p, true);
-  table.put(1, p, false);
-  make_pair_rows(table);
-  return table.row(0).allows(p.wish_a) && table.row(1).allows(p.wish_b);
+  table.radii[table.add(i, j)] = static_cast<double>(c.kinds[r.kind(i)].radius + c.kinds[r.kind(j)].radius);
+  make_pair_rows({r.x.data(), r.y.data(), r.wish_mx.data(), r.wish_my.data(), nullptr, nullptr}, table, 0);
+  return table.row(0, true).allows({r.wish_mx[i], r.wish_my[i]}) &&
+         table.row(0, false).allows({r.wish_mx[j], r.wish_my[j]});
 }
 
 TEST(NearPairs, Lemma6_WishesOfRobotsThatAreNotHinderedSatisfyAllTheirRows) {
   SeededRandom random(test::seed_of_run(61));
   std::size_t near = 0, clear = 0, hindered = 0, overlapping = 0;
   for (int k = 0; k < 3000; ++k) {
-    const Cluster c(random);
+    Cluster c(random);
     const Found found = find(c, k % 2 == 0, true);
+    std::size_t overlap = 0;
     for (std::size_t i = 0; i < c.robots.size(); ++i) {
-      const std::uint8_t state = found.state[i];
-      std::vector<std::pair<std::int32_t, std::int32_t>> expected;
+      Pairs expected;
       bool overlaps = false;
       for (std::size_t j = 0; j < c.robots.size(); ++j) {
         const Pair pair = i == j ? Pair::far : judged(c, i, j);
         overlaps |= pair == Pair::overlapping;
         if (pair != Pair::near) continue;
         ++near;
-        expected.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
-        if ((state & NearPairs::kHindered) == 0) {
+        expected.emplace(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+        if (!found.hindered[i]) {
           ASSERT_TRUE(allows_both(c, i, j)) << k << ' ' << i << ' ' << j;
           ++clear;
         }
       }
-      ASSERT_EQ((state & NearPairs::kMeets) != 0, !expected.empty()) << k << ' ' << i;
-      ASSERT_EQ((state & NearPairs::kOverlaps) != 0, overlaps) << k << ' ' << i;
-      overlapping += overlaps;
-      if ((state & NearPairs::kHindered) == 0) continue;
+      ASSERT_EQ(found.meets[i], !expected.empty()) << k << ' ' << i;
+      overlap += overlaps;
+      if (!found.hindered[i]) continue;
       ++hindered;
-      decltype(expected) got;
+      Pairs got;
       for (const auto& pair : found.pairs)
-        if (pair.first == static_cast<std::int32_t>(i)) got.push_back(pair);
+        if (pair.first == static_cast<std::int32_t>(i)) got.insert(pair);
       ASSERT_EQ(got, expected) << k << ' ' << i;
     }
+    ASSERT_EQ(found.overlapping, overlap) << k;
+    overlapping += overlap;
   }
   EXPECT_GT(near, 50000U);
   EXPECT_GT(clear, 5000U);
@@ -184,14 +211,16 @@ TEST(NearPairs, ListsAndWindowsGiveTheSamePairsInBothRoundsOnEveryTarget) {
   SeededRandom random(test::seed_of_run(62));
   std::size_t pairs = 0, targets = 0;
   for (int k = 0; k < 500; ++k) {
-    const Cluster c(random);
+    Cluster c(random);
     const Found first = find(c, true, true);
     for (const char* target : {"", "AVX3", "AVX2", "SSE4", "SSE2"}) {
       if (!lp::limit_batch_target(target)) continue;  // not on this machine
       targets += k == 0;
       for (const bool listed : {true, false}) {
-        ASSERT_EQ(find(c, listed, true).pairs, first.pairs) << k << ' ' << target;
-        ASSERT_EQ(find(c, listed, true).state, first.state) << k << ' ' << target;
+        const Found again = find(c, listed, true, 1 + static_cast<std::size_t>(k) % kPack);
+        ASSERT_EQ(again.pairs, first.pairs) << k << ' ' << target;
+        ASSERT_EQ(again.meets, first.meets) << k << ' ' << target;
+        ASSERT_EQ(again.overlapping, first.overlapping) << k << ' ' << target;
         ASSERT_EQ(find(c, listed, false).pairs, first.pairs) << k << ' ' << target;
       }
     }
@@ -200,6 +229,37 @@ TEST(NearPairs, ListsAndWindowsGiveTheSamePairsInBothRoundsOnEveryTarget) {
   }
   EXPECT_GT(pairs, 5000U);
   EXPECT_GT(targets, 2U);
+}
+
+/// Each of two ranges makes the rows of pairs that reach across.
+TEST(NearPairs, ARangeHasThePairsOfItsRobotsWithThoseOfOthers) {
+  SeededRandom random(test::seed_of_run(63));
+  std::size_t across = 0;
+  for (int k = 0; k < 500; ++k) {
+    Cluster c(random);
+    const Found whole = find(c, true, true);
+    const std::size_t half = c.robots.size() / 2;
+    Pairs both;
+    for (const bool second : {false, true}) {
+      const std::size_t first = second ? half : 0, last = second ? c.robots.size() : half;
+      NearLists all = lists_of(c, true, 1), lists = all;
+      lists.packs = {all.packs.begin() + static_cast<std::ptrdiff_t>(first),
+                     all.packs.begin() + static_cast<std::ptrdiff_t>(last)};
+      NearPairs near;
+      near.find(c.robots, c.kinds, first, last, lists);
+      for (std::size_t i = first; i < last; ++i)
+        if (whole.hindered[i])
+          near.state[i - first] = NearPairs::kCut, near.cut.push_back(static_cast<std::int32_t>(i));
+      near.add_clear(c.robots, c.kinds, lists);
+      for (std::size_t i = first; i < last; ++i)
+        near.for_pairs_of(i, [&](std::size_t, bool, std::int32_t other) {
+          both.emplace(static_cast<std::int32_t>(i), other);
+          across += (static_cast<std::size_t>(other) < first || static_cast<std::size_t>(other) >= last);
+        });
+    }
+    ASSERT_EQ(both, whole.pairs) << k;
+  }
+  EXPECT_GT(across, 2000U);
 }
 
 }  // namespace

@@ -18,22 +18,56 @@ namespace {
 
 using test::SeededRandom;
 
+/// A pair in the order of ids.
+struct PairInStep {
+  std::int64_t dx = 0, dy = 0;  ///< p_a - p_b
+  std::int64_t radius = 0;      ///< R
+  Motion wish_a, wish_b;
+  Motion safe_a, safe_b;  ///< u
+};
+
 struct PairRows {
   MotionRow a, b;
   bool found;
 };
 
+/// Robots in columns, two of each pair.
+class Columns {
+ public:
+  void add(const PairInStep& p) {
+    put(p.dx - p.dx / 2, p.dy - p.dy / 2, p.wish_a, p.safe_a);
+    put(-(p.dx / 2), -(p.dy / 2), p.wish_b, p.safe_b);
+  }
+  MotionColumns motions(bool at_rest) const {
+    return {x_.data(),
+            y_.data(),
+            wish_x_.data(),
+            wish_y_.data(),
+            at_rest ? nullptr : safe_x_.data(),
+            at_rest ? nullptr : safe_y_.data()};
+  }
+
+ private:
+  void put(std::int64_t x, std::int64_t y, Motion wish, Motion safe) {
+    x_.push_back(static_cast<std::int32_t>(x)), y_.push_back(static_cast<std::int32_t>(y));
+    wish_x_.push_back(wish.x), wish_y_.push_back(wish.y);
+    safe_x_.push_back(safe.x), safe_y_.push_back(safe.y);
+  }
+
+  std::vector<std::int32_t> x_, y_, wish_x_, wish_y_, safe_x_, safe_y_;
+};
+
 /// The row of a, and that of b.
 PairRows pair_rows(const PairInStep& pair) {
+  Columns columns;
+  columns.add(pair);
   PairTable table;
-  table.lay_out(2, pair.safe_a == Motion{} && pair.safe_b == Motion{});
-  table.put(0, pair, true);
-  table.put(1, pair, false);
-  make_pair_rows(table);
-  const PairRows rows{table.row(0), table.row(1), table.found(0)};
-  EXPECT_EQ(table.found(1), rows.found);
-  EXPECT_TRUE(!table.grants(0) || rows.a.allows(pair.wish_a));
-  EXPECT_TRUE(!table.grants(1) || rows.b.allows(pair.wish_b));
+  const std::size_t k = table.add(0, 1);
+  table.radii[k] = static_cast<double>(pair.radius);
+  make_pair_rows(columns.motions(pair.safe_a == Motion{} && pair.safe_b == Motion{}), table, 0);
+  const PairRows rows{table.row(k, true), table.row(k, false), table.found(k)};
+  EXPECT_TRUE(!table.grants(k, true) || rows.a.allows(pair.wish_a));
+  EXPECT_TRUE(!table.grants(k, false) || rows.b.allows(pair.wish_b));
   return rows;
 }
 
@@ -234,15 +268,23 @@ TEST(PairRow, ManyPairsAtOnceGetTheRowsOfEachAloneOnEveryTarget) {
   for (const char* target : {"", "AVX3", "AVX2", "SSE4", "SSE2"}) {
     if (!lp::limit_batch_target(target)) continue;  // not on this machine
     ++targets;
-    PairTable table;
-    table.lay_out(pairs.size(), true);
-    for (std::size_t k = 0; k < pairs.size(); ++k) table.put(k, pairs[k], k % 2 == 0);
-    make_pair_rows(table);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const MotionRow expected = k % 2 == 0 ? alone[k].a : alone[k].b, got = table.row(k);
-      ASSERT_TRUE(got.nx == expected.nx && got.ny == expected.ny && got.least == expected.least)
-          << target << ' ' << text(pairs[k]);
-      ASSERT_TRUE(table.found(k));
+    for (const std::size_t first : {std::size_t{0}, std::size_t{5}}) {  // some of them later
+      Columns columns;
+      PairTable table;
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        columns.add(pairs[k]);
+        if (k == first && k > 0) make_pair_rows(columns.motions(true), table, 0);
+        table.radii[table.add(2 * k, 2 * k + 1)] = static_cast<double>(pairs[k].radius);
+      }
+      make_pair_rows(columns.motions(true), table, first);
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        for (const bool of_a : {true, false}) {
+          const MotionRow expected = of_a ? alone[k].a : alone[k].b, got = table.row(k, of_a);
+          ASSERT_TRUE(got.nx == expected.nx && got.ny == expected.ny && got.least == expected.least)
+              << target << ' ' << text(pairs[k]);
+        }
+        ASSERT_TRUE(table.found(k));
+      }
     }
   }
   lp::limit_batch_target("");
