@@ -112,60 +112,63 @@ Proof.
   - apply (far_strict n _ _ (Q2R f)); [assumption|assumption|rewrite e; nra].
 Qed.
 
-(* --- A list of them: of each two parts in turn, without a gap --- *)
-Fixpoint taken (fits : separation -> bool) (from to : Q) (l : list separation) : option (list separation) :=
+(* --- A list of them, maybe with more than that (`of` leaves it away): of each two parts in turn, without a gap --- *)
+Fixpoint taken {S} (of : S -> separation) (fits : S -> bool) (from to : Q) (l : list S) : option (list S) :=
   match l with
   | [] => None
-  | s :: r => if fits s && qeq (since s) from && qle (since s) (until s) && qle (until s) to
-      then if qeq (until s) to then Some r else taken fits (until s) to r else None
+  | x :: r => let s := of x in
+      if qeq (since s) from && qle (since s) (until s) && qle (until s) to && fits x
+      then if qeq (until s) to then Some r else taken of fits (until s) to r else None
   end.
-Lemma taken_ok fits to l : forall from rest, taken fits from to l = Some rest -> forall t, Q2R from <= t <= Q2R to ->
-  exists s, fits s = true /\ Q2R from <= Q2R (since s) /\ Q2R (until s) <= Q2R to /\ Q2R (since s) <= t <= Q2R (until s).
+Lemma taken_ok {S} (of : S -> separation) fits to l : forall from rest, taken of fits from to l = Some rest -> incl rest l /\ forall t, Q2R from <= t <= Q2R to ->
+  exists x, In x l /\ fits x = true /\ Q2R from <= Q2R (since (of x)) /\ Q2R (until (of x)) <= Q2R to /\ Q2R (since (of x)) <= t <= Q2R (until (of x)).
 Proof.
-  induction l as [|s r ih]; intros from rest h t ht; [discriminate|]. simpl in h.
-  destruct (fits s) eqn:fs; [|discriminate]. destruct (qeq (since s) from) eqn:e; [|discriminate].
-  destruct (qle (since s) (until s)) eqn:o; [|discriminate]. destruct (qle (until s) to) eqn:u; [|discriminate]. simpl in h.
-  apply qeq_R in e. apply qle_R in o, u. destruct (Rle_or_lt t (Q2R (until s))) as [l|l]; [exists s; repeat split; auto; lra|].
-  destruct (qeq (until s) to) eqn:d; [apply qeq_R in d; exfalso; lra|].
-  destruct (ih _ _ h t) as [s' [h1 [h2 [h3 h4]]]]; [lra|]. exists s'. repeat split; auto; lra.
+  induction l as [|x r ih]; intros from rest h; [discriminate|]. simpl in h.
+  destruct (qeq (since (of x)) from) eqn:e; [|discriminate]. destruct (qle (since (of x)) (until (of x))) eqn:o; [|discriminate].
+  destruct (qle (until (of x)) to) eqn:u; [|discriminate]. destruct (fits x) eqn:fs; [|discriminate]. simpl in h.
+  apply qeq_R in e. apply qle_R in o, u. destruct (qeq (until (of x)) to) eqn:d.
+  - injection h as h. subst. apply qeq_R in d. split; [apply incl_tl, incl_refl|]. intros t ht. exists x. split; [now left|]. split; [assumption|]. repeat split; lra.
+  - destruct (ih _ _ h) as [i k]. split; [now apply incl_tl|]. intros t ht.
+    destruct (Rle_or_lt t (Q2R (until (of x)))) as [l|l]; [exists x; split; [now left|]; split; [assumption|]; repeat split; lra|].
+    destruct (k t) as [y [h0 [h1 [h2 [h3 h4]]]]]; [lra|]. exists y. split; [now right|]. split; [assumption|]. repeat split; lra.
 Qed.
 
 Definition numbered {A} (l : list A) : list (nat * A) := combine (seq 0 (length l)) l.
 Definition pairs {A B} (l : list A) (m : list B) : list ((nat * A) * (nat * B)) := list_prod (numbered l) (numbered m).
-Definition of_pair (i j : nat) (fits : separation -> bool) (s : separation) : bool := Nat.eqb (part_no s) i && Nat.eqb (other_no s) j && fits s.
-Fixpoint all_taken {A B} (fits : A -> B -> separation -> bool) (from to : Q) (ps : list ((nat * A) * (nat * B))) (l : list separation) : bool :=
+Definition of_pair {S} (of : S -> separation) (i j : nat) (fits : S -> bool) (x : S) : bool := Nat.eqb (part_no (of x)) i && Nat.eqb (other_no (of x)) j && fits x.
+Fixpoint all_taken {A B S} (of : S -> separation) (fits : A -> B -> S -> bool) (from to : Q) (ps : list ((nat * A) * (nat * B))) (l : list S) : bool :=
   match ps with
   | [] => match l with [] => true | _ => false end
   | ((i, p), (j, q)) :: ps =>
-      match taken (of_pair i j (fits p q)) from to l with
-      | Some rest => all_taken fits from to ps rest
+      match taken of (of_pair of i j (fits p q)) from to l with
+      | Some rest => all_taken of fits from to ps rest
       | None => false
       end
   end.
 Definition sweep (a b : trip) (l : list separation) : bool :=
   let from := qmax (leave a) (leave b) in let to := qmin (arrive a) (arrive b) in
-  if qlt to from then match l with [] => true | _ => false end else all_taken (separates a b) from to (pairs (parts a) (parts b)) l.
+  if qlt to from then match l with [] => true | _ => false end else all_taken (fun s => s) (separates a b) from to (pairs (parts a) (parts b)) l.
 
 Lemma in_numbered {A} (l : list A) x : In x l -> exists i, In (i, x) (numbered l).
 Proof.
   unfold numbered. generalize 0%nat. induction l as [|y l ih]; intros k h; [destruct h|]. simpl.
   destruct h as [e|h]; [subst; exists k; now left|]. destruct (ih (S k) h) as [i hi]. exists i. now right.
 Qed.
-Lemma all_taken_ok {A B} (fits : A -> B -> separation -> bool) from to ps : forall l, all_taken fits from to ps l = true ->
-  forall i p j q, In ((i, p), (j, q)) ps -> exists l rest, taken (of_pair i j (fits p q)) from to l = Some rest.
+Lemma all_taken_ok {A B S} of (fits : A -> B -> S -> bool) from to ps : forall l, all_taken of fits from to ps l = true ->
+  forall i p j q, In ((i, p), (j, q)) ps -> exists m rest, incl m l /\ taken of (of_pair of i j (fits p q)) from to m = Some rest.
 Proof.
   induction ps as [|[[i0 p0] [j0 q0]] ps ih]; intros l h i p j q hin; [destruct hin|]. simpl in h.
-  destruct (taken _ from to l) as [rest|] eqn:e; [|discriminate]. destruct hin as [eq|hin]; [injection eq as; subst; now exists l, rest|].
-  now apply (ih rest).
+  destruct (taken _ _ from to l) as [rest|] eqn:e; [|discriminate]. destruct hin as [eq|hin]; [injection eq as; subst; exists l, rest; split; [apply incl_refl|assumption]|].
+  destruct (ih rest h i p j q hin) as [m [r [hm hr]]]. exists m, r. split; [|assumption]. apply incl_tran with (1 := hm). now apply (taken_ok _ _ _ _ _ _ e).
 Qed.
 (* Of each two parts one fits at each moment. *)
-Lemma all_taken_fits {A B} (fits : A -> B -> separation -> bool) from to (ps : list A) (qs : list B) l : all_taken fits from to (pairs ps qs) l = true ->
+Lemma all_taken_fits {A B S} of (fits : A -> B -> S -> bool) from to (ps : list A) (qs : list B) l : all_taken of fits from to (pairs ps qs) l = true ->
   forall p q t, In p ps -> In q qs -> Q2R from <= t <= Q2R to ->
-  exists s, fits p q s = true /\ Q2R from <= Q2R (since s) /\ Q2R (until s) <= Q2R to /\ Q2R (since s) <= t <= Q2R (until s).
+  exists x, In x l /\ fits p q x = true /\ Q2R from <= Q2R (since (of x)) /\ Q2R (until (of x)) <= Q2R to /\ Q2R (since (of x)) <= t <= Q2R (until (of x)).
 Proof.
   intros h p q t hp hq ht. destruct (in_numbered _ _ hp) as [i hi]. destruct (in_numbered _ _ hq) as [j hj].
-  destruct (all_taken_ok _ _ _ _ _ h i p j q) as [l' [rest k]]; [now apply in_prod|].
-  destruct (taken_ok _ _ _ _ _ k t ht) as [s [hs more]]. apply andb_true_iff in hs. now exists s.
+  destruct (all_taken_ok _ _ _ _ _ _ h i p j q) as [l' [rest [hl k]]]; [now apply in_prod|].
+  destruct (taken_ok _ _ _ _ _ _ k) as [_ some]. destruct (some t ht) as [x [hx [hs more]]]. apply andb_true_iff in hs. exists x. split; [now apply hl|]. now split.
 Qed.
 
 Lemma sweep_parts a b l : sweep a b l = true -> forall t s p q, under_way a t -> under_way b t -> 0 <= s <= 1 -> In p (parts a) -> In q (parts b) ->
@@ -178,7 +181,7 @@ Proof.
   assert (et : Q2R to <= Q2R (arrive a) /\ Q2R to <= Q2R (arrive b) /\ (t <= Q2R to)).
   { unfold to. rewrite Q2R_min. repeat split; [apply Rmin_l|apply Rmin_r|]. apply Rmin_glb; lra. }
   destruct (qlt to from) eqn:e; [apply qlt_R in e; exfalso; lra|].
-  destruct (all_taken_fits _ _ _ _ _ _ h p q t hp hq) as [s [hs [s1 [s2 s3]]]]; [lra|].
+  destruct (all_taken_fits _ _ _ _ _ _ _ h p q t hp hq) as [s [_ [hs [s1 [s2 s3]]]]]; [lra|].
   apply separates_ok in hs; [|lra|lra|lra|lra].
   destruct hs as [p0 [q0 hs]]. split; [assumption|]. split; [assumption|]. now apply hs.
 Qed.
