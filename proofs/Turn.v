@@ -260,13 +260,6 @@ Definition clears (g : positive) (d : drive) (p : part) (e : edge) (s : separati
   | _, _ => false
   end.
 
-Lemma root_times g r n : 0 <= r -> 0 < g -> r * r * dot n n < g * g -> r * sqrt (dot n n) < g.
-Proof.
-  intros r0 g0 h. pose proof (dot_self n) as nn. pose proof (sqrt_sqrt (dot n n) nn). pose proof (sqrt_pos (dot n n)).
-  destruct (Rlt_or_le (r * sqrt (dot n n)) g); [assumption|]. exfalso. set (k := sqrt (dot n n)) in *.
-  assert (g * g <= (r * k) * (r * k)) by (apply Rmult_le_compat; lra). nra.
-Qed.
-
 Lemma clears_ok g d p e s : apt g (terms g) -> clears g d p (times_edge d e) s = true -> 0 <= Q2R (reach p) -> (forall q, In q (corners p) -> speed_known d q = true) ->
   clear_between d p e s.
 Proof.
