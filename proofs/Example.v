@@ -175,23 +175,25 @@ Example a_pole_at_its_very_distance : brakes [] [((-(6), 0), 1 # 2)] (1 # 16) 2 
 Proof. split; vm_compute; reflexivity. Qed.
 
 (* --- Sweeps: two walkers of a file of tracks, and a third past a square --- *)
-Definition walker : trip := {| leave := d 3152519739159347 50; arrive := d 3602879701896397 50; start := (d (-5877197513718497) 50, d (-5800636320053199) 55); goal := (d (-658651445502935) 47, d (-3206562934687793) 54);
+Definition walker : trip := {| leave := d 3152519739159347 50; arrive := d 3602879701896397 50; meant := Bezier;
+  points := [(d (-5877197513718497) 50, d (-5800636320053199) 55); (d (-658651445502935) 47, d (-3206562934687793) 54)];
   parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 3602879701896397 54 |}] |}.
-Definition other_walker : trip := {| leave := d 3152519739159347 50; arrive := d 5854679515581645 50; start := (d (-17) 1, d (-5080060379673919) 54); goal := (d (-11) 1, d (-6106881094714393) 54);
+Definition other_walker : trip := {| leave := d 3152519739159347 50; arrive := d 5854679515581645 50; meant := Bezier;
+  points := [(d (-17) 1, d (-5080060379673919) 54); (d (-11) 1, d (-6106881094714393) 54)];
   parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 3602879701896397 54 |}] |}.
 Definition between_walkers : list separation :=
   [{| part_no := 0; other_no := 0; since := d 3152519739159347 50; until := d 3602879701896397 50;
       direction := (d 9001076599103277 53, d 5312830578007299 57); width := d 1622551864023849 49 |}].
 Definition walkers_never_meet : never_meet walker other_walker.
 Proof. apply (sweep_sound _ _ between_walkers). vm_compute. reflexivity. Qed.
-Definition wider (more : Q) (m : trip) : trip := {| leave := leave m; arrive := arrive m; start := start m; goal := goal m;
+Definition wider (more : Q) (m : trip) : trip := {| leave := leave m; arrive := arrive m; meant := meant m; points := points m;
   parts := map (fun p => {| corners := corners p; reach := reach p + more |}) (parts m) |}.
 Example wider_ones_might : sweep (wider 3 walker) other_walker between_walkers = false.
 Proof. vm_compute. reflexivity. Qed.
 Example without_the_last_moment_nothing_is_said : sweep walker other_walker (map (fun s => {| part_no := part_no s; other_no := other_no s;
   since := since s; until := (since s + until s) / 2; direction := direction s; width := width s |}) between_walkers) = false.
 Proof. vm_compute. reflexivity. Qed.
-Definition passer : trip := {| leave := d 0 0; arrive := d 2 0; start := (d 0 0, d 0 0); goal := (d 3 0, d 1 1);
+Definition passer : trip := {| leave := d 0 0; arrive := d 2 0; meant := Bezier; points := [(d 0 0, d 0 0); (d 3 0, d 1 1)];
   parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 1 2 |}] |}.
 Definition square : obstacle := Solid [[(1, 1); (2, 1); (2, 2); (1, 2)]].
 Definition past_the_square : list separation :=
@@ -206,6 +208,31 @@ Definition past_the_square : list separation :=
 Definition it_stays_out : stays_out passer square.
 Proof. apply (sweep_past_sound _ _ past_the_square). vm_compute. reflexivity. Qed.
 Example with_an_edge_left_out_it_might_not : sweep_past passer square (tl past_the_square) = false.
+Proof. vm_compute. reflexivity. Qed.
+
+(* --- Curves: two cubics between rows of a file, as `check --between cubic` certified them; and a spline by hand --- *)
+Definition swerving : trip := {| leave := d 0 0; arrive := d 2 0; meant := Bezier;
+  points := [(d 0 0, d 0 0); (d 6004799503160661 53, d 0 0);
+    (d 5254199565265579 51, d (-1501199875790165) 53); (d 3 0, d 1 1)];
+  parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 1 2 |}] |}.
+Definition oncoming : trip := {| leave := d 0 0; arrive := d 2 0; meant := Bezier;
+  points := [(d 7 1, d (-5) 2); (d 6380099472108203 51, d (-5) 2);
+    (d 3752999689475413 51, d (-3) 1); (d 1 0, d (-3) 1)];
+  parts := [{| corners := [(d 0 0, d 0 0)]; reach := d 1 2 |}] |}.
+Definition between_curves : list separation := [{| part_no := 0; other_no := 0; since := d 0 0; until := d 2 0;
+  direction := (d (-76061972311223) 49, d 4462302375591751 52); width := d 411534104346521 49 |}].
+Definition curves_never_meet : never_meet swerving oncoming.
+Proof. apply (sweep_sound _ _ between_curves). vm_compute. reflexivity. Qed.
+Example wider_curves_might : sweep (wider (3 # 4) swerving) oncoming between_curves = false.
+Proof. vm_compute. reflexivity. Qed.
+(* The parabola (t, t^2), as powers, and the same as a spline and by its control points; a wall at y = -1/2 and one at 1/2. *)
+Definition parabola (meant : basis) (points : list point) (reach : Q) : trip :=
+  {| leave := 0; arrive := 1; meant := meant; points := points; parts := [{| corners := [(0, 0)]; reach := reach |}] |}.
+Definition wall_at (y : Q) : obstacle := Wall [(-1, y); (2, y)].
+Definition upward : list separation := [{| part_no := 0; other_no := 0; since := 0; until := 1; direction := (0, 1); width := 0 |}].
+Example three_ways_to_write_it : forallb (fun m : Q -> trip => sweep_past (m (31 # 64)) (wall_at (-1 # 2)) upward && negb (sweep_past (m (1 # 2)) (wall_at (-1 # 2)) upward)
+    && negb (sweep_past (m 0) (wall_at (1 # 2)) upward))
+  [parabola Powers [(0, 0); (1, 0); (0, 1)]; parabola Bezier [(0, 0); (1 # 2, 0); (1, 1)]; parabola Spline [(-1 # 2, 0); (1 # 2, 0); (3 # 2, 2)]] = true.
 Proof. vm_compute. reflexivity. Qed.
 
 (* --- Turn: a disc drives an arc to the right past a side of a square, as the monitor certified it --- *)

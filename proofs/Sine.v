@@ -13,12 +13,18 @@ Proof.
   intro h. rewrite <- plus_IZR, <- mult_IZR. apply IZR_le. rewrite Z.mul_comm. apply Z.lt_le_incl. rewrite Z.add_1_r. now apply Z.mul_succ_div_gt.
 Qed.
 
-(* The unit of most: to divide by it is to shift, which the kernel too does fast. *)
+(* The units: to divide by them is to shift, which the kernel too does fast. Mostly the coarse one is fine enough. *)
 Definition grain : positive := Pos.pow 2 256.
-Definition over (g : positive) (p : Z) : Z := if Pos.eqb g grain then Z.shiftr p 256 else Z.div p (Zpos g).
+Definition grain_bits : Z := 256.
+Definition coarse : positive := Pos.pow 2 60.
+Definition coarse_bits : Z := 60.
+Definition over (g : positive) (p : Z) : Z :=
+  if Pos.eqb g coarse then Z.shiftr p coarse_bits else if Pos.eqb g grain then Z.shiftr p grain_bits else Z.div p (Zpos g).
 Lemma over_ok g p : over g p = (p / Zpos g)%Z.
 Proof.
-  unfold over. destruct (Pos.eqb_spec g grain) as [e|_]; [|reflexivity]. rewrite e. unfold grain. rewrite Pos2Z.inj_pow. now apply Z.shiftr_div_pow2.
+  unfold over. destruct (Pos.eqb_spec g coarse) as [e|_]; [|destruct (Pos.eqb_spec g grain) as [e|_]; [|reflexivity]]; rewrite e.
+  - unfold coarse. rewrite Pos2Z.inj_pow. now apply Z.shiftr_div_pow2.
+  - unfold grain. rewrite Pos2Z.inj_pow. now apply Z.shiftr_div_pow2.
 Qed.
 
 (* --- The series: 1 - x / ((j + 1) (j + 2)) (1 - x / ((j + 3) (j + 4)) ...), for x the square of the angle --- *)
@@ -52,54 +58,60 @@ Proof.
   rewrite (pow_add a 1), (pow_mult a 2). simpl (a ^ 2). simpl (a ^ 1). rewrite !Rmult_1_r. field. apply INR_fact_neq_0.
 Qed.
 
-(* `low`, `high`: what x is between; whole numbers of 1/g, as the results are. *)
-Fixpoint series (g : positive) (low high j : Z) (m : nat) : Z * Z :=
-  match m with
-  | O => (0, Zpos g)%Z
-  | S m => let (l, h) := series g low high (j + 2) m in let k := ((j + 1) * (j + 2))%Z in
-      (zmax 0 (Zpos g - (over g (high * h) / k + 1)), Zpos g - over g (low * l) / k)%Z
-  end.
-
-Lemma zmax_lub a b c : IZR a <= c -> IZR b <= c -> IZR (zmax a b) <= c.
-Proof. unfold zmax. now destruct (Z.leb a b). Qed.
-Definition between (g : positive) (l h : Z) (v : R) := 0 <= v <= 1 /\ IZR l <= v * IZR (Zpos g) <= IZR h.
-Lemma series_step g low high l h k x t : (0 <= low)%Z -> (0 <= l)%Z -> (1 <= k)%Z -> between g low high x -> between g l h t ->
-  between g (zmax 0 (Zpos g - (high * h / (Zpos g * k) + 1))) (Zpos g - low * l / (Zpos g * k)) (1 - x / IZR k * t).
+(* The next term changes little. *)
+Fixpoint product (j : Z) (m : nat) : Z := match m with O => 1 | S m => (j + 1) * (j + 2) * product (j + 2) m end.
+Lemma product_pos m : forall j, (0 <= j)%Z -> (1 <= product j m)%Z.
+Proof. induction m as [|m ih]; intros j hj; simpl product; [lia|]. specialize (ih (j + 2)%Z ltac:(lia)). nia. Qed.
+Lemma tail_next x m : 0 <= x -> forall j, (0 <= j)%Z -> Rabs (tail x j (S m) - tail x j m) * IZR (product j (S m)) <= x ^ S m.
 Proof.
-  intros low0 l0 k1 [[x0 x1] [xl xh]] [[t0 t1] [tl th]]. unfold between.
-  set (p := (high * h)%Z). set (r := (low * l)%Z). set (q := (Zpos g * k)%Z). assert (q0 : (0 < q)%Z) by (unfold q; lia).
-  pose proof (div_high p q q0) as up. pose proof (div_low r q q0) as down.
-  assert (ep : IZR p = IZR high * IZR h) by (unfold p; apply mult_IZR). assert (er : IZR r = IZR low * IZR l) by (unfold r; apply mult_IZR).
-  assert (eq : IZR q = IZR (Zpos g) * IZR k) by (unfold q; apply mult_IZR). set (u := (p / q)%Z) in *. set (w := (r / q)%Z) in *.
-  clearbody p r q u w. rewrite ep, eq in up. rewrite er, eq in down. clear ep er eq q0.
-  apply IZR_le in low0, l0, k1. rewrite minus_IZR. set (G := IZR (Zpos g)) in *. assert (G0 : 0 < G) by (apply IZR_lt; reflexivity).
-  set (K := IZR k) in *. assert (xt : 0 <= x * t <= 1) by nra.
-  assert (v : 0 <= x / K * t <= 1).
-  { replace (x / K * t) with (x * t / K) by (field; lra). split; [apply Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]|].
-    apply Rmult_le_reg_r with K; [lra|]. replace (x * t / K * K) with (x * t) by (field; lra). lra. }
-  assert (v2 : x / K * t * G * (G * K) = (x * G) * (t * G)) by (field; lra).
-  assert (GK : 0 < G * K) by nra.
-  assert (hi : x / K * t * G <= IZR u + 1).
-  { apply Rmult_le_reg_r with (G * K); [assumption|]. rewrite v2. apply Rle_trans with (2 := up). apply Rmult_le_compat; nra. }
-  assert (lo : IZR w <= x / K * t * G).
-  { apply Rmult_le_reg_r with (G * K); [assumption|]. rewrite v2. apply Rle_trans with (1 := down). apply Rmult_le_compat; lra. }
-  split; [lra|]. split; [|nra]. apply zmax_lub; [nra|]. rewrite minus_IZR, plus_IZR. fold G. nra.
-Qed.
-Lemma series_ok g low high x : (0 <= low)%Z -> between g low high x -> forall m j, (0 <= j)%Z ->
-  let (l, h) := series g low high j m in (0 <= l)%Z /\ between g l h (tail x j m) /\ between g l h (tail x j (S m)).
-Proof.
-  intros low0 hx. assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity). induction m as [|m ih]; intros j j0.
-  - simpl. split; [lia|]. split; [unfold between; lra|]. destruct hx as [[x0 x1] _].
+  intro x0. induction m as [|m ih]; intros j j0.
+  - cbn [tail product]. rewrite Z.mul_1_r. assert (k : 1 <= IZR ((j + 1) * (j + 2))) by (apply IZR_le; nia). set (K := IZR ((j + 1) * (j + 2))) in *.
+    replace (1 - x / K * 1 - 1) with (- (x / K)) by (field; lra). rewrite Rabs_Ropp, Rabs_right by (apply Rle_ge, Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]).
+    simpl pow. right. field. lra.
+  - specialize (ih (j + 2)%Z ltac:(lia)). change (tail x j (S (S m))) with (1 - x / IZR ((j + 1) * (j + 2)) * tail x (j + 2) (S m)).
+    change (tail x j (S m)) with (1 - x / IZR ((j + 1) * (j + 2)) * tail x (j + 2) m).
+    change (product j (S (S m))) with ((j + 1) * (j + 2) * product (j + 2) (S m))%Z. rewrite (mult_IZR ((j + 1) * (j + 2))).
     assert (k : 1 <= IZR ((j + 1) * (j + 2))) by (apply IZR_le; nia). set (K := IZR ((j + 1) * (j + 2))) in *.
-    assert (v : 0 <= x / K <= 1).
-    { split; [apply Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]|]. apply Rmult_le_reg_r with K; [lra|].
-      replace (x / K * K) with x by (field; lra). lra. }
-    unfold between. rewrite Rmult_1_r. nra.
-  - specialize (ih (j + 2)%Z ltac:(lia)). change (tail x j (S m)) with (1 - x / IZR ((j + 1) * (j + 2)) * tail x (j + 2) m).
-    change (tail x j (S (S m))) with (1 - x / IZR ((j + 1) * (j + 2)) * tail x (j + 2) (S m)). cbn [series].
-    destruct (series g low high (j + 2) m) as [l h]. rewrite !over_ok, !Z.div_div by nia. destruct ih as [l0 [h1 h2]].
-    split; [unfold zmax; destruct (Z.leb_spec 0 (Zpos g - (high * h / (Zpos g * ((j + 1) * (j + 2))) + 1))); lia|].
-    split; apply series_step; try assumption; nia.
+    set (p := tail x (j + 2) (S m)) in *. set (q := tail x (j + 2) m) in *. set (P := IZR (product (j + 2) (S m))) in *.
+    replace (1 - x / K * p - (1 - x / K * q)) with (- (x / K * (p - q))) by ring. rewrite Rabs_Ropp, Rabs_mult, (Rabs_right (x / K))
+      by (apply Rle_ge, Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]).
+    replace (x / K * Rabs (p - q) * (K * P)) with (x * (Rabs (p - q) * P)) by (field; lra).
+    change (x ^ S (S m)) with (x * x ^ S m). now apply Rmult_le_compat_l.
+Qed.
+
+Lemma within x e : Rabs x <= e -> - e <= x <= e.
+Proof. intro h. unfold Rabs in h. destruct (Rcase_abs x); lra. Qed.
+(* In whole numbers of 1/g, for x up to 1/4. *)
+Fixpoint series (g : positive) (x j : Z) (m : nat) : Z :=
+  match m with O => Zpos g | S m => Zpos g - over g (x * series g x (j + 2) m) / ((j + 1) * (j + 2)) end.
+Lemma series_ok g X x : 8 <= IZR (Zpos g) -> 0 <= x <= / 4 -> Rabs (x * IZR (Zpos g) - IZR X) <= 2 -> forall m j, (0 <= j)%Z ->
+  0 <= tail x j m <= 1 /\ Rabs (tail x j m * IZR (Zpos g) - IZR (series g X j m)) <= 4.
+Proof.
+  intros g8 hx hX. induction m as [|m ih]; intros j j0.
+  - cbn [tail series]. rewrite Rmult_1_l, Rminus_diag_eq, Rabs_R0 by reflexivity. lra.
+  - specialize (ih (j + 2)%Z ltac:(lia)). cbn [tail series]. rewrite over_ok, Z.div_div by nia.
+    set (V := series g X (j + 2) m) in *. set (t := tail x (j + 2) m) in *. set (k := ((j + 1) * (j + 2))%Z).
+    assert (k2 : (2 <= k)%Z) by (unfold k; nia). assert (q0 : (0 < Zpos g * k)%Z) by lia.
+    pose proof (div_low (X * V) _ q0) as lo. pose proof (div_high (X * V) _ q0) as hi. set (u := (X * V / (Zpos g * k))%Z) in *. clearbody u k V t.
+    rewrite !mult_IZR in lo, hi. rewrite minus_IZR. apply IZR_le in k2. set (G := IZR (Zpos g)) in *. set (K := IZR k) in *. set (Y := IZR X) in *. set (W := IZR V) in *.
+    destruct ih as [[t0 t1] hV]. apply within in hX, hV.
+    assert (v : 0 <= x / K * t <= 1).
+    { replace (x / K * t) with (x * t / K) by (field; lra). split; [apply Rmult_le_pos; [nra|left; apply Rinv_0_lt_compat; lra]|].
+      apply Rmult_le_reg_r with K; [lra|]. replace (x * t / K * K) with (x * t) by (field; lra). nra. }
+    split; [lra|]. replace ((1 - x / K * t) * G - (G - IZR u)) with (IZR u - x / K * t * G) by ring.
+    assert (e : x / K * t * G * (G * K) = (x * G) * (t * G)) by (field; lra).
+    assert (d : Rabs (Y * W - (x * G) * (t * G)) <= 4 * G).
+    { replace (Y * W - (x * G) * (t * G)) with ((Y - x * G) * W + (x * G) * (W - t * G)) by ring.
+      apply Rle_trans with (1 := Rabs_triang _ _). rewrite (Rabs_mult (Y - x * G)), (Rabs_mult (x * G)).
+      assert (tG : 0 <= t * G <= G) by (split; [apply Rmult_le_pos|replace G with (1 * G) at 2 by ring; apply Rmult_le_compat_r]; lra).
+      assert (xG : 0 <= x * G <= G / 4) by (split; [apply Rmult_le_pos|replace (G / 4) with (/ 4 * G) by field; apply Rmult_le_compat_r]; lra).
+      assert (Rabs (Y - x * G) <= 2) by (apply Rabs_le; lra). assert (Rabs W <= G + 4) by (apply Rabs_le; lra).
+      assert (Rabs (x * G) <= G / 4) by (apply Rabs_le; lra). assert (Rabs (W - t * G) <= 4) by (apply Rabs_le; lra).
+      pose proof (Rabs_pos (Y - x * G)). pose proof (Rabs_pos W). pose proof (Rabs_pos (x * G)). pose proof (Rabs_pos (W - t * G)).
+      assert (Rabs (Y - x * G) * Rabs W <= 2 * (G + 4)) by (apply Rmult_le_compat; lra).
+      assert (Rabs (x * G) * Rabs (W - t * G) <= G / 4 * 4) by (apply Rmult_le_compat; lra). lra. }
+    apply within in d. assert (GK : 2 * G <= G * K) by nra. set (z := x / K * t * G) in *. clearbody z.
+    apply Rabs_le. split; apply Rmult_le_reg_r with (G * K); nra.
 Qed.
 
 (* --- Sine, cosine, and how far both may be off, in 1/g --- *)
@@ -107,51 +119,74 @@ Definition near_circle := (Z * Z * Z)%type.
 Definition encloses (g : positive) (c : near_circle) (si co : R) := let '(s, c, e) := c in
   Rabs (si * IZR (Zpos g) - IZR s) <= IZR e /\ Rabs (co * IZR (Zpos g) - IZR c) <= IZR e.
 
-Definition of_small (g : positive) (a : Q) : near_circle :=
-  let l := down g a in let h := up g a in let low := over g (l * l) in let high := (over g (h * h) + 1)%Z in
-  let (sl, sh) := series g low high 1 13 in let (cl, ch) := series g low high 0 13 in
-  let s := over g (l * sl) in (s, cl, zmax (over g (h * sh) + 1 - s) (ch - cl))%Z.
-
-Lemma of_small_ok g a : 0 <= Q2R a <= 1 -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a)).
+(* So many terms of the series are enough. *)
+Definition apt (g : positive) (m : nat) := exists n, m = (2 * n + 1)%nat /\ 8 <= IZR (Zpos g) /\
+  forall j, (0 <= j <= 1)%Z -> IZR (Zpos g) <= 4 ^ S m * IZR (product j (S m)).
+Definition terms (g : positive) : nat := if Pos.eqb g coarse then 9 else 25.
+Lemma known_apt g : g = coarse \/ g = grain -> apt g (terms g).
 Proof.
-  intros ha. unfold of_small. rewrite !over_ok. pose proof (down_ok g a) as l1. pose proof (up_ok g a) as h1.
-  assert (l0 : (0 <= down g a)%Z).
-  { unfold down. assert (0 <= Qnum a)%Z.
-    { apply le_IZR. assert (0 < IZR (Zpos (Qden a))) by (apply IZR_lt; reflexivity).
-      replace (IZR (Qnum a)) with (Q2R a * IZR (Zpos (Qden a))) by (unfold Q2R; field; lra). nra. }
-    destruct (Pos.eqb (Qden a) g); [assumption|]. apply Z.div_pos; lia. }
-  set (l := down g a) in *. set (h := up g a) in *. clearbody l h. set (x := Q2R a) in *.
-  assert (gp : (0 < Zpos g)%Z) by reflexivity. set (low := (l * l / Zpos g)%Z). set (high := (h * h / Zpos g + 1)%Z).
-  assert (low0 : (0 <= low)%Z) by (apply Z.div_pos; nia).
-  pose proof (div_low (l * l) (Zpos g) gp) as lowl. pose proof (div_high (h * h) (Zpos g) gp) as highh. fold low in lowl.
-  assert (high' : IZR (h * h) <= IZR high * IZR (Zpos g)) by (unfold high; now rewrite plus_IZR). clear highh. clearbody low high.
-  rewrite mult_IZR in lowl, high'. assert (l0' := l0). apply IZR_le in l0'.
-  assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity).
-  assert (hx : between g low high (x * x)).
-  { unfold between. set (G := IZR (Zpos g)) in *. split; [nra|].
-    assert (e : x * x * G * G = (G * x) * (G * x)) by ring.
-    split; apply Rmult_le_reg_r with G; try assumption; rewrite e.
-    - apply Rle_trans with (1 := lowl). apply Rmult_le_compat; assumption.
-    - apply Rle_trans with (2 := high'). apply Rmult_le_compat; nra. }
-  pose proof (series_ok g low high (x * x) low0 hx 13 1 ltac:(lia)) as hs.
-  pose proof (series_ok g low high (x * x) low0 hx 13 0 ltac:(lia)) as hc.
-  destruct (series g low high 1 13) as [sl sh]. destruct (series g low high 0 13) as [cl ch]. cbv zeta. rewrite !over_ok.
-  destruct hs as [sl0 [[_ s1] [_ s2]]]. destruct hc as [cl0 [[_ c1] [_ c2]]]. pose proof PI2_3_2.
-  destruct (sin_bound x 6) as [b1 b2]; [lra|lra|]. destruct (cos_bound x 6) as [d1 d2]; [lra|lra|].
-  rewrite sin_tail in b1, b2. rewrite cos_tail in d1, d2. cbn [Nat.mul Nat.add] in b1, b2, d1, d2.
-  set (t1 := tail (x * x) 1 13) in *. set (t2 := tail (x * x) 1 14) in *. set (t3 := tail (x * x) 0 13) in *. set (t4 := tail (x * x) 0 14) in *.
-  clearbody t1 t2 t3 t4. set (s := (l * sl / Zpos g)%Z).
-  pose proof (div_low (l * sl) (Zpos g) gp) as q1. pose proof (div_high (h * sh) (Zpos g) gp) as q2. fold s in q1.
-  rewrite mult_IZR in q1, q2. apply IZR_le in sl0. set (G := IZR (Zpos g)) in *.
-  destruct (zmax_le (h * sh / Zpos g + 1 - s) (ch - cl)) as [z1 z2]. rewrite minus_IZR in z1, z2. rewrite plus_IZR in z1.
-  set (u := (h * sh / Zpos g)%Z) in *. clearbody s u. unfold encloses. fold G.
-  assert (sin_low : IZR s <= sin x * G).
-  { apply Rmult_le_reg_r with G; [assumption|]. apply Rle_trans with (1 := q1).
-    apply Rle_trans with ((G * x) * (t1 * G)); [apply Rmult_le_compat; lra|]. nra. }
-  assert (sin_high : sin x * G <= IZR u + 1).
-  { apply Rmult_le_reg_r with G; [assumption|]. apply Rle_trans with (2 := q2).
-    apply Rle_trans with ((G * x) * (t2 * G)); [nra|]. apply Rmult_le_compat; try lra; nra. }
-  split; apply Rabs_le; split; nra.
+  assert (k : forall g m, (8 <= Zpos g)%Z -> (Zpos g <= 4 ^ Z.of_nat (S m) * product 0 (S m))%Z -> (Zpos g <= 4 ^ Z.of_nat (S m) * product 1 (S m))%Z ->
+    8 <= IZR (Zpos g) /\ forall j, (0 <= j <= 1)%Z -> IZR (Zpos g) <= 4 ^ S m * IZR (product j (S m))).
+  { intros d m h8 h0 h1. split; [now apply IZR_le|]. intros j hj. replace (4 ^ S m) with (IZR (4 ^ Z.of_nat (S m))) by (symmetry; apply pow_IZR).
+    rewrite <- mult_IZR. apply IZR_le. assert (e : j = 0%Z \/ j = 1%Z) by lia. destruct e; subst; assumption. }
+  intros [e|e]; subst g; [exists 4%nat|exists 12%nat]; (split; [reflexivity|]); apply k; vm_compute; discriminate.
+Qed.
+
+Definition of_small (g : positive) (a : Q) : near_circle :=
+  let l := down g a in let x := over g (l * l) in let m := terms g in
+  (over g (l * series g x 1 m), series g x 0 m, 8)%Z.
+
+Lemma of_small_ok g a : apt g (terms g) -> 0 <= Q2R a <= / 2 -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a)).
+Proof.
+  intros [n [em [g8 rest]]] ha. unfold of_small. rewrite !over_ok. pose proof (down_ok g a) as l1. pose proof (up_ok g a) as h1.
+  assert (l2 : IZR (Zpos g) * Q2R a <= IZR (down g a) + 1).
+  { unfold down. destruct (Pos.eqb_spec (Qden a) g) as [e|_].
+    - unfold Q2R. rewrite e. assert (0 < IZR (Zpos g)) by lra. replace (IZR (Zpos g) * (IZR (Qnum a) * / IZR (Zpos g))) with (IZR (Qnum a)) by (field; lra). lra.
+    - pose proof (div_high (Qnum a * Zpos g) (Zpos (Qden a)) eq_refl) as h. rewrite mult_IZR in h. unfold Q2R.
+      assert (0 < IZR (Zpos (Qden a))) by (apply IZR_lt; reflexivity). apply Rmult_le_reg_r with (IZR (Zpos (Qden a))); [assumption|].
+      replace (IZR (Zpos g) * (IZR (Qnum a) * / IZR (Zpos (Qden a))) * IZR (Zpos (Qden a))) with (IZR (Qnum a) * IZR (Zpos g)) by (field; lra). assumption. }
+  clear h1. set (l := down g a) in *. clearbody l. set (x := Q2R a) in *. rewrite em.
+  assert (gp : (0 < Zpos g)%Z) by reflexivity. set (X := (l * l / Zpos g)%Z).
+  pose proof (div_low (l * l) (Zpos g) gp) as x1. pose proof (div_high (l * l) (Zpos g) gp) as x2. fold X in x1, x2. rewrite mult_IZR in x1, x2.
+  set (G := IZR (Zpos g)) in *. set (L := IZR l) in *.
+  assert (xx : 0 <= x * x <= / 4) by nra.
+  assert (hX : Rabs (x * x * G - IZR X) <= 2).
+  { assert (e : x * x * G * G = (G * x) * (G * x)) by ring. assert (0 <= G * x <= G / 2) by nra. apply Rabs_le. split; apply Rmult_le_reg_r with G; nra. }
+  destruct (series_ok g X (x * x) g8 xx hX (2 * n + 1) 1 ltac:(lia)) as [s0 s1]. destruct (series_ok g X (x * x) g8 xx hX (2 * n + 1) 0 ltac:(lia)) as [_ c1].
+  pose proof (tail_next (x * x) (2 * n + 1) (proj1 xx) 1 ltac:(lia)) as ns. pose proof (tail_next (x * x) (2 * n + 1) (proj1 xx) 0 ltac:(lia)) as nc.
+  assert (small : (x * x) ^ S (2 * n + 1) * 4 ^ S (2 * n + 1) <= 1).
+  { rewrite <- Rpow_mult_distr. rewrite <- (pow1 (S (2 * n + 1))). apply pow_incr. nra. }
+  assert (step : forall j, (0 <= j <= 1)%Z -> Rabs (tail (x * x) j (S (2 * n + 1)) - tail (x * x) j (2 * n + 1)) * IZR (product j (S (2 * n + 1))) <= (x * x) ^ S (2 * n + 1) ->
+    Rabs (tail (x * x) j (S (2 * n + 1)) - tail (x * x) j (2 * n + 1)) * G <= 1).
+  { intros j hj h. specialize (rest j hj). rewrite em in rest. set (dd := Rabs (tail (x * x) j (S (2 * n + 1)) - tail (x * x) j (2 * n + 1))) in *. assert (d0 : 0 <= dd) by apply Rabs_pos.
+    assert (p4 : 0 < 4 ^ S (2 * n + 1)) by (apply pow_lt; lra). apply Rle_trans with (2 := small).
+    apply Rle_trans with (dd * (4 ^ S (2 * n + 1) * IZR (product j (S (2 * n + 1))))); [now apply Rmult_le_compat_l|].
+    replace (dd * (4 ^ S (2 * n + 1) * IZR (product j (S (2 * n + 1))))) with (dd * IZR (product j (S (2 * n + 1))) * 4 ^ S (2 * n + 1)) by ring.
+    apply Rmult_le_compat_r; lra. }
+  apply (step 1%Z ltac:(lia)) in ns. apply (step 0%Z ltac:(lia)) in nc. clear step small rest. pose proof PI2_3_2.
+  destruct (sin_bound x n) as [b1 b2]; [lra|lra|]. destruct (cos_bound x n) as [d1 d2]; [lra|lra|].
+  rewrite sin_tail in b1, b2. rewrite cos_tail in d1, d2. replace (2 * (n + 1))%nat with (S (2 * n + 1)) in b2, d2 by lia.
+  set (t1 := tail (x * x) 1 (2 * n + 1)) in *. set (t2 := tail (x * x) 1 (S (2 * n + 1))) in *. set (t3 := tail (x * x) 0 (2 * n + 1)) in *. set (t4 := tail (x * x) 0 (S (2 * n + 1))) in *.
+  set (S1 := series g X 1 (2 * n + 1)) in *. set (C1 := series g X 0 (2 * n + 1)) in *. clearbody t1 t2 t3 t4 S1 C1 X.
+  pose proof (div_low (l * S1) (Zpos g) gp) as q1. pose proof (div_high (l * S1) (Zpos g) gp) as q2. set (s := (l * S1 / Zpos g)%Z) in *. clearbody s.
+  rewrite mult_IZR in q1, q2. fold G in q1, q2. fold L in q1, q2. set (Y := IZR S1) in *. set (Z1 := IZR C1) in *. unfold encloses. fold G. fold Z1.
+  fold G in s1, c1. apply within in s1, c1. assert (ns' : t2 * G <= t1 * G + 1) by (unfold Rabs in ns; destruct (Rcase_abs (t2 - t1)); nra).
+  assert (nc' : t4 * G <= t3 * G + 1) by (unfold Rabs in nc; destruct (Rcase_abs (t4 - t3)); nra). clear ns nc.
+  assert (w : Rabs (L * Y - (G * x) * (t1 * G)) <= 5 * G).
+  { replace (L * Y - (G * x) * (t1 * G)) with ((L - G * x) * Y + (G * x) * (Y - t1 * G)) by ring. apply Rle_trans with (1 := Rabs_triang _ _). rewrite (Rabs_mult (L - G * x)), (Rabs_mult (G * x)).
+    assert (tG : 0 <= t1 * G <= G) by (split; [apply Rmult_le_pos|replace G with (1 * G) at 2 by ring; apply Rmult_le_compat_r]; lra).
+    assert (xG : 0 <= G * x <= G / 2) by (split; [apply Rmult_le_pos|unfold Rdiv; apply Rmult_le_compat_l]; lra).
+    assert (Rabs (L - G * x) <= 1) by (apply Rabs_le; lra). assert (Rabs Y <= G + 4) by (apply Rabs_le; lra).
+    assert (Rabs (G * x) <= G / 2) by (apply Rabs_le; lra). assert (Rabs (Y - t1 * G) <= 4) by (apply Rabs_le; lra).
+    pose proof (Rabs_pos (L - G * x)). pose proof (Rabs_pos Y). pose proof (Rabs_pos (G * x)). pose proof (Rabs_pos (Y - t1 * G)).
+    assert (Rabs (L - G * x) * Rabs Y <= 1 * (G + 4)) by (apply Rmult_le_compat; lra).
+    assert (Rabs (G * x) * Rabs (Y - t1 * G) <= G / 2 * 4) by (apply Rmult_le_compat; lra). lra. }
+  apply within in w.
+  split; apply Rabs_le.
+  - assert (sin_low : x * t1 * G <= sin x * G) by nra. assert (sin_high : sin x * G <= x * t1 * G + 1) by nra.
+    assert (e : (G * x) * (t1 * G) = (x * t1 * G) * G) by ring. rewrite e in w. set (z := x * t1 * G) in *. clearbody z.
+    assert (z - 6 <= IZR s) by (apply Rmult_le_reg_r with G; lra). assert (IZR s <= z + 5) by (apply Rmult_le_reg_r with G; lra). lra.
+  - assert (t3 * G <= cos x * G) by (apply Rmult_le_compat_r; lra). assert (cos x * G <= t4 * G) by (apply Rmult_le_compat_r; lra). lra.
 Qed.
 
 Definition doubled (g : positive) (x : near_circle) : near_circle := let '(s, c, e) := x in
@@ -193,7 +228,7 @@ Qed.
 
 (* Angles >= 0 that k halvings make small. *)
 Fixpoint halved (g : positive) (k : nat) (a : Q) : option near_circle :=
-  if qle a (1 # 256) then Some (of_small g a)
+  if qle a (1 # 2) then Some (of_small g a)
   else match k with
     | O => None
     | S k => match halved g k (Qmake (Qnum a) (2 * Qden a)) with
@@ -205,11 +240,11 @@ Definition circle (g : positive) (a : Q) : option near_circle :=
   if qle 0 a then halved g 20 a
   else match halved g 20 (qopp a) with Some (s, c, e) => Some (- s, c, e)%Z | None => None end.
 
-Lemma halved_ok g k : forall a x, 0 <= Q2R a -> halved g k a = Some x -> encloses g x (sin (Q2R a)) (cos (Q2R a)).
+Lemma halved_ok g k : apt g (terms g) -> forall a x, 0 <= Q2R a -> halved g k a = Some x -> encloses g x (sin (Q2R a)) (cos (Q2R a)).
 Proof.
-  assert (small : forall a, qle a (1 # 256) = true -> 0 <= Q2R a -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a))).
-  { intros a h a0. apply qle_R in h. apply of_small_ok. unfold Q2R at 2 in h; simpl in h. lra. }
-  induction k as [|k ih]; intros a x a0 h; cbn [halved] in h; destruct (qle a (1 # 256)) eqn:e.
+  intro ap. assert (small : forall a, qle a (1 # 2) = true -> 0 <= Q2R a -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a))).
+  { intros a h a0. apply qle_R in h. apply of_small_ok; [assumption|]. unfold Q2R at 2 in h; simpl in h. lra. }
+  induction k as [|k ih]; intros a x a0 h; cbn [halved] in h; destruct (qle a (1 # 2)) eqn:e.
   - injection h as h. subst. now apply small.
   - discriminate.
   - injection h as h. subst. now apply small.
@@ -219,14 +254,14 @@ Proof.
     destruct (Z.leb_spec (2 * snd y) (Zpos g)) as [l|]; [|discriminate]. injection h as h. subst. rewrite half.
     apply doubled_ok; [|assumption]. apply ih; [lra|assumption].
 Qed.
-Lemma circle_ok g a x : circle g a = Some x -> encloses g x (sin (Q2R a)) (cos (Q2R a)).
+Lemma circle_ok g a x : apt g (terms g) -> circle g a = Some x -> encloses g x (sin (Q2R a)) (cos (Q2R a)).
 Proof.
-  unfold circle. destruct (qle 0 a) eqn:e; intro h.
-  - apply qle_R in e. rewrite Q2R_0 in e. now apply (halved_ok g 20).
+  unfold circle. intro ap. destruct (qle 0 a) eqn:e; intro h.
+  - apply qle_R in e. rewrite Q2R_0 in e. now apply (halved_ok g 20 ap).
   - destruct (halved g 20 (qopp a)) as [[[s c] r]|] eqn:f; [|discriminate]. injection h as h. subst.
     assert (l : 0 <= Q2R (qopp a)).
     { rewrite Q2R_neg. assert (q : qlt a 0 = true) by (unfold qlt; now rewrite e). apply qlt_R in q. rewrite Q2R_0 in q. lra. }
-    apply halved_ok in f; [|assumption]. rewrite Q2R_neg in f. destruct f as [f1 f2]. rewrite sin_neg in f1. rewrite cos_neg in f2.
+    apply (halved_ok g 20 ap) in f; [|assumption]. rewrite Q2R_neg in f. destruct f as [f1 f2]. rewrite sin_neg in f1. rewrite cos_neg in f2.
     unfold encloses. rewrite opp_IZR. split; [|assumption]. rewrite <- Rabs_Ropp.
     replace (- (sin (Q2R a) * IZR (Zpos g) - - IZR s)) with (- sin (Q2R a) * IZR (Zpos g) - IZR s) by ring. assumption.
 Qed.

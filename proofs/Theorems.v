@@ -130,12 +130,23 @@ Definition can_brake (os : list obstacle) (poles : list pole) (step tau : Q) (ds
     forall d, In d ds -> room os (Q2R (its_radius d)) (there d) /\
       forall c, In c poles -> apart (Q2R (its_radius d) + Q2R (snd c)) (there d) (real (fst c)).
 
-(* --- Sweep: bodies of convex parts, each grown by a reach, that move straight and evenly between two moments --- *)
+(* --- Sweep: bodies of convex parts, each grown by a reach, that move along polynomials between two moments --- *)
 Record part := { corners : list point; reach : Q }.     (* corners seen from the place of the body *)
-Record trip := { leave : Q; arrive : Q; start : point; goal : point; parts : list part }.
+Inductive basis := Powers | Bezier | Spline.            (* of the time since the start (s); control points; those of a uniform B-spline *)
+Record trip := { leave : Q; arrive : Q; meant : basis; points : list point; parts : list part }.   (* straight: Bezier, two points *)
 Definition under_way (m : trip) (t : R) := Q2R (leave m) <= t <= Q2R (arrive m).
+Fixpoint mixed_once (share : nat -> R) (ps : list vec) : list vec :=   (* each two neighbours, the first two by share 0 *)
+  match ps with a :: ((b :: _) as r) => mix (share O) a b :: mixed_once (fun i => share (S i)) r | _ => [] end.
+Fixpoint mixed (share : nat -> nat -> R) (n : nat) (ps : list vec) : vec :=   (* n times, until one is left: de Casteljau, de Boor *)
+  match n with O => hd (0, 0) ps | S k => mixed share k (mixed_once (share n) ps) end.
+Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the time that has passed *)
+  let ps := map real (points m) in let n := Nat.pred (length ps) in match meant m with
+  | Powers => fold_right (fun p more => add p (scale passed more)) (0, 0) ps
+  | Bezier => mixed (fun _ _ => u) n ps
+  | Spline => mixed (fun n i => (u + INR (n - 1 - i)) / INR n) n ps
+  end.
 Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it *)
-  let l := Q2R (leave m) in let a := Q2R (arrive m) in mix (if Req_EM_T l a then s else (t - l) / (a - l)) (real (start m)) (real (goal m)).
+  let l := Q2R (leave m) in let a := Q2R (arrive m) in on_way m (t - l) (if Req_EM_T l a then s else (t - l) / (a - l)).
 Definition covers (m : trip) (t s : R) (x : vec) := exists p y, In p (parts m) /\ hull (corners p) y /\
   let d := sub x (add (at_time m t s) y) in dot d d <= Q2R (reach p) * Q2R (reach p).
 Definition never_meet (a b : trip) := forall t s x, under_way a t -> under_way b t -> 0 <= s <= 1 -> covers a t s x -> ~ covers b t s x.

@@ -189,10 +189,18 @@ let parts_of q m =
     { corners = List.map (plain q) (at_least 1 Json.(arr (get "corners" p))); reach = q r } in
   List.map part (at_least 1 Json.(arr (get "body" m)))
 let trip q m =
-  with_only ["from"; "to"; "body"] m;
-  let leave, start = timed q (Json.get "from" m) and arrive, goal = timed q (Json.get "to" m) in
-  if arrive < leave then raise Json.Bad;
-  { leave = q leave; arrive = q arrive; start; goal; parts = parts_of q m }
+  let along leave arrive meant points =
+    if arrive < leave then raise Json.Bad;
+    { leave = q leave; arrive = q arrive; meant; points; parts = parts_of q m } in
+  match Json.find "basis" m with
+  | None ->
+    with_only ["from"; "to"; "body"] m;
+    let leave, start = timed q (Json.get "from" m) and arrive, goal = timed q (Json.get "to" m) in
+    along leave arrive Bezier [start; goal]
+  | Some basis ->
+    with_only ["basis"; "start"; "end"; "points"; "body"] m;
+    let meant = match basis with Json.Str "powers" -> Powers | Json.Str "bezier" -> Bezier | Json.Str "b-spline" -> Spline | _ -> raise Json.Bad in
+    along Json.(num (get "start" m)) Json.(num (get "end" m)) meant (List.map (plain q) (at_least 1 Json.(arr (get "points" m))))
 (* Its corners and its velocity are in the axes of the world, as they are at the start. *)
 let drive q m =
   with_only ["from"; "until"; "velocity"; "turn"; "body"] m;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes certificates, every second one forged, with the verdicts of the checkers in C++, for the proven checker to
-// judge too: proof_cases COUNT SEED OUT. A quarter of COUNT each are half-planes and containments (lines.txt), routes
-// (routes.jsonl), bodies that never meet (clear.jsonl) and choices (problems.jsonl, answers.jsonl); a fortieth more are
-// bodies that turn (turning.jsonl). A file NAME.valid beside each has a 0 or 1 a line.
+// judge too: proof_cases COUNT SEED OUT. COUNT each are half-planes (half-planes.txt), containments (containments.txt),
+// routes (routes.jsonl), bodies that never meet on straight ways (clear.jsonl), on curves (curved.jsonl) and while they
+// turn (turning.jsonl), and choices (problems.jsonl, answers.jsonl). A file NAME.valid beside each has a 0 or 1 a line.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/motion_certificate.h"
@@ -125,18 +127,21 @@ void forge(vo::Containment& c, SeededRandom& random) {
     if (const auto anew = vo::certify_containment(c.ellipse, c.points)) c = *anew;
 }
 
-void write_lines(std::size_t count, SeededRandom& random, const std::string& folder) {
-  Cases cases(folder, "lines", ".txt");
+void write_half_planes(std::size_t count, SeededRandom& random, const std::string& folder) {
+  Cases cases(folder, "half-planes", ".txt");
   for (std::size_t k = 0; k < count; ++k) {
-    if (k % 4 < 2) {
-      vo::Certificate c = half_plane_at_random(random);
-      if (k % 2) forge(c, random);
-      cases.add(vo::write_certificate(c), check(c) == vo::Verdict::valid);
-    } else {
-      vo::Containment c = containment_at_random(random);
-      if (k % 2) forge(c, random);
-      cases.add(vo::write_containment(c), check(c) == vo::Verdict::valid);
-    }
+    vo::Certificate c = half_plane_at_random(random);
+    if (k % 2) forge(c, random);
+    cases.add(vo::write_certificate(c), check(c) == vo::Verdict::valid);
+  }
+}
+
+void write_containments(std::size_t count, SeededRandom& random, const std::string& folder) {
+  Cases cases(folder, "containments", ".txt");
+  for (std::size_t k = 0; k < count; ++k) {
+    vo::Containment c = containment_at_random(random);
+    if (k % 2) forge(c, random);
+    cases.add(vo::write_containment(c), check(c) == vo::Verdict::valid);
   }
 }
 
@@ -201,25 +206,28 @@ bool never_meet(const Json& certificate) {
   return tools::check_motion_certificate(tools::OrderedJson::parse(certificate.dump())).valid;
 }
 
-std::optional<Json> clear_at_random(SeededRandom& random) {
-  constexpr test::MotionKind kStraight[] = {test::MotionKind::discs, test::MotionKind::disc_and_edges,
-                                            test::MotionKind::bodies};
-  const test::MotionCase c = test::random_motion_case(random, kStraight[random.integer(0, 2)]);
-  const auto* a = std::get_if<geometry::StraightMotion>(&c.a);
-  const auto* b = c.b ? std::get_if<geometry::StraightMotion>(&*c.b) : nullptr;
-  if (a == nullptr || (c.b && b == nullptr)) return std::nullopt;
+bool is_curved(const geometry::Motion& motion) {
+  return std::holds_alternative<geometry::CurvedMotion>(motion);
+}
+
+std::optional<Json> clear_at_random(bool curved, SeededRandom& random) {
+  using test::MotionKind;
+  constexpr MotionKind kStraight[] = {MotionKind::discs, MotionKind::disc_and_edges, MotionKind::bodies};
+  constexpr MotionKind kCurved[] = {MotionKind::curved_discs, MotionKind::curved_edges, MotionKind::bodies};
+  const test::MotionCase c = test::random_motion_case(random, (curved ? kCurved : kStraight)[random.integer(0, 2)]);
+  if (curved != (is_curved(c.a) || (c.b && is_curved(*c.b)))) return std::nullopt;
   const auto certificate =
       c.b ? geometry::certify(c.a, c.body_a, *c.b, c.body_b) : geometry::certify(c.a, c.body_a, *c.obstacle);
-  if (!certificate) return std::nullopt;
-  const tools::BodyInMotion moving{*a, &c.body_a};
-  if (b != nullptr) return tools::certificate_json(*certificate, moving, {*b, &c.body_b});
+  if (!certificate || certificate->separations.size() > 60) return std::nullopt;  // few lines that take long
+  const tools::BodyInMotion moving{c.a, &c.body_a};
+  if (c.b) return tools::certificate_json(*certificate, moving, {*c.b, &c.body_b});
   return tools::certificate_json(*certificate, moving, formation::SceneObstacle{"0", *c.obstacle});
 }
 
-void write_clear(std::size_t count, SeededRandom& random, const std::string& folder) {
-  Cases cases(folder, "clear", ".jsonl");
+void write_moving(bool curved, std::size_t count, SeededRandom& random, const std::string& folder) {
+  Cases cases(folder, curved ? "curved" : "clear", ".jsonl");
   for (std::size_t k = 0; k < count;) {
-    auto certificate = clear_at_random(random);
+    auto certificate = clear_at_random(curved, random);
     if (!certificate) continue;
     if (k % 2) forge(*certificate, random);
     cases.add(certificate->dump(), never_meet(*certificate));
@@ -400,19 +408,26 @@ void write_choices(std::size_t count, SeededRandom& random, const std::string& f
 int main(int argc, char** argv) {
   using namespace exactvo;
   return tools::run_program("proof_cases", [&] {
-    std::uint64_t count = 10000, seed = 1;
-    std::string out;
+    std::uint64_t count = 2000, seed = 1;
+    std::string out, only;
     tools::ProgramOptions options("proof_cases", "Writes certificates, real and forged, with the verdicts of C++.");
-    options.whole_number("COUNT", count, 4, "Certificates in all");
+    options.whole_number("COUNT", count, 4, "Certificates of each kind");
     options.whole_number("SEED", seed, 0, "Of the random numbers");
     options.text("OUT", out, "A folder that exists", true);
+    options.text("--only", only, "The file of one kind, without what follows the point");
     if (!options.parse(argc, argv)) return 0;
-    SeededRandom random(seed);
-    write_lines(count / 4, random, out);
-    write_routes(count / 4, random, out);
-    write_clear(count / 4, random, out);
-    write_turning(count / 40, random, out);
-    write_choices(count - count / 4 * 3, random, out);
+    const std::pair<const char*, std::function<void(SeededRandom&)>> kinds[] = {
+        {"half-planes", [&](SeededRandom& random) { write_half_planes(count, random, out); }},
+        {"containments", [&](SeededRandom& random) { write_containments(count, random, out); }},
+        {"routes", [&](SeededRandom& random) { write_routes(count, random, out); }},
+        {"clear", [&](SeededRandom& random) { write_moving(false, count, random, out); }},
+        {"curved", [&](SeededRandom& random) { write_moving(true, count, random, out); }},
+        {"turning", [&](SeededRandom& random) { write_turning(count, random, out); }},
+        {"answers", [&](SeededRandom& random) { write_choices(count, random, out); }}};
+    for (const auto& [name, write] : kinds) {
+      SeededRandom random(seed);  // so that a kind alone is what it is among all
+      if (only.empty() || only == name) write(random);
+    }
     return 0;
   });
 }
