@@ -201,6 +201,7 @@ let recording file text =
     let on_wheels = List.exists (fun r -> Wheels.drive r <> None) Json.(arr (get "robots" (get "scenario" h))) in
     scenario := Wheels.as_discs (Json.get "scenario" h);
     robots := List.length Json.(arr (get "robots" !scenario));
+    if Wheels.tracking (Json.get "scenario" h) > 0. then not_covered := !not_covered @ ["that bodies are within the tracking error of where rows have them: that is assumed"];
     if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points: that bodies and wheels follow, audit asks"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";

@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The reader, continued: a robot on wheels (docs/guide/wheels.md) is judged as the disc about its reference point that
-   holds it at every heading, and the stray of a twist. That it does is asked for, in fractions; that wheels do as they
-   are told is not. *)
+   holds it at every heading, the stray of a twist, and the tracking error that the scenario has; another robot as its
+   disc and that error. That it does is asked for, in fractions; that wheels and bodies do as they are told is not. *)
 
 let drive robot = match Json.find "kinematics" robot with
   | Some k when Json.find "type" k = Some (Json.Str "differential") -> Some k
@@ -10,27 +10,49 @@ let drive robot = match Json.find "kinematics" robot with
 let number key v = Json.(num (get key v))
 let speed_and_acceleration k = (number "max_wheel_speed" k, number "max_wheel_acceleration" k)
 
-let holds radius body ahead speed step =
+let tracking scenario = match Json.find "uncertainty" scenario with Some u -> number "tracking" u | None -> 0.
+
+(* Of the body, as seen from its axle: corners, or a disc. *)
+let corners robot = match Json.find "footprint" robot with
+  | Some f -> List.map (fun c -> match Json.arr c with [x; y] -> Json.(num x, num y) | _ -> raise Json.Bad) Json.(arr (get "polygon" f))
+  | None -> []
+
+let holds radius robot ahead speed step tracking =
   let q = Q.of_float in
   let way = Q.mul (q speed) (q step) in
   let room = Q.sub (Q.mul (q 2.) (q ahead)) way in
-  Q.sign room > 0 && Q.geq (q radius) (Q.add (Q.add (q body) (q ahead)) (Q.div (Q.mul way way) (Q.mul (q 4.) room)))
+  let left = Q.sub (Q.sub (q radius) (Q.div (Q.mul way way) (Q.mul (q 4.) room))) (q tracking) in
+  let is_within (x, y) = let x = Q.sub (q x) (q ahead) in Q.leq (Q.add (Q.mul x x) (Q.mul (q y) (q y))) (Q.mul left left) in
+  Q.sign room > 0 && Q.sign left > 0
+  && match corners robot with
+     | [] -> Q.geq left (Q.add (q (number "radius" robot)) (q ahead))
+     | cs -> List.for_all is_within cs
 
-let as_disc step robot =
+let rounded_up = 1. +. Float.ldexp 1. (-50)
+
+let as_disc step tracking robot =
   match robot, drive robot with
   | Json.Obj members, Some k ->
-    let body = number "radius" robot and ahead = number "reference" k and speed, _ = speed_and_acceleration k in
+    let ahead = number "reference" k and speed, _ = speed_and_acceleration k in
     let way = speed *. step in
     let stray = (1. +. 1e-12) *. (way *. way /. (4. *. ((2. *. ahead) -. way))) in
-    let radius = (1. +. Float.ldexp 1. (-50)) *. (body +. ahead +. stray) in
-    if not (holds radius body ahead speed step) then raise Json.Bad;
+    let body = match corners robot with
+      | [] -> number "radius" robot +. ahead
+      | cs -> List.fold_left (fun most (x, y) -> Float.max most ((let x = x -. ahead in Float.sqrt ((x *. x) +. (y *. y))))) 0. cs in
+    let radius = rounded_up *. (body +. stray +. tracking) in
+    if not (holds radius robot ahead speed step tracking) then raise Json.Bad;
     let others = List.filter (fun (key, _) -> key <> "radius" && key <> "max_speed") members in
     Json.Obj (("radius", Json.Num radius) :: ("max_speed", Json.Num speed) :: others)
+  | Json.Obj members, None when tracking > 0. ->
+    let body = number "radius" robot in
+    let radius = rounded_up *. (body +. tracking) in
+    if Q.lt (Q.of_float radius) (Q.add (Q.of_float body) (Q.of_float tracking)) then raise Json.Bad;
+    Json.Obj (("radius", Json.Num radius) :: List.remove_assoc "radius" members)
   | _ -> robot
 
 (* The scenario with such discs in the place of robots on wheels. *)
 let as_discs scenario = match scenario with
   | Json.Obj members ->
-    let step = number "time_step" scenario in
-    Json.Obj (List.map (function ("robots", Json.Arr robots) -> ("robots", Json.Arr (List.map (as_disc step) robots)) | m -> m) members)
+    let as_disc = as_disc (number "time_step" scenario) (tracking scenario) in
+    Json.Obj (List.map (function ("robots", Json.Arr robots) -> ("robots", Json.Arr (List.map as_disc robots)) | m -> m) members)
   | _ -> raise Json.Bad

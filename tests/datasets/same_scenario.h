@@ -59,6 +59,7 @@ inline void expect_same(const formation::Robot& a, const formation::Robot& b) {
   EXPECT_TRUE(same_bits(a.position, b.position)) << a.id;
   EXPECT_TRUE(same_bits(a.velocity, b.velocity)) << a.id;
   EXPECT_TRUE(same_bits(a.radius, b.radius)) << a.id;
+  EXPECT_TRUE(same_bits(a.body_radius, b.body_radius)) << a.id;
   EXPECT_TRUE(same_bits(a.max_speed, b.max_speed)) << a.id;
   EXPECT_TRUE(same_bits(a.goals, b.goals)) << a.id;
   ASSERT_EQ(a.drive.has_value(), b.drive.has_value()) << a.id;
@@ -76,6 +77,7 @@ inline void expect_same(const formation::Robot& a, const formation::Robot& b) {
                                d.body_radius};
   };
   EXPECT_TRUE(same_bits(numbers(*a.drive), numbers(*b.drive))) << a.id;
+  EXPECT_TRUE(same_bits(a.drive->footprint, b.drive->footprint)) << a.id;
 }
 
 inline bool same_bits(const std::optional<geometry::Disc>& a, const std::optional<geometry::Disc>& b) {
@@ -141,6 +143,7 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   ASSERT_EQ(a.acceleration.has_value(), b.acceleration.has_value());
   EXPECT_TRUE(!a.acceleration || same_bits(a.acceleration->max, b.acceleration->max));
   EXPECT_EQ(a.braking_time, b.braking_time);
+  EXPECT_TRUE(same_bits(tracking_error_of(a), tracking_error_of(b)));
 }
 
 }  // namespace exactvo::datasets::test

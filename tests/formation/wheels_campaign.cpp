@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "exactvo/datasets/audit.h"
 #include "options/program_options.h"
@@ -107,6 +108,9 @@ int print_table() {
   print("12 Burgers", burgers_on_circle(12, 2.2, false), 20.0);
   for (const std::uint64_t seed : {5, 6, 7})
     print("12 Burgers, headings at random", burgers_on_circle(12, 2.2, true, seed), 20.0);
+  for (const double tracking : {0.0, 0.01, 0.02, 0.05, 0.1})
+    print(("8 Burgers, tracking error " + std::to_string(tracking) + " m").c_str(),
+          burgers_on_circle(8, 1.5, false, 5, tracking), 13.6);
   Scenario s = burgers_on_circle(12, 2.2, false);
   add_pillars(s);
   print("12 Burgers, three pillars", s, 20.0);

@@ -39,14 +39,17 @@ inline void add_burger(Scenario& s, Vec2 reference, double heading, std::vector<
   DifferentialDrive d = burger();
   d.heading = heading;
   d.axle = reference - d.reference * heading_vector(heading);
-  put_on_wheels(r, d, s.time_step);
+  put_on_wheels(r, d, s.time_step, tracking_error_of(s));
   r.goals = std::move(goals);
   s.robots.push_back(std::move(r));
 }
 
 /// Each crosses a circle of reference points to the opposite place. `is_turned`: the headings at the start are random.
-inline Scenario burgers_on_circle(int robots, double radius, bool is_turned, std::uint64_t seed = 5) {
+/// `tracking`: m.
+inline Scenario burgers_on_circle(int robots, double radius, bool is_turned, std::uint64_t seed = 5,
+                                  double tracking = 0.0) {
   Scenario s;
+  if (tracking > 0.0) s.uncertainty = Uncertainty{tracking};
   s.name = "burgers";
   s.time_limit = 90.0;
   s.arrival_tolerance = 0.02;

@@ -10,6 +10,7 @@
 
 #include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/pi.h"
@@ -113,6 +114,7 @@ std::string wheel_words(const Decision& d) {
 
 std::string head(const Decision& d) {
   const double shift = norm(d.step.chosen - d.step.preferred);
+  const std::string assumed = formation::assumed_words(d.scenario);
   return fmt::format(
       "{} of {} at t = {} s, {}\n"
       "  position   {} m, moving at {}\n"
@@ -121,11 +123,13 @@ std::string head(const Decision& d) {
       "{}"
       "  preferred  {}\n"
       "  chosen     {}: {}\n"
-      "  status     {}\n",
+      "  status     {}\n"
+      "{}",
       d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
       wheel_words(d), mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n",
       velocity(d.step.preferred), velocity(d.step.chosen),
-      shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
+      shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d),
+      assumed.empty() ? "" : "  " + assumed + "\n");
 }
 
 bool takes_preferred(const Decision& d) {

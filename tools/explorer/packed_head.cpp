@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/geometry/names.h"
 #include "support/routes_of_run.h"
 
@@ -78,7 +79,10 @@ Json robots_json(const formation::Scenario& scenario) {
     if (const std::optional<formation::DifferentialDrive>& drive = robot.drive)
       robots.back()["on_wheels"] = {{"reference", drive->reference},
                                     {"wheel_separation", drive->wheel_separation},
-                                    {"body_radius", drive->body_radius}};
+                                    {"body_radius", drive->body_radius},
+                                    {"footprint", flat(drive->footprint)}};
+    else if (robot.body_radius > 0.0)
+      robots.back()["body_radius"] = robot.body_radius;
   }
   return robots;
 }
@@ -114,6 +118,7 @@ Json about_json(const datasets::RecordingFile& file) {
                {"version", file.info.provenance.version},
                {"commit", file.info.provenance.commit},
                {"outcome", file.outcome.empty() ? run.outcome : file.outcome},
+               {"assumed", formation::assumed_words(scenario)},
                {"warnings", run.warnings}};
   if (scenario.formation)
     json["formation"] = {{"offsets", flat(run.offsets)}, {"path", flat(scenario.formation->leader.path)}};

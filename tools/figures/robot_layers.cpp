@@ -166,24 +166,31 @@ class RobotLayers {
                                                                   robot_count() <= kFewRobots ? 10 : 8, colour));
   }
 
-  /// Of those on wheels, within the discs: the body's disc about the axle, and how far ahead the reference point is.
+  /// Within the discs where these are larger: of those on wheels the body about the axle, and how far ahead the
+  /// reference point is; of others the body without its tracking error.
   void add_bodies(const std::vector<std::size_t>& alike) {
-    std::vector<std::size_t> on_wheels;
+    std::vector<std::size_t> smaller;
     for (const std::size_t i : alike)
-      if (to_.run.scenario.robots[i].drive) on_wheels.push_back(i);
-    if (on_wheels.empty()) return;
-    const int index = to_.data.begin("bodies of " + names(on_wheels), "x [m], y [m]");
-    for (const std::size_t i : on_wheels) {
-      const formation::DifferentialDrive& drive = *to_.run.scenario.robots[i].drive;
+      if (to_.run.scenario.robots[i].drive || to_.run.scenario.robots[i].body_radius > 0.0) smaller.push_back(i);
+    if (smaller.empty()) return;
+    const int index = to_.data.begin("bodies of " + names(smaller), "x [m], y [m]");
+    for (const std::size_t i : smaller) {
+      const formation::Robot& spec = to_.run.scenario.robots[i];
       for (const Step* step : places_of(i)) {
         const formation::RobotStep& robot = step->robots[i];
-        if (!robot.wheels) continue;
-        const Vec2 axle = robot.position - drive.reference * robot.wheels->heading;
-        to_.data.ring(circle(axle, drive.body_radius));
-        to_.data.curve({axle, robot.position});
+        if (!spec.drive) to_.data.ring(circle(robot.position, spec.body_radius));
+        if (spec.drive && robot.wheels) add_on_wheels(*spec.drive, robot);
       }
     }
     to_.draw(index, fmt::format("with lines lw 1 lc rgb '{}'", series_colour(alike.front())));
+  }
+
+  void add_on_wheels(const formation::DifferentialDrive& drive, const formation::RobotStep& robot) {
+    const Vec2 e = robot.wheels->heading, axle = robot.position - drive.reference * e;
+    Points corners;
+    for (const Vec2 c : drive.footprint) corners.push_back(axle + c.x * e + c.y * Vec2{-e.y, e.x});
+    to_.data.ring(corners.empty() ? circle(axle, drive.body_radius) : corners);
+    to_.data.curve({axle, robot.position});
   }
 
   /// The row at which the robot came to rest, or the last one that can be drawn.

@@ -72,6 +72,12 @@ void check_header(const RecordingFile& file, const Step& first, const formation:
               "the scenario of the recording is not the one given");
   }
   const std::vector<formation::Robot>& robots = file.scenario.robots;
+  const Rational tracking(formation::tracking_error_of(file.scenario));
+  tally.report.has_tube = sgn(tracking) > 0;
+  for (const formation::Robot& robot : robots)  // of those on wheels `audit_kinematics` asks it
+    if (tally.report.has_tube && !robot.drive)
+      tally.ask(scenario, Rational(robot.radius) >= Rational(robot.body_radius) + tracking,
+                "the radius of " + robot.id + " leaves no room for its tracking error");
   const bool starts = std::equal(robots.begin(), robots.end(), first.robots.begin(), first.robots.end(),
                                  [](const formation::Robot& robot, const RobotStep& seen) {
                                    return robot.position == seen.position && robot.velocity == seen.velocity;
@@ -416,7 +422,7 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
   for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
-                                  &AuditReport::without_pairs, &AuditReport::has_places})
+                                  &AuditReport::has_tube, &AuditReport::without_pairs, &AuditReport::has_places})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -457,6 +463,10 @@ std::vector<std::string> not_audited(const AuditReport& report) {
     words.emplace_back(
         "that robots on wheels could not have chosen better velocities than their recorded limits allow, and that "
         "their wheels did as recorded");
+  if (report.has_tube)
+    words.emplace_back(
+        "that bodies are where rows have them, up to the tracking error of the scenario, which is assumed: what is "
+        "proven holds in every world in which they are");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "

@@ -5,6 +5,7 @@
 // T, and atan t / t is enclosed by its series.
 #include "recordings/audit_points.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace exactvo::datasets {
@@ -79,11 +80,18 @@ class KinematicsAudit : public RowAudit {
     run_.tally.ask(AuditPoint::kinematics, holds, at_row(row, robot.id + " " + what));
   }
 
-  /// The body's disc about the axle, which is D away, and s T |t| / 4 at its greatest: (W T)^2 / (4 (2 D - W T)).
+  /// The body's disc about the axle, which is D away, or its corners; s T |t| / 4 at its greatest, (W T)^2 / (4 (2 D -
+  /// W T)); and the tracking error.
   bool holds_its_body(const formation::Robot& robot) const {
     const DifferentialDrive& d = *robot.drive;
     const Rational ahead(d.reference), way = Rational(d.max_wheel_speed) * run_.duration, room = 2 * ahead - way;
-    return sgn(room) > 0 && Rational(robot.radius) >= Rational(d.body_radius) + ahead + way * way / (4 * room);
+    if (sgn(room) <= 0) return false;
+    const Rational left = Rational(robot.radius) - way * way / (4 * room) - Rational(tracking_error_of(run_.scenario));
+    if (d.footprint.empty()) return left >= Rational(d.body_radius) + ahead;
+    return sgn(left) > 0 && std::all_of(d.footprint.begin(), d.footprint.end(), [&](geometry::Vec2 corner) {
+             const Point from = exactly(corner) - Point{ahead, Rational(0)};
+             return exact::dot(from, from) <= left * left;
+           });
   }
 
   void starts(const RobotStep& state, const formation::Robot& robot) {

@@ -31,6 +31,11 @@ void members(Codec& json, For<Codec, formation::DifferentialDrive>& drive) {
   json.member_if(drive.reference > 0.0, "reference", drive.reference);
 }
 
+/// Of a robot that moves in any direction: what stands in `radius`, without the tracking error.
+inline double body_radius_of(const formation::Robot& robot) {
+  return robot.body_radius > 0.0 ? robot.body_radius : robot.radius;
+}
+
 /// A robot on wheels is written with the position of its axle and the radius of its body, which stand in its drive.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Robot>& robot) {
@@ -38,7 +43,11 @@ void members(Codec& json, For<Codec, formation::Robot>& robot) {
     if (robot.drive) return on_wheels(json, robot, *robot.drive);
   }
   json.member("id", robot.id).member("position", robot.position).optional("velocity", robot.velocity);
-  json.optional("radius", robot.radius).optional("max_speed", robot.max_speed).optional("goals", robot.goals);
+  if constexpr (Codec::kReads)
+    json.optional("radius", robot.radius);
+  else
+    json.member("radius", body_radius_of(robot));
+  json.optional("max_speed", robot.max_speed).optional("goals", robot.goals);
   json.optional("cooperates", robot.cooperates);
 }
 
@@ -87,6 +96,13 @@ void members(Codec& json, For<Codec, formation::Acceleration>& acceleration) {
   json.member("max", acceleration.max);
 }
 
+template <>
+inline constexpr bool kOnOneLine<formation::Uncertainty> = true;
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Uncertainty>& uncertainty) {
+  json.member("tracking", uncertainty.tracking);
+}
+
 /// Its numbers: horizons, margins, times, distances.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Scenario>& scenario) {
@@ -95,6 +111,7 @@ void members(Codec& json, For<Codec, formation::Scenario>& scenario) {
   json.optional("arrival_tolerance", scenario.arrival_tolerance);
   json.optional("neighbour_distance", scenario.neighbour_distance);
   json.optional("acceleration", scenario.acceleration).optional("braking_time", scenario.braking_time);
+  json.optional("uncertainty", scenario.uncertainty);
 }
 
 }  // namespace exactvo::datasets

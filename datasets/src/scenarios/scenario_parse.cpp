@@ -116,6 +116,7 @@ class ScenarioReader {
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
     scenario.description = tree.value("description", std::string());
+    read_value(JsonCursor(tree, file_, ""), scenario);
     read_obstacle_list(list_in(tree, "obstacles"), scenario);
     read_robot_list(tree.at("robots"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
@@ -124,9 +125,10 @@ class ScenarioReader {
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
-    read_value(JsonCursor(tree, file_, ""), scenario);
     for (formation::Robot& robot : scenario.robots)
-      if (robot.drive) put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), scenario.time_step);
+      if (robot.drive)
+        put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), scenario.time_step,
+                      formation::tracking_error_of(scenario));
     look_ahead_while_braking(tree, scenario);
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
     refuse_repeated_ids(scenario);
@@ -162,7 +164,7 @@ class ScenarioReader {
   }
 
   void read_robot_list(const Json& list, Scenario& scenario) {
-    RobotList read = read_robots(list, scenario.obstacles, file_, base_dir_);
+    RobotList read = read_robots(list, scenario.obstacles, file_, base_dir_, formation::tracking_error_of(scenario));
     robots_are_one_entry_ = list.is_object();
     scenario.robots = std::move(read.robots);
     origin_of_robot_ = std::move(read.origins);

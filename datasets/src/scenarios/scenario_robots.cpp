@@ -115,8 +115,8 @@ class FreeRoom {
 class RobotsReader {
  public:
   RobotsReader(const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
-               const std::filesystem::path& base_dir)
-      : obstacles_(obstacles), file_(file), base_dir_(base_dir) {}
+               const std::filesystem::path& base_dir, double tracking)
+      : obstacles_(obstacles), file_(file), base_dir_(base_dir), tracking_(tracking) {}
 
   RobotList read(const Json& list) {
     if (list.is_object()) {
@@ -137,6 +137,7 @@ class RobotsReader {
       members(at, robot);
       if (entry.contains("goal")) robot.goals = {entry.at("goal").get<Vec2>()};
       read_drive(entry, robot);
+      if (!robot.drive) keep_within_tube(robot, robot.radius, tracking_);
       out_.origins.push_back({k, false});
       return;
     }
@@ -144,6 +145,7 @@ class RobotsReader {
     pattern_ = Robot{};
     at.optional("radius", pattern_.radius).optional("max_speed", pattern_.max_speed);
     at.optional("cooperates", pattern_.cooperates);
+    keep_within_tube(pattern_, pattern_.radius, tracking_);
     made_ = 0;
     if (entry.contains("circle")) make_circle(entry.at("circle"));
     if (entry.contains("grid")) make_grid(entry.at("grid"));
@@ -154,9 +156,10 @@ class RobotsReader {
   /// Its axle and body; where the reference point is depends on the time step (`put_on_wheels`).
   void read_drive(const Json& entry, Robot& robot) const {
     const bool has_wheels = entry.contains("kinematics") && entry["kinematics"].value("type", "") == "differential";
-    if (!has_wheels && entry.contains("heading"))
-      refuse(DataCode::scenario, "heading", "a heading of a robot that moves in any direction",
-             "none without \"kinematics\" of the type \"differential\"");
+    for (const char* key : {"heading", "footprint"})
+      if (!has_wheels && entry.contains(key))
+        refuse(DataCode::scenario, key, std::string("a ") + key + " of a robot that moves in any direction",
+               "none without \"kinematics\" of the type \"differential\"");
     if (!has_wheels) {
       if (entry.contains("kinematics") && entry["kinematics"].size() > 1)
         refuse(DataCode::scenario, "kinematics", "wheels of a robot that moves in any direction",
@@ -175,7 +178,18 @@ class RobotsReader {
     drive.heading = entry.value("heading", 0.0);
     drive.axle = robot.position;
     drive.body_radius = robot.radius;
+    read_footprint(entry, drive);
     if (!(drive.reference > 0.0)) drive.reference = 0.5 * drive.wheel_separation;
+  }
+
+  void read_footprint(const Json& entry, formation::DifferentialDrive& drive) const {
+    if (!entry.contains("footprint")) return;
+    if (entry.contains("radius"))
+      refuse(DataCode::scenario, "radius", "a radius of a robot that has a footprint", "the footprint alone");
+    drive.footprint = entry["footprint"].at("polygon").get<std::vector<Vec2>>();
+    if (drive.footprint.front() == drive.footprint.back()) drive.footprint.pop_back();
+    drive.body_radius = 0.0;
+    for (const Vec2 corner : drive.footprint) drive.body_radius = std::max(drive.body_radius, norm(corner));
   }
 
   [[noreturn]] void refuse(DataCode code, const char* key, const std::string& found,
@@ -325,7 +339,7 @@ class RobotsReader {
     const auto coordinate = [&](const char* name) { return number(name, 0.0, -kFarthest, kFarthest); };
     Robot& robot = add({coordinate("x"), coordinate("y")}, {coordinate("goal_x"), coordinate("goal_y")});
     robot.velocity = {number("vx", 0.0, -kLargest, kLargest), number("vy", 0.0, -kLargest, kLargest)};
-    robot.radius = number("radius", robot.radius, 1e-300, kLargest);
+    keep_within_tube(robot, number("radius", body_radius_of(robot), 1e-300, kLargest), tracking_);
     robot.max_speed = number("max_speed", robot.max_speed, 1e-300, kLargest);
     if (!table.has("id")) return;
     if (table.field("id").empty()) table.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
@@ -340,6 +354,7 @@ class RobotsReader {
   const std::vector<formation::SceneObstacle>& obstacles_;
   const std::string& file_;
   const std::filesystem::path& base_dir_;
+  const double tracking_;  ///< m
   RobotList out_;
   std::size_t entry_ = 0, made_ = 0;
   std::string pointer_, prefix_;
@@ -349,8 +364,8 @@ class RobotsReader {
 }  // namespace
 
 RobotList read_robots(const Json& list, const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
-                      const std::filesystem::path& base_dir) {
-  return RobotsReader(obstacles, file, base_dir).read(list);
+                      const std::filesystem::path& base_dir, double tracking) {
+  return RobotsReader(obstacles, file, base_dir, tracking).read(list);
 }
 
 }  // namespace exactvo::datasets

@@ -88,7 +88,11 @@ void append_scenario(JsonWriter& json, const Scenario& scenario) {
 
 void on_wheels(JsonWriter& json, const formation::Robot& robot, const formation::DifferentialDrive& drive) {
   json.member("id", robot.id).member("position", drive.axle).member("heading", drive.heading);
-  json.member("radius", drive.body_radius).member("goals", robot.goals).member("cooperates", robot.cooperates);
+  if (drive.footprint.empty())
+    json.member("radius", drive.body_radius);
+  else
+    json.object("footprint", [&](JsonWriter& footprint) { footprint.member("polygon", drive.footprint); });
+  json.member("goals", robot.goals).member("cooperates", robot.cooperates);
   json.object("kinematics", [&](JsonWriter& kinematics) {
     kinematics.member("type", "differential");
     members(kinematics, drive);

@@ -24,11 +24,19 @@ double stray_of(const DifferentialDrive& drive, double time_step) {
   return kRounding * (way * way / (4.0 * (2.0 * drive.reference - way)));
 }
 
-void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step) {
+void keep_within_tube(Robot& robot, double body_radius, double tracking) {
   constexpr double kRounding = 1.0 + 0x1p-50;
+  robot.body_radius = tracking > 0.0 ? body_radius : 0.0;
+  robot.radius = tracking > 0.0 ? kRounding * (body_radius + tracking) : body_radius;
+}
+
+void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step, double tracking) {
+  constexpr double kRounding = 1.0 + 0x1p-50;
+  double body = drive.footprint.empty() ? drive.body_radius + drive.reference : 0.0;
+  for (const Vec2 corner : drive.footprint) body = std::max(body, norm(corner - Vec2{drive.reference, 0.0}));
   robot.drive = drive;
   robot.position = drive.axle + drive.reference * heading_vector(drive.heading);
-  robot.radius = kRounding * (drive.body_radius + drive.reference + stray_of(drive, time_step));
+  robot.radius = kRounding * (body + stray_of(drive, time_step) + tracking);
   robot.max_speed = drive.max_wheel_speed;
 }
 

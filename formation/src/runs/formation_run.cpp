@@ -8,6 +8,7 @@
 
 #include "control/consensus.h"
 #include "decision/decision.h"
+#include "exactvo/formation/notices.h"
 #include "metrics/divergence.h"
 #include "motion/integrators.h"
 #include "motion/leader.h"
@@ -327,6 +328,7 @@ class FormationRun {
     if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
     add_note(recording.outcome, spec_.leader.why_short);
+    add_note(recording.outcome, assumed_words(scenario_));
   }
 
   void add_words_of_plans(const Step& end, Recording& recording) const {

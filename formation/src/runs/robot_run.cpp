@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "exactvo/formation/notices.h"
 #include "exactvo/geometry/require.h"
 #include "scene/goals.h"
+#include "steering/steering.h"
 
 namespace exactvo::formation::detail {
 
@@ -69,6 +71,7 @@ void RobotRun::add_reasons() {
   if (because.size() > named) text += "; " + std::to_string(because.size() - named) + " more for such reasons";
   if (report.stands_still) text += "; nothing moves, and every further step would repeat the last";
   if (report.arrived < robots_.size()) stepper_.add_words(text);
+  add_note(text, assumed_words(robots_.scenario));
 }
 
 void steer_by(const RunSteering& steering, const RobotSlice& robots, std::vector<Vec2>& preferred) {

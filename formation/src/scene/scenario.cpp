@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "exactvo/formation/disc_obstacle.h"
+#include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/counted.h"
@@ -15,6 +16,7 @@
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/round_polygon.h"
 #include "exactvo/geometry/told_apart.h"
+#include "exactvo/geometry/validity.h"
 #include "motion/differential.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
@@ -98,6 +100,16 @@ void check_body(double radius, double max_speed, const At& at, Checker& c) {
   c.positive(max_speed, at("/max_speed"), "m/s");
 }
 
+/// Its body, wherever it may be, is within its disc. (On wheels `check_drive` asks that.)
+template <class At>
+void check_tube(const Scenario& s, const Robot& r, const At& at, Checker& c) {
+  if (r.drive || !(r.radius > 0.0)) return;
+  Robot made;
+  keep_within_tube(made, r.body_radius > 0.0 ? r.body_radius : r.radius, tracking_error_of(s));
+  if (made.radius == r.radius && made.body_radius == r.body_radius) return;
+  c.require(false, at("/radius")(), show(r.radius), "the radius that `keep_within_tube` makes");
+}
+
 /// Where it starts, as the scenario says.
 std::string start_of(const Robot& r) {
   if (!r.drive) return show(r.position);
@@ -111,6 +123,7 @@ void check_robots(const Scenario& s, Checker& c) {
     const Robot& r = s.robots[i];
     const auto at = [i](const char* key) { return [i, key] { return "/robots/" + std::to_string(i) + key; }; };
     check_body(r.radius, r.max_speed, at, c);
+    check_tube(s, r, at, c);
     c.finite(r.position, at("/position"));
     c.finite(r.velocity, at("/velocity"));
     if (!s.formation && r.goals.empty())
@@ -250,6 +263,18 @@ std::optional<std::size_t> first_drive(const Scenario& s) {
   return std::nullopt;
 }
 
+/// Corners of a body, as its axle has it.
+void check_footprint(const DifferentialDrive& d, const std::string& at, Checker& c) {
+  if (d.footprint.empty()) return;
+  for (std::size_t k = 0; k < d.footprint.size(); ++k) c.finite(d.footprint[k], at + "/" + std::to_string(k));
+  if (!c.problems.empty()) return;
+  if (d.footprint.size() < 3 || !geometry::is_simple(d.footprint))
+    return c.require(false, at, geometry::counted(d.footprint.size(), "corner"),
+                     "the corners of a polygon, whose edges do not cross");
+  c.require(geometry::contains(geometry::Polygon{d.footprint, {}}, Vec2{}), at, "a body beside its axle",
+            "a polygon that contains [0, 0], the centre of the axle, since its corners are seen from there");
+}
+
 void check_drive(const Scenario& s, std::size_t i, Checker& c) {
   const Robot& r = s.robots[i];
   const DifferentialDrive& d = *r.drive;
@@ -260,7 +285,8 @@ void check_drive(const Scenario& s, std::size_t i, Checker& c) {
   c.require(d.max_angular_speed > 0.0, at + "max_angular_speed", show(d.max_angular_speed), "above 0 (rad/s)");
   c.require(d.max_backward_speed >= 0.0, at + "max_backward_speed", show(d.max_backward_speed), "0 or more (m/s)");
   c.positive(d.reference, at + "reference", "m");
-  c.positive(d.body_radius, robot + "/radius", "m");
+  if (d.footprint.empty()) c.positive(d.body_radius, robot + "/radius", "m");
+  check_footprint(d, robot + "/footprint/polygon", c);
   c.require(std::isfinite(d.heading), robot + "/heading", show(d.heading), "a finite number (degrees)");
   c.require(r.velocity == Vec2{}, robot + "/velocity", show(r.velocity), "none: robots on wheels start at rest");
   if (!c.problems.empty()) return;
@@ -270,7 +296,7 @@ void check_drive(const Scenario& s, std::size_t i, Checker& c) {
   c.require(turns < geometry::kPi * d.wheel_separation, at + "max_angular_speed", show(d.max_angular_speed),
             "less than " + show(geometry::kPi / s.time_step) + ", so that a step is less than a half turn (rad/s)");
   Robot made = r;
-  if (c.problems.empty()) put_on_wheels(made, d, s.time_step);
+  if (c.problems.empty()) put_on_wheels(made, d, s.time_step, tracking_error_of(s));
   c.require(made.position == r.position && made.radius == r.radius && made.max_speed == r.max_speed, robot,
             "a position, radius or max_speed of another reference point", "those that `put_on_wheels` makes");
 }
@@ -403,8 +429,16 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 
 }  // namespace
 
+std::string assumed_words(const Scenario& scenario) {
+  const double tracking = tracking_error_of(scenario);
+  if (!(tracking > 0.0)) return "";
+  return "assumed: no body is farther than " + detail::metres(tracking) + " from where the run has it";
+}
+
 std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
+  c.not_negative(tracking_error_of(scenario), "/uncertainty/tracking", "m");
+  if (!c.problems.empty()) return std::move(c.problems);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i)
     if (scenario.robots[i].drive) check_drive(scenario, i, c);
   if (!c.problems.empty()) return std::move(c.problems);  // positions and radii are made of these numbers

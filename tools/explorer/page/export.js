@@ -55,11 +55,18 @@ function animatedSvg(run, view, colours, still) {
   const animate = (attribute, values) =>
     `<animate attributeName="${attribute}" dur="${duration}" repeatCount="indefinite" keyTimes="${times}" values="${values}"/>`;
   // On wheels, within the disc: the body about the axle, and a line from there to the reference point.
-  const addBody = (i, {reference, body_radius: radius}) => {
+  const addBody = (i, {reference, body_radius: radius, footprint}) => {
     const x = (row) => view.px(run.x(row, i)), y = (row) => view.py(run.y(row, i));
     const axleX = (row) => view.px(run.x(row, i) - reference * Math.cos(run.heading(row, i)));
     const axleY = (row) => view.py(run.y(row, i) - reference * Math.sin(run.heading(row, i)));
-    svg.parts.push(`<circle r="${(radius * view.scale).toFixed(1)}" fill="${colourOf(colours, i)}">${animate('cx', list(axleX))}${animate('cy', list(axleY))}</circle>`,
+    const corners = (row) => {
+      const c = Math.cos(run.heading(row, i)) * view.scale, s = Math.sin(run.heading(row, i)) * view.scale, points = [];
+      for (let k = 0; k < footprint.length; k += 2)
+        points.push(`${(axleX(row) + c * footprint[k] - s * footprint[k + 1]).toFixed(1)},${(axleY(row) - s * footprint[k] - c * footprint[k + 1]).toFixed(1)}`);
+      return points.join(' ');
+    };
+    svg.parts.push(footprint.length ? `<polygon fill="${colourOf(colours, i)}">${animate('points', [...rows, run.rows - 1].map(corners).join(';'))}</polygon>` :
+      `<circle r="${(radius * view.scale).toFixed(1)}" fill="${colourOf(colours, i)}">${animate('cx', list(axleX))}${animate('cy', list(axleY))}</circle>`,
       `<line stroke="${colours.text}" stroke-width="2">${animate('x1', list(axleX))}${animate('y1', list(axleY))}${animate('x2', list(x))}${animate('y2', list(y))}</line>`);
   };
   for (let i = 0; i < run.n; ++i) {

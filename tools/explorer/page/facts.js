@@ -59,6 +59,7 @@ function fillWords() {
   fact(facts, 'status', statusWords(d), 'status');
   const waits = waitWords(run, d.row, ui.robot);
   if (waits) fact(facts, 'waiting', waits, 'waiting');
+  if (run.about.assumed) fact(facts, 'assumed', run.about.assumed.replace('assumed: ', ''), 'assumed');
   const plan = planWords(run, ui.robot, d.time);
   if (plan) fact(facts, 'plan', plan, 'plan');
   $('facts').replaceChildren(...facts);

@@ -93,7 +93,7 @@ function worldTip(found) {
   if (found.moving !== undefined) return `moving obstacle ${shortName(run.moving[found.moving].id, 120)}`;
   const i = found.robot, row = positions.row, vx = run.vx(row, i), vy = run.vy(row, i);
   return `robot ${shortName(run.robots[i].id, 120)}\nat (${number(positions.x[i])}, ${number(positions.y[i])}) m, ` +
-    `${run.robots[i].outline ? 'within' : 'radius'} ${run.robots[i].radius} m\nspeed ${number(Math.hypot(vx, vy))} of ${run.robots[i].max_speed} m/s${run.about.method === 'check' ? '' : `\n${modeWords(run, row, i)}`}`;
+    `${run.robots[i].outline ? 'within' : 'radius'} ${run.robots[i].radius} m${run.robots[i].body_radius ? `, of which the body ${run.robots[i].body_radius} m` : ''}\nspeed ${number(Math.hypot(vx, vy))} of ${run.robots[i].max_speed} m/s${run.about.method === 'check' ? '' : `\n${modeWords(run, row, i)}`}`;
 }
 
 function connectPointer() {

@@ -288,14 +288,15 @@ function drawCrowd(ctx, view, colours, run, positions, t) {
   }
 }
 
-// Within its disc: the body's disc about the axle, both wheels, and a line from the axle to the reference point.
+// Within its disc: the body about the axle, both wheels, and a line from the axle to the reference point.
 function drawOnWheels(ctx, view, colours, wheels, positions, i) {
   const c = Math.cos(positions.heading[i]), s = Math.sin(positions.heading[i]);
   const axle = [positions.x[i] - wheels.reference * c, positions.y[i] - wheels.reference * s];
   const at = (ahead, left) => [view.px(axle[0] + ahead * c - left * s), view.py(axle[1] + ahead * s + left * c)];
   const r = wheels.body_radius, half = wheels.wheel_separation / 2;
   ctx.beginPath();
-  ctx.arc(...at(0, 0), r * view.scale, 0, 2 * Math.PI);
+  for (let k = 0; k < wheels.footprint.length; k += 2) ctx.lineTo(...at(wheels.footprint[k], wheels.footprint[k + 1]));
+  if (!wheels.footprint.length) ctx.arc(...at(0, 0), r * view.scale, 0, 2 * Math.PI);
   ctx.fill();
   ctx.strokeStyle = colours.text;
   ctx.lineWidth = Math.max(2, 0.2 * r * view.scale);
@@ -319,13 +320,19 @@ function drawRobot(ctx, view, colours, run, ui, positions, i) {
   const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale);
   const wheels = run.robots[i].on_wheels;
   ctx.fillStyle = colourOf(colours, i);
-  ctx.globalAlpha = wheels ? 0.3 : 0.85;
+  const body = run.robots[i].body_radius;  // smaller than the disc where it may be off
+  ctx.globalAlpha = wheels || body ? 0.3 : 0.85;
   ctx.beginPath();
   if (run.robots[i].outline) traceOutline(ctx, view, run.robots[i].outline, positions.x[i], positions.y[i]);
   else ctx.arc(x, y, r, 0, 2 * Math.PI);
   ctx.fill();
   ctx.globalAlpha = 1;
   if (wheels) drawOnWheels(ctx, view, colours, wheels, positions, i);
+  if (body) {
+    ctx.beginPath();
+    ctx.arc(x, y, body * view.scale, 0, 2 * Math.PI);
+    ctx.fill();
+  }
   if (i === ui.robot) {
     ctx.strokeStyle = colours.selected;
     ctx.lineWidth = 2.5;

@@ -7,6 +7,7 @@
 /// geometry/distance.h with their bound. Ten points:
 ///
 ///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
+///                    radii take in the tracking error that the scenario has;
 ///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
 ///                    is no enclosure is made of its obstacle's vertices or edges;
 ///  (3) completeness  whatever a robot could meet within the step, at its greatest speed, is excluded by half-planes of
@@ -121,6 +122,7 @@ struct AuditReport {
   bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
   bool has_places = false;          ///< a crowd's recording, which has no decisions
+  bool has_tube = false;            ///< radii have a tracking error, up to which bodies are where rows have them
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 
   /// Something is refuted, or a motion open.

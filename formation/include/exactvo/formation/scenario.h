@@ -36,6 +36,8 @@ struct DifferentialDrive {
   double heading = 0.0;                             ///< degrees, at t = 0: 0 along x, 90 along y
   Vec2 axle = {};                                   ///< m, the axle's centre at t = 0
   double body_radius = 0.0;                         ///< m, > 0: of the disc about the axle that holds the body
+  /// m, from the axle's centre, x ahead: the corners of the body. It contains the axle's centre. Empty: the disc.
+  std::vector<Vec2> footprint = {};
 };
 
 /// A disc that moves.
@@ -50,6 +52,8 @@ struct Robot {
   /// None: it moves in any direction. Else `position`, `radius`, `max_speed` and goals are those of the reference point
   /// and the disc about it, as `put_on_wheels` makes them.
   std::optional<DifferentialDrive> drive = {};
+  /// m: of the body, where `Scenario::uncertainty` makes `radius` larger (`keep_within_tube`); 0: `radius` is its own.
+  double body_radius = 0.0;
 };
 
 /// An obstacle that stands still.
@@ -109,6 +113,12 @@ struct Margins {
 /// How fast the velocity of a robot with goals may change.
 struct Acceleration {
   double max = 1.0;  ///< m/s^2, > 0: |v' - v| <= max * time_step
+};
+
+/// What may differ between a run and the world. Robots are where a run has them only up to these bounds, which are
+/// assumed: a run can't see whether they hold.
+struct Uncertainty {
+  double tracking = 0.0;  ///< m, >= 0: no point of a body is farther than this from where the run has it
 };
 
 /// A speed at a time. Between knots the speed is linear; before the first and after the last it is held; two knots at
@@ -190,6 +200,9 @@ struct Scenario {
   /// s, with `acceleration`: how long the way of a robot that brakes is kept clear, `braking_time_of`. Not used
   /// without.
   std::optional<double> braking_time;
+  /// Part of each robot's `radius`, as `keep_within_tube` and `put_on_wheels` make it; none: bodies are exactly where
+  /// the run has them.
+  std::optional<Uncertainty> uncertainty;
 };
 
 /// m/s, no less than the length of any velocity within the bound.
@@ -211,9 +224,19 @@ Vec2 heading_vector(double degrees);
 /// m: within this of its straight way the reference point stays in a step (theorem 2 of the guide, wheels).
 double stray_of(const DifferentialDrive& drive, double time_step);
 
-/// A robot on wheels: its reference point and the disc about it that holds the body, whatever the heading, and the
-/// stray of a step. REQUIRES: max_wheel_speed * time_step < reference.
-void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step);
+/// m: how far a body may be from where the run has it, `Uncertainty::tracking`.
+inline double tracking_error_of(const Scenario& scenario) {
+  return scenario.uncertainty ? scenario.uncertainty->tracking : 0.0;
+}
+
+/// A robot that moves in any direction: the disc that holds its body of `body_radius` wherever within `tracking` of
+/// its place that is.
+void keep_within_tube(Robot& robot, double body_radius, double tracking);
+
+/// A robot on wheels: its reference point and the disc about it that holds the body (its footprint where it has one),
+/// whatever the heading, the stray of a step, and the tracking error (all m). REQUIRES: max_wheel_speed * time_step <
+/// reference.
+void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step, double tracking = 0.0);
 
 /// s: tau of braking, one for all robots. A robot that brakes keeps the share 1 - time_step / tau of its velocity in
 /// each step, and drives on for tau times its velocity at most. `braking_time`, or the usual one; 0 where
