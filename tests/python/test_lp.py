@@ -253,13 +253,3 @@ def test_answers_of_a_batch_are_pickled(given):
         assert again.certificates.present.any()
     else:
         assert again.certificates is None
-
-
-def test_what_is_no_pickled_batch_is_refused():
-    batch = lp.solve_batch(*lp.batch_arrays(2, 1), max_speed=1.0)._native
-    state = batch.__getstate__()
-    blank = type(batch).__new__(type(batch))
-    with pytest.raises(ValueError, match="numbers are missing"):
-        blank.__setstate__((3,) + state[1:])
-    with pytest.raises(ValueError, match="another version"):
-        blank.__setstate__(state[:4])

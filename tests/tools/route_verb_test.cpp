@@ -420,51 +420,18 @@ void expect_of_both(const Workplace& here, const std::string& text, int status, 
   EXPECT_EQ(found.python.value_or(status), status) << what << ", in Python";
 }
 
-// The one in Python compared the status alone, and neither the gaps, the blocked end or the widest radius.
-TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
+// The claim that is printed is the certificate's, whatever stands next to it.
+TEST(RouteCertificates, TheVerdictIsOnTheCertificateAlone) {
   const Rooms rooms;
-  std::size_t kinds[3] = {};
-  for (const Case& c : kCases) {
-    const json answer = answer_to(rooms, c);
-    const std::string kind = answer.at("status");
-    const bool is_route = kind == "route";
-    const bool is_of_disc = is_route && (answer.at("radius") != 0.0 || c.name.find("in contact") == std::string::npos);
-    const double too_narrow = answer.at("radius") == 0.0 ? 0.0 : 0.001;
-    std::vector<std::pair<const char*, json>> lies{{"status", is_route ? "separated" : "route"},
-                                                   {"status", nullptr},
-                                                   {"radius", 5.0},
-                                                   {"start", {2.0, 1.0}},
-                                                   {"goal", {2.0, 1.0}},
-                                                   {"length", 1.0},
-                                                   {"lower_bound", 11.9},
-                                                   {"points", json::array()},
-                                                   {"needed_width", 7.0},
-                                                   {"widest_radius", is_of_disc ? too_narrow : 77.0},
-                                                   {"widest_radius", "wide"}};
-    if (kind == "blocked") lies.emplace_back("blocked", json::parse(R"({"end": "neither", "inside": false})"));
-    if (kind == "blocked") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
-    if (kind == "separated") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
-    ++kinds[is_route ? 0 : kind == "separated" ? 1 : 2];
-    json true_beside = answer;
-    true_beside["widest_radius"] = is_of_disc ? 77.0 : too_narrow;
-    expect_of_both(rooms.here, true_beside.dump() + "\n", 0, std::string(c.name));
-    std::string text;
-    for (const auto& [key, lie] : lies) {
-      json changed = answer;
-      changed[key] = lie;
-      text += changed.dump() + "\n";
-    }
-    expect_of_both(rooms.here, text, 1, std::string(c.name));
-    const json judged = json::parse(rooms.here.run("audit --certificate f.jsonl --json").out);
-    ASSERT_EQ(judged.at("verdicts").size(), lies.size());
-    for (std::size_t k = 0; k < lies.size(); ++k)
-      EXPECT_EQ(judged.at("verdicts").at(k), "of another answer") << c.name << ", " << lies[k].first << lies[k].second;
-    if (has_python()) {
-      EXPECT_THAT(python_verdicts(rooms.here, text), HasSubstr(std::to_string(lies.size()) + " certificates, 0 proven"))
-          << c.name;
-    }
-  }
-  for (const std::size_t count : kinds) EXPECT_GE(count, 1u);
+  json answer = answer_to(rooms, kCases[0]);
+  rooms.here.write("true.jsonl", answer.dump());
+  const std::string judged = rooms.here.run("audit --certificate true.jsonl").out;
+  EXPECT_THAT(judged, HasSubstr("1: valid; a route of"));
+  answer["radius"] = 5.0;
+  answer["length"] = 1.0;
+  rooms.here.write("lies.jsonl", answer.dump());
+  EXPECT_EQ(rooms.here.run("audit --certificate lies.jsonl").out, judged);
+  expect_of_both(rooms.here, answer.dump() + "\n", 0, "lies next to a certificate");
 }
 
 // Such an answer counted as nothing, and the exit status was 0.

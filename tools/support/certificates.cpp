@@ -15,10 +15,9 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/counted.h"
-#include "exactvo/geometry/minkowski.h"
-#include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
+#include "support/certificate_json.h"
 #include "support/fields.h"
 #include "support/motion_certificates.h"
 #include "support/route_certificates.h"
@@ -71,9 +70,6 @@ CheckedCertificate check_one(const std::string& text) {
 
 using Json = nlohmann::ordered_json;
 
-/// What a certificate beside them is of.
-constexpr const char* kHalfPlanes[] = {"half_plane", "contact_half_plane"};
-
 /// What `exactvo vo` prints is far from so deep, and what walks the tree calls itself.
 constexpr int kDeepest = 100;
 
@@ -95,109 +91,10 @@ std::optional<Json> parsed(const std::string& text) {
   return json;
 }
 
-/// The text of a `certificate`; nothing where there is none that could be read.
-std::optional<std::string> text_in(const Json& certificate) {
-  if (certificate.is_string()) return certificate.get<std::string>();
-  if (!certificate.is_object()) return std::nullopt;
-  const auto text = certificate.find("text");
-  if (text == certificate.end() || !text->is_string()) return std::nullopt;
-  return text->get<std::string>();
-}
-
-/// What `exactvo vo` takes; sums of such stay far from overflow.
-bool is_within_reach(const geometry::ConvexShape& shape) {
-  constexpr double kFarthest = 0x1p100;
-  const geometry::GrownShape s{shape, {}, 0.0};
-  const auto in_reach = [&](geometry::Vec2 n) { return geometry::support(s, n).h <= kFarthest; };
-  return in_reach({1.0, 0.0}) && in_reach({-1.0, 0.0}) && in_reach({0.0, 1.0}) && in_reach({0.0, -1.0});
-}
-
-/// The ellipse that the obstacle beside a half-plane was proven to lie in.
-std::optional<geometry::Ellipse> contained_in(const Json& object) {
-  const auto taken = object.find("taken_as");
-  if (taken == object.end() || !taken->is_object() || !taken->contains("certificate")) return std::nullopt;
-  const auto text = text_in(taken->at("certificate"));
-  const auto containment = text ? vo::read_containment(*text) : std::nullopt;
-  return containment ? std::optional(containment->ellipse) : std::nullopt;
-}
-
-/// Whether an ellipse stands for the obstacle.
-bool is_taken_as_ellipse(const Json& object) {
-  const auto taken = object.find("taken_as");
-  if (taken == object.end() || !taken->is_object()) return false;
-  const auto what = taken->find("what");
-  return contained_in(object) ||
-         (what != taken->end() && (*what == "smallest ellipse" || *what == "trap-free ellipse"));
-}
-
-/// The shape that a member names; nothing where there is none that could be read, or that no velocity obstacle has.
-std::optional<geometry::ConvexShape> shape_in(const Json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end() || !member->is_string()) return std::nullopt;
-  auto shape = vo::read_shape(member->get<std::string>());
-  if (!shape || !geometry::is_valid(*shape) || !is_within_reach(*shape)) return std::nullopt;
-  return shape;
-}
-
-/// Of what a half-plane's certificate beside `shape` must be: that, or its sum with a polygonal robot, which is made
-/// again. Nothing where it names no obstacle that could be read.
-std::optional<geometry::GrownShape> named_by(const Json& object, const vo::HalfPlaneClaim& claim) {
-  const auto shape = shape_in(object, "shape");
-  if (!shape) return std::nullopt;
-  if (!object.contains("robot")) return geometry::GrownShape{*shape, claim.position, claim.radius};
-  const auto robot = shape_in(object, "robot");
-  const auto* polygon = robot ? std::get_if<geometry::ConvexPolygon>(&*robot) : nullptr;
-  if (polygon == nullptr) return std::nullopt;
-  return geometry::grown_by_polygon(*shape, *polygon, claim.position).shape;
-}
-
-/// Number by number.
-bool is_of_another_obstacle(const vo::HalfPlaneClaim& claim, const Json& object) {
-  if (!object.contains("shape")) return false;
-  const auto named = named_by(object, claim);
-  return !named || to_string(named->shape) != to_string(claim.shape) || named->radius != claim.radius;
-}
-
-/// Whether an ellipse that stands for the obstacle is not the one beside it, or none. Without a `shape`, of which a
-/// sum could be, the certificate itself must be of it.
-bool is_of_another_ellipse(const vo::HalfPlaneClaim& claim, const Json& object) {
-  if (!is_taken_as_ellipse(object)) return false;
-  const auto named = object.contains("shape") ? shape_in(object, "shape") : std::optional(claim.shape);
-  const auto* of = named ? std::get_if<geometry::Ellipse>(&*named) : nullptr;
-  const auto contained = contained_in(object);
-  return of == nullptr || (contained && to_string(*of) != to_string(*contained)) ||
-         is_of_another_obstacle(claim, object);
-}
-
-bool is_number(const Json& json, double x) {
-  return json.is_number() && json.get<double>() == x;
-}
-
-/// Number by number: what `vo` prints reads back as the same doubles.
-bool is_half_plane(const Json& json, const geometry::HalfPlane& h) {
-  if (!json.is_object() || !json.contains("normal") || !json.contains("offset")) return false;
-  const Json& normal = json["normal"];
-  return normal.is_array() && normal.size() == 2 && is_number(normal[0], h.normal.x) &&
-         is_number(normal[1], h.normal.y) && is_number(json["offset"], h.offset);
-}
-
-/// Whether a half-plane stands beside the certificate that is not its own (of a containment none is).
-bool is_of_another_half_plane(const std::optional<vo::Certificate>& c, const Json& object) {
-  return std::any_of(std::begin(kHalfPlanes), std::end(kHalfPlanes), [&](const char* key) {
-    const auto beside = object.find(key);
-    if (beside == object.end() || beside->is_null()) return false;
-    return !c || !is_half_plane(*beside, c->claim.half_plane);
-  });
-}
-
-CheckedCertificate checked_beside(const std::string& text, const Json& object) {
-  CheckedCertificate checked = check_one(text);
-  if (!checked.valid) return checked;
-  const auto c = vo::read_certificate(text);
-  if (c && is_of_another_ellipse(c->claim, object)) return {"of another ellipse", checked.claim, false};
-  if (c && is_of_another_obstacle(c->claim, object)) return {"of another obstacle", checked.claim, false};
-  if (is_of_another_half_plane(c, object)) return {"of another half-plane", checked.claim, false};
-  return checked;
+/// The text of a `certificate`; empty where there is none that could be read.
+std::string text_in(const Json& certificate) {
+  const Json* text = certificate.is_string() ? &certificate : member(certificate, "text");
+  return text != nullptr && text->is_string() ? text->get<std::string>() : std::string();
 }
 
 /// The certificates of one JSON value or of several lines of JSON, in order.
@@ -219,28 +116,28 @@ class TreeChecker {
     if (value.is_array())
       for (const Json& item : value) walk(item);
     if (!value.is_object()) return;
-    if (RouteChecker::is_one(value)) return checked_.all.push_back(routes_.check_one(value, nullptr));
+    if (RouteChecker::is_one(value)) return checked_.all.push_back(routes_.check_one(value));
     if (is_motion_certificate(value)) return checked_.all.push_back(check_motion_certificate(value));
     if (RouteChecker::lacks_one(value)) return checked_.all.push_back({"no certificate", "", false});
     for (const auto& [key, member] : value.items()) {
       if (key == "summary" && member.is_object() && member.contains("certificates")) checked_.is_summed = true;
       if (key == "certificate") {
-        add(member, value);
+        add(member);
       } else {
         walk(member);
       }
     }
   }
 
-  void add(const Json& certificate, const Json& object) {
+  void add(const Json& certificate) {
     if (certificate.is_null()) {
       ++checked_.none;
     } else if (RouteChecker::is_one(certificate)) {
-      checked_.all.push_back(routes_.check_one(certificate, object));
+      checked_.all.push_back(routes_.check_one(certificate));
     } else if (is_motion_certificate(certificate)) {
       checked_.all.push_back(check_motion_certificate(certificate));
     } else {
-      checked_.all.push_back(checked_beside(text_in(certificate).value_or(""), object));
+      checked_.all.push_back(check_one(text_in(certificate)));
     }
   }
 

@@ -13,8 +13,7 @@
 namespace exactvo::tools {
 
 struct CheckedCertificate {
-  std::string verdict;  ///< vo::name(Verdict), "not a certificate", "of another half-plane", "of another ellipse",
-                        ///< "of another obstacle", "unreadable JSON"; of a route RouteChecker's
+  std::string verdict;  ///< vo::name(Verdict), "not a certificate", "unreadable JSON"; of a route RouteChecker's
   std::string claim;    ///< what is claimed, rounded for people; empty where it is none
   bool valid = false;
 };
@@ -28,12 +27,9 @@ struct CheckedCertificates {
 /// Every certificate of a file, or of stdin where its name is "-". Its text may be JSON, JSON lines or plain lines: one
 /// a line, where blank lines do not count and any other line is "not a certificate". Of JSON (first letter { or [) the
 /// text of every `certificate`, whatever it begins with, and every other string that begins as one; JSON that cannot be
-/// read is one that is not valid. The `half_plane` or `contact_half_plane` beside a certificate must be the one that it
-/// proves, number by number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum,
-/// made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and
-/// the same one where that has a certificate of containment. In lines, nothing says which belong together, and this is
-/// not checked. Throws DataError where it can't be read, and where neither a certificate nor a place that says there is
-/// none nor a summary is in it: no line begins as one, no JSON has any.
+/// read is one that is not valid. What stands next to a certificate is not looked at. Throws DataError where it can't
+/// be read, and where neither a certificate nor a place that says there is none nor a summary is in it: no line begins
+/// as one, no JSON has any.
 CheckedCertificates check_certificates(const std::string& file);
 
 std::string to_json(const CheckedCertificates& checked);

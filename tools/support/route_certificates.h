@@ -37,10 +37,8 @@ class RouteChecker {
   /// Whether an object answers a question of a route, by its `status`, and has no certificate for it.
   static bool lacks_one(const OrderedJson& object);
 
-  /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points, lengths,
-  /// gaps, the blocked end and the widest radius must agree with the certificate; else the verdict is "of another
-  /// answer". REQUIRES: is_one(certificate).
-  CheckedCertificate check_one(const OrderedJson& certificate, const OrderedJson& beside);
+  /// REQUIRES: is_one(certificate).
+  CheckedCertificate check_one(const OrderedJson& certificate);
 
  private:
   std::optional<std::vector<geometry::Obstacle>> obstacles_;  ///< of the last certificate that had any

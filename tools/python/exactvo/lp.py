@@ -191,67 +191,33 @@ class BatchCertificates:
         return f"BatchCertificates({int(np.count_nonzero(self.present))} of {len(self.present)})"
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class BatchSolution:
-    """The answers of a batch. Its arrays are read-only views of one memory; one row per problem."""
+    """The answers of a batch. Its arrays are read-only; one row per problem."""
 
-    __slots__ = ("_native",)
-
-    def __init__(self, native: _exactvo.Batch) -> None:
-        self._native = native
-
-    @property
-    def velocity(self) -> Floats:
-        """n x 2, m/s."""
-        return self._native.velocity
-
-    @property
-    def violation(self) -> Floats:
-        """n, m/s: how much the constraint violated most is violated; 0 where optimal."""
-        return self._native.violation
-
-    @property
-    def status(self) -> npt.NDArray[np.uint8]:
-        """n numbers into `STATUSES`; 0 is optimal."""
-        return self._native.status
-
-    @property
-    def active(self) -> npt.NDArray[np.int32]:
-        """n x 3: the lines that bind, -1 where there are fewer."""
-        return self._native.active
-
-    @property
-    def proven(self) -> npt.NDArray[np.bool_] | None:
-        """n: whether the answer is proven; None unless `prove` or `certificates` was asked for."""
-        return self._native.proven
-
-    @property
-    def certificates(self) -> BatchCertificates | None:
-        """None unless `certificates` was asked for."""
-        arrays = self._native.certificate_arrays()
-        return None if arrays is None else BatchCertificates(**arrays)
-
-    @property
-    def copied(self) -> bool:
-        """Whether an array had to be laid out anew."""
-        return self._native.copied
-
-    @property
-    def scalar_count(self) -> int:
-        """Problems that the lanes handed to the scalar solver."""
-        return self._native.scalar_count
-
-    @property
-    def exact_count(self) -> int:
-        """Problems that needed exact arithmetic to be proven."""
-        return self._native.exact_count
+    velocity: Floats  #: n x 2, m/s
+    violation: Floats  #: n, m/s: how much the constraint violated most is violated; 0 where optimal
+    status: npt.NDArray[np.uint8]  #: n numbers into `STATUSES`; 0 is optimal
+    active: npt.NDArray[np.int32]  #: n x 3: the lines that bind, -1 where there are fewer
+    proven: npt.NDArray[np.bool_] | None  #: n: whether the answer is proven; None unless `prove` or `certificates` was asked for
+    certificates: BatchCertificates | None  #: None unless `certificates` was asked for
+    copied: bool  #: whether an array had to be laid out anew
+    scalar_count: int  #: problems that the lanes handed to the scalar solver
+    exact_count: int  #: problems that needed exact arithmetic to be proven
 
     def __len__(self) -> int:
-        return len(self._native)
+        return len(self.status)
 
     def __repr__(self) -> str:
         counts = np.bincount(self.status, minlength=4)
         words = ", ".join(f"{n} {word}" for n, word in zip(counts, STATUSES) if n)
         return f"BatchSolution({len(self)} problems: {words or 'none'})"
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+        self.__dict__.update(state)
 
 
 def solve_batch(
@@ -281,9 +247,10 @@ def solve_batch(
     makes such arrays. Pad a problem with fewer lines by normal (1, 0), offset -1e30. Raises `ArgumentError`. The
     interpreter's lock is released for more than 64 lines.
     """
-    return BatchSolution(
-        _exactvo.lp_solve_batch(normals, offsets, preferred, max_speed, hard, prove, certificates, copy, parallel)
-    )
+    answer = _exactvo.lp_solve_batch(normals, offsets, preferred, max_speed, hard, prove, certificates, copy, parallel)
+    if certificates:
+        answer["certificates"] = BatchCertificates(**answer["certificates"])
+    return BatchSolution(**answer)
 
 
 def check_batch(

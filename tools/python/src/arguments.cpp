@@ -50,12 +50,6 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-std::string expected_shape(const std::vector<py::ssize_t>& shape) {
-  std::string text;
-  for (const py::ssize_t n : shape) text += (text.empty() ? "" : ", ") + (n < 0 ? std::string("n") : std::to_string(n));
-  return "an array of numbers of shape (" + text + (shape.size() == 1 ? ",)" : ")");
-}
-
 }  // namespace
 
 ArgumentError::ArgumentError(std::string where_, std::string found_, std::string expected_)
@@ -63,6 +57,12 @@ ArgumentError::ArgumentError(std::string where_, std::string found_, std::string
       where(std::move(where_)),
       found(std::move(found_)),
       expected(std::move(expected_)) {}
+
+OneThread::OneThread(std::atomic<bool>& busy, const char* what) : busy_(busy) {
+  if (busy_.exchange(true))
+    throw ArgumentError(what, std::string("a ") + what + " that another thread is using",
+                        "one thread at a time for each");
+}
 
 std::string shown(py::handle object) {
   if (py::isinstance<py::array>(object)) {
@@ -146,6 +146,12 @@ std::string shape_words(const py::array& array) {
   std::string text;
   for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
   return "(" + text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+std::string expected_shape(const std::vector<py::ssize_t>& shape) {
+  std::string text;
+  for (const py::ssize_t n : shape) text += (text.empty() ? "" : ", ") + (n < 0 ? std::string("n") : std::to_string(n));
+  return "an array of numbers of shape (" + text + (shape.size() == 1 ? ",)" : ")");
 }
 
 bool has_shape(const py::array& array, const std::vector<py::ssize_t>& shape) {

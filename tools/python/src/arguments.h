@@ -7,6 +7,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <atomic>
 
 #include <stdexcept>
 #include <string>
@@ -35,6 +36,20 @@ auto without_gil(const Compute& compute) {
   return compute();
 }
 
+/// One thread at a time in an object of Python's: another that calls meanwhile, while the interpreter's lock is
+/// released, is refused with an ArgumentError.
+class OneThread {
+ public:
+  /// `what` names the object: "crowd".
+  OneThread(std::atomic<bool>& busy, const char* what);
+  ~OneThread() { busy_ = false; }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  std::atomic<bool>& busy_;
+};
+
 /// repr(object), shortened to a line.
 std::string shown(py::handle object);
 
@@ -54,6 +69,8 @@ std::vector<Vec2> points(py::handle object, const char* name);
 
 /// "(3, 2)".
 std::string shape_words(const py::array& array);
+/// "an array of numbers of shape (n, 2)"; -1 is any length.
+std::string expected_shape(const std::vector<py::ssize_t>& shape);
 /// Whether it has that shape, in which -1 is any length.
 bool has_shape(const py::array& array, const std::vector<py::ssize_t>& shape);
 

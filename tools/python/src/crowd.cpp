@@ -67,20 +67,15 @@ class PythonCrowd {
  public:
   explicit PythonCrowd(formation::Crowd crowd) : crowd_(std::move(crowd)) { grow(); }
 
-  /// One thread at a time: another that calls meanwhile, while the interpreter's lock is released, is refused.
+  /// The crowd, for one thread at a time.
   class Use {
    public:
-    explicit Use(PythonCrowd& crowd) : crowd_(crowd) {
-      if (crowd.busy_.exchange(true))
-        throw ArgumentError("crowd", "a crowd that another thread is using", "one thread at a time for each crowd");
-    }
-    ~Use() { crowd_.busy_ = false; }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-    formation::Crowd* operator->() const { return &crowd_.crowd_; }
+    explicit Use(PythonCrowd& crowd) : crowd_(crowd.crowd_), one_(crowd.busy_, "crowd") {}
+    formation::Crowd* operator->() const { return &crowd_; }
 
    private:
-    PythonCrowd& crowd_;
+    formation::Crowd& crowd_;
+    OneThread one_;
   };
 
   formation::Crowd& crowd() { return crowd_; }

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "arguments.h"
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/problem.h"
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/lp/solvers.h"
-#include "lp_values.h"
 #include "module.h"
 
 namespace exactvo::python {
@@ -83,43 +85,7 @@ std::vector<lp::Term> terms_of(py::handle fields) {
   return result;
 }
 
-py::tuple answer_of(const lp::Proven& proven) {
-  const lp::Solution& s = proven.solution;
-  py::tuple active(s.active_count);
-  for (std::size_t k = 0; k < s.active_count; ++k)
-    active[k] = py::make_tuple(name(s.active[k].binding.kind), s.active[k].binding.index, s.active[k].multiplier);
-  return py::make_tuple(as_tuple(s.velocity), name(s.status), s.violation, active,
-                        proven.certificate ? py::object(as_tuple(*proven.certificate)) : py::none(),
-                        proven.exact_stage);
-}
-
-lp::Proven solved(const lp::Problem& problem, lp::Solver solver) {
-  switch (solver) {
-    case lp::Solver::certified:
-      return solve_certified(problem);
-    case lp::Solver::exact:
-      return solve_exact(problem);
-    case lp::Solver::batch:
-      break;
-  }
-  return lp::solve_all(solver, {problem}).front();
-}
-
-}  // namespace
-
-std::int32_t as_number(const lp::Binding& binding) {
-  if (!is_speed_bound(binding)) return static_cast<std::int32_t>(binding.index);
-  return kNoBinding - static_cast<std::int32_t>(binding.kind);
-}
-
-lp::Binding binding_of(std::int64_t number) {
-  const std::int64_t kind = kNoBinding - number;
-  if (kind > 0 && kind <= static_cast<std::int64_t>(lp::BindingKind::box_bottom))
-    return {static_cast<lp::BindingKind>(kind), 0};
-  return lp::constraint_at(number < 0 ? std::numeric_limits<std::size_t>::max() : static_cast<std::size_t>(number));
-}
-
-py::tuple as_tuple(const lp::Certificate& c) {
+py::tuple tuple_of(const lp::Certificate& c) {
   py::tuple vertex(c.vertex.size());
   for (std::size_t k = 0; k < c.vertex.size(); ++k)
     vertex[k] = py::make_tuple(name(c.vertex[k].kind), c.vertex[k].index);
@@ -143,6 +109,30 @@ lp::Certificate certificate_of(py::handle object) {
   }
   return c;
 }
+
+py::tuple answer_of(const lp::Proven& proven) {
+  const lp::Solution& s = proven.solution;
+  py::tuple active(s.active_count);
+  for (std::size_t k = 0; k < s.active_count; ++k)
+    active[k] = py::make_tuple(name(s.active[k].binding.kind), s.active[k].binding.index, s.active[k].multiplier);
+  return py::make_tuple(as_tuple(s.velocity), name(s.status), s.violation, active,
+                        proven.certificate ? py::object(tuple_of(*proven.certificate)) : py::none(),
+                        proven.exact_stage);
+}
+
+lp::Proven solved(const lp::Problem& problem, lp::Solver solver) {
+  switch (solver) {
+    case lp::Solver::certified:
+      return solve_certified(problem);
+    case lp::Solver::exact:
+      return solve_exact(problem);
+    case lp::Solver::batch:
+      break;
+  }
+  return lp::solve_all(solver, {problem}).front();
+}
+
+}  // namespace
 
 void bind_lp(py::module_& module) {
   module.def("lp_solve",

@@ -47,15 +47,13 @@ auto named(const Call& call) {
   }
 }
 
-/// A monitor for one thread at a time: another that calls meanwhile, while the interpreter's lock is released, is
-/// refused.
 class PythonMonitor {
  public:
   explicit PythonMonitor(const MonitorSetup& setup) : monitor_(setup) {}
 
   py::tuple judge(py::handle pose, py::handle velocity, py::handle turn, bool in_world_axes, py::handle positions,
                   py::handle radii, py::handle max_speeds, py::handle position_errors) {
-    const Use use(busy_);
+    const OneThread use(busy_, "monitor");
     const geometry::Pose at = pose_of(pose, "pose");
     const formation::Command command{{vector(velocity, "velocity"), finite(turn, "turn")}, in_world_axes};
     take_movers(positions, radii, max_speeds, position_errors);
@@ -64,7 +62,7 @@ class PythonMonitor {
 
   py::tuple judge_trajectory(py::handle poses, py::handle positions, py::handle radii, py::handle max_speeds,
                              py::handle position_errors) {
-    const Use use(busy_);
+    const OneThread use(busy_, "monitor");
     const Doubles rows = doubles(poses, "poses", {-1, 4});
     trajectory_.clear();
     for (py::ssize_t k = 0; k < rows.shape(0); ++k) {
@@ -76,20 +74,6 @@ class PythonMonitor {
   }
 
  private:
-  class Use {
-   public:
-    explicit Use(std::atomic<bool>& busy) : busy_(busy) {
-      if (busy_.exchange(true))
-        throw ArgumentError("monitor", "a monitor that another thread is using", "one thread at a time for each");
-    }
-    ~Use() { busy_ = false; }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-
-   private:
-    std::atomic<bool>& busy_;
-  };
-
   void take_movers(py::handle positions, py::handle radii, py::handle max_speeds, py::handle position_errors) {
     const Doubles at = doubles(positions, "positions", {-1, 2});
     const py::ssize_t n = at.shape(0);

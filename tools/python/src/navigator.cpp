@@ -72,8 +72,6 @@ formation::OnWheels on_wheels(py::handle heading, py::handle wheels) {
   return {{std::cos(angle), std::sin(angle)}, {speeds.x, speeds.y}};
 }
 
-/// A navigator for one thread at a time: another that calls meanwhile, while the interpreter's lock is released, is
-/// refused.
 class PythonNavigator {
  public:
   PythonNavigator(const NavigatorSetup& setup, std::vector<Vec2> goals) : navigator_(setup, std::move(goals)) {}
@@ -81,12 +79,7 @@ class PythonNavigator {
   py::tuple decide(py::handle time, py::handle position, py::handle velocity, py::handle heading, py::handle wheels,
                    const std::vector<std::size_t>& ids, py::handle positions, py::handle velocities, py::handle radii,
                    py::handle max_speeds, py::handle cooperate, const py::list& bodies) {
-    if (busy_.exchange(true))
-      throw ArgumentError("navigator", "a navigator that another thread is using", "one thread at a time for each");
-    struct Free {
-      std::atomic<bool>& busy;
-      ~Free() { busy = false; }
-    } const free{busy_};
+    const OneThread use(busy_, "navigator");
     const formation::NavigatorState now{finite(time, "time"), vector(position, "position"),
                                         vector(velocity, "velocity"), on_wheels(heading, wheels)};
     take_neighbours(ids, positions, velocities, radii, max_speeds, cooperate);
