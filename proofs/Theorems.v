@@ -145,7 +145,7 @@ Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the t
   | Bezier => mixed (fun _ _ => u) n ps
   | Spline => mixed (fun n i => (u + INR (n - 1 - i)) / INR n) n ps
   end.
-Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it *)
+Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it; of powers the start alone *)
   let l := Q2R (leave m) in let a := Q2R (arrive m) in on_way m (t - l) (if Req_EM_T l a then s else (t - l) / (a - l)).
 Definition covers (m : trip) (t s : R) (x : vec) := exists p y, In p (parts m) /\ hull (corners p) y /\
   let d := sub x (add (at_time m t s) y) in dot d d <= Q2R (reach p) * Q2R (reach p).
