@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The reader, continued: a robot on wheels (docs/guide/wheels.md) is judged as the disc about its reference point that
-   holds it at every heading, and the stray of a twist. That it does is asked for, in fractions; that wheels do as they
-   are told is not. *)
+   holds it at every heading, and the stray of a twist: `wheels_sound`. That wheels do as they are told is not asked. *)
+open Checker
 
 let drive robot = match Json.find "kinematics" robot with
   | Some k when Json.find "type" k = Some (Json.Str "differential") -> Some k
@@ -11,10 +11,8 @@ let number key v = Json.(num (get key v))
 let speed_and_acceleration k = (number "max_wheel_speed" k, number "max_wheel_acceleration" k)
 
 let holds radius body ahead speed step =
-  let q = Q.of_float in
-  let way = Q.mul (q speed) (q step) in
-  let room = Q.sub (Q.mul (q 2.) (q ahead)) way in
-  Q.sign room > 0 && Q.geq (q radius) (Q.add (Q.add (q body) (q ahead)) (Q.div (Q.mul way way) (Q.mul (q 4.) room)))
+  let q = Exact.fractions [radius; body; ahead; speed; step] in
+  Checked.wheels_fit { body_reach = q body; ahead = q ahead; most_speed = q speed; time_step = q step } (q radius)
 
 let as_disc step robot =
   match robot, drive robot with
