@@ -1,6 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The checkers keep their promises: the kernel holds this module against Theorems.v. *)
-From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep Turn.
+From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep Turn Wheels.
 
 Module Checked <: Theorems.Verifier.
   Definition half_plane_holds := HalfPlane.half_plane_holds.
@@ -39,4 +39,6 @@ Module Checked <: Theorems.Verifier.
   Definition sweep_past_sound := Sweep.sweep_past_sound.
   Definition turn_past := Turn.turn_past.
   Definition turn_past_sound := Turn.turn_past_sound.
+  Definition wheels_fit := Wheels.wheels_fit.
+  Definition wheels_sound := Wheels.wheels_sound.
 End Checked.

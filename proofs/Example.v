@@ -247,3 +247,10 @@ Definition with_turn (w : Q) (m : drive) : drive :=
   {| sets_out := sets_out m; halts := halts m; place_then := place_then m; heads := heads m; turns := w; body_parts := body_parts m |}.
 Example to_the_left_it_would_not : turn_past (with_turn (3 # 4) turner) left_side past_the_side = false.
 Proof. vm_compute. reflexivity. Qed.
+
+(* --- Wheels: a TurtleBot3 Burger of 0.105 m, its point 0.08 m ahead, 0.22 m/s, 0.2 s: within 0.1892 m, but not within 0.1891 --- *)
+Definition burger : wheels := {| body_reach := 105 # 1000; ahead := 8 # 100; most_speed := 22 # 100; time_step := 1 # 5 |}.
+Definition it_stays_within : stays_within burger (Q2R (1892 # 10000)).
+Proof. apply wheels_sound. vm_compute. reflexivity. Qed.
+Example within_less_it_might_not : wheels_fit burger (1891 # 10000) = false.
+Proof. vm_compute. reflexivity. Qed.

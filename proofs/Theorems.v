@@ -145,7 +145,7 @@ Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the t
   | Bezier => mixed (fun _ _ => u) n ps
   | Spline => mixed (fun n i => (u + INR (n - 1 - i)) / INR n) n ps
   end.
-Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it *)
+Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it; of powers the start alone *)
   let l := Q2R (leave m) in let a := Q2R (arrive m) in on_way m (t - l) (if Req_EM_T l a then s else (t - l) / (a - l)).
 Definition covers (m : trip) (t s : R) (x : vec) := exists p y, In p (parts m) /\ hull (corners p) y /\
   let d := sub x (add (at_time m t s) y) in dot d d <= Q2R (reach p) * Q2R (reach p).
@@ -159,13 +159,22 @@ Record separation := { part_no : nat; other_no : nat; since : Q; until : Q; dire
 Record drive := { sets_out : Q; halts : Q; place_then : point; heads : point;   (* velocity at the start, m/s *)
   turns : Q; body_parts : list part }.                  (* rad/s; corners as they lie at the start *)
 Definition left_of (v : vec) : vec := (- snd v, fst v).  (* a quarter turn to the left *)
-Definition driven (d : drive) (t : R) (y : vec) : vec := (* where the point y of the body is after t s *)
-  let w := Q2R (turns d) in let v := real (heads d) in
+(* Where the point y of a body at o is after t s, if it has the velocity v then and turns at w. *)
+Definition carried (o v : vec) (w t : R) (y : vec) : vec :=
   let way := if Req_EM_T w 0 then scale t v else add (scale (sin (w * t) / w) v) (scale ((1 - cos (w * t)) / w) (left_of v)) in
-  add (add (real (place_then d)) way) (add (scale (cos (w * t)) y) (scale (sin (w * t)) (left_of y))).
+  add (add o way) (add (scale (cos (w * t)) y) (scale (sin (w * t)) (left_of y))).
+Definition driven (d : drive) : R -> vec -> vec := carried (real (place_then d)) (real (heads d)) (Q2R (turns d)).
 Definition drives_clear (d : drive) (o : obstacle) := forall t p y x,
   0 <= t <= Q2R (halts d) - Q2R (sets_out d) -> In p (body_parts d) -> hull (corners p) y ->
   (let e := sub x (driven d t y) in dot e e <= Q2R (reach p) * Q2R (reach p)) -> outside [o] x /\ forall e, In e (edges_of o) -> ~ on e x.
+
+(* --- Wheels: the axle, at o, looks along h, and holds a speed and a turn rate for a step (s). The body, within `body_reach`
+   of the axle, stays in a disc about a point that goes straight from where the point `ahead` of the axle is to where it comes --- *)
+Record wheels := { body_reach : Q; ahead : Q; most_speed : Q; time_step : Q }.
+Definition stays_within (k : wheels) (r : R) := forall o h speed turn, dot h h = 1 ->
+  let T := Q2R (time_step k) in let after := carried o (scale speed h) turn in let ahead_at t := after t (scale (Q2R (ahead k)) h) in
+  no_longer (Q2R (most_speed k) * T) (sub (ahead_at T) (ahead_at 0)) -> Rabs (turn * T) < PI ->
+  forall t y, 0 <= t <= T -> no_longer (Q2R (body_reach k)) y -> no_longer r (sub (after t y) (mix (t / T) (ahead_at 0) (ahead_at T))).
 
 (* --- The promises --- *)
 Module Type Verifier.
@@ -208,4 +217,6 @@ Module Type Verifier.
   Parameter sweep_past_sound : forall a o l, sweep_past a o l = true -> stays_out a o.
   Parameter turn_past : drive -> obstacle -> list separation -> bool.
   Parameter turn_past_sound : forall d o l, turn_past d o l = true -> drives_clear d o.
+  Parameter wheels_fit : wheels -> Q -> bool.
+  Parameter wheels_sound : forall k r, wheels_fit k r = true -> stays_within k (Q2R r).
 End Verifier.

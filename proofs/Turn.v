@@ -7,11 +7,10 @@ Import ListNotations.
 Open Scope R_scope.
 
 (* --- A function whose second derivative is at most m --- *)
-Lemma dips f f1 f2 m a b t : (forall c, derivable_pt_lim f c (f1 c)) -> (forall c, derivable_pt_lim f1 c (f2 c)) -> (forall c, f2 c <= m) -> 0 <= m ->
-  a <= t <= b -> Rmin (f a) (f b) - m * ((b - a) * (b - a)) / 8 <= f t.
+Lemma dips_below_chord f f1 f2 m a b t : (forall c, derivable_pt_lim f c (f1 c)) -> (forall c, derivable_pt_lim f1 c (f2 c)) -> (forall c, f2 c <= m) -> 0 <= m ->
+  a <= t <= b -> f a * (b - t) + f b * (t - a) - m * ((b - a) * (b - a)) / 8 * (b - a) <= f t * (b - a).
 Proof.
-  intros h1 h2 hm m0 ht. pose proof (Rmin_l (f a) (f b)). pose proof (Rmin_r (f a) (f b)).
-  assert (0 <= m * ((b - a) * (b - a))) by (apply Rmult_le_pos; nra).
+  intros h1 h2 hm m0 ht. assert (0 <= m * ((b - a) * (b - a)) / 8 * (b - a)) by (apply Rmult_le_pos; [apply Rmult_le_pos; [apply Rmult_le_pos; nra|lra]|lra]).
   destruct (Req_dec a t) as [e|na]; [subst; lra|]. destruct (Req_dec b t) as [e|nb]; [subst; lra|].
   assert (hg : forall c, derivable_pt_lim (fun x => f x - m / 2 * (x * x)) c (f1 c - m * c)).
   { intro c. apply (derivable_pt_lim_minus f (fun x => m / 2 * (x * x))); [apply h1|].
@@ -25,15 +24,22 @@ Proof.
   { replace (f b - f t - m / 2 * (b * b - t * t)) with (p * (b - t)) by lra. replace (f t - f a - m / 2 * (t * t - a * a)) with (q * (t - a)) by lra.
     replace (p * (b - t) * (t - a)) with (p * ((b - t) * (t - a))) by ring. replace (q * (t - a) * (b - t)) with (q * ((b - t) * (t - a))) by ring.
     apply Rmult_le_compat_r; nra. }
-  assert (low : (Rmin (f a) (f b)) * (b - a) <= f a * (b - t) + f b * (t - a)) by nra.
   assert (between : (t - a) * (b - t) <= (b - a) * (b - a) / 4) by (pose proof (Rle_0_sqr (b - t - (t - a))) as sq; unfold Rsqr in sq; nra).
-  apply Rmult_le_reg_r with (b - a); [lra|].
   assert (bent : m / 2 * ((b - a) * ((t - a) * (b - t))) <= m * ((b - a) * (b - a)) / 8 * (b - a)).
   { replace (m * ((b - a) * (b - a)) / 8 * (b - a)) with (m / 2 * ((b - a) * ((b - a) * (b - a) / 4))) by field.
     apply Rmult_le_compat_l; [lra|]. apply Rmult_le_compat_l; lra. }
   assert (e : (f t - f a - m / 2 * (t * t - a * a)) * (b - t) - (f b - f t - m / 2 * (b * b - t * t)) * (t - a)
     = f t * (b - a) - (f a * (b - t) + f b * (t - a)) + m / 2 * ((b - a) * ((t - a) * (b - t)))) by field.
   lra.
+Qed.
+Lemma dips f f1 f2 m a b t : (forall c, derivable_pt_lim f c (f1 c)) -> (forall c, derivable_pt_lim f1 c (f2 c)) -> (forall c, f2 c <= m) -> 0 <= m ->
+  a <= t <= b -> Rmin (f a) (f b) - m * ((b - a) * (b - a)) / 8 <= f t.
+Proof.
+  intros h1 h2 hm m0 ht. pose proof (Rmin_l (f a) (f b)). pose proof (Rmin_r (f a) (f b)). assert (0 <= m * ((b - a) * (b - a))) by (apply Rmult_le_pos; nra).
+  destruct (Req_dec a b) as [e|n]; [assert (t = a) by lra; subst; lra|].
+  pose proof (dips_below_chord f f1 f2 m a b t h1 h2 hm m0 ht) as k.
+  assert (low : (Rmin (f a) (f b)) * (b - a) <= f a * (b - t) + f b * (t - a)) by nra.
+  apply Rmult_le_reg_r with (b - a); lra.
 Qed.
 
 (* --- The place of a point of the body along a direction --- *)
@@ -59,27 +65,35 @@ Proof.
 Qed.
 
 Definition moved (v : vec) (w : R) (y : vec) : vec := add v (scale w (left_of y)).   (* its velocity at the start *)
-Lemma driven_along d n y : let w := Q2R (turns d) in exists a e b c : R,
-  (forall t, dot n (driven d t y) = wave a e b c w t) /\ w * w * (b * b + c * c) * (w * w) = w * w * (dot n n * dot (moved (real (heads d)) w y) (moved (real (heads d)) w y)).
+Lemma carried_along o v w n y : exists a e b c : R, (forall t, dot n (carried o v w t y) = wave a e b c w t) /\
+  w * w * (b * b + c * c) * (w * w) = w * w * (dot n n * dot (moved v w y) (moved v w y)).
 Proof.
-  intro w. set (v := real (heads d)). set (o := real (place_then d)). destruct (Req_dec w 0) as [z|z].
+  destruct (Req_dec w 0) as [z|z].
   - exists (dot n o), (dot n v), (dot n (left_of y)), (dot n y). split; [|rewrite z; ring].
-    intro t. unfold driven, wave. fold w v o. destruct (Req_EM_T w 0); [|contradiction]. unfold dot, add, scale; simpl. ring.
+    intro t. unfold carried, wave. destruct (Req_EM_T w 0); [|contradiction]. unfold dot, add, scale; simpl. ring.
   - exists (dot n o + dot n (left_of v) / w), 0, (dot n v / w + dot n (left_of y)), (dot n y - dot n (left_of v) / w). split.
-    + intro t. unfold driven, wave. fold w v o. destruct (Req_EM_T w 0); [contradiction|]. unfold dot, add, scale; simpl. field. assumption.
+    + intro t. unfold carried, wave. destruct (Req_EM_T w 0); [contradiction|]. unfold dot, add, scale; simpl. field. assumption.
     + unfold moved, dot, add, scale, left_of; simpl. field. assumption.
 Qed.
+Lemma driven_along d n y : exists a e b c : R, (forall t, dot n (driven d t y) = wave a e b c (Q2R (turns d)) t).
+Proof. destruct (carried_along (real (place_then d)) (real (heads d)) (Q2R (turns d)) n y) as [a [e [b [c [h _]]]]]. now exists a, e, b, c. Qed.
 
+(* The bounds on curvature of `dips`, of a point of a body along n. *)
+Lemma carried_bends o v w n y m : let u := moved v w y in 0 <= m -> w * w * (dot n n * dot u u) <= m * m -> exists f f1 f2 : R -> R,
+  (forall t, dot n (carried o v w t y) = f t) /\ (forall c, derivable_pt_lim f c (f1 c)) /\ (forall c, derivable_pt_lim f1 c (f2 c)) /\ (forall c, f2 c <= m).
+Proof.
+  intros u m0 hm. destruct (carried_along o v w n y) as [k [e [p [q [h bend]]]]]. fold u in bend. rewrite <- bend in hm.
+  exists (wave k e p q w), (wave e 0 (- w * q) (w * p) w), (fun t => 0 + w * (- w * q * cos (w * t) - w * p * sin (w * t))). split; [assumption|]. split; [|split].
+  - intro c. pose proof (wave_slope k e p q w c) as s. replace (wave e 0 (- w * q) (w * p) w c) with (e + w * (p * cos (w * c) - q * sin (w * c))); [assumption|]. unfold wave. ring.
+  - intro c. apply wave_slope.
+  - intro c. now apply (wave_bend p q w c m).
+Qed.
 Lemma driven_dips d n y m a b t : let u := moved (real (heads d)) (Q2R (turns d)) y in 0 <= m ->
   Q2R (turns d) * Q2R (turns d) * (dot n n * dot u u) <= m * m -> a <= t <= b ->
   Rmin (dot n (driven d a y)) (dot n (driven d b y)) - m * ((b - a) * (b - a)) / 8 <= dot n (driven d t y).
 Proof.
-  intros u m0 hm ht. destruct (driven_along d n y) as [k [e [p [q [h bend]]]]]. fold u in bend. rewrite !h. rewrite <- bend in hm.
-  set (w := Q2R (turns d)) in *.
-  apply (dips _ (wave e 0 (- w * q) (w * p) w) (fun t => 0 + w * (- w * q * cos (w * t) - w * p * sin (w * t)))); try assumption.
-  - intro c. pose proof (wave_slope k e p q w c) as s. replace (wave e 0 (- w * q) (w * p) w c) with (e + w * (p * cos (w * c) - q * sin (w * c))); [assumption|]. unfold wave. ring.
-  - intro c. apply wave_slope.
-  - intro c. now apply (wave_bend p q w c m).
+  intros u m0 hm ht. unfold driven. destruct (carried_bends (real (place_then d)) (real (heads d)) (Q2R (turns d)) n y m m0 hm) as [f [f1 [f2 [h [h1 [h2 h3]]]]]].
+  rewrite !h. now apply (dips f f1 f2).
 Qed.
 
 Lemma derivable_near f f1 t e : derivable_pt_lim f t f1 -> 0 < e -> exists k, 0 < k /\ forall s, Rabs (s - t) < k -> Rabs (f s - f t) < e.
@@ -93,7 +107,7 @@ Lemma driven_continuous d y l : continuous (fun u => driven d (u * l) y).
 Proof.
   intros t _ e e0.
   assert (along : forall n, exists k, 0 < k /\ forall s, Rabs (s - t) < k -> Rabs (dot n (driven d (s * l) y) - dot n (driven d (t * l) y)) < e).
-  { intro n. destruct (driven_along d n y) as [a [b [p [q [h _]]]]].
+  { intro n. destruct (driven_along d n y) as [a [b [p [q h]]]].
     destruct (derivable_near (wave a b p q (Q2R (turns d))) _ (t * l) e (wave_slope _ _ _ _ _ _) e0) as [k [k0 hk]].
     assert (l0 : 0 < Rabs l + 1) by (pose proof (Rabs_pos l); lra). exists (k / (Rabs l + 1)). split; [now apply Rdiv_lt_0_compat|].
     intros s hs. rewrite !h. apply hk. replace (s * l - t * l) with ((s - t) * l) by ring. rewrite Rabs_mult.
@@ -104,10 +118,10 @@ Proof.
   unfold dot in hk, hm; simpl in hk, hm. rewrite !Rmult_0_l, !Rmult_1_l in hk, hm. unfold near. split; [rewrite !Rplus_0_r in hk|rewrite !Rplus_0_l in hm]; assumption.
 Qed.
 Lemma driven_affine d t s x y : driven d t (mix s x y) = mix s (driven d t x) (driven d t y).
-Proof. unfold driven, mix, add, scale, left_of; simpl. f_equal; ring. Qed.
+Proof. unfold driven, carried, mix, add, scale, left_of; simpl. f_equal; ring. Qed.
 Lemma driven_at_start d y : driven d 0 y = add (real (place_then d)) y.
 Proof.
-  unfold driven. rewrite !Rmult_0_r, sin_0, cos_0. destruct y, (Req_EM_T (Q2R (turns d)) 0); unfold add, scale, left_of; simpl; f_equal; field; assumption.
+  unfold driven, carried. rewrite !Rmult_0_r, sin_0, cos_0. destruct y, (Req_EM_T (Q2R (turns d)) 0); unfold add, scale, left_of; simpl; f_equal; field; assumption.
 Qed.
 
 (* --- Places in fractions, times the turn rate, which is no divisor then; a body that does not turn is at `times` = 1 --- *)
@@ -159,12 +173,12 @@ Proof.
   intro ap. unfold pose, arm. destruct (straight d) eqn:h; intro e.
   - injection e as e1 e2. subst. exists 0, 1. split.
     + unfold encloses. rewrite Rmult_0_l, Rmult_1_l, !Rminus_diag_eq by reflexivity. rewrite Rabs_R0. lra.
-    + intro q. unfold times. rewrite h. apply straight_ok in h. rewrite !real_add, !real_scale, Q2R_unity. unfold driven.
+    + intro q. unfold times. rewrite h. apply straight_ok in h. rewrite !real_add, !real_scale, Q2R_unity. unfold driven, carried.
       destruct (Req_EM_T (Q2R (turns d)) 0); [|contradiction]. rewrite h, Rmult_0_l, sin_0, cos_0. unfold add, scale, left_of; simpl. f_equal; ring.
   - destruct (circle g (qmul (turns d) passed)) as [k|] eqn:f; [|discriminate]. injection e as e1 e2. subst. apply (circle_ok _ _ _ ap) in f. rewrite Q2R_mul in f.
     assert (n : Q2R (turns d) <> 0) by (intro n; apply straight_ok in n; congruence). destruct (times_ok d) as [_ t]. specialize (t n).
     exists (sin (Q2R (turns d) * Q2R passed)), (cos (Q2R (turns d) * Q2R passed)). split; [assumption|]. intro q.
-    destruct (aside_ok d) as [sign [es ea]]. unfold hub. rewrite real_sub, !real_add, !real_scale, ea, t, <- es. unfold driven.
+    destruct (aside_ok d) as [sign [es ea]]. unfold hub. rewrite real_sub, !real_add, !real_scale, ea, t, <- es. unfold driven, carried.
     destruct (Req_EM_T (Q2R (turns d)) 0); [contradiction|]. unfold add, sub, scale, left_of; simpl. f_equal; field; assumption.
 Qed.
 
@@ -398,14 +412,17 @@ Proof.
   destruct (number_in one (until s)) as [t1|] eqn:e1; [|discriminate]. destruct (number_in one (width s)) as [w|] eqn:ew; [|discriminate]. cbv zeta in h.
   destruct (number_in one (times d)) as [tn|] eqn:et; [|congruence]. clear ht.
   assert (etn : Qnum (times d) = tn) by (unfold number_in in et; destruct (Pos.eqb (Qden (times d)) one); [now injection et|discriminate]). rewrite etn in h.
-  set (far := zmax _ _) in h. set (len := (Z.sqrt _ + 1)%Z) in h. clearbody len. set (needed := ((quick_reach q + Zpos coarse * (tn * w) + quick_bend q * ((t1 - t0) * (t1 - t0))) * len)%Z) in h. set (size := ((_ + _) * size_of_arms q)%Z) in h.
+  set (far := zmax _ _) in h. set (len := (Z.sqrt _ + 1)%Z) in h. clearbody len.
+    set (needed := ((quick_reach q + Zpos coarse * (tn * w) + quick_bend q * ((t1 - t0) * (t1 - t0))) * len)%Z) in h. set (size := ((_ + _) * size_of_arms q)%Z) in h.
   apply andb_true_iff in h; destruct h as [h b1]. apply andb_true_iff in h; destruct h as [h b0]. apply andb_true_iff in h; destruct h as [h nl].
   apply andb_true_iff in h; destruct h as [w0 l0]. apply Z.leb_le, IZR_le in w0, l0, nl. rewrite plus_IZR, !mult_IZR in nl.
   unfold quickly in hq. destruct (pairs_in (one * one) (map (arm d) (corners p))) as [l|] eqn:el; [|discriminate].
-  destruct (number_in (one * one) (qmul (times d) (reach p))) as [r|] eqn:er; [|discriminate]. apply (f_equal (fun o => match o with Some q => q | None => q end)) in hq. cbv beta iota in hq. subst q.
+  destruct (number_in (one * one) (qmul (times d) (reach p))) as [r|] eqn:er; [|discriminate]. apply (f_equal (fun o => match o with Some q => q | None => q end)) in hq.
+    cbv beta iota in hq. subst q.
   cbn [arms quick_reach quick_bend size_of_arms] in *.
   destruct (pairs_in_ok _ _ _ el (arm d c) (in_map _ _ _ hc)) as [a [ha ea]].
-  assert (big : IZR (zabs (fst a) + zabs (snd a)) <= IZR (fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l)) by (apply (largest (fun a => zabs (fst a) + zabs (snd a))%Z); assumption).
+  assert (big : IZR (zabs (fst a) + zabs (snd a)) <= IZR (fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l)) by (apply (largest (fun a => zabs (fst a) + zabs
+    (snd a))%Z); assumption).
   assert (bent : IZR (up coarse (bend d c)) <= IZR (fold_right (fun q m => zmax (up coarse (bend d q)) m) 0%Z (corners p))) by (apply (largest (fun q => up coarse (bend d q))); assumption).
   set (S := fold_right _ _ l) in *. set (B := fold_right _ _ (corners p)) in *. clearbody S B.
   rewrite plus_IZR, !zabs_ok in big. pose proof (up_ok coarse (bend d c)) as bent'. 

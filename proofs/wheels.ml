@@ -1,7 +1,8 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The reader, continued: a robot on wheels (docs/guide/wheels.md) is judged as the disc about its reference point that
-   holds it at every heading, the stray of a twist, and the tracking error that the scenario has; another robot as its
-   disc and that error. That it does is asked for, in fractions; that wheels and bodies do as they are told is not. *)
+   holds it at every heading, the stray of a twist (`wheels_sound`), and the tracking error that the scenario has;
+   another robot as its disc and that error. That wheels and bodies do as they are told is not asked. *)
+open Checker
 
 let drive robot = match Json.find "kinematics" robot with
   | Some k when Json.find "type" k = Some (Json.Str "differential") -> Some k
@@ -17,16 +18,25 @@ let corners robot = match Json.find "footprint" robot with
   | Some f -> List.map (fun c -> match Json.arr c with [x; y] -> Json.(num x, num y) | _ -> raise Json.Bad) Json.(arr (get "polygon" f))
   | None -> []
 
-let holds radius robot ahead speed step tracking =
+let disc_fits left robot ahead speed step =
+  let body = number "radius" robot in
+  let q = Exact.fractions [body; ahead; speed; step] in
+  Checked.wheels_fit { body_reach = q body; ahead = q ahead; most_speed = q speed; time_step = q step } (Exact.of_q left)
+
+(* No theorem is of corners: they are asked for here. *)
+let corners_fit left cs ahead speed step =
   let q = Q.of_float in
   let way = Q.mul (q speed) (q step) in
   let room = Q.sub (Q.mul (q 2.) (q ahead)) way in
-  let left = Q.sub (Q.sub (q radius) (Q.div (Q.mul way way) (Q.mul (q 4.) room))) (q tracking) in
+  let left = Q.sub left (Q.div (Q.mul way way) (Q.mul (q 4.) room)) in
   let is_within (x, y) = let x = Q.sub (q x) (q ahead) in Q.leq (Q.add (Q.mul x x) (Q.mul (q y) (q y))) (Q.mul left left) in
-  Q.sign room > 0 && Q.sign left > 0
-  && match corners robot with
-     | [] -> Q.geq left (Q.add (q (number "radius" robot)) (q ahead))
-     | cs -> List.for_all is_within cs
+  Q.sign room > 0 && Q.sign left > 0 && List.for_all is_within cs
+
+let holds radius robot ahead speed step tracking =
+  let left = Q.sub (Q.of_float radius) (Q.of_float tracking) in
+  match corners robot with
+  | [] -> disc_fits left robot ahead speed step
+  | cs -> corners_fit left cs ahead speed step
 
 let rounded_up = 1. +. Float.ldexp 1. (-50)
 

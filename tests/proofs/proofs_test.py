@@ -73,7 +73,7 @@ class Tools:
 
 def axioms(tools):
     theorems = re.findall(r"Parameter (\w+_sound)", (tools.source / "proofs/Theorems.v").read_text())
-    require(len(theorems) >= 18, "theorems found:", theorems)
+    require(len(theorems) >= 19, "theorems found:", theorems)
     guide = (tools.source / "docs/guide/proofs.md").read_text()
     listed = set(re.findall(r"^\| `([\w.]+)` \|", guide[guide.index("## Axioms"):], re.M))
     require(listed, "the guide lists no axioms")
@@ -91,7 +91,7 @@ def axioms(tools):
     for source in sorted((tools.source / "proofs").glob("*.v")):
         require(not re.search(r"\b(Admitted|admit|Axiom|Conjecture|Hypothesis)\b", source.read_text()), source, "assumes something")
     theorems_page = (tools.source / "proofs/Theorems.v").read_text()
-    require(len(theorems_page.split()) <= 3800, "Theorems.v is longer than 3,800 words")
+    require(len(theorems_page.split()) <= 4000, "Theorems.v is longer than 4,000 words")
     require(not re.search(r"\. +(Definition|Parameter|Record|Fixpoint)\b", theorems_page), "Theorems.v has two statements in a line")
     print(len(theorems), "theorems,", len(used), "axioms")
 
@@ -99,7 +99,7 @@ def axioms(tools):
 def coqchk(tools):
     # Our theories alone: the guide has the command that checks the standard library too.
     ours = [f"ExactVO.{path.stem}" for path in sorted(tools.theories.glob("*.vo"))]
-    require(len(ours) == 13, ours)
+    require(len(ours) == 14, ours)
     checked = run("coqchk", "-silent", "-o", "-Q", tools.theories, "ExactVO", *[word for name in ours for word in ("-norec", name)])
     words = checked.stdout + checked.stderr
     require(checked.returncode == 0 and "CONTEXT SUMMARY" in words, words)
@@ -205,7 +205,8 @@ def certificates(tools):
     tracks = tools.file("tracks.csv", "t,id,x,y\n0,A,0,0\n0,B,3.5,-1.25\n2,A,3,0.5\n2,B,1,-1.5\n")
     square = tools.file("square.wkt", "POLYGON((1 1, 2 1, 2 2, 1 2, 1 1))\n")
     proofs = tools.folder / "proofs.jsonl"
-    for body in (("--radius", "0.25"), ("--footprint", "POLYGON((-0.2 -0.2, 0.2 -0.2, 0.2 0.2, -0.2 0.2, -0.2 -0.2))")):
+    footprint = ("--footprint", "POLYGON((-0.2 -0.2, 0.2 -0.2, 0.2 0.2, -0.2 0.2, -0.2 -0.2))")
+    for body in (("--radius", "0.25"), footprint, ("--radius", "0.25", "--between", "cubic"), (*footprint, "--between", "cubic")):
         tools.make("check", tracks, *body, "--map", square, "--near", "5", "--certificates", proofs)
         text = proofs.read_text()
         status, verdicts, words = tools.verified("proofs.jsonl", text)
