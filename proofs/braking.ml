@@ -12,7 +12,7 @@ let number key v = Json.(num (get key v))
 (* With the denominator of a product of two numbers of the row (Braking.v). *)
 let prepare b bits =
   let q = over (2 * bits) in
-  let discs, others = List.partition (fun o -> Json.find "disc" o <> None) Json.(arr (get "obstacles" b.scenario)) in
+  let discs, others = Wheels.obstacles b.scenario in
   let pole o = let d = Certificates.disc q (Json.get "disc" o) in (d.from, d.size) in
   b.bits <- bits;
   b.obstacles <- List.map (Certificates.obstacle q) others;

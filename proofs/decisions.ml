@@ -104,7 +104,8 @@ let choice robot speed is_disc cs =
     parts = List.map (fun p -> (Json.(str (get "part" p)), multiplier p)) bound }
 
 let robot d scenario described r =
-  let radius = number "radius" described and cs = constraints r in
+  let radius = match Json.find "obstacle_radius" described with Some o -> Json.num o | None -> number "radius" described in
+  let cs = constraints r in
   List.iter (fun c -> match shape_of d c with
     | Some s when is "certified" c -> ask d.half_planes (half_plane r radius c s)
     | _ -> d.moving <- d.moving + 1) cs;

@@ -40,6 +40,18 @@ let holds radius robot ahead speed step tracking =
 
 let rounded_up = 1. +. Float.ldexp 1. (-50)
 
+(* The radius of the first disc of a footprint's chain, against obstacles: slabs of a fifth of a box round the footprint
+   and the reference point. (That of more discs, which turn, is not judged.) *)
+let of_chain ahead more = function
+  | [] -> []
+  | cs ->
+    let fold f get start = List.fold_left (fun m c -> f m (get c)) start cs in
+    let slab = (fold Float.max fst ahead -. fold Float.min fst ahead) /. 5. in
+    let half_width = fold Float.max (fun c -> Float.abs (snd c)) 0. in
+    [("obstacle_radius", Json.Num ((1. +. 1e-12) *. (Float.hypot (0.5 *. slab) half_width +. more)))]
+
+let has_footprint robot = Json.find "footprint" robot <> None
+
 let as_disc step tracking robot =
   match robot, drive robot with
   | Json.Obj members, Some k ->
@@ -52,13 +64,18 @@ let as_disc step tracking robot =
     let radius = rounded_up *. (body +. stray +. tracking) in
     if not (holds radius robot ahead speed step tracking) then raise Json.Bad;
     let others = List.filter (fun (key, _) -> key <> "radius" && key <> "max_speed") members in
-    Json.Obj (("radius", Json.Num radius) :: ("max_speed", Json.Num speed) :: others)
+    Json.Obj (("radius", Json.Num radius) :: ("max_speed", Json.Num speed) :: of_chain ahead (stray +. tracking) (corners robot) @ others)
   | Json.Obj members, None when tracking > 0. ->
     let body = number "radius" robot in
     let radius = rounded_up *. (body +. tracking) in
     if Q.lt (Q.of_float radius) (Q.add (Q.of_float body) (Q.of_float tracking)) then raise Json.Bad;
     Json.Obj (("radius", Json.Num radius) :: List.remove_assoc "radius" members)
   | _ -> robot
+
+(* Round ones, and others, that bodies are held against: none where some have footprints. *)
+let obstacles scenario =
+  if List.exists has_footprint Json.(arr (get "robots" scenario)) then ([], [])
+  else List.partition (fun o -> Json.find "disc" o <> None) Json.(arr (get "obstacles" scenario))
 
 (* The scenario with such discs in the place of robots on wheels. *)
 let as_discs scenario = match scenario with

@@ -73,12 +73,14 @@ Json robots_json(const formation::Scenario& scenario) {
   for (const formation::Robot& robot : scenario.robots) {
     robots.push_back({{"id", robot.id},
                       {"radius", robot.radius},
+                      {"obstacle_radius", obstacle_radius(robot)},
                       {"max_speed", robot.max_speed},
                       {"goals", flat(robot.goals)},
                       {"cooperates", robot.cooperates}});
     if (const std::optional<formation::DifferentialDrive>& drive = robot.drive)
       robots.back()["on_wheels"] = {{"reference", drive->reference},
                                     {"wheel_separation", drive->wheel_separation},
+                                    {"max_wheel_speed", drive->max_wheel_speed},
                                     {"body_radius", drive->body_radius},
                                     {"footprint", flat(drive->footprint)}};
     else if (robot.body_radius > 0.0)

@@ -383,6 +383,41 @@ Figure velocity_figure(const RecordingFile& run) {
           filled("velocity", {{"x", x}, {"y", y}})};
 }
 
+std::string wheel_panel(const RecordingFile& run, const std::string& title, double formation::WheelSpeeds::*wheel,
+                        DataFile& data) {
+  PlotCommand plot;
+  std::vector<Series> all;
+  double most = 0.0;
+  for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
+    const formation::Robot& robot = run.scenario.robots[i];
+    if (!robot.drive) continue;
+    most = std::max(most, robot.drive->max_wheel_speed);
+    Series& series = all.emplace_back(Series{robot.id, {}});
+    for (const Step& step : run.recording.steps)
+      series.values.push_back(step.robots[i].wheels ? step.robots[i].wheels->speeds.*wheel : 0.0);
+  }
+  Range range = range_of(all);
+  range.high = std::max(range.high, 1.05 * most);
+  add_series(run, all, range, data, plot);
+  plot.item(fmt::format("{:.6g} with lines lw 1.5 dt (5,4) lc rgb 'black'", most), "greatest speed");
+  return series_body(run, title, "speed on the ground [m/s]", y_axis(range), plot);
+}
+
+/// Of both wheels. REQUIRES a robot on wheels.
+Figure wheel_figure(const RecordingFile& run) {
+  DataFile data;
+  const std::string left =
+      wheel_panel(run, "(a) " + run_title(run) + ": left wheels", &formation::WheelSpeeds::left, data);
+  const std::string right = wheel_panel(run, "(b) right wheels", &formation::WheelSpeeds::right, data);
+  return {"wheels", data.text(), "Speeds of the wheels in " + run_title(run) + ".", kTallCanvas,
+          filled("velocity", {{"x", left}, {"y", right}})};
+}
+
+bool has_wheels(const RecordingFile& run) {
+  const std::vector<formation::Robot>& robots = run.scenario.robots;
+  return std::any_of(robots.begin(), robots.end(), [](const formation::Robot& r) { return r.drive.has_value(); });
+}
+
 /// Of values above 0.
 Range logarithmic_range(const std::vector<Series>& all) {
   Range range{1.0, 1.0, true};
@@ -425,6 +460,7 @@ std::vector<Figure> run_figures(const datasets::RecordingFile& run, const std::f
              {has_obstacles, "obstacle_distance", obstacle_distance_figure},
              {run.scenario.robots.size() > 1, "robot_distance", robot_distance_figure},
              {true, "velocity", velocity_figure},
+             {has_wheels(run), "wheels", wheel_figure},
              {run.scenario.formation.has_value(), "formation_error", formation_error_figure},
              {!run.lyapunov.empty(), "lyapunov", lyapunov_figure}};
   std::vector<Figure> figures;

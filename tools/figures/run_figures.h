@@ -18,8 +18,8 @@
 namespace exactvo::tools {
 
 /// Those that apply, in this order: `paths`; `obstacle_distance` (with obstacles); `robot_distance` (with two robots or
-/// more); `velocity`; `formation_error` and `lyapunov` (with a formation). `begins` gets the name of each before it is
-/// made.
+/// more); `velocity`; `wheels` (with robots on wheels); `formation_error` and `lyapunov` (with a formation). `begins`
+/// gets the name of each before it is made.
 std::vector<Figure> run_figures(const datasets::RecordingFile& run,
                                 const std::function<void(const char*)>& begins = {});
 

@@ -37,6 +37,7 @@ class BrakingAudit : public RowAudit {
             " changes its velocity by more than A dt");
       ask(robot.status == lp::Status::optimal, at, i, " relaxes a half-plane");
       brakes_alone(ways[i], i, at);
+      turns_alone(ways[i], i, at);
       for (std::size_t j = i + 1; j < ways.size(); ++j) brake_together(ways[i], i, ways[j], j, at);
     }
   }
@@ -69,13 +70,26 @@ class BrakingAudit : public RowAudit {
   }
 
   void brakes_alone(const Way& w, std::size_t i, const RowInRun& at) {
-    const double radius = run_.scenario.robots[i].radius;
+    const double radius = obstacle_radius(run_.scenario.robots[i]);
     const Rational r(radius);
     for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
       const RationalObstacle& o = run_.obstacles[k];
       if (are_apart(w.box, o.box, radius)) continue;
       ask(is_clear(w, o, radius, r), at, i,
           " could not brake without touching obstacle '" + run_.scenario.obstacles[k].id + "'");
+    }
+  }
+
+  /// With a footprint, which turns meanwhile: what is clear of an obstacle now stays so in the rows to come, since way
+  /// and turn of the rest are parts of this way and this turn.
+  void turns_alone(const Way& w, std::size_t i, const RowInRun& at) {
+    const formation::Robot& robot = run_.scenario.robots[i];
+    if (!robot.drive || robot.drive->chain.empty()) return;
+    for (std::size_t k = 0; k < run_.obstacles.size(); ++k) {
+      const RationalObstacle& o = run_.obstacles[k];
+      if (are_apart(w.box, o.box, obstacle_reach_of(robot))) continue;
+      ask(chain_against(robot, at.row.robots[i], tau_, o) == exact::Verdict::clear, at, i,
+          " could not brake without its footprint touching obstacle '" + run_.scenario.obstacles[k].id + "'");
     }
   }
 

@@ -145,7 +145,8 @@ class DecisionAudit : public RowAudit {
     const RobotStep* state;
     Point at;
     Rational radius, reach;
-    double near;  ///< no less than their sum
+    double near;    ///< no less than their sum
+    Rational wall;  ///< m: its radius against what stands
   };
 
   const std::string& id(const Seen& s) const { return run_.scenario.robots[s.robot].id; }
@@ -160,8 +161,18 @@ class DecisionAudit : public RowAudit {
   Seen seen(const RowInRun& at, std::size_t robot) const {
     const RobotStep& state = at.row.robots[robot];
     const Rational radius(run_.scenario.robots[robot].radius), reach = run_.duration * Rational(fastest(robot));
-    return {at.number, robot, &at.row, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
+    return {at.number,
+            robot,
+            &at.row,
+            &state,
+            exactly(state.anchor),
+            radius,
+            reach,
+            exact::at_least(radius + reach),
+            Rational(wall_radius(robot))};
   }
+
+  double wall_radius(std::size_t robot) const { return obstacle_radius(run_.scenario.robots[robot]); }
 
   void place_moving(const Step& step) {
     moved_.clear();
@@ -199,7 +210,7 @@ class DecisionAudit : public RowAudit {
   }
 
   Verdict against_edges(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
-    const Rational within = (s.radius + s.reach) * (s.radius + s.reach), rim = s.radius * s.radius;
+    const Rational within = (s.wall + s.reach) * (s.wall + s.reach), rim = s.wall * s.wall;
     const bool is_solid = geometry::has_interior(*obstacle.obstacle);
     if (is_solid && exact::is_inside(s.at, *obstacle.obstacle)) {
       in_reach = true;
@@ -222,7 +233,7 @@ class DecisionAudit : public RowAudit {
   /// One half-plane against the disc, or those against the edges of the polygon round it, which holds it.
   Verdict against_disc(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
     const Point apart = s.at - obstacle.disc->center;
-    const Rational away = exact::dot(apart, apart), radii = s.radius + obstacle.disc->radius;
+    const Rational away = exact::dot(apart, apart), radii = s.wall + obstacle.disc->radius;
     in_reach = away <= (radii + s.reach) * (radii + s.reach);
     if (!in_reach) return Verdict::clear;
     if (away < radii * radii) return Verdict::unknown;
@@ -231,7 +242,7 @@ class DecisionAudit : public RowAudit {
   }
 
   bool is_excluded(const Seen& s, const geometry::ConvexShape& edge) const {
-    const double radius = run_.scenario.robots[s.robot].radius, step = run_.file.recording.time_step;
+    const double radius = wall_radius(s.robot), step = run_.file.recording.time_step;
     return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const DecisionConstraint& c) {
       return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});
     });
@@ -357,7 +368,7 @@ class DecisionAudit : public RowAudit {
   bool is_clear_of(const Seen& s, const DecisionConstraint& c) const {
     constexpr double kRounding = 0x1p-40;  // of the coordinates
     const Vec2 at = s.state->anchor;
-    double radius = run_.scenario.robots[s.robot].radius;
+    double radius = is_static(c) ? wall_radius(s.robot) : run_.scenario.robots[s.robot].radius;
     radius += kRounding * (std::fabs(at.x) + std::fabs(at.y) + radius);
     const auto is_outside = [&](const geometry::ConvexShape& shape) {
       return !geometry::is_valid(shape) || geometry::locate({shape, at, radius}, Vec2{}) == geometry::Place::outside;
@@ -387,7 +398,8 @@ class DecisionAudit : public RowAudit {
     if (c.source == BodyKind::moving_obstacle)
       return vo::is_true({moved_[c.index], at, radius, c.time_horizon, s.step->moving[c.index].velocity, c.half_plane});
     if (c.source != BodyKind::robot)
-      return vo::is_true({run_.file.recording.bodies[c.body].shape, at, radius, c.time_horizon, {}, c.half_plane});
+      return vo::is_true(
+          {run_.file.recording.bodies[c.body].shape, at, wall_radius(s.robot), c.time_horizon, {}, c.half_plane});
     const formation::Robot& other = run_.scenario.robots[c.index];
     const RobotStep& them = s.step->robots[c.index];
     const geometry::Disc disc{them.anchor, other.radius};

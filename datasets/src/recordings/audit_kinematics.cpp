@@ -39,9 +39,12 @@ Interval arc_of(const Rational& t) {
 class KinematicsAudit : public RowAudit {
  public:
   explicit KinematicsAudit(const AuditedRun& run) : run_(run) {
-    for (const formation::Robot& robot : run.scenario.robots)
-      if (robot.drive)
-        ask(holds_its_body(robot), 0, robot, "has a disc about its reference point that does not hold it");
+    for (const formation::Robot& robot : run.scenario.robots) {
+      if (!robot.drive) continue;
+      ask(holds_its_body(robot), 0, robot, "has a disc about its reference point that does not hold it");
+      if (!robot.drive->footprint.empty())
+        ask(holds_its_footprint(*robot.drive), 0, robot, "has a chain of discs that does not hold its footprint");
+    }
   }
 
   void check_row(const RowInRun& at) override {
@@ -92,6 +95,37 @@ class KinematicsAudit : public RowAudit {
              const Point from = exactly(corner) - Point{ahead, Rational(0)};
              return exact::dot(from, from) <= left * left;
            });
+  }
+
+  /// A box round the footprint, cut into slabs between the centres of the discs: each disc, without the stray of a step
+  /// and the tracking error, holds the corners of its slab. The first is about the reference point.
+  bool holds_its_footprint(const DifferentialDrive& d) const {
+    const Rational way = Rational(d.max_wheel_speed) * run_.duration, room = 2 * Rational(d.reference) - way;
+    if (sgn(room) <= 0 || d.chain.empty() || d.chain[0].center.x != d.reference) return false;
+    const Rational more = way * way / (4 * room) + Rational(tracking_error_of(run_.scenario));
+    std::vector<geometry::Disc> chain = d.chain;
+    std::sort(chain.begin(), chain.end(), [](const auto& a, const auto& b) { return a.center.x < b.center.x; });
+    double front = d.footprint[0].x, rear = front, half_width = 0.0;
+    for (const geometry::Vec2 corner : d.footprint) {
+      front = std::max(front, corner.x);
+      rear = std::min(rear, corner.x);
+      half_width = std::max(half_width, std::fabs(corner.y));
+    }
+    const Rational first(rear), last(front);
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const auto middle = [&](std::size_t n) {
+        return Rational((Rational(chain[n].center.x) + Rational(chain[n + 1].center.x)) / 2);
+      };
+      const Rational left = Rational(chain[k].radius) - more, centre(chain[k].center.x);
+      const Rational from = k == 0 ? first : std::max(first, middle(k - 1));
+      const Rational to = k + 1 == chain.size() ? last : std::min(last, middle(k));
+      const auto holds = [&](const Rational& x) {
+        return (x - centre) * (x - centre) + Rational(half_width) * Rational(half_width) <= left * left;
+      };
+      if (chain[k].center.y != 0.0 || sgn(left) <= 0) return false;
+      if (from <= to && !(holds(from) && holds(to))) return false;
+    }
+    return true;
   }
 
   void starts(const RobotStep& state, const formation::Robot& robot) {

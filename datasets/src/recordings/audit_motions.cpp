@@ -106,7 +106,7 @@ class MotionAudit : public RowAudit {
   void check_step(const RowInRun& at) override {
     if (!(at.row.time >= 0.0 && at.row.time < at.next->time)) return;
     const auto states = [&](const formation::Step& row, std::size_t number) {
-      RowStates out{number, row.time, {}, {}};
+      RowStates out{number, row.time, {}, {}, &row};
       for (const formation::RobotStep& robot : row.robots) out.robots.push_back({robot.position, robot.velocity});
       return out;
     };
@@ -249,35 +249,42 @@ class MotionAudit : public RowAudit {
   }
 
   void meet_obstacles(std::size_t i, Answer& answer) {
+    const formation::Robot& robot = run_.scenario.robots[i];
     run_.tally.report.obstacle_questions += run_.obstacles.size();
-    obstacles_by_place_.for_each_meeting(round_box(boxes_[i], radius(i)), [&](std::size_t k) {
-      answer.take(meet_obstacle(i, run_.obstacles[k]), "obstacle", run_.scenario.obstacles[k].id);
+    obstacles_by_place_.for_each_meeting(round_box(boxes_[i], obstacle_reach_of(robot)), [&](std::size_t k) {
+      const std::string& id = run_.scenario.obstacles[k].id;
+      answer.take(meet_obstacle(i, run_.obstacles[k]), "obstacle", id);
+      if (from_->row)
+        answer.take(chain_against(robot, from_->row->robots[i], run_.duration, run_.obstacles[k]), "obstacle", id);
     });
   }
 
+  /// Against what stands.
+  double wall_radius(std::size_t i) const { return obstacle_radius(run_.scenario.robots[i]); }
+
   Verdict meet_obstacle(std::size_t i, const RationalObstacle& o) {
-    if (are_apart(boxes_[i], o.box, radius(i))) return Verdict::clear;
+    if (are_apart(boxes_[i], o.box, wall_radius(i))) return Verdict::clear;
     const Vec2 at = from_->robots[i].position;
     const bool is_solid = geometry::has_interior(*o.obstacle);
     if (o.disc && is_straight_ &&
         is_surely_more(geometry::distance(way(i), o.disc->disc.center), o.box, boxes_[i],
-                       radius(i) + o.disc->disc.radius))
+                       wall_radius(i) + o.disc->disc.radius))
       return Verdict::clear;
     std::vector<NearEdge> edges;
-    for (const std::size_t k : o.near(boxes_[i], radius(i))) {
+    for (const std::size_t k : o.near(boxes_[i], wall_radius(i))) {
       const Segment& edge = o.segments[k];
-      const bool is_apart =
-          is_straight_ && !o.disc && is_surely_more(geometry::distance(edge, way(i)), o.boxes[k], boxes_[i], radius(i));
-      if (!is_apart) edges.push_back({k, Rational(radius(i))});
+      const bool is_apart = is_straight_ && !o.disc &&
+                            is_surely_more(geometry::distance(edge, way(i)), o.boxes[k], boxes_[i], wall_radius(i));
+      if (!is_apart) edges.push_back({k, Rational(wall_radius(i))});
     }
     if (edges.empty() && !is_solid) return Verdict::clear;
     const auto asked = [&](const Rational& reach) {
       return decided([&](const Rational& s, const Rational& e) { return motion(i).over(s, e); },
                      [&](const Chord& chord) { return against(chord, o, edges, reach); }, Rational(0), Rational(1));
     };
-    const Verdict verdict = asked(Rational(radius(i)));
+    const Verdict verdict = asked(Rational(wall_radius(i)));
     if (verdict == Verdict::clear || !has_places_only_) return verdict;
-    const double of_whole = is_solid ? allowed(i, o, at) : radius(i);
+    const double of_whole = is_solid ? allowed(i, o, at) : wall_radius(i);
     return allowing(i, [&](double least) {
       for (NearEdge& edge : edges) {
         const Box& box = o.boxes[edge.edge];

@@ -122,6 +122,13 @@ exact::Verdict against_point(const exact::Chord& chord, const exact::Point& poin
 exact::Verdict against(const exact::Chord& chord, const RationalObstacle& obstacle, const std::vector<NearEdge>& edges,
                        const exact::Rational& reach);
 
+/// m: no disc of a robot that keeps clear of obstacles reaches farther from its place, rounded up.
+double obstacle_reach_of(const formation::Robot& robot);
+/// Whether all discs of a footprint's chain but the first keep clear of the obstacle wherever a robot may come that
+/// drives at its choice for `time`, while its heading turns from where it is towards the choice.
+exact::Verdict chain_against(const formation::Robot& robot, const formation::RobotStep& state,
+                             const exact::Rational& time, const RationalObstacle& obstacle);
+
 /// What is audited. Points refer to it.
 struct AuditedRun {
   /// Once the header is known: `recorded` grows while rows are taken.
@@ -144,10 +151,11 @@ struct AuditedRun {
 
 /// Where robots are in a row, and how they move.
 struct RowStates {
-  std::size_t step = 0;               ///< time steps from the start
-  double time = 0.0;                  ///< s
-  std::vector<exact::State> robots;   ///< of places without velocities
-  std::vector<geometry::Vec2> moved;  ///< m, of places: how far each moving obstacle has come
+  std::size_t step = 0;                  ///< time steps from the start
+  double time = 0.0;                     ///< s
+  std::vector<exact::State> robots;      ///< of places without velocities
+  std::vector<geometry::Vec2> moved;     ///< m, of places: how far each moving obstacle has come
+  const formation::Step* row = nullptr;  ///< of a recording with decisions
 };
 
 /// Points that are asked of each row as it comes.

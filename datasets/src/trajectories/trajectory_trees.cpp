@@ -160,6 +160,9 @@ void begin(const formation::Scenario& scenario, TrajectorySink& out) {
   TrajectoryFile& file = out.file();
   file.row_word = "row";
   for (const formation::Robot& robot : scenario.robots) {
+    if (obstacle_radius(robot) < robot.radius)
+      throw DataError(DataCode::scenario, file.file, "", "robot '" + robot.id + "', which has a footprint",
+                      "robots that are discs; audit proves runs of others");
     out.agent(robot.id);
     file.radii.push_back(robot.radius);
   }

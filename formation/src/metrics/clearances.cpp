@@ -13,6 +13,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/obstacle_index.h"
+#include "exactvo/geometry/twist.h"
 #include "motion/motion.h"
 #include "motion/moving_way.h"
 #include "scene/near_pairs.h"
@@ -103,6 +104,7 @@ class ClearanceSweep::Sweep {
       const std::size_t step = count_++;
       motions_.clear();
       for (std::size_t i = 0; i < least_.size(); ++i) motions_.push_back(motion_to(row, i));
+      arrived_ = &row;
       for (std::size_t i = 0; i < least_.size(); ++i) lower_to_obstacles(step, row.time, i);
       lower_between(step, row.time);
     }
@@ -191,9 +193,11 @@ class ClearanceSweep::Sweep {
   void lower_to_obstacles(std::size_t step, double end, std::size_t robot) {
     double& least = least_[robot];
     if (!scenario_.obstacles.empty() && !stays_quiet(robot, enough(least))) {
-      for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least))))
-        note(robot, {CollisionKind::obstacle, o}, step, end,
-             obstacle_clearance(o, robot, motions_[robot], enough(least)), least);
+      for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least)))) {
+        const double disc = obstacle_clearance(o, robot, motions_[robot], enough(least));
+        note(robot, {CollisionKind::obstacle, o}, step, end, std::min(disc, links_clearance(o, robot, enough(least))),
+             least);
+      }
       look_round(robot, enough(least));
     }
     for (std::size_t o = 0; o < scenario_.moving_obstacles.size(); ++o)
@@ -238,7 +242,7 @@ class ClearanceSweep::Sweep {
     quiet.room = 0.0;
     if (--quiet.steps_until > 0 || !std::isfinite(enough)) return;
     const double step = strays(motions_[robot]), reach = reach_that_matters(robot, enough);
-    const double worth = reach + 3.0 * step, most = reach + kSteps * step + scenario_.robots[robot].radius;
+    const double worth = reach + 3.0 * step, most = reach + kSteps * step + obstacle_reach(scenario_.robots[robot]);
     quiet.place = motions_[robot].chord(0.0, 1.0).b;
     double room = most;
     for (const std::size_t o : near_obstacles(robot, most)) {
@@ -264,16 +268,16 @@ class ClearanceSweep::Sweep {
 
   /// m: no chord of the motion has more taken off its distance.
   double most_off(std::size_t robot, const Motion& motion, const Segment& chord) const {
-    const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
+    const double radius = obstacle_reach(scenario_.robots[robot]), reach = radius + motion.reach();
     return 2.0 * rounding(largest_of_all_, chord, reach + motion.stray(1.0)) + radius;
   }
 
   /// m, the least clearance that there can be: the centre at no distance from a line or another centre. The bounds of
   /// roundings and curves may lie below it.
   double least_possible(std::size_t robot, Other other) const {
-    const double radius = scenario_.robots[robot].radius;
     const auto [kind, index] = other;
-    if (kind == CollisionKind::robot) return -(radius + scenario_.robots[index].radius);
+    if (kind == CollisionKind::robot) return -(scenario_.robots[robot].radius + scenario_.robots[index].radius);
+    const double radius = obstacle_radius(scenario_.robots[robot]);
     const Core& core = kind == CollisionKind::obstacle ? cores_[index] : moving_cores_[index];
     return std::holds_alternative<geometry::Polyline>(core.shape) ? -(radius + core.grown) : -kInfinity;
   }
@@ -309,17 +313,55 @@ class ClearanceSweep::Sweep {
 
   /// Beyond `enough` any number that is not less.
   double obstacle_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
+    const double radius = obstacle_radius(scenario_.robots[robot]);
+    return disc_clearance(
+        obstacle, radius, motion.reach(), enough, [&](double start, double end) { return motion.chord(start, end); },
+        [&](double share) { return motion.stray(share); });
+  }
+
+  /// The same of a disc. `chord(start, end)`: of its centre, from one share of the step to another, and `stray(share)`
+  /// how far it strays from it in such a share of the step at most.
+  template <class ChordOf, class StrayOf>
+  double disc_clearance(std::size_t obstacle, double disc, double others, double enough, const ChordOf& chord_of,
+                        const StrayOf& stray_of) const {
     constexpr double kRounding = 1e-12;
-    const double radius = scenario_.robots[robot].radius + cores_[obstacle].grown, reach = radius + motion.reach();
+    const double radius = disc + cores_[obstacle].grown;
     return least_clearance(
         [&](double start, double end) {
-          const Segment chord = motion.chord(start, end);
-          const double off = rounding(largest_[obstacle], chord, reach) + radius;
-          const double stray = motion.stray(end - start);
+          const Segment chord = chord_of(start, end);
+          const double off = rounding(largest_[obstacle], chord, radius + others) + radius;
+          const double stray = stray_of(end - start);
           const double distance = index_of(obstacle).swept_distance(chord, (1.0 + kRounding) * (enough + off + stray));
           return ChordClearance{distance - off, stray};
         },
         0.0, 1.0, enough);
+  }
+
+  /// Of the chain of a footprint, beside its first disc, on the twist that led to the row. (Its discs have room for
+  /// more than roundings: the stray of the reference point, which is on this twist.)
+  double links_clearance(std::size_t obstacle, std::size_t robot, double enough) const {
+    const std::optional<DifferentialDrive>& drive = scenario_.robots[robot].drive;
+    const RowState::Robot &from = rows_.back().robots[robot], &to = arrived_->robots[robot];
+    double least = kInfinity;
+    if (!drive || !from.wheels || !to.wheels) return least;
+    const double turn = (to.wheels->speeds.right - to.wheels->speeds.left) / drive->wheel_separation;
+    const Vec2 e = from.wheels->heading, left{-e.y, e.x};
+    const double ahead = 0.5 * (to.wheels->speeds.left + to.wheels->speeds.right);
+    const geometry::Twist twist{ahead * e + drive->reference * turn * left, turn};
+    const double step = run_.time_step;
+    for (std::size_t k = 1; k < drive->chain.size(); ++k) {
+      const Vec2 q = (drive->chain[k].center.x - drive->reference) * e;
+      const auto at = [&](double share) {
+        return from.position + geometry::displacement_after(twist, share * step).moved(q);
+      };
+      least = std::min(least, disc_clearance(
+                                  obstacle, drive->chain[k].radius, norm(q), std::min(enough, least),
+                                  [&](double start, double end) {
+                                    return Segment{at(start), at(end)};
+                                  },
+                                  [&](double share) { return geometry::stray_of(twist, q, share * step); }));
+    }
+    return least;
   }
 
   /// Piece after piece of the obstacle's way.
@@ -421,11 +463,11 @@ class ClearanceSweep::Sweep {
   /// m: the clearance at one moment, a share of the way through the step.
   double clearance_at(std::size_t robot, Other other, const Moment& moment, double share) const {
     const Vec2 place = moment.robot.at(share);
-    const double radius = scenario_.robots[robot].radius;
+    const double radius = obstacle_radius(scenario_.robots[robot]);
     const double time = moment.time + share * run_.time_step;
     const auto [kind, index] = other;
     if (kind == CollisionKind::robot)
-      return norm(place - moment.other.at(share)) - radius - scenario_.robots[index].radius;
+      return norm(place - moment.other.at(share)) - scenario_.robots[robot].radius - scenario_.robots[index].radius;
     if (kind == CollisionKind::obstacle) return signed_distance(scenario_.obstacles[index], place) - radius;
     const std::vector<WayPiece>& way = ways_[index];
     const Vec2 moved = way[std::min(piece_at(way, time), way.size() - 1)].at(time);
@@ -489,8 +531,9 @@ class ClearanceSweep::Sweep {
   std::vector<double> least_;  ///< m, of each robot to obstacles
   double between_ = kInfinity;
   std::map<std::pair<std::size_t, Other>, std::vector<Contact>> contacts_;
-  std::vector<RowState> rows_;  ///< the last two
-  std::size_t count_ = 0;       ///< steps
+  std::vector<RowState> rows_;         ///< the last two
+  const RowState* arrived_ = nullptr;  ///< the one that comes
+  std::size_t count_ = 0;              ///< steps
   // Memory that a step leaves to the next.
   std::vector<Motion> motions_;
   std::vector<double> ways_of_step_;  ///< m
@@ -508,7 +551,7 @@ void ClearanceSweep::add(const Step& row) {
   RowState state;
   state.time = row.time;
   state.robots.reserve(row.robots.size());
-  for (const RobotStep& r : row.robots) state.robots.push_back({r.position, r.velocity, bodies_gave(r)});
+  for (const RobotStep& r : row.robots) state.robots.push_back({r.position, r.velocity, bodies_gave(r), r.wheels});
   sweep_->add(std::move(state));
 }
 

@@ -25,6 +25,7 @@ struct RowState {
   struct Robot {
     Vec2 position, velocity;
     bool relaxed = false;
+    std::optional<OnWheels> wheels = {};  ///< of a robot with a footprint
   };
   double time = 0.0;
   std::vector<Robot> robots;

@@ -286,7 +286,7 @@ std::vector<double> obstacle_distance_series(const Scenario& scenario, const Rec
     for (const SceneObstacle& o : scenario.obstacles) least = std::min(least, signed_distance(o, place));
     for (const MovingObstacle& o : scenario.moving_obstacles)
       least = std::min(least, signed_distance(o, place - displacement_at(o, row.time)));
-    series.push_back(least - scenario.robots[robot].radius);
+    series.push_back(least - obstacle_radius(scenario.robots[robot]));
   }
   return series;
 }

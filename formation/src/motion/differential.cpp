@@ -30,6 +30,44 @@ void keep_within_tube(Robot& robot, double body_radius, double tracking) {
   robot.radius = tracking > 0.0 ? kRounding * (body_radius + tracking) : body_radius;
 }
 
+double obstacle_reach(const Robot& robot) {
+  double reach = obstacle_radius(robot);
+  if (robot.drive)
+    for (const geometry::Disc& link : robot.drive->chain)
+      reach = std::max(reach, std::fabs(robot.drive->reference - link.center.x) + link.radius);
+  return reach;
+}
+
+geometry::Disc link_at(const DifferentialDrive& drive, std::size_t link, Vec2 position, Vec2 heading) {
+  const geometry::Disc& disc = drive.chain[link];
+  return {position + (disc.center.x - drive.reference) * heading, disc.radius};
+}
+
+namespace {
+
+/// Discs of one radius on the axis, the first about the reference point, whose slabs tile a box round the footprint and
+/// that point. `more`: m, added to the radius.
+std::vector<geometry::Disc> chain_of(const DifferentialDrive& drive, double more) {
+  constexpr double kLinks = 5.0, kRounding = 1.0 + 1e-12;
+  double front = drive.reference, rear = drive.reference, half_width = 0.0;
+  for (const Vec2 corner : drive.footprint) {
+    front = std::max(front, corner.x);
+    rear = std::min(rear, corner.x);
+    half_width = std::max(half_width, std::fabs(corner.y));
+  }
+  const double slab = (front - rear) / kLinks, radius = kRounding * (std::hypot(0.5 * slab, half_width) + more);
+  std::vector<geometry::Disc> chain{{{drive.reference, 0.0}, radius}};
+  const auto tile = [&](double from, double to) {
+    const double links = std::ceil((to - from) / slab - 1e-9);
+    for (double k = 0.5; k < links; ++k) chain.push_back({{from + (to - from) * (k / links), 0.0}, radius});
+  };
+  tile(rear, drive.reference - 0.5 * slab);
+  tile(drive.reference + 0.5 * slab, front);
+  return chain;
+}
+
+}  // namespace
+
 void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step, double tracking) {
   constexpr double kRounding = 1.0 + 0x1p-50;
   double body = drive.footprint.empty() ? drive.body_radius + drive.reference : 0.0;
@@ -37,6 +75,8 @@ void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_ste
   robot.drive = drive;
   robot.position = drive.axle + drive.reference * heading_vector(drive.heading);
   robot.radius = kRounding * (body + stray_of(drive, time_step) + tracking);
+  robot.drive->chain.clear();
+  if (!drive.footprint.empty()) robot.drive->chain = chain_of(drive, stray_of(drive, time_step) + tracking);
   robot.max_speed = drive.max_wheel_speed;
 }
 
@@ -88,6 +128,17 @@ Vec2 turned_aside(Vec2 heading, Vec2 preferred) {
   if (dot(heading, preferred) > kBehind * norm(preferred)) return preferred;
   constexpr double kDegree = 0.0174533;
   return geometry::rotated(preferred, cross(heading, preferred) >= 0.0 ? -kDegree : kDegree);
+}
+
+std::array<Vec2, kVelocitiesAside> velocities_aside(Vec2 heading, Vec2 wish) {
+  std::array<Vec2, kVelocitiesAside> all;
+  const double angle = std::atan2(cross(wish, heading), dot(wish, heading));
+  std::size_t n = 0;
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
+    for (const double slower : {1.0, 0.5, 0.2})
+      if (share > 0.0 || slower < 1.0) all[n++] = slower * geometry::rotated(wish, share * angle);
+  std::sort(all.begin(), all.end(), [&](Vec2 a, Vec2 b) { return dot(a, wish) > dot(b, wish); });
+  return all;
 }
 
 WheelLimits::WheelLimits(const DifferentialDrive& drive, double time_step, double braking_time)

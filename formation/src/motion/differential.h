@@ -14,6 +14,7 @@
 /// most. Lemma 3: turning alone, with u kept, changes the wheels' speeds; the disc about 0 is so small that braking and
 /// turning together keep within the wheels' acceleration.
 
+#include <array>
 #include <vector>
 
 #include "exactvo/formation/recording.h"
@@ -38,6 +39,12 @@ Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnW
 /// A preferred velocity straight backwards would only brake the robot: it is turned by a degree, to the side where it
 /// points already or else to the left, until the heading has come round.
 Vec2 turned_aside(Vec2 heading, Vec2 preferred);
+
+/// Of `velocities_aside`.
+inline constexpr std::size_t kVelocitiesAside = 14;
+/// Slower, and nearer to the heading, for a body that has no room to turn as fast as the wish asks; in the order of
+/// their progress along it.
+std::array<Vec2, kVelocitiesAside> velocities_aside(Vec2 heading, Vec2 wish);
 
 /// Half-planes of WheelLimits at most.
 inline constexpr std::size_t kMostHalfPlanesOfWheels = 208;
@@ -77,14 +84,24 @@ struct WheelsNow {
 /// Half-planes say what wheels do at the beginning of a twist. Where the whole twist of what `decision` chose breaks a
 /// limit, what is preferred is drawn towards `braked` until it does not; `choose` decides again for what is preferred.
 /// Where half-planes forbid that, the decision becomes `relaxed`, and the caller falls back to half-planes that braking
-/// satisfies; the twist of braking keeps all limits.
-template <class Choose>
-void keep_wheels_within_limits(const WheelsNow& wheels, Vec2 braked, Decision& decision, const Choose& choose) {
+/// satisfies; the twist of braking keeps all limits. `is_clear`: whether the body may turn on the way of a velocity
+/// (scene/chain.h); it always may while it brakes.
+template <class Choose, class IsClear>
+void keep_wheels_within_limits(const WheelsNow& wheels, Vec2 braked, Decision& decision, const Choose& choose,
+                               const IsClear& is_clear) {
+  constexpr double kSame = 1e-12;
   const Vec2 wish = decision.chosen;
+  const auto may_turn = [&](Vec2 u) { return norm(u - braked) <= kSame * norm(braked) || is_clear(u); };
   const auto is_done = [&] {
     return decision.status != lp::Status::optimal ||
-           wheels.limits->allows(wheels.state.heading, wheels.state.speeds, decision.chosen);
+           (wheels.limits->allows(wheels.state.heading, wheels.state.speeds, decision.chosen) &&
+            may_turn(decision.chosen));
   };
+  if (!may_turn(wish))
+    for (const Vec2 aside : velocities_aside(wheels.state.heading, wish)) {
+      if (is_done()) return;
+      if (may_turn(aside)) choose(aside);
+    }
   for (const double share : {0x1p-40, 0x1p-20, 0x1p-10, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0}) {
     if (is_done()) return;
     choose(share == 1.0 ? braked : wish + share * (braked - wish));

@@ -93,10 +93,12 @@ class Proofs {
         reach_(detail::terrain_of(scenario), 0.0, false) {}
 
   /// Where a robot gets to that proofs are looked for about; else null. Who starts in a wall is pushed out of it:
-  /// nothing holds it in its cover. Whose goal is out of reach has no use of passing.
+  /// nothing holds it in its cover. Whose goal is out of reach has no use of passing. A chain has no one radius.
   const SquareCover* little_room(std::size_t i) {
     const Robot& r = scenario_.robots[i];
-    if (r.goals.size() != 1 || !(r.radius > 0.0) || walls_.exclude(r.position, r.radius)) return nullptr;
+    if (r.goals.size() != 1 || !(r.radius > 0.0) || obstacle_radius(r) < r.radius ||
+        walls_.exclude(r.position, r.radius))
+      return nullptr;
     const SquareCover* cover = cover_of(i, coarsest_side(r.radius));
     return cover && holds_goal(squares_at_goal(i, *cover)) ? cover : nullptr;
   }

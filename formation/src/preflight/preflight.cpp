@@ -46,13 +46,13 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
 }
 
 bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
-  return signed_distance(o, t.place) + t.reach < robot.radius;
+  return signed_distance(o, t.place) + t.reach < obstacle_radius(robot);
 }
 
 /// Those that block a target, ascending.
 std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, const Target& t) {
   std::vector<std::size_t> found;
-  for (const std::size_t k : boxes.near(t.place, robot.radius))
+  for (const std::size_t k : boxes.near(t.place, obstacle_radius(robot)))
     if (is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
   return found;
 }
@@ -78,15 +78,15 @@ std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes
   const Destination to{t.place, t.reach};
   const std::vector<std::size_t> in_the_way = blocking(s, boxes, robot, t);
   if (in_the_way.empty()) {
-    if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
-    if (!reach.is_proven_out_of_reach(robot.radius, from, to)) return std::nullopt;
-  } else if (!reach.is_shut_off(robot.radius, from, t.place)) {
+    if (const std::optional<Vec2> end = reach.reachable_place(obstacle_radius(robot), from, to)) return end;
+    if (!reach.is_proven_out_of_reach(obstacle_radius(robot), from, to)) return std::nullopt;
+  } else if (!reach.is_shut_off(obstacle_radius(robot), from, t.place)) {
     warn_of_obstacles(s, in_the_way, t, out);
     return std::nullopt;
   }
-  const bool is_proof = !reach.is_open_past_discs(robot.radius, from, to);
+  const bool is_proof = !reach.is_open_past_discs(obstacle_radius(robot), from, to);
   out.push_back(t.name + (is_proof ? ", cannot be reached: " : ", has no route to it: ") +
-                reach.why_not(robot.radius, from, to, "it"));
+                reach.why_not(obstacle_radius(robot), from, to, "it"));
   return std::nullopt;
 }
 

@@ -70,7 +70,7 @@ bool Journeys::is_within_reach(std::size_t i) const {
 
 void Journeys::plan_course(std::size_t i) {
   Journey& j = journeys_[i];
-  CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], destination(i));
+  CourseAnswer answer = guide_->course(obstacle_radius(scenario_.robots[i]), at_[i], destination(i));
   j.course = std::move(answer.course);
   j.detour.reset();
   j.cut_by.reset();
@@ -105,7 +105,7 @@ bool Journeys::pass_goal(std::size_t i) {
 
 void Journeys::look_along(std::size_t i) {
   Journey& j = journeys_[i];
-  const double radius = scenario_.robots[i].radius;
+  const double radius = obstacle_radius(scenario_.robots[i]);
   j.heading = aim_of(i);
   if (!guide_ || at_goal(i)) return;
   if (j.waits_for_room) {
@@ -175,7 +175,7 @@ void Journeys::go_round(std::size_t i, bool goes_by_plan) {
   if (standing_changed_ && j.detour) take_up_route(i);
   const bool looks = standing_changed_ || j.has_new_course || (j.cut_by && now_ >= j.looks_again);
   if (!looks || goes_by_plan) return;
-  const double radius = scenario_.robots[i].radius;
+  const double radius = obstacle_radius(scenario_.robots[i]);
   const std::optional<std::size_t> by = standing_->in_the_way(*j.course, at_[i], radius);
   const bool is_known = by == j.cut_by;
   j.has_new_course = false;
@@ -198,7 +198,7 @@ void Journeys::go_round(std::size_t i, bool goes_by_plan) {
 /// The obstacle that it went round stands there no longer.
 void Journeys::take_up_route(std::size_t i) {
   Journey& j = journeys_[i];
-  CourseAnswer again = guide_->course(scenario_.robots[i].radius, at_[i], destination(i));
+  CourseAnswer again = guide_->course(obstacle_radius(scenario_.robots[i]), at_[i], destination(i));
   if (!again.course || again.nearest) return;
   j.course = std::move(again.course);
   j.detour.reset();

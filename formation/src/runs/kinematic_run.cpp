@@ -16,6 +16,7 @@
 #include "runs/rows.h"
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
+#include "scene/chain.h"
 #include "scene/goals.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
@@ -129,7 +130,7 @@ class KinematicSteps final : public Stepper {
  private:
   /// Obstacles are seen anew on the way to another goal.
   void look_at_goal(std::size_t i) {
-    ways_[i].head_for(journeys_.aim_of(i), scene_, rules_, scenario_.robots[i].radius, positions_[i]);
+    ways_[i].head_for(journeys_.aim_of(i), scene_, rules_, obstacle_radius(scenario_.robots[i]), positions_[i]);
     goal_bodies_.push_back({now_, i, journeys_[i].goal, ways_[i].field->shapes()});
   }
 
@@ -245,13 +246,15 @@ class KinematicSteps final : public Stepper {
 
   Viewpoint viewpoint(std::size_t i) const {
     const Robot& spec = scenario_.robots[i];
-    Viewpoint here{positions_[i], velocities_[i], spec.radius, spec.max_speed};
+    Viewpoint here{positions_[i], velocities_[i], obstacle_radius(spec), spec.max_speed};
     here.turns_after = journeys_.turns_after(i);
     here.robot = i;
     here.body = scene_.robot(i);
     if (wheels_[i]) here.wheels = &on_wheels_[i];
     return here;
   }
+
+  const FreeSpace& space() const { return guide_ ? guide_->space() : walls_; }
 
   /// A decision adds half-planes to those of its look as it needs them, so that the margin may change only here.
   void look(std::size_t i) {
@@ -267,7 +270,11 @@ class KinematicSteps final : public Stepper {
       own_.choose(wish, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
     };
     decide(preferred);
-    if (wheels_[i]) keep_wheels_within_limits(on_wheels_[i], rules_.braked(velocities_[i]), step, decide);
+    if (!wheels_[i]) return;
+    keep_wheels_within_limits(on_wheels_[i], rules_.braked(velocities_[i]), step, decide, [&](Vec2 u) {
+      return links_are_clear(space(), *scenario_.robots[i].drive, positions_[i], on_wheels_[i].state.heading, u,
+                             rules_.braking_time);
+    });
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -293,14 +300,14 @@ class KinematicSteps final : public Stepper {
   /// Whether it sees another robot that may be in its way: one whose half-plane excludes the preferred velocity, or
   /// that does not move apart from it.
   bool meets_robots(std::size_t i, Vec2 preferred) const {
-    const FreeSpace& space = guide_ ? guide_->space() : walls_;
+    const FreeSpace& among = space();
     const auto is_in_the_way = [&](std::size_t other, const geometry::HalfPlane& h) {
       const bool moves_apart = dot(positions_[other] - positions_[i], velocities_[other] - velocities_[i]) > 0.0;
       return !(moves_apart && dot(h.normal, preferred) >= h.offset);
     };
     return std::any_of(joint_.others[i].begin(), joint_.others[i].end(), [&](const Constraint& c) {
       return is_of_robot(scene_, c) && is_in_the_way(c.index, c.half_plane) &&
-             space.is_clear(positions_[i], positions_[c.index], kContactSkin);
+             among.is_clear(positions_[i], positions_[c.index], kContactSkin);
     });
   }
 

@@ -13,6 +13,7 @@
 #include "motion/differential.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
+#include "scene/chain.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
 #include "scene/goals.h"
@@ -235,6 +236,7 @@ class Navigator::Core {
         own_(rules_, scene_.bodies()),
         rule_(pair_rule(rules_)),
         solids_(solids_of(obstacles_)) {
+    if (robot_.drive && !robot_.drive->chain.empty()) space_.emplace(obstacles_);
     if (robot_.drive) limits_.emplace(*robot_.drive, rules_.time_step, rules_.braking_time);
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
                                scene_.edges_by_place().size() + obstacles_.size();
@@ -308,7 +310,7 @@ class Navigator::Core {
  private:
   Vec2 goal() const { return robot_.goals[goal_]; }
   Viewpoint here() const {
-    Viewpoint here{now_.position, now_.velocity, robot_.radius, robot_.max_speed};
+    Viewpoint here{now_.position, now_.velocity, obstacle_radius(robot_), robot_.max_speed};
     here.robot = id_;
     here.body = scene_.robot(0);
     if (limits_) here.wheels = &on_wheels_;
@@ -330,7 +332,11 @@ class Navigator::Core {
     const Vec2 wish = decision_.chosen;
     const auto choose = [&](Vec2 preferred) { own_.choose(preferred, here(), others_, decision_, kept_); };
     choose(wish);
-    if (limits_) keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose);
+    if (limits_)
+      keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose, [&](Vec2 u) {
+        return !space_ ||
+               links_are_clear(*space_, *robot_.drive, now_.position, now_.wheels.heading, u, rules_.braking_time);
+      });
     // Within less room than there is between doubles: braking satisfies all of them.
     if (decision_.status == lp::Status::optimal) return;
     choose(braked.velocity);
@@ -459,7 +465,7 @@ class Navigator::Core {
   }
 
   void begin_goal() {
-    way_.head_for(goal(), scene_, rules_, robot_.radius, now_.position);
+    way_.head_for(goal(), scene_, rules_, obstacle_radius(robot_), now_.position);
     heads_since_ = now_.time;
   }
 
@@ -474,7 +480,8 @@ class Navigator::Core {
   Scene scene_;
   OwnDecision own_;
   vo::ReciprocalOptions rule_;
-  ObstacleSpace solids_;  ///< what one can be inside of
+  ObstacleSpace solids_;                ///< what one can be inside of
+  std::optional<ObstacleSpace> space_;  ///< of a footprint
   Vec2 clear_place_;
   double clear_ = -1.0;  ///< m: so far round `clear_place_` no point is inside an obstacle
   OwnWay way_;

@@ -66,8 +66,9 @@ SeenBody seen_body(const Scenario& scenario, const std::vector<vo::Body>& bodies
                    const DecisionConstraint& constraint) {
   EXACTVO_REQUIRE(constraint.body < bodies.size(), "body " + std::to_string(constraint.body));
   const vo::Body& body = bodies[constraint.body];
-  SeenBody seen{body.shape, row.robots[robot].anchor, scenario.robots[robot].radius, {}};
+  SeenBody seen{body.shape, row.robots[robot].anchor, obstacle_radius(scenario.robots[robot]), {}};
   if (body.kind == vo::BodyKind::robot) {
+    seen.radius = scenario.robots[robot].radius;
     const RobotStep& other = row.robots[body.owners.front()];
     seen.shape = geometry::Disc{other.anchor, scenario.robots[body.owners.front()].radius};
     seen.velocity = other.anchor_velocity;

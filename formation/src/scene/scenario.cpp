@@ -18,6 +18,7 @@
 #include "exactvo/geometry/told_apart.h"
 #include "exactvo/geometry/validity.h"
 #include "motion/differential.h"
+#include "scene/chain.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
 #include "scene/number_text.h"
@@ -113,7 +114,8 @@ void check_tube(const Scenario& s, const Robot& r, const At& at, Checker& c) {
 /// Where it starts, as the scenario says.
 std::string start_of(const Robot& r) {
   if (!r.drive) return show(r.position);
-  return show(r.drive->axle) + ", with a disc of " + detail::metres(r.radius) + " about its reference point";
+  return show(r.drive->axle) + ", with a disc of " + detail::metres(r.radius) + " about its reference point" +
+         (r.drive->chain.empty() ? "" : ", and a chain of discs of " + detail::metres(obstacle_radius(r)));
 }
 
 void check_robots(const Scenario& s, Checker& c) {
@@ -143,14 +145,19 @@ void check_robots(const Scenario& s, Checker& c) {
 void check_starts(const Scenario& s, Checker& c) {
   const detail::ObstacleBoxes boxes(s.obstacles);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const Robot& robot = s.robots[i];
     const auto require_clear = [&](const auto& obstacle, const char* kind) {
-      const double gap = signed_distance(obstacle, s.robots[i].position) - s.robots[i].radius;
+      double gap = signed_distance(obstacle, robot.position) - obstacle_radius(robot);
+      for (std::size_t k = 1; robot.drive && k < robot.drive->chain.size(); ++k) {
+        const geometry::Disc link = link_at(*robot.drive, k, robot.position, heading_vector(robot.drive->heading));
+        gap = std::min(gap, signed_distance(obstacle, link.center) - link.radius - detail::kRoomOfLinks);
+      }
       if (!(gap < 0.0)) return;
       c.require(false, "/robots/" + std::to_string(i) + "/position",
                 start_of(s.robots[i]) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
                 "a start that is clear of every obstacle");
     };
-    for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))
+    for (const std::size_t k : boxes.near(robot.position, obstacle_reach(robot) + detail::kRoomOfLinks))
       require_clear(s.obstacles[k], "obstacle");
     for (const MovingObstacle& o : s.moving_obstacles) require_clear(o, "moving obstacle");
   }
@@ -359,7 +366,7 @@ void check_braking(const Scenario& s, Checker& c) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const Robot& r = s.robots[i];
     if (r.velocity == Vec2{}) continue;
-    require_way(space.is_clear(r.position, r.position + left * r.velocity, r.radius), i, "an obstacle");
+    require_way(space.is_clear(r.position, r.position + left * r.velocity, obstacle_radius(r)), i, "an obstacle");
     for (std::size_t j = 0; j < s.robots.size(); ++j) {
       const Robot& other = s.robots[j];
       if (j == i || (j < i && other.velocity != Vec2{})) continue;

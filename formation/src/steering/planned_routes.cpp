@@ -16,7 +16,7 @@ PlannedRoute routed(const Scenario& scenario, std::size_t i, std::size_t goal, V
   if (answer.course) route.points = answer.course->points;
   if (answer.course && !answer.nearest) return route;
   route.why_not = answer.defect.empty() ? answer.why_not : answer.defect;
-  if (answer.defect.empty()) route.chain = guide.reachability().chain(robot.radius, from, robot.goals[goal]);
+  if (answer.defect.empty()) route.chain = guide.reachability().chain(obstacle_radius(robot), from, robot.goals[goal]);
   return route;
 }
 
@@ -35,7 +35,7 @@ std::vector<PlannedRoute> planned_routes(const Scenario& scenario, const Simulat
     const Robot& robot = scenario.robots[i];
     Vec2 from = robot.position;
     for (std::size_t goal = 0; goal < robot.goals.size(); ++goal) {
-      const detail::CourseAnswer answer = guide->course(robot.radius, from, destination(scenario, i, goal));
+      const detail::CourseAnswer answer = guide->course(obstacle_radius(robot), from, destination(scenario, i, goal));
       routes.push_back(routed(scenario, i, goal, from, *guide, answer));
       if (!routes.back().why_not.empty()) break;  // a robot that cannot reach a goal goes on to no other
       from = routes.back().points.back();
@@ -48,7 +48,7 @@ std::optional<RouteAhead> route_ahead(const Scenario& scenario, const Simulation
                                       std::size_t goal, Vec2 position) {
   std::optional<detail::Guide> guide = detail::guide_for(scenario, options);
   if (!guide) return std::nullopt;
-  const double radius = scenario.robots[robot].radius;
+  const double radius = obstacle_radius(scenario.robots[robot]);
   detail::CourseAnswer answer = guide->course(radius, position, destination(scenario, robot, goal));
   RouteAhead ahead{routed(scenario, robot, goal, position, *guide, answer)};
   if (!answer.course) return ahead;

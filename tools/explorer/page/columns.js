@@ -192,7 +192,7 @@ class Run {
       nx: line[3 * i], ny: line[3 * i + 1], c: line[3 * i + 2],
       timeHorizon: c['half_plane.time_horizon'][i], clearance: c['half_plane.clearance'][i], multiplier: c['half_plane.multiplier'][i],
       certified: (flags & 1) !== 0, hard: (flags & 2) !== 0, active: (flags & 4) !== 0, fellBack: (flags & 8) !== 0,
-      radius: this.robots[robot].radius,
+      radius: body.kind === 'robot' ? this.robots[robot].radius : this.robots[robot].obstacle_radius,
     };
     h.isOwnLimit = h.kind === 'robot' && h.hard;  // of what follows
     h.limited = this.robots[robot].on_wheels ? 'wheels' : 'acceleration';

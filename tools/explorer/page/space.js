@@ -19,10 +19,23 @@ function spaceOf(run, decision) {
 // rest.
 function withinChange(run, decision, ring) {
   const [x, y] = decision.velocity, side = Math.PI / 12, reach = run.about.change * Math.cos(side / 2);
-  if (!(run.about.change > 0) || run.robots[decision.robot].on_wheels) return ring;
+  if (run.robots[decision.robot].on_wheels) return withinWheels(run, decision, ring);
+  if (!(run.about.change > 0)) return ring;
   for (let k = 0; k < 24 && ring.length; ++k) {
     const angle = Math.atan2(-y, -x) + (k + 0.5) * side, nx = -Math.cos(angle), ny = -Math.sin(angle);
     ring = clipped(ring, nx, ny, nx * x + ny * y - reach);
+  }
+  return ring;
+}
+
+// What wheels allow for ever, at their present heading: the hull of a disc about 0 and a point ahead (docs/guide/wheels.md,
+// theorem 1), by 72 of its tangents.
+function withinWheels(run, decision, ring) {
+  const wheels = run.robots[decision.robot].on_wheels, most = wheels.max_wheel_speed;
+  const disc = most / Math.hypot(1, wheels.wheel_separation / (2 * wheels.reference)), heading = run.heading(decision.row, decision.robot);
+  for (let k = 0; k < 72 && ring.length; ++k) {
+    const angle = k * Math.PI / 36;
+    ring = clipped(ring, -Math.cos(heading + angle), -Math.sin(heading + angle), -Math.max(disc, most * Math.cos(angle)));
   }
   return ring;
 }

@@ -38,6 +38,9 @@ struct DifferentialDrive {
   double body_radius = 0.0;                         ///< m, > 0: of the disc about the axle that holds the body
   /// m, from the axle's centre, x ahead: the corners of the body. It contains the axle's centre. Empty: the disc.
   std::vector<Vec2> footprint = {};
+  /// m, in the same axes, by `put_on_wheels`: discs that together hold the footprint, each with the stray of a step and
+  /// the tracking error, the first about the reference point. They keep clear of obstacles. Empty without a footprint.
+  std::vector<geometry::Disc> chain = {};
 };
 
 /// A disc that moves.
@@ -114,6 +117,18 @@ struct Margins {
 struct Acceleration {
   double max = 1.0;  ///< m/s^2, > 0: |v' - v| <= max * time_step
 };
+
+/// m: of the disc about a robot's place that keeps clear of obstacles; with a footprint the first of its chain. Robots
+/// keep clear of each other by `radius`.
+inline double obstacle_radius(const Robot& robot) {
+  return robot.drive && !robot.drive->chain.empty() ? robot.drive->chain.front().radius : robot.radius;
+}
+
+/// m: no disc that keeps clear of obstacles reaches farther from a robot's place, whatever its heading.
+double obstacle_reach(const Robot& robot);
+
+/// m, of a robot with a footprint that is there: disc `link` of its chain, 1 or more.
+geometry::Disc link_at(const DifferentialDrive& drive, std::size_t link, Vec2 position, Vec2 heading);
 
 /// What may differ between a run and the world. Robots are where a run has them only up to these bounds, which are
 /// assumed: a run can't see whether they hold.
