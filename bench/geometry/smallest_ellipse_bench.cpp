@@ -51,22 +51,5 @@ void fast_against_exact(benchmark::State& state) {
 }
 BENCHMARK(fast_against_exact)->Name("smallest_ellipse/newton_vs_Min_ellipse_2")->Arg(10)->Arg(100)->Arg(1000);
 
-// Our own exact way: CGAL on the hull's corners only.
-void fast_against_exact_of_hull(benchmark::State& state) {
-  const auto points = square_cloud(static_cast<int>(state.range(0)), 7);
-  const auto ours = [&] { return geometry::fast_smallest_ellipse(points); };
-  const auto theirs = [&] { return geometry::smallest_ellipse(points); };
-  if (!same_answer(points, ours().ellipse, area(theirs()))) {
-    state.SkipWithError("the ellipses differ");
-    return;
-  }
-  compare(state, ours, theirs);
-}
-BENCHMARK(fast_against_exact_of_hull)
-    ->Name("smallest_ellipse/newton_vs_hull_then_Min_ellipse_2")
-    ->Arg(10)
-    ->Arg(100)
-    ->Arg(1000);
-
 }  // namespace
 }  // namespace exactvo::bench

@@ -171,8 +171,8 @@ class Checks(unittest.TestCase):
 
     def test_bad_couplings_are_found(self):
         room = ROOT / "geometry/src/shapes"
-        text = ("x\n## Change together\n\n- `support.cpp` (`grown`) with `box.cpp`,\n  `vo/src/cone/separation.cpp`: both bound\n  it.\n"
-                "- `support.cpp` (`kSupportError`) with `none.cpp`: why.\n- `support.cpp` and `box.cpp`: why.\n- `support.cpp` with `box.cpp`\n- `support.cpp` (`no_such_name`) with `box.cpp`: why.\n\n## Next\n- `a`\n")
+        text = ("x\n## Change together\n\n- `support.cpp` (`grown`) with `box_grid.cpp`,\n  `vo/src/cone/separation.cpp`: both bound\n  it.\n"
+                "- `support.cpp` (`kSupportError`) with `none.cpp`: why.\n- `support.cpp` and `box_grid.cpp`: why.\n- `support.cpp` with `box_grid.cpp`\n- `support.cpp` (`no_such_name`) with `box_grid.cpp`: why.\n\n## Next\n- `a`\n")
         found = couplings(text)
         self.assertEqual(len(found), 5)
         self.assertIsNone(fault_of(found[0], room))

@@ -132,7 +132,7 @@ TEST(LeastEllipseArea, IsNotAboveThatOfAParallelogram) {
 
 TEST(LeastEllipseArea, IsNotAboveThatOfAnyPoints) {
   SeededRandom random(test::seed_of_run(83));
-  std::size_t judged = 0, with_exact_search = 0;
+  std::size_t judged = 0, of_obstacles = 0;
   for (int k = 0; k < 160; ++k) {
     const Sliver s = random_sliver(random);
     std::vector<Vec2> points{s.a, s.b};
@@ -144,16 +144,14 @@ TEST(LeastEllipseArea, IsNotAboveThatOfAnyPoints) {
     const Number least = nearly_least_of(hull, 120);
     ASSERT_NO_FATAL_FAILURE(expect_bound(hull, least, Number(0.2)));
     ++judged;
-    ShapeOptions options;
-    options.exact_smallest_ellipse = true;
-    const ObstacleShapes shapes = shapes_of(Polygon{hull, {}}, options);
+    const ObstacleShapes shapes = shapes_of(Polygon{hull, {}}, {});
     if (!shapes.valid) continue;
-    ++with_exact_search;
+    ++of_obstacles;
     EXPECT_LE(Number(shapes.measurements.least_ellipse_area), least) << to_string(hull);
     EXPECT_LE(shapes.measurements.least_ellipse_area, shapes.measurements.ellipse_area) << to_string(hull);
   }
   EXPECT_GE(judged, 60u);
-  EXPECT_GE(with_exact_search, 40u);
+  EXPECT_GE(of_obstacles, 40u);
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ vo::Containment random_containment(SeededRandom& random) {
   const double scale = std::ldexp(1.0, random.integer(-20, 20));
   for (int k = random.integer(3, 12); k > 0; --k)
     points.push_back({scale * random.uniform(-3.0, 5.0), scale * random.uniform(-2.0, 2.0)});
-  const auto c = vo::certify_containment(geometry::smallest_ellipse(points), points);
+  const auto c = vo::certify_containment(geometry::fast_smallest_ellipse(points).ellipse, points);
   EXPECT_TRUE(c);
   return *c;
 }

@@ -175,7 +175,7 @@ double width_of(const FreeVelocities& free) {
 }
 
 FreeVelocities at_a_wall(double half_length, double radius, double tau, double speed) {
-  const geometry::ConvexShape wall = geometry::smallest_ellipse({{2.0, -half_length}, {2.0, half_length}});
+  const geometry::ConvexShape wall = geometry::fast_smallest_ellipse({{2.0, -half_length}, {2.0, half_length}}).ellipse;
   return FreeVelocities({{vo::VelocityObstacle(wall, {}, radius, tau), {}, {}}}, {speed, 1e-4});
 }
 

@@ -29,7 +29,7 @@ void append_shape_options(JsonWriter& json, const geometry::ShapeOptions& o) {
   json.member("margin", o.enclosure.margin).member("slack", o.enclosure.slack);
   json.member("least_margin", o.enclosure.least_margin).member("least_slack", o.enclosure.least_slack);
   json.member("clear_of_ends", o.enclosure.clear_of_ends).member("most_inflation", o.enclosure.most_inflation);
-  json.member("exact_smallest_ellipse", o.exact_smallest_ellipse).end_object();
+  json.end_object();
 }
 
 void append_robot(JsonWriter& json, const BatchRobot& robot) {

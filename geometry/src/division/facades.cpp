@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
+#include <vector>
 
-#include "division/chain_fit.h"
 #include "division/simplification.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/support.h"
 #include "rings/ring_contacts.h"
 
@@ -88,6 +91,35 @@ double largest_coordinate(const std::vector<Course>& courses) {
   return largest;
 }
 
+/// Douglas and Peucker (1973) between i and j: keeps points until all others are certified within the tolerance of the
+/// segments between the kept ones. Returns the largest certified distance. j may be points.size(), which stands for the
+/// first point again.
+double refine_gap(const std::vector<Vec2>& points, std::vector<bool>& kept, std::size_t i, std::size_t j,
+                  double tolerance, double largest) {
+  double deviation = 0.0;
+  std::vector<std::pair<std::size_t, std::size_t>> gaps = {{i, j}};
+  while (!gaps.empty()) {
+    const auto [from, to] = gaps.back();
+    gaps.pop_back();
+    const Segment edge = {points[from], points[to < points.size() ? to : 0]};
+    double most = 0.0;
+    std::size_t farthest = from;
+    for (std::size_t k = from + 1; k < to; ++k) {
+      const double d = detail::distance_upper_bound(edge, points[k], largest);
+      if (d > most) farthest = k;
+      most = std::max(most, d);
+    }
+    if (most <= tolerance) {
+      deviation = std::max(deviation, most);
+      continue;
+    }
+    kept[farthest] = true;
+    gaps.emplace_back(from, farthest);
+    gaps.emplace_back(farthest, to);
+  }
+  return deviation;
+}
+
 double refine(Course& course, double tolerance, double largest) {
   const std::size_t n = course.points.size();
   const std::size_t end = course.closed ? n : n - 1;
@@ -95,7 +127,7 @@ double refine(Course& course, double tolerance, double largest) {
   for (std::size_t i = 0; i < end;) {
     std::size_t j = i + 1;
     while (j < end && !course.kept[j]) ++j;
-    deviation = std::max(deviation, detail::refine_gap(course.points, course.kept, i, j, tolerance, largest));
+    deviation = std::max(deviation, refine_gap(course.points, course.kept, i, j, tolerance, largest));
     i = j;
   }
   return deviation;

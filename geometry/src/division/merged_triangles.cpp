@@ -12,7 +12,6 @@
 #include <optional>
 #include <utility>
 
-#include "division/ear_clipping.h"
 #include "exactvo/geometry/predicates.h"
 
 namespace exactvo::geometry::detail {
@@ -26,6 +25,9 @@ using FaceBase = CGAL::Triangulation_face_base_with_info_2<Side, Kernel, PlainFa
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
+
+/// Three numbers of vertices, counter-clockwise.
+using Triangle = std::array<std::size_t, 3>;
 
 /// All vertices, ring after ring, and the edges between them by number.
 struct Outline {
@@ -188,10 +190,7 @@ class Loops {
 
 std::vector<ConvexPolygon> merged_triangles(const std::vector<Ring>& rings) {
   const Outline outline = outline_of(rings);
-  std::vector<Triangle> triangles;
-  if (rings.size() == 1 && rings[0].size() <= kMostForEars) triangles = ears_of(rings[0]);
-  if (triangles.empty()) triangles = triangles_of(outline);
-  Loops loops(outline.points, triangles);
+  Loops loops(outline.points, triangles_of(outline));
   loops.drop_diagonals();
   return loops.pieces();
 }

@@ -11,9 +11,9 @@
 namespace exactvo::geometry::detail {
 
 /// Splits a valid polygon into convex pieces with vertices of its rings: the constrained Delaunay triangulation of the
-/// edges (exact predicates, nothing constructed, and edges meet in vertices only, so no case is left out), or ears for
-/// a small ring (ear_clipping.h), whose diagonals are then dropped wherever both ends stay convex: without holes at
-/// most four times the least number of pieces (Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983).
+/// edges (exact predicates, nothing constructed, and edges meet in vertices only, so no case is left out), whose
+/// diagonals are then dropped wherever both ends stay convex: without holes at most four times the least number of
+/// pieces (Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983).
 /// Deterministic. REQUIRES: rings[0] counter-clockwise, the others clockwise inside it; a ring that touches another has
 /// a vertex there.
 std::vector<ConvexPolygon> merged_triangles(const std::vector<Ring>& rings);

@@ -5,9 +5,14 @@
 #include <array>
 #include <cmath>
 
-#include "division/chain_fit.h"
+#include "exact/exact_number.h"
+#include "exact/exact_vector.h"
+#include "exact/running_error.h"
+#include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {
 namespace {
@@ -413,4 +418,86 @@ Ellipse ellipse_of_segment(Vec2 a, Vec2 b) {
   return grown_until_certified(scaled(frame, 1.0 + 0x1p-30), {a, b});
 }
 
+// A certified lower bound of the area of every ellipse round given points.
+//
+// Let w >= 0 be weights of the points that add up to 1, m their weighted mean and C = sum w (p - m)(p - m)^T. An
+// ellipse { x : |A x + b| <= 1 } round the points has tr(A C A^T) <= sum w |A p + b|^2 <= 1, hence
+// 2 sqrt(det A C A^T) <= 1 (the geometric mean is at most the arithmetic one), and its area pi / det A is at least
+// 2 pi sqrt(det C). By the formula of Cauchy and Binet
+//
+//   det C = sum over i < j < k of w_i w_j w_k D_ijk^2,   D_ijk twice the area of the triangle of three points:
+//
+// all terms are positive, and a sum of them is below det C as soon as each |D| is. For the best weights the bound is
+// the least area itself, for three points 4 pi / (3 sqrt 3) of their triangle.
+
+namespace {
+
+template <typename Number>
+Number doubled_area(Vec2 a, Vec2 b, Vec2 c) {
+  const auto at = [](Vec2 p) { return Vector<Number>{Number(p.x), Number(p.y)}; };
+  return cross(at(b) - at(a), at(c) - at(a));
+}
+
+}  // namespace
+
+double doubled_area_below(Vec2 a, Vec2 b, Vec2 c) {
+  constexpr double kPrecise = 0x1p-48, kLeast = 0x1p-1000;
+  const RunningError filtered = doubled_area<RunningError>(a, b, c);
+  const double size = std::fabs(filtered.value);
+  // The rest of 2^-48 pays for the bound's own rounding (running_error.h), and for this subtraction.
+  if (std::isfinite(size) && filtered.error < kPrecise * size && size > kLeast)
+    return (size - filtered.error) * (1.0 - 0x1p-50);
+  const double exact = std::fabs(CGAL::to_double(doubled_area<Exact>(a, b, c)));
+  if (!(exact > kLeast) || !std::isfinite(exact)) return 0.0;
+  return exact * (1.0 - 0x1p-50);  // it is rounded by one unit in the last place at most
+}
+
+double certified_least_area(const std::vector<WeightedPoint>& support) {
+  const std::size_t n = support.size();
+  std::vector<double> areas;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j)
+      for (std::size_t k = j + 1; k < n; ++k)
+        areas.push_back(doubled_area_below(support[i].point, support[j].point, support[k].point));
+  const double largest = areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end());
+  if (!(largest > 0.0)) return 0.0;
+  double total = 0.0, sum = 0.0;  // det C / largest^2: what underflows in it only makes it less
+  for (const WeightedPoint& p : support) total += p.weight;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      for (std::size_t k = j + 1; k < n; ++k) {
+        const double share = areas[next++] / largest;
+        sum += (support[i].weight / total) * (support[j].weight / total) * (support[k].weight / total) * share * share;
+      }
+    }
+  }
+  // At most seven points: 35 terms of less than a dozen roundings, a root and three products stay within 2^-46.
+  constexpr double kRounding = 1.0 - 0x1p-46;
+  const double bound = kRounding * 2.0 * kPi * std::sqrt(sum) * largest;
+  return std::isfinite(bound) ? bound : 0.0;
+}
+
 }  // namespace exactvo::geometry::detail
+
+namespace exactvo::geometry {
+
+// Flat input here, the rest by Newton's method.
+namespace {
+
+FastEllipse of_collinear(const std::vector<Vec2>& points) {
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(), detail::lexicographically_less);
+  if (*low == *high) return {{*low, 0.0, 0.0, 0.0}, 0.0};
+  return {detail::ellipse_of_segment(*low, *high), 0.0};
+}
+
+}  // namespace
+
+FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points) {
+  detail::require_places(points);
+  if (detail::on_one_line(points)) return of_collinear(points);
+  const detail::EllipseCandidate candidate = detail::solve_smallest_ellipse(points);
+  return {detail::certified_ellipse(candidate.frame, points), detail::certified_least_area(candidate.support)};
+}
+
+}  // namespace exactvo::geometry

@@ -13,10 +13,14 @@
 #include <optional>
 #include <vector>
 
-#include "enclosure/least_area.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::geometry::detail {
+
+struct WeightedPoint {
+  Vec2 point;
+  double weight;  ///< > 0; of any sum
+};
 
 /// What the enclosing shapes take: at least one point, all finite and below 2^1000, so that differences do not
 /// overflow. Throws std::logic_error otherwise.
@@ -56,5 +60,12 @@ std::optional<Ellipse> inflate_to_contain(Ellipse e, const std::vector<Vec2>& po
 /// The segment itself (l22 = 0) where doubles can say it, else a certified sliver 2^-36 of the coordinates wide.
 /// REQUIRES: a != b.
 Ellipse ellipse_of_segment(Vec2 a, Vec2 b);
+
+/// m^2; no ellipse round the points is smaller. Certified for any weights, and below what they give by less than a
+/// relative 2^-44. 0 for fewer than three points, for points on one line, and at the ends of the doubles' range.
+double certified_least_area(const std::vector<WeightedPoint>& support);
+
+/// A lower bound of twice the area of a triangle, below it by less than a relative 2^-47; 0 below 2^-1000 m^2.
+double doubled_area_below(Vec2 a, Vec2 b, Vec2 c);
 
 }  // namespace exactvo::geometry::detail

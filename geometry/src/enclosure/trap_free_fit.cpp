@@ -12,12 +12,142 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/support.h"
 
 namespace exactvo::geometry {
 namespace detail {
+namespace {
+
+constexpr double kBeyond = 1.0 + 1e-14;  // a few roundings beyond a root
+constexpr int kBisections = 40;          // leaves 2^-40 of the extent, far below any margin
+
+/// The centres x for which all points lie in the ellipse, and the points that bound them.
+struct Centres {
+  double low = -kInfinity, high = kInfinity;
+  Touching at;
+  bool is_empty() const { return !(low <= high); }
+};
+
+Centres centres_for(const TurnedPoints& f, const std::vector<double>& width, double major) {
+  Centres range;
+  for (std::size_t i = 0; i < f.x.size(); ++i) {
+    const double low = f.x[i] - major * width[i], high = f.x[i] + major * width[i];
+    if (low > range.low) range.low = low, range.at.right = i;
+    if (high < range.high) range.high = high, range.at.left = i;
+  }
+  return range;
+}
+
+/// Half of each point's chord at its height, for a major axis of 1. False where one lies beyond the minor axis.
+bool widths(const TurnedPoints& f, double centre_y, double minor, std::vector<double>& width) {
+  width.resize(f.y.size());
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < f.y.size(); ++i) {
+    const double t = (f.y[i] - centre_y) / minor;
+    farthest = std::max(farthest, std::fabs(t));
+    width[i] = std::sqrt(1.0 - t * t);
+  }
+  return farthest < 1.0;
+}
+
+}  // namespace
+
+Turn turn_by(double angle) {
+  return {std::cos(-angle), std::sin(-angle)};
+}
+
+void turn(const std::vector<Vec2>& points, double angle, const Turn& by, TurnedPoints& f) {
+  f.angle = angle;
+  f.x.resize(points.size());
+  f.y.resize(points.size());
+  double low = kInfinity, high = -kInfinity;
+  f.leftmost = f.rightmost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2 p = by(points[i]);
+    f.x[i] = p.x;
+    f.y[i] = p.y;
+    low = std::min(low, f.y[i]);
+    high = std::max(high, f.y[i]);
+    if (f.x[i] < f.x[f.leftmost]) f.leftmost = i;
+    if (f.x[i] > f.x[f.rightmost]) f.rightmost = i;
+  }
+  f.middle = 0.5 * (low + high);
+  f.half_height = 0.5 * (high - low);
+  const double left = f.x[f.leftmost], right = f.x[f.rightmost], first = f.x.front();
+  f.extent = std::max(std::fabs(left - first), std::fabs(right - first));
+  // Up to the rounding of coordinates.
+  const double rounding = 8.0 * kUnitRoundoff * (std::fabs(left) + std::fabs(right));
+  f.half_width = 0.5 * (right - left) - rounding;
+}
+
+// Whether a major axis is long enough is so from some double on, rounding and all, since every operation of
+// `centres_for` is monotone in it: what is known of one axis answers for others.
+
+/// The pair alone, in the same arithmetic: where it leaves no centre, all points don't.
+bool LeastMajor::pair_is_apart(double major) const {
+  return f_.x[pair_.right] - major * width_[pair_.right] > f_.x[pair_.left] + major * width_[pair_.left];
+}
+
+double LeastMajor::least_of_pair() const {
+  return kBeyond * ((f_.x[pair_.right] - f_.x[pair_.left]) / (width_[pair_.right] + width_[pair_.left]));
+}
+
+/// Remembers what bounds.
+bool LeastMajor::has_centre(double major) {
+  const Centres c = centres_for(f_, width_, major);
+  pair_ = c.at;
+  return !c.is_empty();
+}
+
+bool LeastMajor::is_long_enough(double major) {
+  if (major >= long_enough_) return true;
+  if (major <= too_short_) return false;
+  const bool is = !pair_is_apart(major) && has_centre(major);
+  (is ? long_enough_ : too_short_) = major;
+  return is;
+}
+
+/// Draws what is known together round the least one: the gap between two points' centres is linear in the axis, so
+/// Newton's method climbs to it from `at`, which is hardly longer, in a few steps. It climbs over axes that two points
+/// forbid, so that the first one that is long enough is the least but for rounding: that of the points' own extent, and
+/// of what the bisection stops at.
+void LeastMajor::approach(double at) {
+  constexpr int kSteps = 8;
+  at = std::max({too_short_, at, 0.0, least_of_pair()});
+  for (int i = 0; i < kSteps && at < long_enough_; ++i) {
+    if (has_centre(at)) {
+      long_enough_ = at;
+      return;
+    }
+    too_short_ = std::max(too_short_, at);
+    at = kBeyond * std::max(least_of_pair(), at);
+  }
+}
+
+AxisAnswer LeastMajor::bracket(const AreaLimit& limit) {
+  if (!widths(f_, centre_y_, minor_, width_)) return AxisAnswer::never;
+  const double narrowest = std::min(1.0, *std::min_element(width_.begin(), width_.end()));
+  high_ = f_.extent / narrowest;
+  const double longest = limit.longest();
+  if (longest < high_ && limit.is_too_long(longest) && !is_long_enough(longest)) return AxisAnswer::too_long;
+  approach(f_.half_width);
+  return AxisAnswer::fits;
+}
+
+MajorFit LeastMajor::exact() {
+  double low = 0.0, high = high_;
+  for (int i = 0; i < kBisections; ++i) {
+    const double mid = 0.5 * (low + high);
+    (is_long_enough(mid) ? high : low) = mid;
+  }
+  const Centres range = centres_for(f_, width_, high);
+  return {high, 0.5 * (range.low + range.high)};
+}
+
 namespace {
 
 constexpr std::size_t kAngles = 18;
@@ -97,10 +227,9 @@ class CoarseSearch {
       const double minor = coarse_candidate(o.frame, size_, m, 0).minor;
       const bool or_equal = number + first_offset < best_;
       if (search.is_too_large(o.frame, minor, or_equal)) return;
-      if (first_offset > 0 && search.is_row_too_large(o, minor, or_equal)) continue;
       for (std::size_t i = first_offset; i < last_offset; ++i) {
         const Candidate c = coarse_candidate(o.frame, size_, m, i);
-        if (search.improves(o, c, number + i < best_, known(number + i), o.pair[i])) best_ = number + i;
+        if (search.improves(o, c, number + i < best_, known(number + i))) best_ = number + i;
       }
     }
   }
@@ -124,7 +253,6 @@ class Refinement {
     constexpr int kRounds = 60;
     constexpr double kLeastStep = 1e-3;  // of the size: finer changes the area by less than a per mille
     constexpr std::size_t kMoves = 8;
-    Touching pair[kMoves];
     memory_.here.frame.angle = memory_.aside.frame.angle = std::numeric_limits<double>::quiet_NaN();
     for (int round = 0; round < kRounds && length_step > kLeastStep * size_; ++round) {
       const Candidate c = search.best().candidate;
@@ -139,7 +267,7 @@ class Refinement {
                                        {c.angle, c.offset - length_step, c.minor + length_step}};
       bool better = false;
       for (std::size_t k = 0; k < kMoves; ++k)
-        if (moves[k].minor > 0.0 && improves(moves[k], c.angle, pair[k], search)) better = true;
+        if (moves[k].minor > 0.0 && improves(moves[k], c.angle, search)) better = true;
       if (better) continue;
       angle_step *= 0.5;
       length_step *= 0.5;
@@ -147,12 +275,12 @@ class Refinement {
   }
 
  private:
-  bool improves(const Candidate& c, double present_angle, Touching& pair, CandidateSearch& search) {
+  bool improves(const Candidate& c, double present_angle, CandidateSearch& search) {
     Orientation& o = c.angle == present_angle ? memory_.here : memory_.aside;
     if (o.frame.angle != c.angle) o.turn_to(c.angle, turn_by(c.angle), memory_.points, ends_);
     Known::State state = Known::State::nothing;
     MajorFit major;
-    return search.improves(o, c, false, {state, major}, pair);
+    return search.improves(o, c, false, {state, major});
   }
 
   FitMemory& memory_;
@@ -254,9 +382,9 @@ std::optional<FittedEllipse> fit_trap_free(FitMemory& memory, const std::vector<
                                            Vec2 start, Vec2 goal, const EnclosureOptions& options) {
   const double most = options.most_inflation * grown_area(hull, robot_radius + options.margin) / kPi;
   const double clear = options.clear_of_ends;
-  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most, false};
-  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most, true};
-  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most, true};
+  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most};
+  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most};
+  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most};
   LocalFit fit(memory, hull);
   if (auto e = fit(full)) return FittedEllipse{*e, EnclosureGrade::trap_free};
   if (auto e = fit(thin)) return FittedEllipse{*e, EnclosureGrade::trap_free_thin};

@@ -7,115 +7,6 @@
 namespace exactvo::geometry::motions {
 namespace {
 
-void trim(IntegerPolynomial& p) {
-  while (!p.empty() && sgn(p.back()) == 0) p.pop_back();
-}
-
-/// Divides by the greatest common divisor of the coefficients.
-void make_primitive(IntegerPolynomial& p) {
-  trim(p);
-  mpz_class common;
-  for (const mpz_class& c : p) common = gcd(common, c);
-  if (common > 1)
-    for (mpz_class& c : p) mpz_divexact(c.get_mpz_t(), c.get_mpz_t(), common.get_mpz_t());
-}
-
-IntegerPolynomial derivative(const IntegerPolynomial& p) {
-  IntegerPolynomial d;
-  for (std::size_t k = 1; k < p.size(); ++k) d.push_back(p[k] * static_cast<unsigned long>(k));
-  return d;
-}
-
-/// A positive multiple of the remainder of a by b, primitive.
-IntegerPolynomial remainder(IntegerPolynomial a, const IntegerPolynomial& b) {
-  const mpz_class& lead = b.back();
-  const mpz_class positive = abs(lead);
-  while (a.size() >= b.size()) {
-    const mpz_class factor = sgn(lead) > 0 ? a.back() : mpz_class(-a.back());
-    const std::size_t by = a.size() - b.size();
-    for (mpz_class& c : a) c *= positive;
-    for (std::size_t k = 0; k < b.size(); ++k) a[k + by] -= factor * b[k];
-    a.pop_back();  // its leading term has become 0
-    trim(a);
-  }
-  make_primitive(a);
-  return a;
-}
-
-IntegerPolynomial common_divisor(IntegerPolynomial a, IntegerPolynomial b) {
-  while (!b.empty()) {
-    IntegerPolynomial rest = remainder(std::move(a), b);
-    a = std::move(b);
-    b = std::move(rest);
-  }
-  make_primitive(a);
-  return a;
-}
-
-/// a / b up to a positive factor. REQUIRES: b divides a over the rationals, and has a positive leading coefficient.
-IntegerPolynomial quotient(IntegerPolynomial a, const IntegerPolynomial& b) {
-  IntegerPolynomial q(a.size() - b.size() + 1);
-  while (a.size() >= b.size()) {
-    const std::size_t by = a.size() - b.size();
-    // a := lead(b) a - lead(a) x^by b, and so q := lead(b) q + lead(a) x^by.
-    const mpz_class lead = a.back();
-    for (mpz_class& c : q) c *= b.back();
-    q[by] += lead;
-    for (mpz_class& c : a) c *= b.back();
-    for (std::size_t k = 0; k < b.size(); ++k) a[k + by] -= lead * b[k];
-    trim(a);
-  }
-  make_primitive(q);
-  return q;
-}
-
-/// The same distinct roots, each simple.
-IntegerPolynomial square_free(const IntegerPolynomial& p) {
-  IntegerPolynomial repeated = common_divisor(p, derivative(p));
-  if (repeated.size() <= 1) return p;
-  if (sgn(repeated.back()) < 0)
-    for (mpz_class& c : repeated) c = -c;
-  return quotient(p, repeated);
-}
-
-/// The sign of p(x): Horner on the numerator and denominator.
-int sign_at(const IntegerPolynomial& p, const mpq_class& x) {
-  mpz_class value, power = 1;
-  for (std::size_t k = p.size(); k-- > 0;) {
-    value = value * x.get_num() + p[k] * power;
-    power *= x.get_den();
-  }
-  return sgn(value);
-}
-
-/// A Sturm sequence: how many distinct roots lie in (low, high] is the loss of sign changes.
-class SturmSequence {
- public:
-  explicit SturmSequence(const IntegerPolynomial& p) {
-    sequence_.push_back(p);
-    IntegerPolynomial next = derivative(p);
-    while (!next.empty()) {
-      sequence_.push_back(std::move(next));
-      const std::size_t n = sequence_.size();
-      next = remainder(sequence_[n - 2], sequence_[n - 1]);
-      for (mpz_class& c : next) c = -c;
-    }
-  }
-  int changes_at(const mpq_class& x) const {
-    int changes = 0, last = 0;
-    for (const IntegerPolynomial& p : sequence_) {
-      const int sign = sign_at(p, x);
-      if (sign == 0) continue;
-      if (last != 0 && sign != last) ++changes;
-      last = sign;
-    }
-    return changes;
-  }
-
- private:
-  std::vector<IntegerPolynomial> sequence_;
-};
-
 /// Isolates the roots in (low, high] of a square-free polynomial.
 class Isolation {
  public:
@@ -148,7 +39,7 @@ class Isolation {
   }
 
   std::shared_ptr<const IntegerPolynomial> p_;
-  SturmSequence sturm_;
+  SturmChain sturm_;
   std::vector<RealNumber> roots_;
 };
 
@@ -156,8 +47,7 @@ class Isolation {
 bool has_root(const IntegerPolynomial& p, const mpq_class& low, const mpq_class& high) {
   if (p.size() <= 1) return false;
   if (sign_at(p, low) == 0) return true;
-  const SturmSequence sturm(p);
-  return sturm.changes_at(low) != sturm.changes_at(high);
+  return SturmChain(p).count(low, high) != 0;
 }
 
 /// A point of each gap between 0, the roots and 1; a gap without length has its end.
@@ -169,15 +59,6 @@ std::vector<mpq_class> points_of_gaps(const std::vector<RealNumber>& roots) {
 }
 
 }  // namespace
-
-IntegerPolynomial primitive(const std::vector<mpq_class>& coefficients) {
-  mpz_class denominator = 1;
-  for (const mpq_class& c : coefficients) denominator = lcm(denominator, c.get_den());
-  IntegerPolynomial p;
-  for (const mpq_class& c : coefficients) p.emplace_back(c.get_num() * (denominator / c.get_den()));
-  make_primitive(p);
-  return p;
-}
 
 void RealNumber::refine() {
   if (is_rational()) return;
@@ -208,8 +89,7 @@ int compare(RealNumber& x, RealNumber& y) {
       } else if (x.polynomial_ == y.polynomial_) {
         if (x.low_ == y.low_ && x.high_ == y.high_) return 0;
         if (has_root(*x.polynomial_, std::max(x.low_, y.low_), std::min(x.high_, y.high_))) return 0;
-      } else if (has_root(common_divisor(*x.polynomial_, *y.polynomial_), std::max(x.low_, y.low_),
-                          std::min(x.high_, y.high_))) {
+      } else if (has_root(gcd(*x.polynomial_, *y.polynomial_), std::max(x.low_, y.low_), std::min(x.high_, y.high_))) {
         return 0;
       }
     }

@@ -2,24 +2,24 @@
 #pragma once
 
 /// \file
-/// Real roots of polynomials over the rationals, exactly: square-free parts by primitive remainder sequences, isolation
-/// by Sturm's theorem, comparison by common divisors. From them, the times in [0, 1] at which polynomials are negative.
-/// The last stage: microseconds to milliseconds.
-
-#include <gmpxx.h>
+/// Real roots of polynomials over the rationals, exactly (exact/integer_polynomial.h). From them, the times in [0, 1]
+/// at which polynomials are negative. The last stage: microseconds to milliseconds.
 
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "exact/integer_polynomial.h"
+
 namespace exactvo::geometry::motions {
 
-/// Coefficients of powers, the constant first; no leading zero, so that the zero polynomial is empty.
-using IntegerPolynomial = std::vector<mpz_class>;
-
-/// A positive multiple of the polynomial with these coefficients that has integers without a common divisor.
-IntegerPolynomial primitive(const std::vector<mpq_class>& coefficients);
+using detail::gcd;
+using detail::IntegerPolynomial;
+using detail::primitive;
+using detail::sign_at;
+using detail::square_free;
+using detail::SturmChain;
 
 /// A real number: a rational, or the only root of a square-free polynomial in an interval with ends that are no roots.
 class RealNumber {

@@ -3,22 +3,46 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "enclosure/ellipse_solver.h"
+#include "exact/running_error.h"
+#include "exactvo/geometry/pieces.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "obstacle_shapes/steps.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry {
 namespace detail {
+namespace {
 
+constexpr const char* kNotInside = "a point lies outside";
+
+/// Runs `action`; a failure inside becomes the verdict's reason.
+template <class Action>
+void attempt(Verdict& verdict, const Action& action) {
+  try {
+    action();
+  } catch (const std::exception& failure) {
+    verdict = {false, failure.what()};
+  }
+}
+
+Verdict verdict(bool holds, const char* reason) {
+  return holds ? Verdict{true, {}} : Verdict{false, reason};
+}
+
+/// An ellipse holds every point iff it holds the corners of their hull.
 Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
   if (!out.hull_contains.certified) return {false, "no certified hull"};
   return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
 }
 
+/// What the facades must keep to: a polygon's rings, or a wall's one chain.
 std::vector<const std::vector<Vec2>*> courses_of(const Obstacle& obstacle) {
   if (const auto* wall = std::get_if<Polyline>(&obstacle)) return {&wall->points};
   const auto& polygon = std::get<Polygon>(obstacle);
@@ -27,6 +51,179 @@ std::vector<const std::vector<Vec2>*> courses_of(const Obstacle& obstacle) {
   return rings;
 }
 
+// --- Facades and pieces, each certified to follow the obstacle ---
+
+/// Certified: the bound is rounded up.
+bool lies_within(const Segment& facade, Vec2 x, double distance) {
+  if (x == facade.a || x == facade.b) return true;
+  return distance_upper_bound(facade, x, largest_coordinate({facade.a, facade.b, x})) <= distance;
+}
+
+/// Follows one course along its facades, which start at `next` of the list and end where the course does.
+class CourseWalk {
+ public:
+  CourseWalk(const std::vector<Vec2>& course, bool closed, const FacadeSet& set) : course_(course), set_(set) {
+    steps_ = closed ? course.size() : course.size() - 1;
+  }
+
+  /// Whether every vertex keeps to its facade; moves `next` past the facades of this course.
+  bool keeps(std::size_t& next) const {
+    if (next >= set_.facades.size()) return false;
+    const auto start = std::find(course_.begin(), course_.end(), set_.facades[next].a);
+    if (start == course_.end()) return false;
+    std::size_t at = static_cast<std::size_t>(start - course_.begin());
+    for (std::size_t step = 0; step < steps_; ++step) {
+      if (next >= set_.facades.size()) return false;
+      const Segment& facade = set_.facades[next];
+      at = (at + 1) % course_.size();
+      if (course_[at] != facade.b) {
+        if (!is_near(facade, course_[at])) return false;
+        continue;
+      }
+      ++next;
+      const bool last = step + 1 == steps_;
+      if (!last && (next >= set_.facades.size() || set_.facades[next].a != facade.b)) return false;
+      if (last) return true;
+    }
+    return steps_ == 0 && course_.size() == 1 && set_.facades[next++].b == course_[0];
+  }
+
+ private:
+  bool is_near(const Segment& facade, Vec2 x) const {
+    if (set_.deviation == 0.0) return lies_on(facade, x);
+    return lies_within(facade, x, set_.deviation);
+  }
+
+  const std::vector<Vec2>& course_;
+  const FacadeSet& set_;
+  std::size_t steps_ = 0;
+};
+
+bool facades_follow(const FacadeSet& set, const Obstacle& obstacle) {
+  std::size_t next = 0;
+  for (const std::vector<Vec2>* course : courses_of(obstacle)) {
+    if (!CourseWalk(*course, has_interior(obstacle), set).keeps(next)) return false;
+  }
+  return next == set.facades.size();
+}
+
+/// A wall's own edges, straight runs merged: what half-planes of pieces keep clear of must not be simplified.
+void split_wall(ObstacleShapes& out) {
+  const FacadeSet edges = out.facades.deviation > 0.0 ? divide_into_facades(out.obstacle) : out.facades;
+  out.pieces.assign(edges.facades.begin(), edges.facades.end());
+  out.pieces_cover = verdict(edges.deviation == 0.0 && facades_follow(edges, out.obstacle), "an edge is not covered");
+}
+
+/// Facades of the courses, certified to follow them.
+void divide(const ShapeOptions& options, ObstacleShapes& out) {
+  attempt(out.facades_follow, [&] {
+    out.facades = divide_into_facades(out.obstacle, options.facades);
+    const bool within = out.facades.deviation <= options.facades.tolerance;
+    out.facades_follow = verdict(within && facades_follow(out.facades, out.obstacle), "a facade leaves the boundary");
+  });
+}
+
+/// Convex pieces; of a wall its own edges.
+void split(const ShapeOptions& options, ObstacleShapes& out) {
+  attempt(out.pieces_cover, [&] {
+    if (const auto* polygon = std::get_if<Polygon>(&out.obstacle)) {
+      for (ConvexPolygon& piece : convex_pieces(*polygon, options.partition)) out.pieces.emplace_back(std::move(piece));
+      out.pieces_cover = {true, {}};  // convex_pieces gives no partition that it has not proved
+    } else {
+      split_wall(out);
+    }
+  });
+}
+
+// --- The trap-free ellipse: along a way, or for every goal ---
+
+/// T^2 and D of 2 T^2 <= 9 D; see `trap_free_for_every_goal`.
+template <class T>
+T excess_of_slenderness(const Ellipse& e) {
+  const T l11(e.l11), l21(e.l21), l22(e.l22);
+  const T trace = l11 * l11 + l21 * l21 + l22 * l22;
+  const T det = l11 * l22;
+  return T(2.0) * (trace * trace) - T(9.0) * (det * det);
+}
+
+/// The ratio of the axes that frees every goal, a little less so that rounding leaves it below sqrt(2).
+constexpr double kFreeRatio = 1.41421356237309504880 * (1.0 - 0x1p-40);
+
+/// Of all ellipses with axes in that ratio along the smallest ellipse's axes, the smallest: the smallest circle round
+/// the points squeezed along the major axis.
+Ellipse smallest_free_ellipse(const std::vector<Vec2>& hull, double angle) {
+  std::vector<Vec2> squeezed;
+  squeezed.reserve(hull.size());
+  const Vec2 middle = hull.front();
+  for (const Vec2 p : hull) {
+    const Vec2 turned = rotated(p - middle, -angle);
+    squeezed.push_back({turned.x / kFreeRatio, turned.y});
+  }
+  const Disc disc = smallest_circle(squeezed);
+  const Vec2 center = middle + rotated({disc.center.x * kFreeRatio, disc.center.y}, angle);
+  return ellipse_from_axes(center, {disc.radius * kFreeRatio, disc.radius, angle});
+}
+
+void free_for_every_goal(ObstacleShapes& out) {
+  std::optional<Ellipse> free = out.smallest_ellipse;
+  if (!out.ellipse_contains.certified || !trap_free_for_every_goal(*free)) {
+    const Ellipse e = smallest_free_ellipse(out.hull.vertices, axes_of(out.smallest_ellipse).angle);
+    free = inflate_to_contain(e, out.hull.vertices);
+  }
+  if (free && trap_free_for_every_goal(*free))
+    out.trap_free = {free, EnclosureGrade::trap_free, true, TrapFreeAnswer::found};
+}
+
+/// Whether the robot at one end is as near to the hull as the options forbid.
+bool leaves_no_room(const ShapeOptions& options, const ConvexPolygon& hull) {
+  const double near = options.robot_radius + options.enclosure.clear_of_ends + options.enclosure.least_margin;
+  const ConvexShape shape = hull_shape(hull.vertices);
+  const auto is_near = [&](Vec2 x) { return locate({shape, x, near}, {0.0, 0.0}) != Place::outside; };
+  return is_near(options.way->start) || is_near(options.way->goal);
+}
+
+/// Why the fit found none.
+TrapFreeAnswer answer_without(const ShapeOptions& options, const ConvexPolygon& hull) {
+  if (leaves_no_room(options, hull)) return TrapFreeAnswer::no_room;
+  const StartAndGoal& way = *options.way;
+  EnclosureOptions any_size = options.enclosure;
+  any_size.most_inflation = std::numeric_limits<double>::max();
+  const bool exists = fit_trap_free(hull.vertices, options.robot_radius, way.start, way.goal, any_size).has_value();
+  return exists ? TrapFreeAnswer::too_large : TrapFreeAnswer::failed;
+}
+
+void free_along_way(const ShapeOptions& options, ObstacleShapes& out) {
+  const StartAndGoal& way = *options.way;
+  const auto fitted = fit_trap_free(out.hull.vertices, options.robot_radius, way.start, way.goal, options.enclosure);
+  if (!fitted) {
+    out.trap_free.answer = answer_without(options, out.hull);
+    return;
+  }
+  const bool for_every_goal = trap_free_for_every_goal(fitted->ellipse);
+  out.trap_free = {fitted->ellipse, fitted->grade, for_every_goal, TrapFreeAnswer::found};
+}
+
+const char* reason_of(TrapFreeAnswer answer) {
+  if (answer == TrapFreeAnswer::no_room) return "the start or the goal lies too near";
+  if (answer == TrapFreeAnswer::too_large)
+    return "only larger ellipses than allowed leave the start and the goal outside";
+  return "no such ellipse found";
+}
+
+/// The ellipse that traps no robot on its way, or on any. REQUIRES: hull and smallest ellipse are in `out`.
+void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out) {
+  attempt(out.trap_free_contains, [&] {
+    if (out.hull.vertices.empty()) {
+      out.trap_free_contains = {false, "no certified hull"};
+      return;
+    }
+    options.way ? free_along_way(options, out) : free_for_every_goal(out);
+    out.trap_free_contains = out.trap_free.ellipse ? verdict_of(*out.trap_free.ellipse, out)
+                                                   : Verdict{false, reason_of(out.trap_free.answer)};
+  });
+}
+
+}  // namespace
 }  // namespace detail
 
 namespace {
@@ -54,16 +251,11 @@ void enclose_hull(ObstacleShapes& out) {
   });
 }
 
-void enclose_all(const ShapeOptions& options, ObstacleShapes& out) {
+void enclose_all(ObstacleShapes& out) {
   attempt(out.ellipse_contains, [&] {
-    if (options.exact_smallest_ellipse) {
-      out.smallest_ellipse = smallest_ellipse(out.hull.vertices);
-      out.measurements.least_ellipse_area = fast_smallest_ellipse(out.hull.vertices).least_area;
-    } else {
-      const FastEllipse fast = fast_smallest_ellipse(out.hull.vertices);
-      out.smallest_ellipse = fast.ellipse;
-      out.measurements.least_ellipse_area = fast.least_area;
-    }
+    const FastEllipse smallest = fast_smallest_ellipse(out.hull.vertices);
+    out.smallest_ellipse = smallest.ellipse;
+    out.measurements.least_ellipse_area = smallest.least_area;
     out.ellipse_contains = verdict_of(out.smallest_ellipse, out);
   });
 }
@@ -163,7 +355,7 @@ ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) 
   divide(options, out);
   split(options, out);
   enclose_hull(out);
-  enclose_all(options, out);
+  enclose_all(out);
   enclose_facades(options, out);
   enclose_free_of_traps(options, out);
   measure(out);
@@ -189,6 +381,12 @@ bool contains(const ConvexPolygon& hull, Vec2 x) {
   if (orientation(v[0], v[1], x) == Sign::zero) return detail::lies_on({v[0], v[1]}, x);
   if (orientation(v[0], v.back(), x) == Sign::zero) return detail::lies_on({v[0], v.back()}, x);
   return true;
+}
+
+bool trap_free_for_every_goal(const Ellipse& ellipse) {
+  EXACTVO_REQUIRE(is_valid(ConvexShape{ellipse}), to_string(ConvexShape{ellipse}));
+  return detail::filtered_sign([&](auto number) { return detail::excess_of_slenderness<decltype(number)>(ellipse); }) !=
+         Sign::positive;
 }
 
 }  // namespace exactvo::geometry

@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Where chains of edges meet. Exact: orientation tests and comparisons of coordinates only.
+/// Where chains of edges meet, and whether a list of vertices runs once round a convex polygon: what partitions are
+/// certified by and shapes judged by. Exact: orientation tests and comparisons of coordinates only.
 
 #include <cstddef>
 #include <functional>
@@ -57,11 +58,25 @@ inline constexpr std::size_t kMostBoxPairs = std::size_t{1} << 26;
 /// The place of the lexicographically least point. REQUIRES: there is one.
 std::size_t least_vertex(const std::vector<Vec2>& points);
 
+/// The largest magnitude of a coordinate; 0 without points.
+double largest_coordinate(const std::vector<Vec2>& points);
+
+/// An upper bound of the distance from x to s. `largest` bounds the magnitudes of the coordinates. Certified.
+double distance_upper_bound(const Segment& s, Vec2 x, double largest);
+
 /// A common point of two segments that meet: an end that lies on the other, else the crossing, rounded.
 Vec2 common_point(const Segment& s, const Segment& t);
 
 /// Whether x lies on the closed segment. Exact.
 bool lies_on(const Segment& s, Vec2 x);
+
+/// Whether the closed ring turns nowhere to the right, somewhere to the left, never back, and only once round:
+/// then it bounds a convex polygon of positive area, counter-clockwise. Vertices on a straight run are tolerated, two
+/// equal ones running are not. Exact, O(n).
+bool is_convex_ccw(const std::vector<Vec2>& ring);
+
+/// Whether all points lie on one line. Exact, O(n).
+bool on_one_line(const std::vector<Vec2>& points);
 
 /// Comparison by x, then by y.
 inline bool lexicographically_less(Vec2 a, Vec2 b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
@@ -168,6 +169,19 @@ std::size_t least_vertex(const std::vector<Vec2>& points) {
                                   points.begin());
 }
 
+double largest_coordinate(const std::vector<Vec2>& points) {
+  double largest = 0.0;
+  for (const Vec2 p : points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+  return largest;
+}
+
+// distance(s, x) measures to a computed foot point. That is within 10 u M of the segment: u sqrt(2) M for rounding the
+// sum, 3 u |b - a| <= 6 sqrt(2) u M for the product and the difference; 16 leaves room for the second order. The
+// difference and the hypot add a relative 4 u; 8 is used.
+double distance_upper_bound(const Segment& s, Vec2 x, double largest) {
+  return distance(s, x) * (1.0 + 8.0 * kUnitRoundoff) + 16.0 * kUnitRoundoff * largest;
+}
+
 bool lies_on(const Segment& s, Vec2 x) {
   return std::min(s.a.x, s.b.x) <= x.x && x.x <= std::max(s.a.x, s.b.x) && std::min(s.a.y, s.b.y) <= x.y &&
          x.y <= std::max(s.a.y, s.b.y) && orientation(s.a, s.b, x) == Sign::zero;
@@ -183,6 +197,45 @@ Vec2 common_point(const Segment& s, const Segment& t) {
   const Vec2 d = s.b - s.a;
   const Vec2 e = t.b - t.a;
   return s.a + (cross(t.a - s.a, e) / cross(d, e)) * d;
+}
+
+namespace {
+
+// The lexicographic order splits directions in two open halves and no edge is without one; on a straight run the next
+// edge goes on in the same half, on a spike it comes back in the other.
+bool turns_right_or_back(Vec2 before, Vec2 at, Vec2 after) {
+  const Sign turn = orientation(before, at, after);
+  const bool goes_on = lexicographically_less(before, at) == lexicographically_less(at, after);
+  return turn == Sign::negative || (turn == Sign::zero && !goes_on);
+}
+
+// A ring that only turns left and goes k times round changes k times from rightward to leftward and k times back.
+std::size_t changes_of_half(const std::vector<Vec2>& ring) {
+  const std::size_t n = ring.size();
+  std::size_t changes = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 a = ring[i], b = ring[(i + 1) % n], c = ring[(i + 2) % n];
+    changes += lexicographically_less(a, b) != lexicographically_less(b, c) ? 1 : 0;
+  }
+  return changes;
+}
+
+}  // namespace
+
+bool is_convex_ccw(const std::vector<Vec2>& ring) {
+  const std::size_t n = ring.size();
+  if (n < 3) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 at = ring[(i + 1) % n];
+    if (ring[i] == at || turns_right_or_back(ring[i], at, ring[(i + 2) % n])) return false;
+  }
+  return changes_of_half(ring) == 2;
+}
+
+bool on_one_line(const std::vector<Vec2>& points) {
+  const auto other = std::find_if(points.begin(), points.end(), [&](Vec2 p) { return p != points.front(); });
+  return other == points.end() ||
+         std::all_of(other, points.end(), [&](Vec2 p) { return orientation(points.front(), *other, p) == Sign::zero; });
 }
 
 }  // namespace exactvo::geometry::detail

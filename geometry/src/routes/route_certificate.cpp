@@ -21,7 +21,7 @@ using rational::exactly;
 using rational::Rational;
 using rational::ray_crosses;
 using rational::squared_distance;
-using Place = rational::Point;
+using ExactPlace = rational::Point;
 using Stretch = rational::Straight;
 
 /// Doubles that are not more and not less: GMP rounds towards 0.
@@ -49,23 +49,23 @@ std::optional<Rational> number_of(const std::string& text, double rounded) {
   return is_next ? std::optional(value) : std::nullopt;
 }
 
-std::optional<Place> place_of(const ExactPoint& p) {
+std::optional<ExactPlace> place_of(const ExactPoint& p) {
   const std::optional<Rational> x = number_of(p.x, p.rounded.x), y = number_of(p.y, p.rounded.y);
   if (!x || !y) return std::nullopt;
-  return Place{*x, *y};
+  return ExactPlace{*x, *y};
 }
 
 /// Rounded, a few units in the last place off.
-double length_of(const std::vector<Place>& points) {
+double length_of(const std::vector<ExactPlace>& points) {
   double length = 0.0;
   for (std::size_t k = 1; k < points.size(); ++k) {
-    const Place d = points[k] - points[k - 1];
+    const ExactPlace d = points[k] - points[k - 1];
     length += std::hypot(d.x.get_d(), d.y.get_d());
   }
   return length;
 }
 
-bool lies_on(const Place& p, const Stretch& s) {
+bool lies_on(const ExactPlace& p, const Stretch& s) {
   return sgn(squared_distance(p, s)) == 0;
 }
 
@@ -73,20 +73,20 @@ bool lies_on(const Place& p, const Stretch& s) {
 bool touch(const Stretch& s, const Stretch& t, bool a_may, bool b_may) {
   const bool a_on = lies_on(s.from, t), b_on = lies_on(s.to, t);
   if ((a_on && !a_may) || (b_on && !b_may) || (a_on && b_on && !(s.from == s.to))) return true;
-  for (const Place& p : {t.from, t.to})
+  for (const ExactPlace& p : {t.from, t.to})
     if (lies_on(p, s) && !(a_may && p == s.from) && !(b_may && p == s.to)) return true;
   return cross_properly(s, t);
 }
 
 /// By their angle from the direction to the right, counter-clockwise.
-bool turns_less(const Place& u, const Place& v) {
-  const auto is_upper = [](const Place& d) { return sgn(d.y) > 0 || (sgn(d.y) == 0 && sgn(d.x) > 0); };
+bool turns_less(const ExactPlace& u, const ExactPlace& v) {
+  const auto is_upper = [](const ExactPlace& d) { return sgn(d.y) > 0 || (sgn(d.y) == 0 && sgn(d.x) > 0); };
   if (is_upper(u) != is_upper(v)) return is_upper(u);
   return sgn(cross(u, v)) > 0;
 }
 
 /// A direction that is passed on the turn from u to v, counter-clockwise; from u to itself it is a whole turn.
-Place between(const Place& u, const Place& v) {
+ExactPlace between(const ExactPlace& u, const ExactPlace& v) {
   const int turn = sgn(cross(u, v));
   if (turn == 0 && sgn(dot(u, v)) > 0) return {Rational(-u.x), Rational(-u.y)};
   if (turn == 0) return {Rational(-u.y), u.x};
@@ -106,9 +106,9 @@ class Checker {
   }
 
   std::string operator()(const Route& route) const {
-    std::vector<Place> points;
+    std::vector<ExactPlace> points;
     for (std::size_t k = 0; k < route.points.size(); ++k) {
-      const std::optional<Place> p = place_of(route.points[k]);
+      const std::optional<ExactPlace> p = place_of(route.points[k]);
       if (!p) return at(k) + "no pair of numbers, or not those that are rounded";
       points.push_back(*p);
     }
@@ -137,12 +137,12 @@ class Checker {
     std::vector<Stretch> sides;
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const ChainPoint &here = chain[k], &next = chain[(k + 1) % chain.size()];
-      const std::optional<Place> p = place_of(here.point), q = place_of(next.point);
+      const std::optional<ExactPlace> p = place_of(here.point), q = place_of(next.point);
       if (!p || !q) return at(k) + "no pair of numbers, or not those that are rounded";
       if (!exists(here.on)) return at(k) + "no such edge";
       if (!lies_on(*p, edge(here.on))) return at(k) + "not on its edge";
       if (here.gap_follows) {
-        const Place gap = *q - *p;
+        const ExactPlace gap = *q - *p;
         if (!(dot(gap, gap) < 4 * squared_)) return at(k) + "the gap behind it is not narrower than two radii";
       } else if (!lies_on(*q, edge(here.on))) {
         return at(k) + "the next point is not on its edge";
@@ -151,8 +151,8 @@ class Checker {
     }
     // The chain may touch a point's ends, but must pass each of them on one side.
     std::vector<bool> is_round[2];
-    for (const Place* end : {&start_, &goal_}) {
-      for (const Place& d : open_directions(*end)) {
+    for (const ExactPlace* end : {&start_, &goal_}) {
+      for (const ExactPlace& d : open_directions(*end)) {
         bool round = false;
         for (const Stretch& side : sides) round ^= ray_crosses(*end, d, side.from, side.to);
         is_round[end == &goal_].push_back(round);
@@ -165,7 +165,7 @@ class Checker {
   }
 
   std::string operator()(const Blocked& blocked) const {
-    const Place& end = blocked.end == Blocked::End::start ? start_ : goal_;
+    const ExactPlace& end = blocked.end == Blocked::End::start ? start_ : goal_;
     if (blocked.inside) {
       if (blocked.by.obstacle >= edges_.size() || !inside(blocked.by.obstacle, end, east()))
         return "not inside that obstacle";
@@ -185,18 +185,18 @@ class Checker {
   }
   Stretch edge(const EdgeName& name) const { return exactly(edges_[name.obstacle][name.edge]); }
 
-  bool is_on_edge(std::size_t obstacle, const Place& p) const {
+  bool is_on_edge(std::size_t obstacle, const ExactPlace& p) const {
     return std::any_of(edges_[obstacle].begin(), edges_[obstacle].end(),
                        [&](const Segment& e) { return lies_on(p, exactly(e)); });
   }
   /// Whether the obstacle holds what follows p along d, which no edge through p does.
-  bool inside(std::size_t obstacle, const Place& p, const Place& d) const {
+  bool inside(std::size_t obstacle, const ExactPlace& p, const ExactPlace& d) const {
     bool in = false;
     if (solid_[obstacle])
       for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, d, exactly(e.a), exactly(e.b));
     return in;
   }
-  bool inside_any(const Place& p, const Place& d) const {
+  bool inside_any(const ExactPlace& p, const ExactPlace& d) const {
     for (std::size_t i = 0; i < edges_.size(); ++i)
       if (inside(i, p, d)) return true;
     return false;
@@ -204,30 +204,31 @@ class Checker {
 
   /// Where p is free: a direction from it into each part of the free space that it is a point of. For a radius above 0
   /// that is one. A point may lie on edges: then one between each two of them that follow one another round it.
-  std::vector<Place> open_directions(const Place& p) const {
-    std::vector<Place> along;
+  std::vector<ExactPlace> open_directions(const ExactPlace& p) const {
+    std::vector<ExactPlace> along;
     bool is_near = false;
     for_each_edge_near({p, p}, [&](std::size_t, std::size_t, const Stretch& e) {
       is_near = is_near || squared_distance(p, e) < squared_;
       if (sgn(radius_) > 0 || !lies_on(p, e)) return;
-      for (const Place& end : {e.from, e.to})
+      for (const ExactPlace& end : {e.from, e.to})
         if (!(end == p)) along.push_back(end - p);
     });
     if (is_near) return {};
     std::sort(along.begin(), along.end(), turns_less);
-    std::vector<Place> open;
+    std::vector<ExactPlace> open;
     if (along.empty()) open.push_back(east());
     for (std::size_t k = 0; k < along.size(); ++k) {
-      const Place &u = along[k], &v = along[(k + 1) % along.size()];
+      const ExactPlace &u = along[k], &v = along[(k + 1) % along.size()];
       const bool is_last_of_its_kind = k + 1 == along.size() || turns_less(u, v);
       if (is_last_of_its_kind) open.push_back(between(u, v));
     }
-    open.erase(std::remove_if(open.begin(), open.end(), [&](const Place& d) { return inside_any(p, d); }), open.end());
+    open.erase(std::remove_if(open.begin(), open.end(), [&](const ExactPlace& d) { return inside_any(p, d); }),
+               open.end());
     return open;
   }
 
   /// Whether a route begins outside of all obstacles; what touches no edge on its way stays there.
-  bool leaves_into_the_open(const std::vector<Place>& points) const {
+  bool leaves_into_the_open(const std::vector<ExactPlace>& points) const {
     if (points.size() < 2 || points[0] == points[1]) return !open_directions(start_).empty();
     bool touches = false;
     for_each_edge_near({start_, start_},
@@ -264,7 +265,7 @@ class Checker {
   }
 
   Rational radius_, squared_;
-  Place start_, goal_;
+  ExactPlace start_, goal_;
   std::vector<char> solid_;
   std::vector<std::vector<Segment>> edges_;
 };

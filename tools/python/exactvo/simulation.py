@@ -484,7 +484,7 @@ def simulate(
     controller   of formations: "paper-literal", "paper-signs", "corrected", "default"
     integrator   of formations: "exact", "euler", "rk4"
     record_all   keep every half-plane of every decision, not only those that bind
-    threads      that search for joint plans, 0 to 1024; 0: as many as there are. The result is the same
+    threads      0 to 1024; accepted, and without effect: one thread decides
     progress     called with the simulated time (s) about ten times a second; False ends the run there
     steering     called with a `RobotsNow` before every step; returns preferred velocities, n x 2, m/s, or changes
                  `preferred` in place. Robots with goals only, as the next

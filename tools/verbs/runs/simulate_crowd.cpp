@@ -133,9 +133,10 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   without(app.add_flag(
       "--resume", flags.resume,
       "With --snapshot-every: go on with an interrupted run from its last snapshot. The result is the same"));
-  app.add_option("--threads", flags.threads,
-                 "Number of threads that decide, or with recorded decisions that search for joint plans; 0 for one per "
-                 "processor. The result is the same")
+  app.add_option(
+         "--threads", flags.threads,
+         "Number of threads that decide in runs without recorded decisions; 0 for one per processor. The result is "
+         "the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
   without(app.add_option("--precision", flags.precision, "float or double, both certified; with --decisions none"))

@@ -45,7 +45,7 @@ ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
 using Shapes = std::pair<Taken, std::vector<ConvexShape>>;
 
 Shapes shapes_of(const geometry::Obstacle& obstacle, const VoFlags& flags) {
-  if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::smallest_ellipse(vertices_of(obstacle))}};
+  if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::fast_smallest_ellipse(vertices_of(obstacle)).ellipse}};
   if (flags.enclose == "trap-free") return {Taken::trap_free_ellipse, {trap_free(vertices_of(obstacle), flags)}};
   if (geometry::is_convex(obstacle)) return {Taken::itself, geometry::convex_cover(obstacle)};
   if (flags.pieces == "hull") return {Taken::convex_hull, {geometry::hull_shape(vertices_of(obstacle))}};

@@ -7,75 +7,6 @@
 namespace exactvo::vo::detail {
 namespace {
 
-void trim(Polynomial& f) {
-  while (!f.empty() && sgn(f.back()) == 0) f.pop_back();
-}
-
-/// Divides by the greatest common divisor of the coefficients: a positive number, so that signs stay.
-void make_coprime(Polynomial& f) {
-  trim(f);
-  Integer content = 0;
-  for (const Integer& c : f) content = gcd(content, c);
-  if (content > 1)
-    for (Integer& c : f) mpz_divexact(c.get_mpz_t(), c.get_mpz_t(), content.get_mpz_t());
-}
-
-/// A positive multiple of the remainder of a over b, b not zero.
-Polynomial remainder(Polynomial a, const Polynomial& b) {
-  const Integer scale = abs(b.back());
-  while (a.size() >= b.size()) {
-    const Integer factor = sgn(b.back()) > 0 ? a.back() : Integer(-a.back());
-    const std::size_t shift = a.size() - b.size();
-    for (Integer& c : a) c *= scale;
-    for (std::size_t i = 0; i < b.size(); ++i) a[i + shift] -= factor * b[i];
-    make_coprime(a);
-  }
-  return a;
-}
-
-/// REQUIRES: b divides a, and its coefficients are coprime: then the quotient has whole ones (Gauss's lemma).
-Polynomial quotient(Polynomial a, const Polynomial& b) {
-  Polynomial out(a.size() - b.size() + 1);
-  for (std::size_t k = out.size(); k-- > 0;) {
-    out[k] = a[k + b.size() - 1] / b.back();
-    for (std::size_t i = 0; i < b.size(); ++i) a[k + i] -= out[k] * b[i];
-  }
-  return out;
-}
-
-Polynomial derivative(const Polynomial& f) {
-  Polynomial out;
-  for (std::size_t i = 1; i < f.size(); ++i) out.push_back(f[i] * static_cast<unsigned long>(i));
-  make_coprime(out);
-  return out;
-}
-
-/// Sturm's chain: the number of sign changes along it falls by one at every root.
-class SturmChain {
- public:
-  explicit SturmChain(const Polynomial& f) : links_{f, derivative(f)} {
-    while (links_.back().size() > 1) {
-      Polynomial next = remainder(links_[links_.size() - 2], links_.back());
-      for (Integer& c : next) c = -c;
-      links_.push_back(std::move(next));
-    }
-  }
-  /// Roots in (low, high].
-  int count(const Rational& low, const Rational& high) const { return variations(low) - variations(high); }
-
- private:
-  int variations(const Rational& x) const {
-    int changes = 0, before = 0;
-    for (const Polynomial& link : links_) {
-      const int sign = sign_at(link, x);
-      if (sign != 0 && before == -sign) ++changes;
-      if (sign != 0) before = sign;
-    }
-    return changes;
-  }
-  std::vector<Polynomial> links_;
-};
-
 Rational middle(const Rational& a, const Rational& b) {
   return (a + b) / 2;
 }
@@ -111,36 +42,6 @@ bool are_equal(const Root& a, const Root& b) {
 }
 
 }  // namespace
-
-Polynomial primitive(const std::vector<Rational>& coefficients) {
-  Integer denominator = 1;
-  for (const Rational& c : coefficients) denominator = lcm(denominator, c.get_den());
-  Polynomial f;
-  for (const Rational& c : coefficients) f.push_back(Rational(c * denominator).get_num());
-  make_coprime(f);
-  return f;
-}
-
-Polynomial gcd(const Polynomial& a, const Polynomial& b) {
-  if (b.empty()) return a;
-  return gcd(b, remainder(a, b));
-}
-
-Polynomial square_free(const Polynomial& f) {
-  Polynomial out = f.size() > 2 ? quotient(f, gcd(f, derivative(f))) : f;
-  if (sgn(out.back()) < 0)
-    for (Integer& c : out) c = -c;
-  return out;
-}
-
-int sign_at(const Polynomial& f, const Rational& x) {
-  Integer sum = 0, power = 1;  // Horner, times the denominator's power
-  for (std::size_t i = f.size(); i-- > 0;) {
-    sum = sum * x.get_num() + f[i] * power;
-    power *= x.get_den();
-  }
-  return sgn(sum);
-}
 
 std::vector<Root> isolate(const Polynomial& f, const Rational& low, const Rational& high) {
   std::vector<Root> out;

@@ -2,30 +2,23 @@
 #pragma once
 
 /// \file
-/// Real roots of polynomials with integer coefficients, exactly: Sturm's theorem finds them, halving narrows them, the
-/// greatest common divisor tells whether two are one. For degrees up to four; nothing is tuned for more.
-
-#include <gmpxx.h>
+/// Real roots of polynomials with integer coefficients, exactly: Sturm's theorem finds them, halving narrows them.
 
 #include <vector>
+
+#include "exact/integer_polynomial.h"
 
 namespace exactvo::vo::detail {
 
 using Integer = mpz_class;
 using Rational = mpq_class;
 
-/// Coefficients from the constant term up, coprime, the last one not zero. Empty: the zero polynomial.
-using Polynomial = std::vector<Integer>;
-
-/// A positive multiple of the polynomial with these coefficients.
-Polynomial primitive(const std::vector<Rational>& coefficients);
-
-Polynomial gcd(const Polynomial& a, const Polynomial& b);
-
-/// The same roots, each once; the last coefficient is positive. REQUIRES: not zero.
-Polynomial square_free(const Polynomial& f);
-
-int sign_at(const Polynomial& f, const Rational& x);
+using Polynomial = geometry::detail::IntegerPolynomial;
+using geometry::detail::gcd;
+using geometry::detail::primitive;
+using geometry::detail::sign_at;
+using geometry::detail::square_free;
+using geometry::detail::SturmChain;
 
 /// The only root of a square-free f in (low, high), neither of which is a root; or low = high is it.
 struct Root {

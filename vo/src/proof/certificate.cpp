@@ -7,17 +7,124 @@
 #include <gmpxx.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/shape_numbers.h"
-#include "proof/certificate_words.h"
+#include "exactvo/geometry/vec2.h"
+#include "exactvo/vo/containment.h"
+
+namespace exactvo::vo::detail {
+namespace {
+
+// --- What the texts of certificates share: words with single blanks between them, hex floats, the digest ---
+
+using geometry::Vec2;
+
+/// Words separated by single spaces; the first that is not as expected makes everything after it fail.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : rest_(text) {}
+
+  void expect(std::string_view word) { ok_ = ok_ && next() == word; }
+  std::string_view next() {
+    const std::size_t end = rest_.find(' ');
+    const std::string_view word = rest_.substr(0, end);
+    at_end_ = end == std::string_view::npos;
+    rest_.remove_prefix(at_end_ ? rest_.size() : end + 1);
+    return word;
+  }
+  double number() {
+    std::string_view word = next();
+    const bool negative = !word.empty() && word[0] == '-';
+    if (negative) word.remove_prefix(1);
+    double value = 0.0;
+    if (ok_ && word == "inf" && !negative) return std::numeric_limits<double>::infinity();
+    if (word.substr(0, 2) != "0x") ok_ = false;
+    if (!ok_) return value;
+    const char* const last = word.data() + word.size();
+    const auto result = std::from_chars(word.data() + 2, last, value, std::chars_format::hex);
+    ok_ = result.ec == std::errc() && result.ptr == last;
+    return negative ? -value : value;
+  }
+  Vec2 point() {
+    const double x = number();
+    return {x, number()};
+  }
+  /// The same behind a word.
+  void read(std::string_view name, double& x) {
+    expect(name);
+    x = number();
+  }
+  void read(std::string_view name, Vec2& v) {
+    expect(name);
+    v = point();
+  }
+  template <typename Integer>
+  Integer integer(int base) {
+    const std::string_view word = next();
+    Integer value = 0;
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), value, base);
+    ok_ = ok_ && result.ec == std::errc() && result.ptr == word.data() + word.size();
+    return value;
+  }
+  std::uint64_t digest() {
+    expect("digest");
+    return integer<std::uint64_t>(16);
+  }
+  bool ok() const { return ok_; }
+  bool finished() const { return ok_ && at_end_; }
+
+ private:
+  std::string_view rest_;
+  bool ok_ = true;
+  bool at_end_ = false;
+};
+
+std::string digest_text(std::uint64_t digest) {
+  char buffer[17];
+  std::snprintf(buffer, sizeof buffer, "%016llx", static_cast<unsigned long long>(digest));
+  return buffer;
+}
+
+std::uint64_t bits_of(double x) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+/// FNV-1a, 64 bits, of 8-byte words, low byte first.
+class Fnv {
+ public:
+  void add(double x) { add(bits_of(x)); }
+  void add(Vec2 v) {
+    add(v.x);
+    add(v.y);
+  }
+  void add(std::uint64_t word) {
+    for (int i = 0; i < 8; ++i) {
+      hash_ ^= (word >> (8 * i)) & 0xFF;
+      hash_ *= 0x100000001B3ULL;
+    }
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+}  // namespace
+}  // namespace exactvo::vo::detail
 
 namespace exactvo::vo {
 namespace {
@@ -235,6 +342,77 @@ std::optional<Certificate> read_certificate(const std::string& text) {
   in.read("margin", c.margin);
   c.digest = in.digest();
   if (!in.finished() || write_certificate(c) != text) return std::nullopt;
+  return c;
+}
+
+// --- Ellipses that hold points ---
+
+namespace {
+
+bool is_well_formed(const Ellipse& e, const std::vector<Vec2>& points) {
+  const auto finite = [](Vec2 x) { return is_finite(x); };
+  return is_finite(e.center) && std::isfinite(e.l11) && std::isfinite(e.l21) && std::isfinite(e.l22) && e.l11 != 0.0 &&
+         e.l22 != 0.0 && !points.empty() && std::all_of(points.begin(), points.end(), finite);
+}
+
+/// 1 - |L^-1 (x - c)|^2 by forward substitution.
+Rational room(const Ellipse& e, Vec2 x) {
+  const Rational first = (Rational(x.x) - Rational(e.center.x)) / Rational(e.l11);
+  const Rational second = (Rational(x.y) - Rational(e.center.y) - Rational(e.l21) * first) / Rational(e.l22);
+  return 1 - first * first - second * second;
+}
+
+Rational least_room(const Ellipse& e, const std::vector<Vec2>& points) {
+  Rational least = room(e, points.front());
+  for (const Vec2 x : points) least = std::min(least, room(e, x));
+  return least;
+}
+
+std::uint64_t digest_of(const Containment& c) {
+  detail::Fnv hash;
+  for (const double x : geometry::numbers_of(c.ellipse)) hash.add(x);
+  hash.add(static_cast<std::uint64_t>(c.points.size()));
+  for (const Vec2 x : c.points) hash.add(x);
+  hash.add(c.margin);
+  return hash.value();
+}
+
+}  // namespace
+
+std::optional<Containment> certify_containment(const Ellipse& ellipse, std::vector<Vec2> points) {
+  if (!is_well_formed(ellipse, points)) return std::nullopt;
+  const Rational least = least_room(ellipse, points);
+  if (sgn(least) < 0) return std::nullopt;
+  Containment c{ellipse, std::move(points), least.get_d(), 0};  // get_d truncates: down, as it is not negative
+  c.digest = digest_of(c);
+  return c;
+}
+
+Verdict check(const Containment& c) {
+  if (!is_well_formed(c.ellipse, c.points) || !std::isfinite(c.margin)) return Verdict::malformed;
+  const Rational least = least_room(c.ellipse, c.points);
+  if (c.margin < 0.0 || sgn(least) < 0 || least.get_d() != c.margin) return Verdict::wrong_margin;
+  return digest_of(c) == c.digest ? Verdict::valid : Verdict::altered;
+}
+
+std::string write_containment(const Containment& c) {
+  std::string text = "containment-certificate 1 " + to_string(geometry::ConvexShape{c.ellipse}) + " points " +
+                     geometry::to_string(c.points);
+  return text + " margin " + hex_text(c.margin) + " digest " + detail::digest_text(c.digest);
+}
+
+std::optional<Containment> read_containment(const std::string& text) {
+  detail::Reader in(text);
+  Containment c;
+  for (const char* word : {"containment-certificate", "1", "ellipse"}) in.expect(word);
+  c.ellipse.center = in.point();
+  for (double* number : {&c.ellipse.l11, &c.ellipse.l21, &c.ellipse.l22}) *number = in.number();
+  in.expect("points");
+  const auto count = in.integer<std::size_t>(10);
+  for (std::size_t k = 0; k < count && in.ok(); ++k) c.points.push_back(in.point());
+  in.read("margin", c.margin);
+  c.digest = in.digest();
+  if (!in.finished() || write_containment(c) != text) return std::nullopt;
   return c;
 }
 

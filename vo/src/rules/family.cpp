@@ -79,7 +79,7 @@ std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const E
 ConvexShape enclosure_of(const Encounter& e) {
   if (e.enclosure) return *e.enclosure;
   const std::vector<Vec2> corners = corners_of(e.obstacle);
-  return corners.empty() ? e.obstacle : geometry::smallest_ellipse(corners);
+  return corners.empty() ? e.obstacle : geometry::fast_smallest_ellipse(corners).ellipse;
 }
 
 double distance_ahead(const VelocityObstacle& obstacle) {

@@ -136,8 +136,7 @@ struct SimulationOptions {
   double facade_minor_to_major = 0.5;                   ///< ivo_edge: b = this * a
   double facade_fixed_minor = 0.0;                      ///< m, ivo_edge: > 0 fixes b
   bool record_all = false;                              ///< keep every half-plane, not only the active ones
-  int threads = 1;  ///< 1 ... 1024, that decide in a crowd, else that search for joint plans; 0: as many as there are.
-                    ///< The run is the same
+  int threads = 1;  ///< 1 ... 1024, that decide in a crowd; 0: as many as there are. The run is the same
   /// s, >= 0: stop after the last row at or before this time, keeping every half-plane of its decision.
   std::optional<double> stop_at;
   /// Called with the simulated time, s: about ten times a second of wall time, on a crowd after every step. Returning

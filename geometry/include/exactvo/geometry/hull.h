@@ -46,21 +46,16 @@ std::vector<ConvexPolygon> convex_pieces(const Polygon& polygon, PartitionMethod
 /// REQUIRES: at least one point, all finite and below 2^1000.
 Disc smallest_circle(const std::vector<Vec2>& points);
 
-/// The ellipse of least area. CGAL's exact Min_ellipse_2 (Welzl 1991; Gaertner and Schoenherr 1998) finds the points
-/// that determine it; it is then computed from those in doubles and inflated until every point is certified inside. The
-/// area is within a relative 1e-10 of the least, unless rounding the coordinates of the centre costs more. One point
-/// gives L = 0; collinear points give the segment itself (l22 = 0) or, where doubles can't say it, a sliver of width
-/// 2^-36 of the coordinates. REQUIRES: as `smallest_circle`.
-Ellipse smallest_ellipse(const std::vector<Vec2>& points);
-
 /// A certified ellipse and what it could at best be improved to.
 struct FastEllipse {
   Ellipse ellipse;          ///< certified to contain the points
   double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, certified
 };
 
-/// The same by Newton's method on the dual, hundreds of times faster. Containment certified; `least_area` shows how
-/// near the smallest it came.
+/// The ellipse of least area, by Newton's method on the dual, inflated until every point is certified inside. Its area
+/// is within a relative 1e-10 of the least, unless rounding the coordinates of the centre costs more; `least_area`
+/// shows how near it came. One point gives L = 0; collinear points give the segment itself (l22 = 0) or, where doubles
+/// can't say it, a sliver of width 2^-36 of the coordinates. REQUIRES: as `smallest_circle`.
 FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points);
 
 }  // namespace exactvo::geometry

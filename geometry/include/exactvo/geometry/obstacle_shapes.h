@@ -39,7 +39,6 @@ struct ShapeOptions {
   double robot_radius = 0.0;                               ///< m, >= 0; in clearances, and in the fit along `way`
   std::optional<StartAndGoal> way;                         ///< none: the ellipse is trap-free for every goal
   EnclosureOptions enclosure;                              ///< of the fit along `way`
-  bool exact_smallest_ellipse = false;                     ///< by CGAL's exact search, some hundred times slower
   bool check_validity = true;                              ///< false: the caller knows the obstacle to be valid
 };
 
