@@ -309,11 +309,13 @@ class CrowdEngine final : public CrowdCore {
     put_by_kind(pack, table_.meeting, 0.0F, meeting);
     put_by_kind(pack, table_.neighbours, 0, most);
     std::uint32_t unknown = 0;
-    for (std::size_t lane = 0; lane < pack.size(); ++lane) {
-      const bool listed = pack.is_searched() && most[lane] > 0 && meeting[lane] <= s.found.limits.none[lane];
-      unknown |= std::uint32_t{!listed} << lane;
-      if (!listed) meeting[lane] = 0.0F;
-    }
+    const auto look_at_lanes = [&](std::size_t count, std::uint32_t bits) {
+      for (std::size_t lane = 0; lane < count; ++lane)
+        if (!pack.is_searched() || most[lane] == 0 || meeting[lane] > s.found.limits.none[lane])
+          unknown |= bits << lane;
+    };
+    table_.is_mixed() ? look_at_lanes(pack.size(), 1U) : look_at_lanes(1, pack.lanes());
+    for (std::uint32_t lanes = unknown; lanes != 0; lanes &= lanes - 1) meeting[__builtin_ctz(lanes)] = 0.0F;
     lists.add(pack.begin, pack.size(), s.found.others, s.found.ranked, meeting, most, unknown);
   }
 

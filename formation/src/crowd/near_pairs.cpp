@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/near_pairs.cpp"
@@ -259,21 +260,24 @@ void NearLists::add(std::size_t begin, std::size_t size, const Candidates& other
   rows_ += rows;
 }
 
-void NearPairs::start(std::size_t first, std::size_t last, bool is_first) {
+void NearPairs::start(const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last, bool is_first) {
   first_ = first, last_ = last, is_first_ = is_first;
+  both_radii_ = 2.0 * static_cast<double>(kinds[0].radius);
   pairs.clear();
   cut.clear();
   overlapping = 0;
   state.assign(last - first, 0);
-  last_of_.assign(last - first, -1);
+  last_of_.resize(last - first);
+  std::memset(last_of_.data(), 0xFF, (last - first) * sizeof last_of_[0]);
 }
 
 HWY_INLINE void NearPairs::add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot,
                                std::size_t other, bool of_both) {
   const bool is_a = robots.id[robot] < robots.id[other];
   const std::size_t pair = pairs.add(is_a ? robot : other, is_a ? other : robot);
-  if (kinds.size() > 1)
-    pairs.radii[pair] = static_cast<double>(kinds[robots.kind(robot)].radius + kinds[robots.kind(other)].radius);
+  pairs.radii[pair] = kinds.size() == 1
+                          ? both_radii_
+                          : static_cast<double>(kinds[robots.kind(robot)].radius + kinds[robots.kind(other)].radius);
   if (before_.size() < 2 * pair + 2) before_.resize(4 * pair + 64);
   const auto link = [this](std::size_t to, std::size_t entry) {
     before_[entry] = last_of_[to - first_];
@@ -281,12 +285,6 @@ HWY_INLINE void NearPairs::add(const Robots& robots, const std::vector<StepsOfKi
   };
   link(robot, 2 * pair + std::size_t{!is_a});
   if (of_both) link(other, 2 * pair + std::size_t{is_a});
-}
-
-/// After the pairs from `from` on.
-void NearPairs::finish(const std::vector<StepsOfKind>& kinds, std::size_t from) {
-  if (kinds.size() == 1 && from < pairs.size())
-    std::fill(&pairs.radii[from], &pairs.radii[pairs.size()], 2.0 * static_cast<double>(kinds[0].radius));
 }
 
 /// Into round_ all robots that `robot` could meet or that overlap it, and what is judged of them.
@@ -339,11 +337,10 @@ bool NearPairs::add_of_unknown(const Robots& robots, const std::vector<StepsOfKi
 
 void NearPairs::find(Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
                      NearLists& lists) {
-  start(first, last, true);
+  start(kinds, first, last, true);
   for (auto* bits : {&clear_, &doubtful_}) grow(*bits, lists.rows() + 1);
   HWY_DYNAMIC_DISPATCH(judge_all)(robots, kinds, lists, clear_.data(), doubtful_.data());
   for (const NearLists::Lanes& pack : lists.packs) take_pack(robots, kinds, pack, lists);
-  finish(kinds, 0);
 }
 
 void NearPairs::take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack,
@@ -380,7 +377,6 @@ void NearPairs::take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds,
 
 void NearPairs::add_clear(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists) {
   if (cut.empty()) return;
-  const std::size_t from = pairs.size();
   for (const NearLists::Lanes& pack : lists.packs) {
     const auto begin = static_cast<std::size_t>(pack.begin);
     std::uint32_t lanes = 0;
@@ -395,12 +391,11 @@ void NearPairs::add_clear(const Robots& robots, const std::vector<StepsOfKind>& 
             static_cast<std::size_t>(own + lists.away[row * kPack + lane]), false);
       }
   }
-  finish(kinds, from);
 }
 
 void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first,
                            std::size_t last, const NearLists& lists) {
-  start(first, last, false);
+  start(kinds, first, last, false);
   grow(asked_, lists.packs.size());
   HWY_DYNAMIC_DISPATCH(find_asked)(robots, lists.packs, asked_.data());
   for (std::size_t p = 0; p < lists.packs.size(); ++p) {
@@ -419,10 +414,9 @@ void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>&
     for (std::uint32_t lanes = pack.unknown & asked; lanes != 0; lanes &= lanes - 1)
       add_of_unknown(robots, kinds, begin + lowest(lanes));
   }
-  finish(kinds, 0);
 }
 
-void NearPairs::cut_short(const Robots& robots, std::size_t robot, std::uint8_t how) {
+HWY_INLINE void NearPairs::cut_short(const Robots& robots, std::size_t robot, std::uint8_t how) {
   if (!is_asked(robots, robot)) return;
   std::uint8_t& own = state_of(robot);
   if ((own & kCut) == 0) cut.push_back(static_cast<std::int32_t>(robot));

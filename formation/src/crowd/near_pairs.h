@@ -108,11 +108,10 @@ class NearPairs {
   }
 
  private:
-  void start(std::size_t first, std::size_t last, bool is_first);
+  void start(const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last, bool is_first);
   void take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack, NearLists& lists);
   void look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
   bool add_of_unknown(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
-  void finish(const std::vector<StepsOfKind>& kinds, std::size_t from);
   void add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot, std::size_t other,
            bool of_both);
   void cut_short(const Robots& robots, std::size_t robot, std::uint8_t how);
@@ -125,6 +124,7 @@ class NearPairs {
 
   std::size_t first_ = 0, last_ = 0;
   bool is_first_ = true;                         ///< all are asked
+  double both_radii_ = 0.0;                      ///< R, where there is one kind
   std::vector<std::int32_t> last_of_;            ///< of each robot its last entry; -1: none
   std::vector<std::int32_t> before_;             ///< of an entry, 2 pair + (0: of a, 1: of b), that before it
   std::vector<std::uint16_t> clear_, doubtful_;  ///< by row of the lists

@@ -154,14 +154,19 @@ Reservations::Reservations(const ObstacleSpace& space, std::size_t robots, doubl
   std::size_t buckets = 1;
   while (buckets < robots) buckets *= 2;
   begin_.resize(buckets + 1);
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  placed_.resize(robots, {{kNowhere, kNowhere}});
   by_bucket_.resize(robots);
 }
 
 // --- Robots by place ---
 
+/// std::floor is a call on targets before SSE4.1.
 std::int64_t Reservations::cell(double x) const {
   constexpr double kFarthest = 0x1p62;
-  return static_cast<std::int64_t>(std::clamp(std::floor(2.0 * x / reach_), -kFarthest, kFarthest));
+  const double cells = 2.0 * x / reach_, near = cells > kFarthest ? kFarthest : cells > -kFarthest ? cells : -kFarthest;
+  const auto toward_zero = static_cast<std::int64_t>(near);
+  return toward_zero - static_cast<std::int64_t>(static_cast<double>(toward_zero) > near);
 }
 
 std::size_t Reservations::bucket(std::int64_t x, std::int64_t y) const {
@@ -170,14 +175,20 @@ std::size_t Reservations::bucket(std::int64_t x, std::int64_t y) const {
   return (h ^ (h >> 32)) & (begin_.size() - 2);
 }
 
+/// Most robots stand where they stood.
 void Reservations::place_robots() {
   std::fill(begin_.begin(), begin_.end(), 0);
-  const auto bucket_of = [&](std::size_t i) { return bucket(cell(at(i).x), cell(at(i).y)); };
-  for (std::size_t i = 0; i < of_.size(); ++i) ++begin_[bucket_of(i)];
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    Placed& p = placed_[i];
+    if (p.at != at(i)) {
+      p = {at(i), cell(at(i).x), cell(at(i).y), static_cast<std::uint32_t>(i), 0};
+      p.bucket = static_cast<std::uint32_t>(bucket(p.cell_x, p.cell_y));
+    }
+    ++begin_[p.bucket];
+  }
   std::uint32_t sum = 0;
   for (std::uint32_t& b : begin_) sum += b, b = sum;
-  for (std::size_t i = of_.size(); i-- > 0;)
-    by_bucket_[--begin_[bucket_of(i)]] = {at(i), cell(at(i).x), cell(at(i).y), static_cast<std::uint32_t>(i)};
+  for (std::size_t i = of_.size(); i-- > 0;) by_bucket_[--begin_[placed_[i].bucket]] = placed_[i];
 }
 
 template <class Visit>

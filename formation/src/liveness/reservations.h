@@ -237,9 +237,10 @@ class Reservations {
   struct Placed {
     Vec2 at;
     std::int64_t cell_x = 0, cell_y = 0;
-    std::uint32_t robot = 0;
+    std::uint32_t robot = 0, bucket = 0;
   };
   std::vector<std::uint32_t> begin_;
+  std::vector<Placed> placed_;  ///< by robot, and where it stood when robots were placed last
   std::vector<Placed> by_bucket_;
 };
 
