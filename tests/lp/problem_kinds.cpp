@@ -78,11 +78,20 @@ double broken_by(const Problem& problem, const Solution& s) {
   return by;
 }
 
-/// What is to be small, m/s.
-double cost(const Problem& problem, const Solution& s) {
-  if (s.status != Status::optimal) return s.violation;
-  if (problem.objective == Objective::nearest) return norm(s.velocity - problem.preferred);
-  return -dot(s.velocity, normalized(problem.preferred));
+/// What the objective wants small, m/s.
+double cost(const Problem& problem, Vec2 v) {
+  if (problem.objective == Objective::nearest) return norm(v - problem.preferred);
+  return -dot(v, normalized(problem.preferred));
+}
+
+/// Where constraints give, the objective chooses among the velocities of least violation.
+std::string why_costlier(const Problem& problem, const Solution& answer, const Solution& exact, double tolerance) {
+  const bool gives = answer.status != Status::optimal;
+  const double violated = gives ? answer.violation - exact.violation : 0.0;
+  const double farther = cost(problem, answer.velocity) - cost(problem, exact.velocity);
+  if (!(std::abs(violated) <= tolerance)) return "violated by " + std::to_string(violated) + " m/s more";
+  const bool is_costlier = !(gives ? farther <= tolerance : std::abs(farther) <= tolerance);
+  return is_costlier ? "worse by " + std::to_string(farther) + " m/s" : "";
 }
 
 std::string words(const Solution& s) {
@@ -187,8 +196,8 @@ std::string why_worse(const Problem& problem, const Solution& answer, const Solu
   const std::string both = "\n  answer: " + words(answer) + "\n  exact:  " + words(exact);
   if (!(broken <= tolerance)) return "breaks what it promises by " + std::to_string(broken) + " m/s" + both;
   if (answer.status == exact.status) {
-    const double worse = cost(problem, answer) - cost(problem, exact);
-    return std::abs(worse) <= tolerance ? "" : "worse by " + std::to_string(worse) + " m/s" + both;
+    const std::string why = why_costlier(problem, answer, exact, tolerance);
+    return why.empty() ? why : why + both;
   }
   const Solution& severe = answer.status > exact.status ? answer : exact;
   return severe.violation <= tolerance ? "" : "another status" + both;

@@ -58,9 +58,9 @@ class DrawnPairs {
   std::map<std::pair<ProblemKind, Solver>, std::size_t> drawn_;
 };
 
-/// Why `answer` is worse than the exact answer by more than `tolerance` (m/s, of the objective or of the violation), or
-/// breaks what its status promises by more. Empty where it is as good. A status that differs is no error where the
-/// region is thinner than the tolerance.
+/// Why `answer` is worse than the exact answer by more than `tolerance` (m/s, of the violation or of the objective,
+/// which also chooses among the velocities of least violation), or breaks what its status promises by more. Empty where
+/// it is as good. A status that differs is no error where the region is thinner than the tolerance.
 std::string why_worse(const Problem& problem, const Solution& answer, const Solution& exact, double tolerance);
 
 }  // namespace exactvo::lp
