@@ -41,7 +41,8 @@ ProblemKind kind_of(const Problem& problem);
 /// Numbers at random: a region as thin as a rounding error is improbable.
 Problem random_problem(const ProblemKind& kind, test::SeededRandom& random);
 
-/// Small integers: parallel lines, lines through one point, ties, boxes and discs of width 0.
+/// Small integers: parallel lines, lines through one point, ties, boxes and discs of width 0; half of them with normals
+/// along the axes.
 Problem grid_problem(const ProblemKind& kind, test::SeededRandom& random);
 
 /// Which pairs of kind and solver were drawn, and how often.
@@ -58,9 +59,14 @@ class DrawnPairs {
   std::map<std::pair<ProblemKind, Solver>, std::size_t> drawn_;
 };
 
-/// Why `answer` is worse than the exact answer by more than `tolerance` (m/s, of the objective or of the violation), or
+/// What a comparison looks at: of an answer that violates something also the choice among the velocities of least
+/// violation, which no certificate proves, or only what one proves.
+enum class Compared { everything, what_is_proven };
+
+/// Why `answer` is worse than the exact answer by more than `tolerance` (m/s, of the violation or of the objective), or
 /// breaks what its status promises by more. Empty where it is as good. A status that differs is no error where the
 /// region is thinner than the tolerance.
-std::string why_worse(const Problem& problem, const Solution& answer, const Solution& exact, double tolerance);
+std::string why_worse(const Problem& problem, const Solution& answer, const Solution& exact, double tolerance,
+                      Compared compared = Compared::everything);
 
 }  // namespace exactvo::lp

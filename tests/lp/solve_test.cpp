@@ -166,7 +166,7 @@ TEST(Solve, OppositeConstraintsOfEveryKindAreAnsweredAsByExactArithmetic) {
   EXPECT_GT(infeasible, 100u);
 }
 
-// Scaling that would round is not done: a component of 2^-1000 is more than nothing.
+// A component of 2^-1000 is more than nothing.
 TEST(Solve, NormalsOfVeryDifferentLengthsKeepTheirSmallComponents) {
   Problem p = in_disc(10.0, {0.0, -1.0});
   add(p, {0.0, -0x1p290}, -5.0 * 0x1p290);
@@ -179,6 +179,26 @@ TEST(Solve, NormalsOfVeryDifferentLengthsKeepTheirSmallComponents) {
   add(flat, {1e-308, 0.0}, 1e-306);
   const Solution s = solve(flat);
   for (std::size_t k = 0; k < s.active_count; ++k) EXPECT_TRUE(std::isfinite(s.active[k].multiplier));
+}
+
+// One exponent cannot bring both near 1, and their product leaves the doubles.
+TEST(Solve, ExactAnswersToNormalsOfVeryDifferentLengthsAreThoseToUnitNormals) {
+  std::size_t solved = 0;
+  for (const int longer : {0, 99, 200})
+    for (const int shorter : {-50, -300, -420, -900}) {
+      Problem p = in_disc(2.0, {-1.0, 0.3});
+      const double a = std::ldexp(1.0, longer), b = std::ldexp(1.0, shorter);
+      add(p, {a, 0.25 * a}, -0.5 * a);
+      add(p, {0.7 * b, -0.9 * b}, 0.1 * b);
+      const Proven answer = solve_exact(p);
+      ASSERT_STREQ(name(answer.solution.status), "optimal") << longer << ' ' << shorter;
+      EXPECT_NEAR(answer.solution.velocity.x, -0.39534883720930231, 1e-15);
+      EXPECT_NEAR(answer.solution.velocity.y, -0.41860465116279066, 1e-15);
+      ASSERT_TRUE(answer.certificate);
+      EXPECT_EQ(check(p, *answer.certificate), CertificateError::none);
+      ++solved;
+    }
+  EXPECT_EQ(solved, 12U);
 }
 
 TEST(Solve, ContradictingHardConstraintsAreInfeasible) {

@@ -253,6 +253,24 @@ TEST(Lp, WhatIsInNoFormatIsToldAll) {
 
 constexpr const char* kHeader = "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset,priority\n";
 
+TEST(Lp, AnswersCarryTheNamesThatCsvGivesToProblems) {
+  const Workplace here;
+  here.write("p.csv",
+             "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset\n"
+             "slow,2,2,0,-1,0,-0.5\nfree,,0,1,,,\n");
+  here.write("a.csv", "vx,vy\n0.4,0\n0,1\n");
+  for (const std::string how : {"lp p.csv --json", "lp p.csv --json --check a.csv"}) {
+    std::istringstream lines(here.run(how).out);
+    for (const std::string expected : {"slow", "free"}) {
+      std::string line;
+      ASSERT_TRUE(std::getline(lines, line));
+      EXPECT_EQ(json::parse(line).at("name"), expected) << how;
+    }
+  }
+  EXPECT_THAT(here.run("lp p.csv").out, AllOf(HasSubstr("    slow "), HasSubstr("    free ")));
+  EXPECT_THAT(here.run("lp p.csv --check a.csv").out, AllOf(HasSubstr("    slow "), HasSubstr("    free ")));
+}
+
 TEST(Lp, ATableIsTheSameProblemsAsLinesOfJson) {
   const Workplace here;
   here.write("p.csv", std::string(kHeader) + "a,2,2,0,-1,0,-0.5,soft\n\na,2,2,0,0,1,0.25,hard\nb,,0,1,,,,\n");

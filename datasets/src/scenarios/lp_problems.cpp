@@ -137,7 +137,7 @@ class Table {
  public:
   Table(const std::string& bytes, const std::string& file) : rows_(bytes, file) {}
 
-  std::vector<lp::Problem> read() {
+  std::vector<lp::Problem> read(std::vector<std::string>* names) {
     rows_.read_header({"problem", "disc", "preferred_x", "preferred_y", "normal_x", "normal_y", "offset", "priority"},
                       7,
                       "a header with the columns problem, disc, preferred_x, preferred_y, normal_x, normal_y, offset "
@@ -147,6 +147,7 @@ class Table {
       if (problems.empty() || field("problem") != number_) {
         number_ = field("problem");
         problems.push_back(whole());
+        if (names) names->push_back(number_);
       } else {
         require_same(problems.back());
       }
@@ -260,9 +261,11 @@ DataError neither_format(const std::string& bytes, const std::string& file) {
 
 }  // namespace
 
-std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name) {
+std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name,
+                                           std::vector<std::string>* names) {
+  if (names) names->clear();
   if (looks_like_lines(bytes)) return read_lines(bytes, file_name);
-  if (looks_like_a_table(bytes)) return Table(bytes, file_name).read();
+  if (looks_like_a_table(bytes)) return Table(bytes, file_name).read(names);
   if (holds_its_count(bytes)) return read_binary(bytes, file_name);
   throw neither_format(bytes, file_name);
 }

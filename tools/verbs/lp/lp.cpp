@@ -69,14 +69,30 @@ Json certificate_json(const lp::Certificate& c) {
   return out;
 }
 
+/// What CSV calls the problems; the other formats have numbers only.
+class ProblemNames {
+ public:
+  std::vector<std::string>& all() { return names_; }
+  Json line(std::size_t index) const {
+    Json out = {{"index", index}};
+    if (index < names_.size()) out["name"] = names_[index];
+    return out;
+  }
+  std::string in_table(std::size_t index) const {
+    return index < names_.size() ? names_[index] : std::to_string(index);
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
 /// One result as a line of JSON; numbers read back to the same doubles.
-Json result_line(std::size_t index, const lp::Proven& answer) {
+Json result_line(Json out, const lp::Proven& answer) {
   const lp::Solution& s = answer.solution;
-  Json out = {{"index", index},
-              {"status", name(s.status)},
-              {"velocity", {unsigned_zero(s.velocity.x), unsigned_zero(s.velocity.y)}},
-              {"violation", s.violation},
-              {"active", Json::array()}};
+  out["status"] = name(s.status);
+  out["velocity"] = {unsigned_zero(s.velocity.x), unsigned_zero(s.velocity.y)};
+  out["violation"] = s.violation;
+  out["active"] = Json::array();
   for (std::size_t k = 0; k < s.active_count; ++k) out["active"].push_back(name_of(s.active[k].binding));
   out["multipliers"] = Json::array();
   for (std::size_t k = 0; k < s.active_count; ++k) out["multipliers"].push_back(s.active[k].multiplier);
@@ -150,13 +166,13 @@ std::string proof_words(const lp::Proven& answer, bool is_proven, bool is_asked_
   return is_asked_for ? "NOT proven" : "";
 }
 
-void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
+void print_table(const std::vector<lp::Proven>& answers, const ProblemNames& names, const Summary& s) {
   ChunkedOutput out;
   out.add(fmt::format("{:>8} {:<11}{:>22}{:>24}{:>12}  {}\n", "problem", "status", "v_x [m/s]", "v_y [m/s]",
                       "violation", "certificate"));
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const lp::Solution& a = answers[k].solution;
-    out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status),
+    out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", names.in_table(k), name(a.status),
                         unsigned_zero(a.velocity.x), unsigned_zero(a.velocity.y), a.violation,
                         proof_words(answers[k], s.is_proven[k], s.unproven.has_value())));
   }
@@ -169,9 +185,9 @@ void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
   out.flush();
 }
 
-void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary) {
+void print_lines(const std::vector<lp::Proven>& answers, const ProblemNames& names, const Summary& summary) {
   ChunkedOutput out;
-  for (std::size_t k = 0; k < answers.size(); ++k) out.add(result_line(k, answers[k]).dump() + "\n");
+  for (std::size_t k = 0; k < answers.size(); ++k) out.add(result_line(names.line(k), answers[k]).dump() + "\n");
   out.add(summary_json(summary).dump() + "\n");
   out.flush();
 }
@@ -182,15 +198,15 @@ Json null_or(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json judged_line(std::size_t index, const JudgedAnswer& j) {
-  return {{"index", index},
-          {"verdict", name(j.verdict)},
-          {"right", j.is_right()},
-          {"status", name(j.truth)},
-          {"best", {unsigned_zero(j.best.x), unsigned_zero(j.best.y)}},
-          {"violation", null_or(j.violation)},
-          {"excess", null_or(j.excess)},
-          {"certified_gap", null_or(j.certified_gap)}};
+Json judged_line(Json out, const JudgedAnswer& j) {
+  out["verdict"] = name(j.verdict);
+  out["right"] = j.is_right();
+  out["status"] = name(j.truth);
+  out["best"] = {unsigned_zero(j.best.x), unsigned_zero(j.best.y)};
+  out["violation"] = null_or(j.violation);
+  out["excess"] = null_or(j.excess);
+  out["certified_gap"] = null_or(j.certified_gap);
+  return out;
 }
 
 struct JudgedSummary {
@@ -211,9 +227,9 @@ JudgedSummary summary_of(const std::vector<JudgedAnswer>& all) {
   return s;
 }
 
-void print_judged_lines(const std::vector<JudgedAnswer>& all, const JudgedSummary& s) {
+void print_judged_lines(const std::vector<JudgedAnswer>& all, const ProblemNames& names, const JudgedSummary& s) {
   ChunkedOutput out;
-  for (std::size_t k = 0; k < all.size(); ++k) out.add(judged_line(k, all[k]).dump() + "\n");
+  for (std::size_t k = 0; k < all.size(); ++k) out.add(judged_line(names.line(k), all[k]).dump() + "\n");
   Json fields = {{"problems", all.size()}, {"right", s.right}, {"wrong", all.size() - s.right}};
   for (std::size_t k = 0; k < s.by_verdict.size(); ++k) fields[name(static_cast<LpVerdict>(k))] = s.by_verdict[k];
   fields["certified"] = s.certified;
@@ -223,14 +239,14 @@ void print_judged_lines(const std::vector<JudgedAnswer>& all, const JudgedSummar
   out.flush();
 }
 
-void print_judged_table(const std::vector<JudgedAnswer>& all, const JudgedSummary& s) {
+void print_judged_table(const std::vector<JudgedAnswer>& all, const ProblemNames& names, const JudgedSummary& s) {
   const auto cell = [](const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; };
   ChunkedOutput out;
   out.add(fmt::format("{:>8} {:<19}{:<12}{:>12}{:>12}{:>14}\n", "problem", "verdict", "is", "violation", "excess",
                       "proven within"));
   for (std::size_t k = 0; k < all.size(); ++k)
-    out.add(fmt::format("{:>8} {:<19}{:<12}{:>12}{:>12}{:>14}\n", k, name(all[k].verdict), name(all[k].truth),
-                        cell(all[k].violation), cell(all[k].excess), cell(all[k].certified_gap)));
+    out.add(fmt::format("{:>8} {:<19}{:<12}{:>12}{:>12}{:>14}\n", names.in_table(k), name(all[k].verdict),
+                        name(all[k].truth), cell(all[k].violation), cell(all[k].excess), cell(all[k].certified_gap)));
   std::string counts;
   for (std::size_t k = 0; k < s.by_verdict.size(); ++k)
     if (s.by_verdict[k] > 0) counts += fmt::format(", {} {}", s.by_verdict[k], name(static_cast<LpVerdict>(k)));
@@ -240,7 +256,7 @@ void print_judged_table(const std::vector<JudgedAnswer>& all, const JudgedSummar
   out.flush();
 }
 
-ExitCode check_answers(const std::vector<lp::Problem>& problems, const LpFlags& flags) {
+ExitCode check_answers(const std::vector<lp::Problem>& problems, const ProblemNames& names, const LpFlags& flags) {
   const std::vector<std::optional<GivenAnswer>> answers = read_lp_answers(flags.answers, problems.size());
   std::vector<JudgedAnswer> all;
   for (std::size_t k = 0; k < problems.size(); ++k) {
@@ -248,7 +264,7 @@ ExitCode check_answers(const std::vector<lp::Problem>& problems, const LpFlags& 
     all.push_back(judge(problems[k], answers[k], flags.tolerance));
   }
   const JudgedSummary s = summary_of(all);
-  flags.json ? print_judged_lines(all, s) : print_judged_table(all, s);
+  flags.json ? print_judged_lines(all, names, s) : print_judged_table(all, names, s);
   return s.right == all.size() ? ExitCode::success : ExitCode::negative;
 }
 
@@ -311,17 +327,19 @@ Json json_of(const lp::Problem& problem) {
   return json;
 }
 
-void for_each_problem(const std::string& file, const std::function<void(lp::Problem)>& take) {
+void for_each_problem(const std::string& file, std::vector<std::string>& names,
+                      const std::function<void(lp::Problem)>& take) {
   if (const auto recording = recording_meant(file)) return for_each_decision(*recording, take);
   for (lp::Problem& problem :
-       datasets::parse_lp_problems(datasets::read_file_or_input(file), datasets::name_of_input(file)))
+       datasets::parse_lp_problems(datasets::read_file_or_input(file), datasets::name_of_input(file), &names))
     take(std::move(problem));
 }
 
 ExitCode write_problems(const LpFlags& flags) {
   datasets::AtomicFile out(flags.out);
   std::size_t count = 0;
-  for_each_problem(flags.file, [&](const lp::Problem& problem) {
+  std::vector<std::string> names;
+  for_each_problem(flags.file, names, [&](const lp::Problem& problem) {
     out.write(json_of(problem).dump() + "\n");
     ++count;
   });
@@ -354,8 +372,9 @@ ExitCode solve_or_check(const LpFlags& flags) {
   check_option_conflicts(flags);
   if (!flags.out.empty()) return write_problems(flags);
   std::vector<lp::Problem> problems;
-  for_each_problem(flags.file, [&](lp::Problem problem) { problems.push_back(std::move(problem)); });
-  if (!flags.answers.empty()) return check_answers(problems, flags);
+  ProblemNames names;
+  for_each_problem(flags.file, names.all(), [&](lp::Problem problem) { problems.push_back(std::move(problem)); });
+  if (!flags.answers.empty()) return check_answers(problems, names, flags);
   lp::Solving solving(solver, problems);
   const double before = thread_nanoseconds();
   solving.solve();
@@ -366,9 +385,9 @@ ExitCode solve_or_check(const LpFlags& flags) {
   Summary summary = summarise(problems, answers, asks_for_proofs(solver, flags));
   summary.ns_per_solve = problems.empty() ? 0.0 : spent / static_cast<double>(problems.size());
   if (flags.json)
-    print_lines(answers, summary);
+    print_lines(answers, names, summary);
   else
-    print_table(answers, summary);
+    print_table(answers, names, summary);
   if (summary.unproven.value_or(0) == 0) return ExitCode::success;
   message(
       fmt::format("warning: answers without a proof: {} of {}; their multipliers leave the range of doubles, or no "

@@ -149,87 +149,108 @@ class Kernel {
   double shortest_ = kInfinity, longest_ = 0.0;  ///< of the normals that give
 };
 
-/// Where the objective would like to be on the line q + s d: at the foot of `preferred`, or at one of its ends.
-double wish_on(Vec2 d, double squared_length, const Problem& problem) {
-  const double along = dot(problem.preferred, d);
-  if (problem.objective == Objective::nearest) return along / squared_length;
-  return along == 0.0 ? 0.0 : std::copysign(kInfinity, along);
-}
-
 /// A line that binds, moved inward.
 struct BindingLine {
   Vec2 normal;
-  double offset = 0.0, squared_length = 1.0;
+  double offset, squared_length;
 };
-
-BindingLine binding_line(const Problem& problem, Binding binding, double slack) {
-  const HalfPlane h = half_plane_at(problem, binding);
-  const double inward = is_speed_bound(binding) ? 0.0 : slack * (std::abs(h.normal.x) + std::abs(h.normal.y));
-  return {h.normal, h.offset + inward, squared_norm(h.normal)};
-}
 
 /// The optimum as what binds gives it, one or two lines and the disc, whichever way a search found them.
 class Vertex {
  public:
   Vertex(const Problem& problem, double slack_units)
       : problem_(problem),
+        largest_(largest_speed(problem)),
         disc_(problem.bound.disc * (1.0 - 0.5 * slack_units * kInwardSlack)),
-        slack_(slack_units * kInwardSlack * largest_speed(problem)) {}
+        slack_(slack_units * kInwardSlack * largest_) {}
 
-  /// Nothing where they do not meet. The line that is violated less at the optimum of the disc alone becomes the
-  /// first, so that the velocity does not depend on the search.
-  std::optional<Vec2> of(Solution& s) const {
-    if (s.active_count == 0) return problem_.preferred;
-    if (s.active[0].binding == kDisc) std::swap(s.active[0], s.active[s.active_count - 1]);
-    if (s.active[0].binding == kDisc) return disc_ * normalized(problem_.preferred);
-    const BindingLine first = binding_line(problem_, s.active[0].binding, slack_);
-    if (s.active_count == 1 || s.active[1].binding == kDisc) return on(first, nullptr);
-    const BindingLine second = binding_line(problem_, s.active[1].binding, slack_);
-    if (!enters_later(s.active[0].binding, first, s.active[1].binding, second)) {
-      std::swap(s.active[0], s.active[1]);
-      return on(second, &first);
-    }
-    return on(first, &second);
+  BindingLine line(const Binding& binding, const HalfPlane& h) const {
+    const double inward = is_speed_bound(binding) ? 0.0 : slack_ * (std::abs(h.normal.x) + std::abs(h.normal.y));
+    return {h.normal, h.offset + inward, squared_norm(h.normal)};
+  }
+
+  /// The optimum of the disc alone.
+  Vec2 on_disc() const { return disc_ * normalized(problem_.preferred); }
+
+  /// The line that is violated less at the optimum of the disc alone is followed, so that the velocity does not depend
+  /// on the search.
+  bool enters_later(const BindingLine& a, const BindingLine& b, const Binding& name_a, const Binding& name_b) const {
+    const bool starts_on_disc = problem_.objective == Objective::farthest || !(norm(problem_.preferred) <= disc_);
+    const double radius = std::isfinite(disc_) ? disc_ : 2.0 * largest_;
+    const Vec2 start = starts_on_disc ? radius * normalized(problem_.preferred) : problem_.preferred;
+    const double by_a = a.offset - dot(a.normal, start), by_b = b.offset - dot(b.normal, start);
+    if (by_a != by_b) return by_a < by_b;
+    return std::pair(name_a.kind, name_a.index) > std::pair(name_b.kind, name_b.index);
+  }
+
+  /// False where it does not meet the disc; of two, where what binds does not meet.
+  bool of_one(const BindingLine& line, Vec2& v) const {
+    double low = -kInfinity, high = kInfinity;
+    return cut_by_disc(line, low, high) && best_between(line, foot_of(line), low, high, v);
+  }
+
+  bool of_two(const BindingLine& line, const BindingLine& other, Vec2& v) const {
+    double low = -kInfinity, high = kInfinity;
+    if (!cut_by_disc(line, low, high)) return false;
+    const Vec2 foot = foot_of(line);
+    const double slope = dot(other.normal, perp(line.normal)), where = (other.offset - dot(other.normal, foot)) / slope;
+    if (slope > 0.0) low = std::max(low, where);
+    if (slope < 0.0) high = std::min(high, where);
+    return best_between(line, foot, low, high, v);
   }
 
  private:
-  bool enters_later(Binding a, const BindingLine& line_a, Binding b, const BindingLine& line_b) const {
-    const bool starts_on_disc = problem_.objective == Objective::farthest || !(norm(problem_.preferred) <= disc_);
-    const double radius = std::isfinite(disc_) ? disc_ : 2.0 * largest_speed(problem_);
-    const Vec2 start = starts_on_disc ? radius * normalized(problem_.preferred) : problem_.preferred;
-    const double by_a = line_a.offset - dot(line_a.normal, start), by_b = line_b.offset - dot(line_b.normal, start);
-    if (by_a != by_b) return by_a < by_b;
-    return std::pair(a.kind, a.index) > std::pair(b.kind, b.index);
+  static Vec2 foot_of(const BindingLine& line) { return (line.offset / line.squared_length) * line.normal; }
+
+  bool cut_by_disc(const BindingLine& line, double& low, double& high) const {
+    if (!std::isfinite(disc_)) return true;
+    const double room = disc_ * disc_ - line.offset * line.offset / line.squared_length;
+    if (room < 0.0 && line.offset > 0.0) return false;
+    if (room >= 0.0) high = std::sqrt(room / line.squared_length), low = -high;
+    return true;
   }
 
-  std::optional<Vec2> on(const BindingLine& line, const BindingLine* other) const {
-    const Vec2 q = (line.offset / line.squared_length) * line.normal, d = perp(line.normal);
-    double low = -kInfinity, high = kInfinity;
-    if (std::isfinite(disc_)) {
-      const double room = disc_ * disc_ - line.offset * line.offset / line.squared_length;
-      if (room < 0.0 && line.offset > 0.0) return std::nullopt;
-      if (room >= 0.0) high = std::sqrt(room / line.squared_length), low = -high;
-    }
-    if (other) {
-      const double slope = dot(other->normal, d), where = (other->offset - dot(other->normal, q)) / slope;
-      if (slope > 0.0) low = std::max(low, where);
-      if (slope < 0.0) high = std::min(high, where);
-    }
-    if (!(low <= high)) return std::nullopt;
-    const double s = std::min(std::max(wish_on(d, line.squared_length, problem_), low), high);
-    return q + s * d;
+  bool best_between(const BindingLine& line, Vec2 foot, double low, double high, Vec2& v) const {
+    if (!(low <= high)) return false;
+    v = foot + std::min(std::max(wish_on(line), low), high) * perp(line.normal);
+    return true;
+  }
+
+  /// Where the objective would like to be on foot + s perp(normal): at the foot of `preferred`, or at one of its ends.
+  double wish_on(const BindingLine& line) const {
+    const double along = dot(problem_.preferred, perp(line.normal));
+    if (problem_.objective == Objective::nearest) return along / line.squared_length;
+    return along == 0.0 ? 0.0 : std::copysign(kInfinity, along);
   }
 
   const Problem& problem_;
-  double disc_, slack_;
+  double largest_, disc_, slack_;
 };
+
+/// The vertex of what binds; the line that is followed becomes the first. `half_plane` of a binding.
+template <class HalfPlanes>
+bool find_vertex(const Vertex& vertex, const HalfPlanes& half_plane, Vec2 preferred, Solution& s, Vec2& v) {
+  v = preferred;
+  if (s.active_count == 0) return true;
+  if (s.active[0].binding == kDisc) std::swap(s.active[0], s.active[s.active_count - 1]);
+  v = vertex.on_disc();
+  const Binding &a = s.active[0].binding, &b = s.active[1].binding;
+  if (a == kDisc) return true;
+  const BindingLine first = vertex.line(a, half_plane(a));
+  if (s.active_count == 1 || b == kDisc) return vertex.of_one(first, v);
+  const BindingLine second = vertex.line(b, half_plane(b));
+  if (vertex.enters_later(first, second, a, b)) return vertex.of_two(first, second, v);
+  std::swap(s.active[0], s.active[1]);
+  return vertex.of_two(second, first, v);
+}
 
 /// The optimum that holds, with as little slack as does; the kernel's own where what binds shows none.
 void set_velocity(const Problem& problem, Solution& s) {
+  const auto half_plane = [&](const Binding& binding) { return half_plane_at(problem, binding); };
   for (const double slack : kSlacks) {
-    const std::optional<Vec2> v = Vertex(problem, slack).of(s);
-    if (!v || !is_finite(*v)) continue;
-    const Vec2 inside = into_box(*v, problem.bound);
+    Vec2 v;
+    if (!find_vertex(Vertex(problem, slack), half_plane, problem.preferred, s, v) || !is_finite(v)) continue;
+    const Vec2 inside = into_box(v, problem.bound);
     if (!holds(problem, Status::optimal, inside)) continue;
     s.velocity = inside;
     return;
@@ -249,6 +270,77 @@ bool leaves_a_stretch(const Problem& problem, const Solution& s) {
       if (dot(ua, ub) < 0.0 && std::abs(cross(ua, ub)) <= kOpposite) return true;
     }
   return false;
+}
+
+/// A problem as most are: a disc, the nearest velocity, unit normals, hard constraints first. The kernel takes its
+/// numbers as they are, and what is proven of the copy is proven of the problem.
+class PlainProblem {
+ public:
+  /// False where it is not plain, or not well-formed. Then it must not be used.
+  bool copy(const Problem& problem) {
+    const SpeedBound& b = problem.bound;
+    problem_ = {x_, y_, offset_, problem.constraints.size(), 0, problem.preferred, b.disc};
+    return problem_.count <= kMostCopied && problem.objective == Objective::nearest && is_finite(problem.preferred) &&
+           b.disc > 0.0 && b.disc < kInfinity && b.box_x == kInfinity && b.box_y == kInfinity &&
+           copy_unit_lines(problem.constraints.data(), problem_.count, {x_, y_, offset_}, problem_.hard);
+  }
+
+  /// The optimum that what binds gives, with its multipliers; false where they give none, or where it may be the
+  /// preferred velocity but for rounding.
+  bool set_optimum(const Problem& problem, Solution& s) const {
+    constexpr double kNear = 64.0 * kUnitRoundoff;
+    const auto half_plane = [&](const Binding& binding) {
+      return HalfPlane{{x_[binding.index], y_[binding.index]}, offset_[binding.index]};
+    };
+    Vec2 v;
+    if (!find_vertex(Vertex(problem, kSlacks[0]), half_plane, problem.preferred, s, v)) return false;
+    if (squared_norm(v - problem_.preferred) <= kNear * problem_.disc * (kNear * problem_.disc)) return false;
+    s.velocity = v;
+    if (!set_both_multipliers(s)) set_multipliers(problem, s);
+    return true;
+  }
+
+  /// As `leaves_a_stretch`, for normals of about unit length; true in some more cases.
+  bool may_leave_a_stretch(const Solution& s) const {
+    constexpr double kOpposite = 0x1p-39;
+    for (std::size_t i = 0; i < s.active_count; ++i)
+      for (std::size_t j = i + 1; j < s.active_count; ++j) {
+        if (s.active[i].binding == kDisc || s.active[j].binding == kDisc) continue;
+        const Vec2 a = normal(s.active[i]), b = normal(s.active[j]);
+        if ((dot(a, b) < 0.0) & (std::abs(cross(a, b)) <= kOpposite)) return true;
+      }
+    return false;
+  }
+
+  const SingleProblem& arrays() const { return problem_; }
+
+ private:
+  Vec2 normal(const ActiveConstraint& a) const { return {x_[a.binding.index], y_[a.binding.index]}; }
+
+  /// As set_multipliers does where two bind, which is the usual case; false elsewhere.
+  bool set_both_multipliers(Solution& s) const {
+    const Vec2 v = s.velocity, pull = v - problem_.preferred;
+    if (s.active_count != 2 || problem_.disc > kMostUsual || problem_.disc < 1.0 / kMostUsual) return false;
+    const Vec2 a = normal(s.active[0]), b = s.active[1].binding == kDisc ? -v : normal(s.active[1]);
+    const double turn = cross(a, b), of_a = cross(pull, b) / turn, of_b = cross(a, pull) / turn;
+    s.active[0].multiplier = of_a;
+    s.active[1].multiplier = of_b;
+    return of_a > 0.0 && of_b > 0.0 && of_a < kInfinity && of_b < kInfinity;
+  }
+
+  static constexpr double kMostUsual = 0x1p100;
+
+  double x_[kMostCopied + kSinglePadding], y_[kMostCopied + kSinglePadding], offset_[kMostCopied + kSinglePadding];
+  SingleProblem problem_;
+};
+
+/// A proven answer with the bits of `find_candidate`; false where it takes more to find or to prove it.
+bool solve_plainly(const Problem& problem, Solution& s) {
+  PlainProblem plain;
+  if (!plain.copy(problem) || !run_kernel(plain.arrays(), s)) return false;
+  if (s.status != Status::optimal) return !plain.may_leave_a_stretch(s) && prove_in_arrays(plain.arrays(), s);
+  if (s.active_count > 0 && !plain.set_optimum(problem, s)) return false;
+  return prove_in_arrays(plain.arrays(), s);
 }
 
 }  // namespace
@@ -293,6 +385,7 @@ SolveMemory& memory_of_thread() {
 }
 
 bool solve(const Problem& problem, SolveMemory& memory, Solution& answer) {
+  if (solve_plainly(problem, answer)) return true;
   require_well_formed(problem);
   return find_candidate(problem, memory, answer) && is_proven_by_multipliers(problem, answer);
 }

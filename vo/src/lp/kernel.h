@@ -25,4 +25,19 @@ std::optional<Vec2> optimum_inside(const Problem& problem, double slack_units);
 /// False where the kernel cannot settle the problem; `solve` of solve.h says what it takes.
 bool run_kernel(const SingleProblem& problem, Solution& answer);
 
+/// So many lines `copy_unit_lines` takes.
+inline constexpr std::size_t kMostCopied = 64;
+
+/// Where it writes them; each with room for kMostCopied.
+struct CopiedLines {
+  double *x, *y, *offset;
+};
+
+/// Copies the half-planes in registers, which are read as registers next. False, with anything written, unless their
+/// normals are of unit length (kUnitLength), offsets finite and hard ones first, of which `hard` is the number.
+bool copy_unit_lines(const Constraint* constraints, std::size_t count, CopiedLines to, std::size_t& hard);
+
+/// Whether the solution's own multipliers prove it (lanes/single_proof.h). Sets the violation of a relaxed answer.
+bool prove_in_arrays(const SingleProblem& problem, Solution& answer);
+
 }  // namespace exactvo::lp

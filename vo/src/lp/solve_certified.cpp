@@ -2,7 +2,6 @@
 // Answers with their proofs (certificate.h): by exact arithmetic, or by multipliers in doubles where these do.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -138,7 +137,10 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   return answer;
 }
 
-Proven solve_exact_in_range(const Problem& problem) {
+}  // namespace
+
+Proven solve_exact(const Problem& problem) {
+  require_well_formed(problem);
   const ExactRegion region = exact_region(problem);
   const Aim aim = aim_of(problem);
   const ExactOptimum best = exact_best(region, aim);
@@ -157,50 +159,7 @@ Proven solve_exact_in_range(const Problem& problem) {
   return rounded_inward(problem, Status::infeasible, soft, soft, least, contradiction);
 }
 
-/// Of the longest normal. 0 without constraints.
-int exponent_of_normals(const Problem& problem) {
-  double longest = 0.0;
-  for (const Constraint& c : problem.constraints)
-    longest = std::max({longest, std::abs(c.half_plane.normal.x), std::abs(c.half_plane.normal.y)});
-  return longest > 0.0 ? std::ilogb(longest) : 0;
-}
-
-/// Up to here the squares and products of normals and offsets are far inside the range of doubles.
-constexpr int kPlainExponent = 100;
-
-/// Every constraint multiplied by 2^-exponent; nothing where that would round.
-std::optional<Problem> scaled(Problem problem, int exponent) {
-  bool is_exact = true;
-  const auto scale = [&](double& x) {
-    const double before = x;
-    x = std::ldexp(x, -exponent);
-    is_exact = is_exact && std::ldexp(x, exponent) == before;
-  };
-  for (Constraint& c : problem.constraints) {
-    scale(c.half_plane.normal.x);
-    scale(c.half_plane.normal.y);
-    scale(c.half_plane.offset);
-  }
-  return is_exact ? std::optional<Problem>(std::move(problem)) : std::nullopt;
-}
-
-/// The answer to `problem` of the one to `scaled` of it; without a certificate where numbers leave the range of double.
-Proven scaled_back(const Problem& problem, Proven answer, int exponent) {
-  for (ActiveConstraint& a : answer.solution.active)
-    if (!is_speed_bound(a.binding))
-      a.multiplier = std::min(std::ldexp(a.multiplier, -exponent), std::numeric_limits<double>::max());
-  answer.solution.violation = std::ldexp(answer.solution.violation, exponent);
-  if (!answer.certificate) return answer;
-  Certificate& c = *answer.certificate;
-  for (std::vector<Term>* terms : {&c.bound, &c.contradiction})
-    for (Term& term : *terms)
-      for (double& part : term.multiplier)
-        if (!is_speed_bound(term.binding)) part = std::ldexp(part, -exponent);
-  c.violation = std::ldexp(c.violation, exponent);
-  if (c.status != Status::optimal) c.gap = std::ldexp(c.gap, exponent);
-  if (check(problem, c) != CertificateError::none) answer.certificate.reset();
-  return answer;
-}
+namespace {
 
 /// The proof of a solution, which then has its multipliers.
 std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, Solution& solution) {
@@ -211,14 +170,6 @@ std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, So
 }
 
 }  // namespace
-
-Proven solve_exact(const Problem& problem) {
-  require_well_formed(problem);
-  const int exponent = exponent_of_normals(problem);
-  if (std::abs(exponent) <= kPlainExponent) return solve_exact_in_range(problem);
-  const std::optional<Problem> in_range = scaled(problem, exponent);
-  return in_range ? scaled_back(problem, solve_exact_in_range(*in_range), exponent) : solve_exact_in_range(problem);
-}
 
 Proven solve_certified(const Problem& problem) {
   require_well_formed(problem);

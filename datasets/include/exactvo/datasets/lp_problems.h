@@ -11,7 +11,6 @@
 /// coordinate unbounded. A line is held against
 /// the published schema, datasets/schema/lp.schema.json: an unknown key, a number beyond 1e90 and the like are refused
 /// with the line and the JSON pointer of what is wrong, as in scenarios.
-
 ///
 /// CSV has a row per half-plane, and a header with the columns problem, disc (may be empty), preferred_x, preferred_y,
 /// normal_x, normal_y, offset and, where wanted, priority, in any order. Rows with the same `problem` that follow each
@@ -26,8 +25,10 @@
 namespace exactvo::datasets {
 
 /// Blank lines are skipped. Throws DataError, E_FORMAT_UNKNOWN where the bytes are none of these, or nothing but blank;
-/// `file_name` is used in its words. Every problem returned passes lp::require_well_formed.
-std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name);
+/// `file_name` is used in its words. Every problem returned passes lp::require_well_formed. `names`, where given,
+/// becomes what CSV calls each of them; empty for the other formats, which have no names.
+std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name,
+                                           std::vector<std::string>* names = nullptr);
 
 /// The JSON Schema that a line is held against.
 const std::string& lp_schema();

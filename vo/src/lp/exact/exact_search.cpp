@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/geometry/infinity.h"
 #include "lp/exact/exact_abscissa.h"
 #include "lp/problem/region.h"
 
@@ -15,8 +14,6 @@ namespace {
 constexpr std::size_t kDiscPosition = static_cast<std::size_t>(-1);
 constexpr std::size_t kNoPosition = static_cast<std::size_t>(-2);
 
-using geometry::kInfinity;
-
 /// Two conversions of long numbers to double (2 u each: the leading words are truncated), a root, a product, a quotient
 /// and a sum: below 16 u of the terms.
 constexpr double kConversion = 16.0 * kUnitRoundoff;
@@ -24,32 +21,46 @@ constexpr double kConversion = 16.0 * kUnitRoundoff;
 /// Two products, a sum and a difference, twice (a soft line against the top one), below 8 u of the terms.
 constexpr double kPricing = 8.0 * kUnitRoundoff;
 
-/// Conversions are accurate while no number leaves the normal range, also when two of them are multiplied.
+/// What products of doubles may lose below the normal range is far less.
 constexpr double kLeast = 0x1p-500;
-constexpr double kMost = 0x1p500;
 
-bool ordinary(double x) {
-  return x == 0.0 || (std::abs(x) > kLeast && std::abs(x) < kMost);
+/// mantissa 2^exponent, the mantissa 0 or from 1/4 to 2 and the exponent even: for numbers beyond the doubles too.
+struct WideDouble {
+  double mantissa = 0.0;
+  int exponent = 0;
+};
+
+/// A product of some coordinates of normals and offsets leaves the doubles long before these do.
+WideDouble wide(Exact x) {
+  if (sign_of(x) == 0) return {};
+  constexpr int kStep = 512;
+  WideDouble w{x.to_double(), 0};
+  const auto scale = [&](double by, int exponent) {
+    x = x * Exact(by);
+    w = {x.to_double(), w.exponent + exponent};
+  };
+  while (!(std::abs(w.mantissa) < 1.0 / kLeast)) scale(0x1p-512, kStep);
+  while (!(std::abs(w.mantissa) > kLeast)) scale(0x1p512, -kStep);
+  int exponent = 0;
+  w.mantissa = std::frexp(w.mantissa, &exponent);
+  const int odd = exponent % 2;
+  return {std::ldexp(w.mantissa, odd), w.exponent + exponent - odd};
 }
 
-/// A coordinate (a + b sqrt(d)) / w in double, its error added to `error`.
-double rounded_coordinate(const Exact& a, const Exact& b, double root, double w, double& error) {
-  const double first = a.to_double();
-  const double second = b.to_double();
-  if (!ordinary(first) || !ordinary(second)) error = kInfinity;
-  const double x = first / w;
-  const double y = second * root / w;
+/// A coordinate (a + b root) / w in double, its error added to `error`.
+double rounded_coordinate(const WideDouble& a, const WideDouble& b, const WideDouble& root, const WideDouble& w,
+                          double& error) {
+  const double x = std::ldexp(a.mantissa / w.mantissa, a.exponent - w.exponent);
+  const double y = std::ldexp(b.mantissa * root.mantissa / w.mantissa, b.exponent + root.exponent - w.exponent);
   error += kConversion * (std::abs(x) + std::abs(y));
   return x + y;
 }
 
 void round_point(ExactOptimum& o) {
-  const double w = o.point.w.to_double();
-  const double d = o.point.d.to_double();
-  o.error = ordinary(w) && ordinary(d) ? 0.0 : kInfinity;
-  const double root = d > 0.0 ? std::sqrt(d) : 0.0;
-  o.rounded.x = rounded_coordinate(o.point.x0, o.point.x1, root, w, o.error);
-  o.rounded.y = rounded_coordinate(o.point.y0, o.point.y1, root, w, o.error);
+  const WideDouble w = wide(o.point.w), d = wide(o.point.d), root = {std::sqrt(d.mantissa), d.exponent / 2};
+  o.error = 0.0;
+  o.rounded.x = rounded_coordinate(wide(o.point.x0), wide(o.point.x1), root, w, o.error);
+  o.rounded.y = rounded_coordinate(wide(o.point.y0), wide(o.point.y1), root, w, o.error);
 }
 
 /// The same direction by a power of two, of a length near 1, so that doubles follow the search: exact, or as it was.

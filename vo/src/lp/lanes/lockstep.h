@@ -42,7 +42,7 @@ class Lockstep {
         rare_(memory, in.lines),
         stage_(memory + Pool<D>::numbers(in.lines)),
         packs_(packs_under_way<D>(in.lines)),
-        asks_beyond_(3 * in.lines * kLanes * sizeof(T) >= kFarBytes && in.block < in.count) {}
+        asks_beyond_(in.lines >= kFarLines && in.block < in.count) {}
 
   BatchCounts run(std::size_t first, std::size_t last) {
     std::size_t at = first;

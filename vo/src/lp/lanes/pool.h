@@ -28,12 +28,13 @@ std::size_t packs_under_way(std::size_t lines) {
   return std::min(kPacks, (kLinesUnderWay + pack - 1) / pack);
 }
 
-/// With packs of so many bytes of lines the next group does not come from memory in time: blocks beyond it are asked
-/// for too, into the second cache, in the order in which they lie. Fifty lines out of a set of 39 MB on an AMD EPYC,
-/// AVX2, ns a problem in double and float: 193 and 105 without, 173 and 88 with; twenty lines, 2 KiB: no change.
-inline constexpr std::size_t kFarBytes = 3072;
+/// With packs of so many lines the next group does not come from memory in time: blocks beyond it are asked for too,
+/// into the second cache, in the order in which they lie. On an AMD EPYC, AVX2, ns a problem in double and float: fifty
+/// lines out of a set of 39 MB 193 and 105 without, 173 and 88 with; twenty lines, 16 MB, 98 and 52 without, 94 and 50
+/// with.
+inline constexpr std::size_t kFarLines = 16;
 
-/// How many blocks beyond the next group; with one, 175 and 91 ns of the above.
+/// How many blocks beyond the next group; with one, fifty lines take 175 and 91 ns.
 inline constexpr std::size_t kBlocksBeyond = 3;
 
 template <class D>

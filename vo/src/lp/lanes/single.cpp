@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -10,7 +11,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/lanes/layout.h"
-#include "lp/problem/exact_sign.h"
+#include "lp/problem/region.h"
 #include "lp/proof/multipliers.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,8 +19,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "lp/lanes/pack_proof.h"
 #include "lp/lanes/relaxation.h"
+#include "lp/lanes/single_proof.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
@@ -29,20 +30,6 @@ namespace exactvo::lp::HWY_NAMESPACE {
 constexpr std::size_t kFewLines = 12;
 using FewLines = hn::CappedTag<double, 4>;
 using ManyLines = hn::CappedTag<double, kSinglePadding>;
-
-struct Line {
-  double x = 0.0, y = 0.0, c = -1.0;
-  std::ptrdiff_t index = -1;
-  bool exists() const { return index >= 0; }
-};
-
-HWY_INLINE double cross(const Line& a, const Line& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-HWY_INLINE Line given(const SingleProblem& p, std::ptrdiff_t line) {
-  return {p.normal_x[line], p.normal_y[line], p.offset[line], line};
-}
 
 /// What the searches allow for rounding (layout.h).
 struct Allowance {
@@ -56,42 +43,88 @@ struct Allowance {
 
 /// Every lane of a register.
 struct Every {};
-template <class M>
-HWY_INLINE M among(Every, M m) {
-  return m;
+
+/// `v` in those lanes, else 0 or `other`.
+template <class D, class V>
+HWY_INLINE V only(D, Every, V v) {
+  return v;
 }
-template <class M>
-HWY_INLINE M among(M lines, M m) {
-  return hn::And(lines, m);
+template <class D, class V>
+HWY_INLINE V only(D, hn::Mask<D> lines, V v) {
+  return hn::IfThenElseZero(lines, v);
 }
+template <class D, class V>
+HWY_INLINE V only(D, Every, V v, V) {
+  return v;
+}
+template <class D, class V>
+HWY_INLINE V only(D, hn::Mask<D> lines, V v, V other) {
+  return hn::IfThenElse(lines, v, other);
+}
+
+/// How many lines there may be: where few are known to be, loops over them are unrolled.
+struct AnyCount {};
+template <std::size_t kLeast, std::size_t kMost>
+struct CountBetween {};
+using UpTo8 = CountBetween<1, 8>;  // arrays of no line may be null
+using UpTo12 = CountBetween<9, 12>;
 
 /// `what(k, lines)` for the lines from k on, a register full; of the last one only lanes in the mask are lines.
 template <class D, class What>
-HWY_INLINE void for_registers(D d, std::size_t count, What what) {
+HWY_INLINE void for_registers(D d, AnyCount, std::size_t count, What what) {
   std::size_t k = 0;
   for (; k + hn::Lanes(d) <= count; k += hn::Lanes(d)) what(k, Every());
   if (k < count) what(k, hn::FirstN(d, count - k));
+}
+template <class D, std::size_t kLeast, std::size_t kMost, class What>
+HWY_INLINE void for_registers(D d, CountBetween<kLeast, kMost>, std::size_t count, What what) {
+#pragma GCC unroll 8
+  for (std::size_t k = 0; k < kMost; k += hn::MaxLanes(D())) {
+    if (k + hn::MaxLanes(D()) <= kLeast)
+      what(k, Every());
+    else
+      what(k, hn::FirstN(d, std::max(count, k) - k));
+  }
 }
 
 /// The number of a line stands in so many last digits of its violation; 2^16 of them leave it 36.
 constexpr std::size_t kMostNumbered = std::size_t{1} << 16U;
 
-/// The line violated most, if by more than `allowed`, or -1. Each carries its number in its last digits, so that one
+/// What a line may be violated by: all lines the same, or hard lines, which come first, less than soft ones.
+struct AllAlike {
+  double allowed;
+  template <class D>
+  HWY_INLINE hn::Vec<D> of(D d, hn::Vec<hn::RebindToUnsigned<D>>) const {
+    return hn::Set(d, allowed);
+  }
+};
+struct HardLess {
+  double soft, hard;
+  std::size_t hard_count;
+  template <class D>
+  HWY_INLINE hn::Vec<D> of(D d, hn::Vec<hn::RebindToUnsigned<D>> number) const {
+    const hn::RebindToUnsigned<D> bits;
+    const auto is_hard = hn::RebindMask(d, hn::Lt(number, hn::Set(bits, std::uint64_t{hard_count})));
+    return hn::IfThenElse(is_hard, hn::Set(d, hard), hn::Set(d, soft));
+  }
+};
+
+/// The line violated most beyond what it may be, or -1. Each carries its number in its last digits, so that one
 /// maximum finds both; among violations that differ by less, the later line is taken.
-template <class D>
-HWY_INLINE std::ptrdiff_t most_violated(D d, const SingleProblem& p, double x, double y, double allowed) {
+template <class D, class Count, class Allowed>
+HWY_INLINE std::ptrdiff_t most_violated(D d, Count lines_at_most, const SingleProblem& p, double x, double y,
+                                        const Allowed& allowed) {
   using V = hn::Vec<D>;
   const hn::RebindToUnsigned<D> bits;
-  const V vx = hn::Set(d, x), vy = hn::Set(d, y), enough = hn::Set(d, allowed);
+  const V vx = hn::Set(d, x), vy = hn::Set(d, y);
   const double nothing = std::numeric_limits<double>::min();
   V most = hn::Set(d, nothing);
   auto number = hn::Iota(bits, 0);
-  for_registers(d, p.count, [&](std::size_t k, auto lines) {
+  for_registers(d, lines_at_most, p.count, [&](std::size_t k, auto lines) {
     const V along = hn::Add(hn::Mul(hn::LoadU(d, p.normal_x + k), vx), hn::Mul(hn::LoadU(d, p.normal_y + k), vy));
-    const V by = hn::Sub(hn::Sub(hn::LoadU(d, p.offset + k), along), enough);
+    const V by = hn::Sub(hn::Sub(hn::LoadU(d, p.offset + k), along), allowed.of(d, number));
     const auto digits = hn::And(hn::BitCast(bits, by), hn::Set(bits, ~std::uint64_t{kMostNumbered - 1}));
-    const V numbered = hn::BitCast(d, hn::Or(digits, number));
-    most = hn::IfThenElse(among(lines, hn::Gt(numbered, most)), numbered, most);
+    most = hn::Max(most, only(d, lines, hn::BitCast(d, hn::Or(digits, number))));
     number = hn::Add(number, hn::Set(bits, hn::Lanes(d)));
   });
   const double best = hn::GetLane(hn::MaxOfLanes(d, most));
@@ -158,10 +191,13 @@ class LoneSearch {
     return run(s);
   }
 
-  /// Whether the optimum or the least violation is proven (pack_proof.h).
-  bool is_proven() const {
-    const Proof<One> proof(pack_);
-    return hn::AllTrue(One(), relaxing_ ? proof.relaxation() : proof.optimum());
+  /// From a basis of three soft planes that surround 0, where `enters` takes the place of none.
+  bool relax_from(const Line& a, const Line& b, const Line& c, const Line& enters, Solution& s) {
+    pack_.first = in_lane(a);
+    pack_.second = in_lane(b);
+    pack_.third = in_lane(c);
+    pack_.entering = in_lane(enters);
+    return relax_any_basis(s);
   }
 
  private:
@@ -174,8 +210,8 @@ class LoneSearch {
       return any(pack_.violated);
     }
     const double noise = hn::GetLane(pack_.noise), slack = hn::GetLane(pack_.slack);
-    const double allowed = relaxing_ ? hn::GetLane(pack_.level) + noise : noise - slack;
-    const std::ptrdiff_t line = most_violated(D(), p_, hn::GetLane(pack_.vx), hn::GetLane(pack_.vy), allowed);
+    const AllAlike alike{relaxing_ ? hn::GetLane(pack_.level) + noise : noise - slack};
+    const std::ptrdiff_t line = most_violated(D(), AnyCount(), p_, hn::GetLane(pack_.vx), hn::GetLane(pack_.vy), alike);
     if (line < 0) return false;
     Line enters = given(p_, line);
     if (!relaxing_) enters.c += slack;
@@ -242,13 +278,48 @@ class LoneSearch {
   bool relaxing_ = false;
 };
 
+/// Without kApart all count as soft.
+template <class D, class Count, bool kApart>
+HWY_INLINE Worst worst_of(const SingleProblem& p, double x, double y) {
+  using V = hn::Vec<D>;
+  const D d;
+  const hn::RebindToUnsigned<D> bits;
+  const V vx = hn::Set(d, x), vy = hn::Set(d, y), low = hn::Set(d, -HUGE_VAL);
+  V soft = low, hard = low;
+  const auto by = [&](std::size_t k) HWY_ATTR {
+    const V along = hn::Add(hn::Mul(hn::LoadU(d, p.normal_x + k), vx), hn::Mul(hn::LoadU(d, p.normal_y + k), vy));
+    return hn::Sub(hn::LoadU(d, p.offset + k), along);
+  };
+  if (!kApart || p.hard == 0) {
+    for_registers(d, Count(), p.count,
+                  [&](std::size_t k, auto lines) { soft = hn::Max(soft, only(d, lines, by(k), low)); });
+    return {-HUGE_VAL, hn::GetLane(hn::MaxOfLanes(d, soft))};
+  }
+  auto number = hn::Iota(bits, 0);
+  for_registers(d, Count(), p.count, [&](std::size_t k, auto lines) {
+    const V excess = only(d, lines, by(k), low);
+    const auto is_hard = hn::RebindMask(d, hn::Lt(number, hn::Set(bits, std::uint64_t{p.hard})));
+    hard = hn::Max(hard, hn::IfThenElse(is_hard, excess, low));
+    soft = hn::Max(soft, hn::IfThenElse(is_hard, low, excess));
+    number = hn::Add(number, hn::Set(bits, hn::Lanes(d)));
+  });
+  return {hn::GetLane(hn::MaxOfLanes(d, hard)), hn::GetLane(hn::MaxOfLanes(d, soft))};
+}
+
+/// Whether the multipliers of a solution prove it. Sets its violation.
+template <class D>
+HWY_NOINLINE bool prove_in(const SingleProblem& p, Solution& s) {
+  const Worst worst = worst_of<D, AnyCount, true>(p, s.velocity.x, s.velocity.y);
+  if (s.status == Status::relaxed) s.violation = std::max(worst.soft, 0.0);
+  return SingleProof(p, s.velocity, worst).of(s);
+}
+
 /// One problem, its lines a register at a time. A problem alone is bound by latency, so chains are kept short: where
 /// the search goes to a vertex line by line, here all lines cut the boundary of one at once, and multipliers tell
 /// whether the optimum is found. What that does not settle is left to LoneSearch.
-template <class D, bool kProve>
+template <class D, class Count, bool kProve>
 class Slide : private Allowance {
   using V = hn::Vec<D>;
-  using M = hn::Mask<D>;
 
  public:
   explicit HWY_INLINE Slide(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
@@ -256,45 +327,39 @@ class Slide : private Allowance {
   /// False where the search has to tell, or the answer is not proven.
   HWY_INLINE bool run(Solution& s) const {
     const double px = p_.preferred.x, py = p_.preferred.y;
-    const std::ptrdiff_t line = most_violated(D(), p_, px, py, noise - slack);
-    if (line >= 0) return p_.count < kMostSlidLines && slide(given(p_, line), s);
+    const std::ptrdiff_t line = most_violated(D(), Count(), p_, px, py, AllAlike{noise - slack});
+    if (line >= 0) return p_.count <= kMostSlidLines && slide(line, s);
     if (!(px * px + py * py <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53))) return false;  // nearest on the disc
-    s.velocity = {px, py};
-    s.status = Status::optimal;
-    s.active = {};
-    s.active_count = 0;
-    s.violation = 0.0;
-    return true;
+    s = {{px, py}, Status::optimal, {}, 0, 0.0};
+    return !kProve || prove_in<D>(p_, s);
   }
 
  private:
   /// Boundaries followed before the search is tried: one in 4 of 5 recorded problems, more than three in 1 of 10^4.
   static constexpr int kMostSlides = 4;
 
-  /// A bit a line, the last of which says that there is none.
+  /// A bit a line.
   static constexpr std::size_t kMostSlidLines = 64;
 
-  /// What is left of the boundary of a line, in the unit of `step`, and what each line leaves of it to either side.
+  /// What is left of the boundary of a line, in the unit of `step`, and where each line cuts it off.
   struct Stretch {
-    HWY_ALIGN double lows[kMostSlidLines], highs[kMostSlidLines];
-    double low = -HUGE_VAL, high = HUGE_VAL;
-    std::size_t count;
-
-    /// The first of the lines that end it at the one side or the other, without a branch; -1 where none does.
-    HWY_INLINE std::ptrdiff_t line_at(bool at_low) const {
-      const D d;
-      const double* cuts = at_low ? lows : highs;
-      const V end = hn::Set(d, at_low ? low : high);
-      std::uint64_t found = 0;
-      for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-        std::uint8_t bits = 0;
-        hn::StoreMaskBits(d, hn::Eq(hn::Load(d, cuts + k), end), &bits);
-        found |= std::uint64_t{bits} << k;
-      }
-      const std::size_t line = hwy::Num0BitsBelowLS1Bit_Nonzero64(found | std::uint64_t{1} << (kMostSlidLines - 1));
-      return line < count ? static_cast<std::ptrdiff_t>(line) : -1;
-    }
+    HWY_ALIGN double cuts[kMostSlidLines];
+    double low, high;
   };
+
+  /// The first line that cuts it off there; -1 where none does.
+  HWY_INLINE std::ptrdiff_t line_at(const Stretch& left, double where) const {
+    const D d;
+    const V end = hn::Set(d, where);
+    std::uint64_t found = 0;
+    for_registers(d, Count(), p_.count, [&](std::size_t k, auto) HWY_ATTR {
+      std::uint8_t bits = 0;
+      hn::StoreMaskBits(d, hn::Eq(hn::Load(d, left.cuts + k), end), &bits);
+      found |= std::uint64_t{bits} << k;
+    });
+    if (found == 0) return -1;
+    return static_cast<std::ptrdiff_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(found));
+  }
 
   /// Lines that are all but the same must not cut each other off by a rounding: the others may give by half of what is
   /// called noise, which leaves them 20 u V inward. A cut is wrong by 8 u V / slope, where both offsets, their products
@@ -303,34 +368,31 @@ class Slide : private Allowance {
   HWY_INLINE void cut_by_all(const Line& line, double squared, Stretch& left) const {
     const D d;
     const V hx = hn::Set(d, line.x), hy = hn::Set(d, line.y), hc = hn::Set(d, line.c), square = hn::Set(d, squared);
-    const V inward = hn::Set(d, slack - 0.5 * noise), zero = hn::Zero(d), far = hn::Set(d, HUGE_VAL);
+    const V inward = hn::Set(d, slack - 0.5 * noise), far = hn::Set(d, HUGE_VAL), zero = hn::Zero(d);
     V low = hn::Neg(far), high = far;
-    for_registers(d, p_.count, [&](std::size_t k, auto lines) {
+    for_registers(d, Count(), p_.count, [&](std::size_t k, auto lines) {
       const V x = hn::LoadU(d, p_.normal_x + k), y = hn::LoadU(d, p_.normal_y + k);
       const V c = hn::Add(hn::LoadU(d, p_.offset + k), inward);
       const V slope = hn::Add(hn::Sub(hn::Mul(hx, y), hn::Mul(hy, x)), hn::Set(d, kParallel<double>));
       const V along = hn::Add(hn::Mul(hx, x), hn::Mul(hy, y));
-      const V cut = hn::Div(hn::Sub(hn::Mul(c, square), hn::Mul(along, hc)), slope);
-      const M raises = hn::Gt(slope, zero);
-      const V from = hn::IfThenElse(among(lines, raises), cut, hn::Neg(far));
-      const V to = hn::IfThenElse(among(lines, hn::Not(raises)), cut, far);
-      hn::Store(from, d, left.lows + k);
-      hn::Store(to, d, left.highs + k);
-      low = hn::Max(low, from);
-      high = hn::Min(high, to);
+      const V cut = only(d, lines, hn::Div(hn::Sub(hn::Mul(c, square), hn::Mul(along, hc)), slope), far);
+      const auto lowers = hn::Lt(only(d, lines, slope, hn::Neg(far)), zero);
+      hn::Store(cut, d, left.cuts + k);
+      low = hn::Max(low, hn::IfThenElse(lowers, hn::Neg(far), cut));
+      high = hn::Min(high, hn::IfThenElse(lowers, cut, far));
     });
     left.low = hn::GetLane(hn::MaxOfLanes(d, low));
     left.high = hn::GetLane(hn::MinOfLanes(d, high));
-    left.count = p_.count;
   }
 
   /// From the optimum on the boundary of one line to that on the next, downhill, until multipliers say that it is the
   /// optimum of all. False where the disc has a say, or where the boundary of the first line is cut off wholly and that
-  /// proves nothing.
-  HWY_INLINE bool slide(Line h, Solution& s) const {
+  /// proves nothing. Lines go by number: as a whole they would be copied from where they were just written, for which
+  /// a processor waits.
+  HWY_INLINE bool slide(std::ptrdiff_t line, Solution& s) const {
     Stretch left;
     for (int count = 0; count < kMostSlides; ++count) {
-      h.c += slack;
+      const Line h = with_slack(given(p_, line));
       const double squared = h.x * h.x + h.y * h.y, inverse = 1.0 / squared;
       cut_by_all(h, squared, left);
       const double room = disc_squared * squared - h.c * h.c;
@@ -338,133 +400,158 @@ class Slide : private Allowance {
       const double reach = std::sqrt(room), wish = h.x * p_.preferred.y - h.y * p_.preferred.x;
       const double low = std::max(left.low, -reach), high = std::min(left.high, reach);
       if (low > high) {
-        if (contradict(h, left)) return relax(h, left, s);
-        h = worse_end(left, low, high, wish);
-        if (!h.exists()) return false;
+        const std::ptrdiff_t at_low = line_at(left, left.low), at_high = line_at(left, left.high);
+        if (left.low > left.high && surround_zero(line, at_low, at_high)) return relax(line, at_low, at_high, s);
+        const bool low_is_worse = low - wish > wish - high;
+        const bool is_disc = low_is_worse ? low > left.low : high < left.high;
+        line = low_is_worse != is_disc ? at_low : at_high;
+        if (line < 0) return false;
         continue;
       }
       const double where = std::min(std::max(wish, low), high);
       const double x = (h.x * h.c - where * h.y) * inverse, y = (h.y * h.c + where * h.x) * inverse;
-      const bool at_low = where == low, at_disc = (at_low & (low > left.low)) | (!at_low & (high < left.high));
-      const std::ptrdiff_t end = at_disc ? -1 : left.line_at(at_low);
-      const Line g = end < 0 ? Line{-x, -y, 0.0, -1} : given(p_, end);
       const double pull_x = x - p_.preferred.x, pull_y = y - p_.preferred.y;
-      const double pull = pull_x * g.y - pull_y * g.x, turn = cross(h, g);
-      // Of h, and where only h binds: looked up, not branched on. Parallel boundaries (h is tangent to the disc) leave
-      // one point, or have no multipliers.
-      const double shares[2] = {pull * turn - static_cast<double>(turn == 0.0), 0.0};
-      if (shares[where == wish] >= 0.0) {
-        s.velocity = {x, y};
-        optimum(h.index, end, where != wish, s);
-        const double of_both[2] = {pull / turn, (h.x * pull_y - h.y * pull_x) / turn};
-        const double of_one = (h.x * pull_x + h.y * pull_y) * inverse;
-        s.active[0].multiplier = std::max(0.0, where == wish ? of_one : of_both[0]);
-        s.active[1].multiplier = where == wish ? 0.0 : std::max(0.0, of_both[1]);
-        return !kProve || (all_hold(x, y) && keeps_disc(x, y) && is_proven(h, g, x, y, s));
+      if (where == wish) {
+        const double share = std::max(0.0, (h.x * pull_x + h.y * pull_y) * inverse);
+        put(s, x, y, Status::optimal, 1, 0.0);
+        set(s.active[0], line, share);
+        set(s.active[1], 0, 0.0);
+        return !kProve || is_proven(h, share, Line(), 0.0, {x, y});
       }
-      if (end < 0) return false;
-      h = g;
+      const std::ptrdiff_t end = line_at(left, where), number = std::max<std::ptrdiff_t>(end, 0);
+      const bool at_disc = end < 0;
+      const double gx = at_disc ? -x : p_.normal_x[number], gy = at_disc ? -y : p_.normal_y[number];
+      // Parallel boundaries (h is tangent to the disc) leave one point, or have no multipliers.
+      const double pull = pull_x * gy - pull_y * gx, turn = h.x * gy - h.y * gx;
+      if (pull * turn >= 0.0 && turn != 0.0) {
+        const double of_h = std::max(0.0, pull / turn), of_g = std::max(0.0, (h.x * pull_y - h.y * pull_x) / turn);
+        put(s, x, y, Status::optimal, 2, 0.0);
+        set(s.active[0], line, of_h);
+        set(s.active[1], number, of_g);
+        if (at_disc) s.active[1].binding.kind = BindingKind::disc;
+        const double gc = at_disc ? -p_.disc * p_.disc : p_.offset[number];
+        return !kProve || is_proven(h, of_h, {gx, gy, gc, end}, of_g, {x, y});
+      }
+      if (at_disc) return false;
+      line = end;
     }
     return false;
   }
 
-  HWY_INLINE void optimum(std::ptrdiff_t line, std::ptrdiff_t end, bool binds, Solution& s) const {
-    s.status = Status::optimal;
-    const bool second_is_line = binds & (end >= 0);
-    s.active[0].binding = constraint_at(static_cast<std::size_t>(line));
-    s.active[1].binding.kind = binds & (end < 0) ? BindingKind::disc : BindingKind::constraint;
-    s.active[1].binding.index = static_cast<std::size_t>(end) & (std::size_t{0} - std::size_t{second_is_line});
-    s.active[2] = {};
-    s.active_count = 1 + std::size_t{binds};
-    s.violation = 0.0;
+  HWY_INLINE bool is_proven(Line h, double of_h, const Line& g, double of_g, Vec2 v) const {
+    h.c = p_.offset[h.index];
+    return SingleProof(p_, v, worst_of<D, Count, false>(p_, v.x, v.y)).optimum(h, of_h, g, of_g);
   }
 
-  /// Whether a line whose boundary two others cut off wholly excludes all that they leave: where normals surround 0.
-  /// Elsewhere all that they leave lies inside.
-  HWY_INLINE bool contradict(const Line& line, const Stretch& left) const {
-    if (!(left.low > left.high)) return false;
-    const Line low = given(p_, left.line_at(true)), high = given(p_, left.line_at(false));
-    return (cross(line, low) > 0.0) & (cross(low, high) > 0.0) & (cross(high, line) > 0.0);
+  /// Number by number, as lines.
+  static HWY_INLINE void put(Solution& s, double x, double y, Status status, std::size_t active, double violation) {
+    s.velocity.x = x;
+    s.velocity.y = y;
+    s.status = status;
+    s.violation = violation;
+    s.active_count = active;
+    set(s.active[2], 0, 0.0);
+  }
+  static HWY_INLINE void set(ActiveConstraint& a, std::ptrdiff_t line, double multiplier) {
+    a.binding.kind = BindingKind::constraint;
+    a.binding.index = static_cast<std::size_t>(line);
+    a.multiplier = multiplier;
   }
 
-  HWY_NOINLINE bool relax(const Line& line, const Stretch& left, Solution& s) const {
-    Line low = given(p_, left.line_at(true)), high = given(p_, left.line_at(false));
+  /// Whether normals surround 0, in this order: then a line whose boundary two others cut off wholly excludes all that
+  /// they leave. Elsewhere all that they leave lies inside.
+  HWY_INLINE bool surround_zero(std::ptrdiff_t line, std::ptrdiff_t low, std::ptrdiff_t high) const {
+    if (low < 0 || high < 0) return false;
+    const Line a = given(p_, line), b = given(p_, low), c = given(p_, high);
+    return (cross(a, b) > 0.0) & (cross(b, c) > 0.0) & (cross(c, a) > 0.0);
+  }
+
+  HWY_NOINLINE bool relax(std::ptrdiff_t line, std::ptrdiff_t low, std::ptrdiff_t high, Solution& s) const {
+    const auto hard = static_cast<std::ptrdiff_t>(p_.hard);
+    const Line a = given(p_, line), b = given(p_, low), c = given(p_, high);
+    if (hard == 0) return pivot(a, b, c, AllAlike{}, s);
+    if (line >= hard && low >= hard && high >= hard) return pivot(a, b, c, HardLess{0.0, noise - slack, p_.hard}, s);
+    return relax_beside_walls(a, b, c, s);
+  }
+
+  HWY_NOINLINE bool relax_beside_walls(Line line, Line low, Line high, Solution& s) const {
+    line.c += slack;
     low.c += slack;
     high.c += slack;
-    return p_.hard > 0 ? relax<true>(line, low, high, s) : relax<false>(line, low, high, s);
+    LoneSearch<D, true> search(p_);
+    return search.relax(line, low, high, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
   }
 
-  template <bool kHard>
-  HWY_INLINE bool relax(const Line& line, const Line& low, const Line& high, Solution& s) const {
-    LoneSearch<D, kHard> search(p_);
-    return search.relax(line, low, high, s) && ((!kProve && !search.is_on_disc()) || search.is_proven());
+  static HWY_INLINE void set_level(AllAlike& allowed, double level) { allowed.allowed = level; }
+  static HWY_INLINE void set_level(HardLess& allowed, double level) { allowed.soft = level; }
+
+  /// Three soft planes whose normals surround 0, counter-clockwise, as `pivot` of relaxation.h. The slack is put
+  /// on and taken off again as in a lane of a batch.
+  template <class Allowed>
+  HWY_INLINE bool pivot(Line a, Line b, Line c, Allowed allowed, Solution& s) const {
+    for (Line* line : {&a, &b, &c}) line->c = (line->c + slack) - slack;
+    Line enters = a, left = b, right = c;
+    for (int round = 0; round < kMostLockstepRounds; ++round) {
+      const double bx = enters.x - left.x, by = enters.y - left.y, bc = enters.c - left.c;
+      const double cx = enters.x - right.x, cy = enters.y - right.y, cc = enters.c - right.c;
+      const double inverse = 1.0 / (bx * cy - by * cx);
+      const double x = (bc * cy - by * cc) * inverse, y = (bx * cc - bc * cx) * inverse;
+      if (!(x * x + y * y <= disc_squared)) return relax_from(a, b, c, enters, s);
+      a = enters;
+      b = left;
+      c = right;
+      const double level = a.c - (a.x * x + a.y * y);
+      set_level(allowed, level + noise);
+      const std::ptrdiff_t line = most_violated(D(), Count(), p_, x, y, allowed);
+      if (line < 0) {
+        const double of_a = cross(b, c), of_b = cross(c, a), of_c = cross(a, b);
+        put(s, x, y, Status::relaxed, 3, std::max(level, 0.0));
+        set(s.active[0], a.index, of_a);
+        set(s.active[1], b.index, of_b);
+        set(s.active[2], c.index, of_c);
+        return !kProve || prove_in<D>(p_, s);
+      }
+      enters = given(p_, line);
+      if (line < static_cast<std::ptrdiff_t>(p_.hard)) return relax_from(a, b, c, with_slack(enters), s);
+      const double by_a = cross(enters, a), by_b = cross(enters, b), by_c = cross(enters, c);
+      double by_left = by_b, by_right = by_c;
+      if (!(by_b > 0.0) && by_a > 0.0) {
+        left = a;
+        right = b;
+        by_left = by_a;
+        by_right = by_b;
+      } else if (!(by_b > 0.0) || by_c > 0.0) {
+        left = c;
+        right = a;
+        by_left = by_c;
+        by_right = by_a;
+      }
+      if (!(by_left > 0.0 && by_right < 0.0)) return relax_from(a, b, c, enters, s);
+    }
+    return false;
   }
 
-  /// Whether every line holds by more than the rounding of its sum (exact_sign.h).
-  HWY_INLINE bool all_hold(double x, double y) const {
-    const D d;
-    const V vx = hn::Set(d, x), vy = hn::Set(d, y), share = hn::Set(d, kSignError), least = hn::Set(d, kSignUnderflow);
-    M doubtful = hn::MaskFromVec(hn::Zero(d));
-    for_registers(d, p_.count, [&](std::size_t k, auto lines) {
-      const V along = hn::Mul(hn::LoadU(d, p_.normal_x + k), vx), across = hn::Mul(hn::LoadU(d, p_.normal_y + k), vy);
-      const V c = hn::LoadU(d, p_.offset + k);
-      const V terms = hn::Add(hn::Add(hn::Abs(along), hn::Abs(across)), hn::Abs(c));
-      const V error = hn::Add(hn::Mul(share, terms), least);
-      doubtful = hn::Or(doubtful, among(lines, hn::Le(hn::Sub(hn::Add(along, across), c), error)));
-    });
-    return hn::AllFalse(d, doubtful);
+  HWY_INLINE Line with_slack(Line line) const {
+    line.c += slack;
+    return line;
   }
 
-  /// Whether the multipliers of two lines, the first with its slack, or of one and the disc prove (x, y) the optimum.
-  HWY_INLINE bool is_proven(const Line& h, const Line& g, double x, double y, const Solution& s) const {
-    if (s.active_count == 2 && !g.exists()) return is_proven_on_disc(h, x, y);
-    return gap_is_narrow(h, g, s.active[0].multiplier, s.active[1].multiplier, x, y);
-  }
-
-  HWY_INLINE bool keeps_disc(double x, double y) const {
-    return x * x + y * y <= p_.disc * p_.disc * (1.0 - 4 * 0x1p-53);  // a product and a sum, three units of each side
-  }
-
-  /// Inequality (4) of certificate.h, the disc out of it, in rounded arithmetic; its error as in pack_proof.h.
-  HWY_INLINE bool gap_is_narrow(const Line& h, const Line& g, double a, double b, double x, double y) const {
-    const double px = p_.preferred.x, py = p_.preferred.y, own = px * px + py * py, limit = p_.disc * p_.disc;
-    const double pull_x = x - px, pull_y = y - py;
-    const double gx = px + (a * h.x + b * g.x), gy = py + (a * h.y + b * g.y), pulled = gx * gx + gy * gy;
-    const double c = h.c - slack, offsets = a * c + b * g.c;
-    const double gap = (pull_x * pull_x + pull_y * pull_y) - ((own + (offsets + offsets)) - pulled);
-    const double spread = (std::fabs(px) + std::fabs(py)) + (a + b);
-    const double turned = ((std::fabs(gx) + std::fabs(gy)) + kSecondOrder * spread) * spread;
-    const double terms = (own + (pulled + turned)) + (limit + (a * std::fabs(c) + b * std::fabs(g.c)));
-    return a >= 0.0 && gap + kProofError * 0x1p-53 * terms <= kWidestGap * (limit + own);  // b is 0 or more
-  }
-
-  HWY_NOINLINE bool is_proven_on_disc(const Line& h, double x, double y) const {
-    const One d;
-    Pack<One> pack;
-    ask(p_, pack);
-    pack.vx = hn::Set(d, x);
-    pack.vy = hn::Set(d, y);
-    pack.level = hn::Zero(d);
-    pack.first = in_lane(h);
-    pack.second = pack.third = no_line(d);
-    return hn::AllTrue(d, Proof<One>(pack).optimum());
-  }
-
-  /// Which of the two lines to go on with: the one that cuts more off.
-  HWY_INLINE Line worse_end(const Stretch& left, double low, double high, double wish) const {
-    const bool at_low = low - wish > wish - high;
-    const bool at_disc = at_low ? low > left.low : high < left.high;
-    const std::ptrdiff_t end = left.line_at(at_low != at_disc);
-    return end < 0 ? Line() : given(p_, end);
+  HWY_NOINLINE bool relax_from(Line a, Line b, Line c, Line enters, Solution& s) const {
+    if (p_.hard > 0) {
+      LoneSearch<D, true> search(p_);
+      return search.relax_from(a, b, c, enters, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
+    }
+    LoneSearch<D, false> search(p_);
+    return search.relax_from(a, b, c, enters, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
   }
 
   const SingleProblem& p_;
 };
 
-template <class D, bool kProve, bool kHard>
-HWY_INLINE bool search_alone(const SingleProblem& p, Solution& s) {
+template <class D, bool kHard>
+HWY_NOINLINE bool search_alone(const SingleProblem& p, Solution& s) {
   LoneSearch<D, kHard> search(p);
-  return search.run(s) && (!kProve || search.is_proven());
+  return search.run(s);
 }
 
 /// Of the square of the disc: where it is preferred to go faster than that, the disc mostly binds alone or with a line,
@@ -472,18 +559,20 @@ HWY_INLINE bool search_alone(const SingleProblem& p, Solution& s) {
 constexpr double kFarthestSlid = 1.0625;
 
 /// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way.
-template <class D, bool kProve>
-HWY_INLINE bool run_in(const SingleProblem& p, Solution& s) {
+template <class D, class Count, bool kProve>
+HWY_NOINLINE bool run_in(const SingleProblem& p, Solution& s) {
   const double limit = p.disc * p.disc, squared = p.preferred.x * p.preferred.x + p.preferred.y * p.preferred.y;
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
-  if (squared <= limit * kFarthestSlid && Slide<D, kProve>(p).run(s)) return true;
-  return p.hard > 0 ? search_alone<D, kProve, true>(p, s) : search_alone<D, kProve, false>(p, s);
+  if (squared <= limit * kFarthestSlid && Slide<D, Count, kProve>(p).run(s)) return true;
+  if (!(p.hard > 0 ? search_alone<D, true>(p, s) : search_alone<D, false>(p, s))) return false;
+  return !kProve || prove_in<D>(p, s);
 }
 
 template <bool kProve>
 HWY_INLINE bool run(const SingleProblem& p, Solution& s) {
-  return p.count <= kFewLines ? run_in<FewLines, kProve>(p, s) : run_in<ManyLines, kProve>(p, s);
+  if (p.count == 0 || p.count > kFewLines) return run_in<ManyLines, AnyCount, kProve>(p, s);
+  return p.count > 8 ? run_in<FewLines, UpTo12, kProve>(p, s) : run_in<FewLines, UpTo8, kProve>(p, s);
 }
 
 bool run_single(const SingleProblem& p, Solution& s) {
@@ -494,6 +583,49 @@ bool run_single_proven(const SingleProblem& p, Solution& s) {
   return run<true>(p, s);
 }
 
+/// The numbers of a Constraint, of which the fourth holds its priority.
+static_assert(sizeof(Constraint) == 4 * sizeof(double) && offsetof(Constraint, priority) == 3 * sizeof(double) &&
+              static_cast<int>(Priority::soft) == 1);
+
+bool copy_lines(const Constraint* from, std::size_t count, CopiedLines to, std::size_t& hard) {
+  using V = hn::Vec<FewLines>;
+  const FewLines d;
+  const hn::RebindToUnsigned<FewLines> bits;
+  constexpr std::size_t kLanes = hn::MaxLanes(FewLines());
+  const V one = hn::Set(d, 1.0), unit = hn::Set(d, kUnitLength), far = hn::Set(d, HUGE_VAL);
+  auto bad = hn::MaskFromVec(hn::Zero(d));
+  std::uint64_t soft = 0;
+  const auto copy = [&](const Constraint* lines, std::size_t k) HWY_ATTR {
+    V x, y, offset, rest;
+    hn::LoadInterleaved4(d, reinterpret_cast<const double*>(lines), x, y, offset, rest);  // NOLINT: four numbers each
+    const V length = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+    const auto is_unit = hn::Le(hn::Abs(hn::Sub(length, one)), unit);
+    bad = hn::Or(bad, hn::Not(hn::And(is_unit, hn::Lt(hn::Abs(offset), far))));
+    hn::StoreU(x, d, to.x + k);
+    hn::StoreU(y, d, to.y + k);
+    hn::StoreU(offset, d, to.offset + k);
+    std::uint8_t of_four = 0;
+    hn::StoreMaskBits(bits, hn::TestBit(hn::BitCast(bits, rest), hn::Set(bits, std::uint64_t{1})), &of_four);
+    soft |= std::uint64_t{of_four} << k;
+  };
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes) copy(from + k, k);
+  if (k < count) {
+    Constraint last[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) last[lane] = from[std::min(k + lane, count - 1)];
+    copy(last, k);
+  }
+  if (!hn::AllFalse(d, bad)) return false;
+  const std::uint64_t all = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+  soft &= all;
+  hard = soft == 0 ? count : hwy::Num0BitsBelowLS1Bit_Nonzero64(soft);
+  return soft == 0 || soft == (all >> hard << hard);
+}
+
+bool prove_single(const SingleProblem& p, Solution& s) {
+  return p.count <= kFewLines ? prove_in<FewLines>(p, s) : prove_in<ManyLines>(p, s);
+}
+
 }  // namespace exactvo::lp::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -501,6 +633,8 @@ HWY_AFTER_NAMESPACE();
 namespace exactvo::lp {
 
 HWY_EXPORT(run_single);
+HWY_EXPORT(copy_lines);
+HWY_EXPORT(prove_single);
 HWY_EXPORT(run_single_proven);
 
 namespace {
@@ -534,8 +668,16 @@ bool run_kernel(const SingleProblem& problem, Solution& answer) {
   return HWY_DYNAMIC_DISPATCH(run_single)(problem, answer);
 }
 
+bool copy_unit_lines(const Constraint* constraints, std::size_t count, CopiedLines to, std::size_t& hard) {
+  return HWY_DYNAMIC_DISPATCH(copy_lines)(constraints, count, to, hard);
+}
+
+bool prove_in_arrays(const SingleProblem& problem, Solution& answer) {
+  return HWY_DYNAMIC_DISPATCH(prove_single)(problem, answer);
+}
+
 void solve(const SingleProblem& problem, Solution& answer) {
-  if (!run_kernel(problem, answer)) solve_copied(problem, answer);
+  if (!HWY_DYNAMIC_DISPATCH(run_single)(problem, answer)) solve_copied(problem, answer);
 }
 
 bool solve_certified(const SingleProblem& problem, Solution& answer) {
