@@ -219,6 +219,7 @@ let clear c =
       | None, Some b, None -> Checked.sweep (trip q a) (trip q b) separations
       | None, None, Some o -> Checked.sweep_past (trip q a) (obstacle q o) separations
       | Some _, None, Some o -> Checked.turn_past (drive q a) (obstacle q o) separations
+      | Some _, Some _, None -> raise (Not_covered "two bodies of which one turns")
       | _ -> raise Json.Bad in
     if proven then "valid" else "not proven"
   with Json.Bad -> "not a certificate" | Not_covered what -> "not covered: " ^ what

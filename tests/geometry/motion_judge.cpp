@@ -15,25 +15,18 @@ using geometry::Bounds;
 using geometry::Encounter;
 using geometry::MotionVerdict;
 
-const char* word(Encounter e) {
-  return e == Encounter::clear ? "clear" : e == Encounter::contact ? "contact" : "overlap";
-}
-
 /// What MotionVerdict promises, by the oracle.
 class Judgement {
  public:
   Judgement(const MotionCase& c, MotionCampaign& campaign) : case_(c), oracle_(c), campaign_(campaign) {}
 
   void operator()(bool bounds_too) {
-    ++campaign_.cases;
     geometry::reset_stage_counts();
     const Encounter found = encounter(case_);
     campaign_.by_filter += geometry::stage_counts().filter;
     campaign_.exactly += geometry::stage_counts().exact;
     const Encounter expected = oracle_.encounter();
-    ++(expected == Encounter::clear     ? campaign_.clear
-       : expected == Encounter::contact ? campaign_.contact
-                                        : campaign_.overlap);
+    campaign_.count(expected);
     if (case_.known && *case_.known != expected) wrong("the oracle says otherwise than the construction");
     if (found != expected) {
       wrong(std::string("expected ") + word(expected) + ", found " + word(found));
@@ -110,6 +103,15 @@ class Judgement {
 
 }  // namespace
 
+const char* word(Encounter e) {
+  return e == Encounter::clear ? "clear" : e == Encounter::contact ? "contact" : "overlap";
+}
+
+void MotionCampaign::count(Encounter expected) {
+  ++cases;
+  ++(expected == Encounter::clear ? clear : expected == Encounter::contact ? contact : overlap);
+}
+
 MotionCampaign& MotionCampaign::operator+=(const MotionCampaign& other) {
   cases += other.cases;
   clear += other.clear;
@@ -140,11 +142,8 @@ void judge_motion(const MotionCase& c, MotionCampaign& campaign, bool bounds_too
 }
 
 MotionCampaign judge_motions(MotionKind kind, std::size_t count, std::uint64_t seed, std::size_t bounds_of_each) {
-  SeededRandom random(seed);
-  MotionCampaign campaign;
-  for (std::size_t i = 0; i < count; ++i)
-    judge_motion(random_motion_case(random, kind), campaign, i % bounds_of_each == 0);
-  return campaign;
+  return judge_cases([&](SeededRandom& random) { return random_motion_case(random, kind); }, count, seed,
+                     bounds_of_each, &judge_motion);
 }
 
 }  // namespace exactvo::test

@@ -20,9 +20,24 @@ struct MotionCampaign {
   std::uint64_t by_filter = 0, exactly = 0;
   std::vector<std::string> failures;
 
+  /// Counts a case by what is expected.
+  void count(geometry::Encounter expected);
   MotionCampaign& operator+=(const MotionCampaign& other);
   std::string summary() const;
 };
+
+/// "clear", "contact", "overlap".
+const char* word(geometry::Encounter encounter);
+
+/// Judges `count` cases of a seed, one after the other; every `each`th in full.
+template <class Case, class Judge>
+MotionCampaign judge_cases(const Case& next_case, std::size_t count, std::uint64_t seed, std::size_t each,
+                           const Judge& judge) {
+  SeededRandom random(seed);
+  MotionCampaign campaign;
+  for (std::size_t i = 0; i < count; ++i) judge(next_case(random), campaign, i % each == 0);
+  return campaign;
+}
 
 /// The case's verdict, clearance and moments, or the verdict alone; what is wrong is added to the failures, with the
 /// case's line.

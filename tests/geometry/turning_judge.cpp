@@ -2,7 +2,8 @@
 #include "geometry/turning_judge.h"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 
 #include "exactvo/geometry/hull.h"
@@ -25,7 +26,9 @@ using geometry::Vec2;
 
 // --- The oracle ---
 
-using Precise = boost::multiprecision::cpp_bin_float_50;
+using Precise =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<50, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
 
 template <class Number>
 struct Far {
@@ -50,6 +53,18 @@ struct OraclePair {
   std::vector<Far<Number>> turning, standing;
   Number reach;
 };
+
+template <class Number>
+OraclePair<double> in_doubles(const OraclePair<Number>& pair) {
+  OraclePair<double> rounded;
+  const auto copy = [](const std::vector<Far<Number>>& from, std::vector<Far<double>>& to) {
+    for (const Far<Number>& p : from) to.push_back({static_cast<double>(p.x), static_cast<double>(p.y)});
+  };
+  copy(pair.turning, rounded.turning);
+  copy(pair.standing, rounded.standing);
+  rounded.reach = static_cast<double>(pair.reach);
+  return rounded;
+}
 
 template <class Number>
 std::vector<Far<Number>> turned(const std::vector<Far<Number>>& points, const Number& angle) {
@@ -133,9 +148,20 @@ Number least_gap(const OraclePair<Number>& pair, const Number& end) {
   std::sort(events.begin(), events.end());
   const std::size_t count = events.size();
   for (std::size_t k = 1; k < count; ++k) events.push_back((events[k - 1] + events[k]) / 2);
+  // In doubles first: a gap that is far from the least of them is not the least.
+  const OraclePair<double> rounded = in_doubles(pair);
+  std::vector<double> about;
+  double size = 0.0, nearest = 1e300;
+  for (const auto* set : {&rounded.turning, &rounded.standing})
+    for (const Far<double>& p : *set) size = std::max({size, std::fabs(p.x), std::fabs(p.y)});
+  for (const Number& angle : events) {
+    about.push_back(gap_of(turned(rounded.turning, static_cast<double>(angle)), rounded.standing, rounded.reach));
+    nearest = std::min(nearest, about.back());
+  }
   Number least = 1e300;
-  for (const Number& angle : events)
-    least = std::min<Number>(least, gap_of(turned(pair.turning, angle), pair.standing, pair.reach));
+  for (std::size_t k = 0; k < events.size(); ++k)
+    if (about[k] <= nearest + 1e-7 * size)
+      least = std::min<Number>(least, gap_of(turned(pair.turning, events[k]), pair.standing, pair.reach));
   return least;
 }
 
@@ -182,13 +208,6 @@ Encounter oracle(const TurningCase& c) {
 }
 
 // --- Cases ---
-
-std::vector<Vec2> random_hull(SeededRandom& random, int least, int most, double size) {
-  std::vector<Vec2> points;
-  const int n = random.integer(least, most);
-  for (int i = 0; i < n; ++i) points.push_back(random.in_box(size));
-  return geometry::convex_hull(points).vertices;
-}
 
 /// What stands there: a wall, a convex polygon or a disc, up to 3 m from a place.
 RoundedPolygon random_piece(SeededRandom& random, Vec2 at) {
@@ -311,6 +330,13 @@ std::string text_of(const RoundedPolygon& part) {
 
 }  // namespace
 
+std::vector<Vec2> random_hull(SeededRandom& random, int least, int most, double size) {
+  std::vector<Vec2> points;
+  const int n = random.integer(least, most);
+  for (int i = 0; i < n; ++i) points.push_back(random.in_box(size));
+  return geometry::convex_hull(points).vertices;
+}
+
 std::string line_of(const TurningCase& c) {
   const TurningMotion& m = c.motion;
   std::string text = "turning " + hex_text(m.start) + " " + hex_text(m.end) + " at " +
@@ -340,14 +366,8 @@ TurningCase random_turning_case(SeededRandom& random, TurningKind kind) {
 
 void judge_turning(const TurningCase& c, MotionCampaign& campaign, bool proof_too) {
   const auto wrong = [&](const std::string& text) { campaign.failures.push_back(text + ":\n" + line_of(c)); };
-  const auto word = [](Encounter e) {
-    return e == Encounter::clear ? "clear" : e == Encounter::contact ? "contact" : "overlap";
-  };
   const Encounter expected = oracle(c);
-  ++campaign.cases;
-  ++(expected == Encounter::clear     ? campaign.clear
-     : expected == Encounter::contact ? campaign.contact
-                                      : campaign.overlap);
+  campaign.count(expected);
   const auto judge = [&](const char* as, Encounter found) {
     if (found != expected) wrong(std::string(as) + ": expected " + word(expected) + ", found " + word(found));
   };
@@ -374,11 +394,8 @@ void judge_turning(const TurningCase& c, MotionCampaign& campaign, bool proof_to
 }
 
 MotionCampaign judge_turnings(TurningKind kind, std::size_t count, std::uint64_t seed, std::size_t proof_of_each) {
-  SeededRandom random(seed);
-  MotionCampaign campaign;
-  for (std::size_t i = 0; i < count; ++i)
-    judge_turning(random_turning_case(random, kind), campaign, i % proof_of_each == 0);
-  return campaign;
+  return judge_cases([&](SeededRandom& random) { return random_turning_case(random, kind); }, count, seed,
+                     proof_of_each, &judge_turning);
 }
 
 }  // namespace exactvo::test

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "exactvo/geometry/turning_motions.h"
 #include "geometry/motion_judge.h"
@@ -21,6 +22,9 @@ struct TurningCase {
   geometry::RigidBody body;
   geometry::RoundedPolygon piece;
 };
+
+/// The hull of so many points in a box of this half side.
+std::vector<geometry::Vec2> random_hull(SeededRandom& random, int least, int most, double size);
 
 /// All numbers, losslessly.
 std::string line_of(const TurningCase& c);

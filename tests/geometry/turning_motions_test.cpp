@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "geometry/turning_judge.h"
@@ -27,13 +26,6 @@ using geometry::RoundedPolygon;
 using geometry::TurningMotion;
 using geometry::Twist;
 using geometry::Vec2;
-
-std::vector<Vec2> random_hull(SeededRandom& random, int least, int most, double size) {
-  std::vector<Vec2> points;
-  const int n = random.integer(least, most);
-  for (int i = 0; i < n; ++i) points.push_back(random.in_box(size));
-  return geometry::convex_hull(points).vertices;
-}
 
 TEST(TurningMotions, DrivesAreJudgedRight) {
   const std::uint64_t seed = seed_of_run(101);

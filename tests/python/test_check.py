@@ -238,3 +238,19 @@ def test_rows_without_an_owner_are_refused():
     for nobody in (None, float("nan")):
         with pytest.raises(exactvo.ArgumentError, match="an id in every row"):
             exactvo.check(dict(columns, id=["a", "b", nobody, "b"]), radius=0.25)
+
+
+def test_footprints_that_turn_are_decided_between_rows():
+    box = np.array([(-0.5, -0.5), (1, -0.5), (1, 0.5), (-0.5, 0.5)])
+    turning = {"A": np.array([(0, 0, 0, 0), (1, 0, 0, 1.6)])}  # t, x, y, theta
+    wall = [exactvo.Wall([(-3, 1.08), (3, 1.08)])]  # beyond both poses, and within the swing of a corner
+    answer = exactvo.check(turning, footprint=box, map=wall)
+    assert answer.overlaps == 1 and not answer.clear and 0.3 < answer.events[0].first[0] < answer.events[0].last[1] < 1
+    assert exactvo.check(turning, footprint=box, map=wall, between="none").clear
+    with pytest.raises(exactvo.DataError, match="cubics"):
+        exactvo.check(turning, footprint=box, between="cubic")
+    # Two corners that meet tip to tip while both turn, to a rounding.
+    tips = np.array([(-3, 0), (0, -3), (3, 0), (0, 3)])
+    open_answer = exactvo.check({"A": [(0, 0, 0, -0.5), (1, 0, 0, 0.5)], "B": [(0, 6, 0, -0.5), (1, 6, 0, 0.5)]}, footprint=tips, near=0)
+    assert open_answer.overlaps == 0 and open_answer.open == 1 and not open_answer.clear
+    assert open_answer.events[0].kind == "close"

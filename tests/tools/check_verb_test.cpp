@@ -96,6 +96,25 @@ TEST(CheckVerb, CubicsBulgeBeyondTheirRowsAndSamplesAloneSeeNothing) {
   EXPECT_THAT(none.out, HasSubstr("only the rows count"));
 }
 
+// From (0, 0) to (1, 0) in 1 s with (0, 4) m/s at both ends: x = 3 s^2 - 2 s^3, y = 4 s - 12 s^2 + 8 s^3. The speed is
+// 4 at the ends and greatest there; the chord has 1 m/s. The acceleration is (6, -24) at the start.
+TEST(CheckVerb, SpeedsAndAccelerationsOfCubicsAreThoseOfTheCurve) {
+  const std::string rows = "t,id,x,y,vx,vy\n0,A,0,0,0,4\n1,A,1,0,0,4\n";
+  EXPECT_THAT(checked(rows, "--radius 0.1").out, HasSubstr("greatest speed: 1 m/s, A at 0 s, line 3\n"));
+  const Outcome cubic = checked(rows, "--radius 0.1 --between cubic");
+  EXPECT_THAT(cubic.out, AllOf(HasSubstr("greatest speed: 4 m/s, A at 0 s\n"),
+                               HasSubstr("greatest acceleration: 24.7386 m/s^2, A at 0 s\n")));
+  // At rest at both ends: 1.5 m/s half way.
+  const Outcome still = checked("t,id,x,y,vx,vy\n0,A,0,0,0,0\n1,A,1,0,0,0\n", "--radius 0.1 --between cubic");
+  EXPECT_THAT(still.out, HasSubstr("greatest speed: 1.5 m/s, A at 0.5 s\n"));
+}
+
+TEST(CheckVerb, ColumnsThatMayBeHeadingsAreNamedIfTheyAreNotRead) {
+  const Outcome outcome = checked("t,id,x,y,yaw_deg\n0,A,0,0,90\n1,A,1,0,90\n", "--radius 0.1");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("the column \"yaw_deg\" is not read"), HasSubstr("in radians")));
+  EXPECT_THAT(checked("t,id,x,y,theta,yaw_deg\n0,A,0,0,1,9\n", "--radius 0.1").err, Not(HasSubstr("not read")));
+}
+
 TEST(CheckVerb, CatmullRomTakesTheRowsBeforeAndAfter) {
   // Round a corner a spline goes outside of the rows: A overlaps a wall that its chords do not reach.
   const Workplace here;
@@ -254,14 +273,71 @@ TEST(CheckVerb, FootprintsKeepTheirHeading) {
   EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint " + long_body).status, 1);
   here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,0\n1,A,10,0,0\n");
   EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint " + long_body).status, 0);
+  const Outcome cubic = here.run("check t.csv --between cubic --map map.wkt --footprint " + long_body);
+  EXPECT_EQ(cubic.status, 0);
+  EXPECT_THAT(cubic.out, HasSubstr("which no agent changes"));
   here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,0\n1,A,10,0,0.1\n");
-  const Outcome turning = here.run("check t.csv --map map.wkt --footprint " + long_body);
+  const Outcome turning = here.run("check t.csv --between cubic --map map.wkt --footprint " + long_body);
   EXPECT_EQ(turning.status, 2);
   EXPECT_THAT(turning.err, AllOf(HasSubstr("line 3"), HasSubstr("turns"), HasSubstr("[E_RANGE]")));
   const Outcome disc = here.run("check t.csv --map map.wkt --radius 0.5");
   EXPECT_EQ(disc.status, 0);
   EXPECT_THAT(disc.out, HasSubstr("which have no heading"));
-  EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint 'LINESTRING (0 -1, 0 1)' --radius 0.1").status, 2);
+  EXPECT_EQ(here.run("check t.csv --map map.wkt --footprint 'LINESTRING (0 -1, 0 1)' --radius 0.1").status, 1);
+}
+
+// Both rows are clear; between them a corner of the one swings through the wall, and of the two into each other.
+constexpr const char* kTurning =
+    "t,id,x,y,theta\n0,A,0,0,0\n0,B,5,0,1.5\n0,C,6.7,0,1.6\n1,A,0,0,1.6\n1,B,5,0,-1.5\n1,C,6.7,0,4.6\n2,A,2,0,1.6\n";
+constexpr const char* kTurningBox = "--footprint 'POLYGON ((-0.5 -0.5, 1 -0.5, 1 0.5, -0.5 0.5))' --near 0.3";
+
+TEST(CheckVerb, FootprintsThatTurnAreDecidedBetweenRows) {
+  const Workplace here;
+  here.write("t.csv", kTurning);
+  here.write("map.wkt", "LINESTRING (-3 1.08, 3 1.08)\n");
+  const std::string ask = std::string("check t.csv --map map.wkt ") + kTurningBox;
+  EXPECT_EQ(here.run(ask + " --between none").status, 0);
+  EXPECT_EQ(here.run(ask + " --between hold").status, 0);
+  const Outcome outcome = here.run(ask + " --figure out/turning.svg --page out/turning.html");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("turns evenly from row to row, on the arc of a constant twist"),
+                                 HasSubstr("overlap: A and wall 1, from 0.5"), HasSubstr("overlap: B and C, from 0."),
+                                 HasSubstr("2 overlaps, 0 contacts, 0 jumps, 0 gaps\n")));
+  // The body is drawn as it is turned: the heading of A goes into the page.
+  EXPECT_THAT(here.read("out/turning.html"), HasSubstr("heading"));
+}
+
+TEST(CheckVerb, ProofsOfFootprintsThatTurnAreAcceptedAndChangedOnesRefused) {
+  const Workplace here;
+  here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,0\n0,B,5,0,1.5\n0,C,7,0,1.6\n1,A,0,0,1.6\n1,B,5,0,-1.5\n1,C,7,0,4.6\n");
+  here.write("map.wkt", "LINESTRING (-3 1.1, 3 1.1)\nPOLYGON ((8 1.5, 9 1.5, 9 2.5, 8 2.5))\n");
+  const std::string box = "--footprint 'POLYGON ((-0.3 -0.2, 0.9 -0.2, 0.9 0.2, -0.3 0.2))' --near 0.3";
+  const Outcome outcome = here.run("check t.csv --map map.wkt --certificates proofs.jsonl " + box);
+  ASSERT_EQ(outcome.status, 0) << outcome.out;
+  std::size_t turning = 0, of_two = 0, refused = 0;
+  for (const json& line : json_lines(here.read("proofs.jsonl"))) {
+    if (!line.contains("certificate") || line["certificate"].is_null() || !line["certificate"]["a"].contains("turn"))
+      continue;
+    ++turning;
+    of_two += line["certificate"].contains("b");
+    json changed = line;
+    changed["certificate"]["a"]["turn"] = 9.0;
+    here.write("changed.jsonl", changed.dump() + "\n");
+    refused += here.run("audit --certificate changed.jsonl").status == 1;
+  }
+  EXPECT_GE(turning, 2u);
+  EXPECT_GE(of_two, 1u);
+  EXPECT_GE(refused, 1u);
+  EXPECT_EQ(here.run("audit --certificate proofs.jsonl").status, 0);
+}
+
+TEST(CheckVerb, TipsThatMeetExactlyWhileBothTurnAreLeftOpen) {
+  // Both turn from -0.5 to 0.5 rad; at 0 two corners meet, to a rounding.
+  const Outcome outcome = checked("t,id,x,y,theta\n0,A,0,0,-0.5\n0,B,6,0,-0.5\n1,A,0,0,0.5\n1,B,6,0,0.5\n",
+                                  "--footprint 'POLYGON ((-3 0, 0 -3, 3 0, 0 3))' --near 0");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("close: A and B, at 0.5 s, nearer than "),
+                                 HasSubstr("whether they touch is open"), HasSubstr("0 overlaps, 0 contacts, 1 open")));
 }
 
 TEST(CheckVerb, PlansOfCellsLieOnTheirMap) {

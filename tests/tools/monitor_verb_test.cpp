@@ -163,6 +163,34 @@ TEST(MonitorVerb, ProofsOfNothingAreAcceptedByTheAudit) {
   EXPECT_EQ(here.run("audit --certificate other.jsonl").status, 2);
 }
 
+TEST(MonitorVerb, AShareThatEndsAtAWallIsProven) {
+  const Workplace here;
+  here.write("wall.wkt", kWall);
+  here.write("lines.jsonl", R"({"pose": [0, 0, 0], "velocity": [1.5, 0]})"
+                            "\n"
+                            R"({"pose": [0.2, 0, 0], "velocity": [1.5, 0], "turn": 1.1})"
+                            "\n");
+  const Outcome made = here.run("monitor lines.jsonl --map wall.wkt --radius 0.3 --certificates proofs.jsonl");
+  ASSERT_EQ(made.status, 0) << made.err;
+  for (const json& answer : lines_of(made.out)) EXPECT_LT(answer["share"], 1.0);
+  const std::vector<json> proofs = lines_of(here.read("proofs.jsonl"));
+  EXPECT_EQ(proofs.back()["summary"]["certificates"], 2);
+  EXPECT_EQ(proofs.back()["summary"]["without"], 0);
+  EXPECT_EQ(here.run("audit --certificate proofs.jsonl").status, 0);
+}
+
+TEST(MonitorVerb, KeysThatAreMistypedAreSaidWithWhatWasMeant) {
+  const std::vector<json> all =
+      answers(R"({"pose": [0, 0, 0], "velocty": [1, 0]})"
+              "\n"
+              R"({"pose": [0, 0, 0], "velocity": [1, 0], "movers": [{"positon": [5, 5], "radius": 1, "max_speed": 1}]})"
+              "\n",
+              1);
+  EXPECT_THAT(all.at(0)["error"]["expected"].get<std::string>(), HasSubstr("did you mean 'velocity'"));
+  EXPECT_EQ(all.at(0)["error"]["place"], "line 1, /velocty");
+  EXPECT_THAT(all.at(1)["error"]["expected"].get<std::string>(), HasSubstr("did you mean 'position'"));
+}
+
 TEST(MonitorVerb, CertificatesOfWhatIsClearAreAcceptedByTheAuditAndChangedOnesAreNot) {
   const Workplace here;
   here.write("wall.wkt", kWall + std::string("POLYGON ((-1 1, 0.2 1, 0.2 2, -1 2, -1 1))\n"));

@@ -121,31 +121,46 @@ Read certificate_in(const OrderedJson& json) {
   return read;
 }
 
-/// A body that drives and turns, and what stands still.
+/// A body that drives and turns.
 struct Turning {
-  MotionCertificate certificate;
   TurningMotion motion;
   RigidBody body;
-  geometry::Obstacle obstacle;
 };
 
 Turning turning_in(const OrderedJson& json) {
-  const OrderedJson& a = json.at("a");
-  const TimedPoint from = timed_in(a.at("from"));
-  return {{list_in(json.at("separations"), 0, separation_in)},
-          {from.time, a.at("until").get<double>(), from.at, {pair_in(a.at("velocity")), a.at("turn").get<double>()}},
-          list_in(a.at("body"), 1, part_in),
-          obstacle_in(json.at("obstacle"))};
+  const TimedPoint from = timed_in(json.at("from"));
+  return {{from.time,
+           json.at("until").get<double>(),
+           from.at,
+           {pair_in(json.at("velocity")), json.at("turn").get<double>()}},
+          list_in(json.at("body"), 1, part_in)};
 }
 
+/// Against another, or against an obstacle.
+struct ReadTurning {
+  MotionCertificate certificate;
+  Turning a;
+  std::optional<Turning> b;
+  std::optional<geometry::Obstacle> obstacle;
+};
+
 CheckedCertificate check_turning(const OrderedJson& certificate) {
-  const auto read = read_or_nothing([&] { return turning_in(certificate); });
+  const auto read = read_or_nothing([&] {
+    ReadTurning all{
+        {list_in(certificate.at("separations"), 0, separation_in)}, turning_in(certificate.at("a")), {}, {}};
+    require_readable(certificate.contains("b") != certificate.contains("obstacle"));
+    if (certificate.contains("b")) all.b = turning_in(certificate["b"]);
+    if (certificate.contains("obstacle")) all.obstacle = obstacle_in(certificate["obstacle"]);
+    return all;
+  });
   if (!read) return {"not a certificate", "", false};
-  const TurningMotion& m = read->motion;
+  const TurningMotion& m = read->a.motion;
   const std::string claim = fmt::format(
-      "clear of an obstacle, from ({:.6g}, {:.6g}) at {:.6g} s with ({:.6g}, {:.6g}) m/s, {:.6g} rad/s until {:.6g} s",
-      m.at.x, m.at.y, m.start, m.twist.velocity.x, m.twist.velocity.y, m.twist.turn, m.end);
-  const bool is_proven = proves_clear(read->certificate, m, read->body, read->obstacle);
+      "clear of {}, from ({:.6g}, {:.6g}) at {:.6g} s with ({:.6g}, {:.6g}) m/s, {:.6g} rad/s until {:.6g} s",
+      read->b ? "another body" : "an obstacle", m.at.x, m.at.y, m.start, m.twist.velocity.x, m.twist.velocity.y,
+      m.twist.turn, m.end);
+  const bool is_proven = read->b ? proves_clear(read->certificate, m, read->a.body, read->b->motion, read->b->body)
+                                 : proves_clear(read->certificate, m, read->a.body, *read->obstacle);
   return {is_proven ? "valid" : "not proven", claim, is_proven};
 }
 
@@ -168,6 +183,11 @@ OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInM
 OrderedJson certificate_json(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
                              const formation::SceneObstacle& obstacle) {
   return json_with(certificate, turning_json(motion, body), "obstacle", obstacle_json(obstacle));
+}
+
+OrderedJson certificate_json(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
+                             const TurningMotion& b, const RigidBody& body_b) {
+  return json_with(certificate, turning_json(a, body_a), "b", turning_json(b, body_b));
 }
 
 bool is_motion_certificate(const OrderedJson& certificate) {

@@ -3,9 +3,9 @@
 
 /// \file
 /// Certificates that moving bodies stay clear, as JSON: two bodies with their motions (straight: "from" and "to"; on a
-/// curve: "basis", "start", "end" and "points" of a geometry::CurvedMotion; turning, beside an obstacle: "from",
-/// "until", "velocity" and "turn" of a geometry::TurningMotion), or one and an obstacle, and the separations that prove
-/// it (geometry/motion_certificate.h). docs/guide/check.md has the format.
+/// curve: "basis", "start", "end" and "points" of a geometry::CurvedMotion; where one turns, both with "from", "until",
+/// "velocity" and "turn" of a geometry::TurningMotion), or one and an obstacle, and the separations that prove it
+/// (geometry/motion_certificate.h). docs/guide/check.md has the format.
 ///
 /// See also: certificates.h checks whole files.
 
@@ -33,6 +33,9 @@ OrderedJson certificate_json(const geometry::MotionCertificate& certificate, con
 /// Of a body that drives and turns.
 OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
                              const geometry::RigidBody& body, const formation::SceneObstacle& obstacle);
+OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& a,
+                             const geometry::RigidBody& body_a, const geometry::TurningMotion& b,
+                             const geometry::RigidBody& body_b);
 
 /// Whether an object claims to be one.
 bool is_motion_certificate(const OrderedJson& certificate);

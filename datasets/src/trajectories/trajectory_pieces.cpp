@@ -2,7 +2,10 @@
 #include "exactvo/datasets/trajectory_pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "exactvo/geometry/pi.h"
 
 namespace exactvo::datasets {
 
@@ -48,7 +51,7 @@ class CurveFeed {
   /// Hands on what begins before this time.
   void advance(double time) {
     for (; next_ < waiting_.size() && waiting_[next_].curve->start < time; ++next_)
-      take_(waiting_[next_].agent, *waiting_[next_].curve);
+      take_(waiting_[next_].agent, *waiting_[next_].curve, {});
   }
 
  private:
@@ -77,18 +80,24 @@ void for_each_piece(TrajectoryReader& reader, const TrajectorySurvey& survey, co
 }
 
 TrajectoryPieces::TrajectoryPieces(const std::vector<AgentSurvey>& agents, const Options& options, Take take)
-    : surveys_(agents), options_(options), take_(std::move(take)), agents_(agents.size()) {}
+    : surveys_(agents), options_(options), take_(std::move(take)), agents_(agents.size()) {
+  for (std::size_t k = 0; k < agents.size(); ++k)
+    if (!std::isnan(agents[k].heading)) agents_[k].heading = agents[k].heading;
+}
 
 void TrajectoryPieces::add(const TrajectoryRow& row) {
   Agent& agent = agents_[row.agent];
+  const double heading = std::isnan(row.heading) ? agent.heading : row.heading;
   if (options_.between == Between::none) {
     const TimedPoint here = point_of(row);
-    put(row.agent, StraightMotion{here, here});
+    agent.heading = heading;
+    put(row.agent, StraightMotion{here, here}, {heading, 0.0});
     return hand_on(row.time);
   }
   if (agent.is_open && row.time - agent.last.time > options_.longest_gap) close(row.agent);
-  if (agent.is_open) go_on(row.agent, row);
+  if (agent.is_open) go_on(row.agent, row, heading);
   agent.last = row;
+  agent.heading = heading;
   agent.is_open = true;
   if (++agent.rows == surveys_[row.agent].rows) {
     close(row.agent);
@@ -98,17 +107,17 @@ void TrajectoryPieces::add(const TrajectoryRow& row) {
   hand_on(row.time);
 }
 
-void TrajectoryPieces::go_on(std::size_t number, const TrajectoryRow& row) {
+void TrajectoryPieces::go_on(std::size_t number, const TrajectoryRow& row, double heading) {
   Agent& agent = agents_[number];
   const TimedPoint last = point_of(agent.last), here = point_of(row);
-  if (options_.between != Between::cubic) {
-    if (options_.between == Between::hold) return put(number, geometry::held(last, row.time));
-    return put(number, StraightMotion{last, here});
-  }
+  if (options_.between == Between::hold) return put(number, geometry::held(last, row.time), {agent.heading, 0.0});
+  if (options_.between != Between::cubic)
+    return put(number, StraightMotion{last, here},
+               {agent.heading, std::remainder(heading - agent.heading, 2.0 * geometry::kPi)});
   const TimedPoint before = agent.has_cubic ? agent.before.point : last;
   const Vec2 velocity = velocity_of(agent.last, geometry::catmull_rom_velocity(before, here));
   put_cubic(number, velocity);
-  agent.before = {last, velocity};
+  agent.before = {last, velocity, agent.heading};
   agent.has_cubic = true;
 }
 
@@ -116,15 +125,16 @@ void TrajectoryPieces::put_cubic(std::size_t number, Vec2 end_velocity) {
   Agent& agent = agents_[number];
   if (!agent.has_cubic) return;
   agent.has_cubic = false;
-  put(number, geometry::hermite_cubic(agent.before.point, agent.before.velocity, point_of(agent.last), end_velocity));
+  put(number, geometry::hermite_cubic(agent.before.point, agent.before.velocity, point_of(agent.last), end_velocity),
+      {agent.before.heading, 0.0});
 }
 
 void TrajectoryPieces::finish() {
   hand_on(std::numeric_limits<double>::infinity());
 }
 
-void TrajectoryPieces::put(std::size_t agent, const geometry::Motion& piece) {
-  waiting_.push({piece, start_of(piece), agent, count_++});
+void TrajectoryPieces::put(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
+  waiting_.push({piece, turned, start_of(piece), agent, count_++});
   agents_[agent].has_piece = true;
 }
 
@@ -133,7 +143,8 @@ void TrajectoryPieces::close(std::size_t number) {
   const TimedPoint last = point_of(agent.last);
   if (agent.has_cubic)
     put_cubic(number, velocity_of(agent.last, geometry::catmull_rom_velocity(agent.before.point, last)));
-  if (!agent.has_piece || options_.between == Between::hold) put(number, StraightMotion{last, last});
+  if (!agent.has_piece || options_.between == Between::hold)
+    put(number, StraightMotion{last, last}, {agent.heading, 0.0});
   agent.is_open = false;
   agent.has_piece = false;
 }
@@ -155,7 +166,7 @@ void TrajectoryPieces::hand_on(double now) {
   while (!waiting_.empty() && waiting_.top().begin <= earliest) {
     const Waiting next = waiting_.top();
     waiting_.pop();
-    take_(next.agent, next.piece);
+    take_(next.agent, next.piece, next.turned);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "exactvo/geometry/require.h"
 
@@ -14,6 +15,54 @@ constexpr double kBinsOfDoubling = 8.0;
 constexpr double kJumpShare = 0.95, kJumpTimes = 3.0;
 constexpr double kGapTimes = 1.5;
 constexpr std::uint64_t kLeastIntervals = 4;
+
+/// By time, in the same basis: a uniform B-spline's knots are as far apart as its piece is long. Rounded.
+geometry::CurvedMotion derivative(const geometry::CurvedMotion& curve) {
+  geometry::CurvedMotion d{curve.basis, curve.start, curve.end, {}};
+  const double length = curve.end - curve.start;
+  const auto degree = static_cast<double>(curve.points.size() - 1);
+  for (std::size_t k = 1; k < curve.points.size(); ++k) {
+    if (curve.basis == geometry::CurveBasis::powers)
+      d.points.push_back(static_cast<double>(k) * curve.points[k]);
+    else
+      d.points.push_back((curve.basis == geometry::CurveBasis::bezier ? degree : 1.0) / length *
+                         (curve.points[k] - curve.points[k - 1]));
+  }
+  if (d.points.empty()) d.points.emplace_back();
+  return d;
+}
+
+/// No vector on a curve is longer, up to rounding.
+double bound_of(const geometry::CurvedMotion& curve) {
+  double most = 0.0, sum = 0.0, power = 1.0;
+  for (const geometry::Vec2 p : curve.points) {
+    most = std::max(most, norm(p));
+    sum += norm(p) * power;
+    power *= curve.end - curve.start;
+  }
+  return curve.basis == geometry::CurveBasis::powers ? sum : most;
+}
+
+/// The longest vector on a curve: of samples, and from the longest on by golden section.
+Extreme longest_on(const geometry::CurvedMotion& curve) {
+  constexpr int kSamples = 32, kSteps = 40;
+  const double step = (curve.end - curve.start) / kSamples;
+  Extreme most{-1.0, curve.start, 0};
+  const auto length_at = [&](double time) {
+    const double length = norm(position_at(curve, time));
+    if (length > most.value) most = {length, time, 0};
+    return length;
+  };
+  for (int k = 0; k <= kSamples; ++k) length_at(k == kSamples ? curve.end : curve.start + k * step);
+  double low = std::max(curve.start, most.time - step), high = std::min(curve.end, most.time + step);
+  for (int k = 0; k < kSteps; ++k) {
+    constexpr double kGolden = 0.6180339887498949;
+    const double x = high - kGolden * (high - low), y = low + kGolden * (high - low);
+    const bool is_first = length_at(x) >= length_at(y);
+    (is_first ? high : low) = is_first ? y : x;
+  }
+  return most;
+}
 
 }  // namespace
 
@@ -83,6 +132,22 @@ void TrajectorySurvey::add(const TrajectoryRow& row) {
     if (acceleration > agent.acceleration.value) agent.acceleration = {acceleration, move.from.time, row.line};
   }
   pace = {velocity, interval};
+}
+
+void TrajectorySurvey::add(std::size_t number, const geometry::Motion& piece) {
+  const auto* curve = std::get_if<geometry::CurvedMotion>(&piece);
+  if (!curve || !(curve->start < curve->end)) return;
+  AgentSurvey& agent = agents_[number];
+  if (!paces_[number].on_curves) agent.speed = agent.acceleration = {};
+  paces_[number].on_curves = true;
+  const geometry::CurvedMotion velocity = derivative(*curve);
+  const auto look_at = [](const geometry::CurvedMotion& vectors, Extreme& most) {
+    if (bound_of(vectors) <= most.value) return;
+    const Extreme longest = longest_on(vectors);
+    if (longest.value > most.value) most = longest;
+  };
+  look_at(velocity, agent.speed);
+  look_at(derivative(velocity), agent.acceleration);
 }
 
 double TrajectorySurvey::usual_interval() const {

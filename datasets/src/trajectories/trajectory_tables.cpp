@@ -77,6 +77,9 @@ const std::array<std::vector<std::string>, kColumnKinds> kColumnNames{
      {"vx", "v_x", "vx_m_s", "vel_x", "velocity_x"},
      {"vy", "v_y", "vy_m_s", "vel_y", "velocity_y"}}};
 
+/// In names of columns that are no heading in radians, and may be meant as one.
+constexpr std::array<std::string_view, 6> kHeadingWords{"theta", "heading", "yaw", "angle", "orient", "bearing"};
+
 /// Where each column stands; a name of `kColumnNames` that comes twice counts the first time.
 Columns columns_in(const std::vector<std::string_view>& header) {
   Columns columns;
@@ -102,6 +105,21 @@ Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y
   columns[kXColumn] = x;
   columns[kYColumn] = y;
   return columns;
+}
+
+/// A name that may mean a heading, of a table that has none that is known: in another unit, or half a quaternion.
+void note_headings_left_out(const std::vector<std::string_view>& header, const Columns& columns, TrajectoryFile& file) {
+  if (columns[kHeadingColumn] != kNoColumn) return;
+  for (const std::string_view field : header) {
+    const std::string name = lower_case(std::string(field));
+    const bool is_like_one = std::any_of(kHeadingWords.begin(), kHeadingWords.end(),
+                                         [&](std::string_view word) { return name.find(word) != std::string::npos; });
+    if (!is_like_one && name != "psi" && name != "qz" && name != "rz") continue;
+    std::string known;
+    for (const std::string& one : kColumnNames[kHeadingColumn]) known += (known.empty() ? "" : ", ") + one;
+    file.notes.push_back("the column \"" + std::string(field) +
+                         "\" is not read as headings; those, in radians, are called " + known);
+  }
 }
 
 bool has_place_and_time(const Columns& c) {
@@ -205,6 +223,7 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
     if (!has_place_and_time(columns))
       out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60),
                  "a header with the columns t,id,x,y and, where there is one, theta");
+    note_headings_left_out(fields, columns, out.file());
     rows.emplace(columns, fields.size(), Ids::texts, out);
     rows->has_names = true;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exactvo/formation/monitor.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/infinity.h"
 #include "monitor/rounding.h"
 
@@ -22,8 +23,56 @@ namespace {
 
 /// While the robot brakes, its way is looked at in as many parts: in each, time is bounded by a chord.
 constexpr int kBrakingParts = 4;
+/// m, of kMonitorSlack: a way that ends before an obstacle leaves this much, room for the directions of a certificate.
+constexpr double kRoomAtTheEnd = 0.5 * kMonitorSlack;
 /// Of a way that is gone already: more than its displacement is rounded (turning.cpp: 16 u).
 constexpr double kOfWayGone = 0x1p-46;
+
+/// A box along the chord of a way that holds the footprint all the time. What is on one side of it stays clear, which
+/// costs next to nothing to see. Poses are taken at the ends of `kLooks` parts of the way; between them a corner leaves
+/// its chord by no more than it strays.
+class WayBox {
+ public:
+  /// `corners` of the footprint as the way begins; `reach`: of its parts, with what is to be kept.
+  WayBox(const geometry::Twist& twist, double duration, const std::vector<Vec2>& corners, double reach) {
+    const Vec2 chord = geometry::displacement_after(twist, duration).by;
+    if (norm(chord) > 0.0) ahead_ = chord / norm(chord);
+    double size = reach, stray = 0.0;
+    for (int k = 0; k <= kLooks; ++k) {
+      const Displacement d = geometry::displacement_after(twist, duration * k / kLooks);
+      for (const Vec2 c : corners) {
+        const Vec2 p = d.moved(c);
+        size = std::max(size, std::fabs(p.x) + std::fabs(p.y));
+        box_.add(Vec2{dot(ahead_, p), cross(ahead_, p)});
+      }
+    }
+    for (const Vec2 c : corners) stray = std::max(stray, stray_of(twist, c, duration / kLooks));
+    const double angle = std::fabs(twist.turn * duration);
+    box_ = box_.grown(reach + stray + kRounding * (1.0 + angle) * size);
+  }
+
+  /// Whether the hull of the corners, seen from where the way begins, and grown by the radius, is on one side.
+  bool is_beside(Vec2 at, const Vec2* corners, std::size_t size, double radius) const {
+    geometry::Box seen;
+    double most = radius;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Vec2 p = at + corners[i];
+      most = std::max(most, std::fabs(p.x) + std::fabs(p.y));
+      seen.add(Vec2{dot(ahead_, p), cross(ahead_, p)});
+    }
+    const double room = radius + kRounding * most;
+    return seen.low.x - room > box_.high.x || seen.high.x + room < box_.low.x || seen.low.y - room > box_.high.y ||
+           seen.high.y + room < box_.low.y;
+  }
+
+ private:
+  static constexpr int kLooks = 4;
+  /// As a share of lengths: poses and products are rounded by less than 2^-46 of them, and `ahead_` is as long as 1 up
+  /// to 2^-51.
+  static constexpr double kRounding = 0x1p-44;
+  Vec2 ahead_{1.0, 0.0};
+  geometry::Box box_;
+};
 
 }  // namespace
 
@@ -45,7 +94,7 @@ GapToKeep Monitor::question(const Part& part, const Stretch& stretch, double tim
               duration,
               reach,
               0.0,
-              -kMonitorSlack};
+              kRoomAtTheEnd - kMonitorSlack};
   if (time == 0.0) return q;
   const Displacement d = geometry::displacement_after(stretch.twist, time);
   q.a.at = d.by;
@@ -133,6 +182,7 @@ void Monitor::meet(std::size_t piece, std::size_t number, double offset, Clear& 
     }
     clear.until = offset + began + kept.kept_until;
     clear.lost = asked;
+    clear.lost.required = std::min(asked.required, -kMonitorSlack);  // what is lost touches
     clear.kept = kept;
     clear.stretch = number;
     clear.began = began;
@@ -152,9 +202,12 @@ Monitor::Clear Monitor::clear_of_obstacles(double length, bool& in_contact) {
     turn_footprint(stretch, 0.0);
     const double speed = norm(stretch.twist.velocity);
     const auto reach = [&] { return (body_reach_ + speed * left()) * kUp; };
+    const WayBox box(stretch.twist, left(), turned_, part_reach_);
     grid_.for_each_within(stretch.start.at, reach(), [&](std::size_t number) {
       // The way that is left may have become shorter.
       if (geometry::distance_below(grid_.box(number), stretch.start.at) > reach()) return;
+      const Piece& piece = pieces_[number];
+      if (box.is_beside(piece.at - stretch.start.at, corners_.data() + piece.first, piece.size, piece.radius)) return;
       meet(number, k, offset, clear, in_contact);
     });
     if (clear.witness && clear.stretch == k) {
@@ -210,7 +263,7 @@ bool Monitor::part_clear_of_mover(const Part& part, std::size_t index, const Pac
       const double then = pace.moment(from) * kUp, later = std::max(then, pace.moment(to) * kUp);
       turn_footprint(stretch, from - offset);
       GapToKeep asked = question(part, stretch, from - offset, mover, mover_corners_, to - from, reach);
-      if (in_contact) asked.required += at_start;
+      if (in_contact) asked.required = at_start - kMonitorSlack;
       asked.growth = speed * (later - then) / (to - from) * kUp;
       // In next to no time, all of it counts at once.
       const bool is_sudden = !(asked.growth < 0x1p100);

@@ -47,6 +47,7 @@ Monitor::Monitor(const MonitorSetup& setup) : setup_(setup) {
     const std::vector<Vec2> hull = monitored::hull_of_part(setup.footprint[k], k);
     parts_.push_back(
         {static_cast<std::uint32_t>(part_corners_.size()), static_cast<std::uint32_t>(hull.size()), radius});
+    part_reach_ = std::max(part_reach_, (radius + setup.margin + 2.0 * kMonitorSlack) * kUp);
     for (const Vec2 v : hull) body_reach_ = std::max(body_reach_, (norm(v) + radius) * kUp);
     part_corners_.insert(part_corners_.end(), hull.begin(), hull.end());
   }

@@ -11,7 +11,9 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/motion_check.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/turning_pairs.h"
 #include "motions/path.h"
 #include "motions/question.h"
 #include "motions/straight.h"
@@ -63,16 +65,23 @@ Motion motion_of(const Trajectory& t, Between between, std::size_t number) {
   return StraightMotion{from, to};
 }
 
+/// A body as it is turned during a piece.
+struct TurnedBody {
+  RigidBody shape;  ///< at the start
+  Turned turned;
+};
+
 /// A body, and what the sweep wants to know of it.
 struct SweptBody {
   RigidBody shape;
-  double reach = 0.0;               ///< m: a disc round the reference point that holds it; rounded up
-  bool is_disc = false;             ///< round the reference point
-  bool outside = false;             ///< of all polygons, at `last`
-  TimedPoint last{-kInfinity, {}};  ///< where its last piece ended
-  bool ends_exactly = true;         ///< whether `last` is rounded
-  std::uint64_t serial = 0;         ///< of its last piece
-  std::uint64_t continued = 0;      ///< the piece that its last one continues
+  double reach = 0.0;                        ///< m: a disc round the reference point that holds it; rounded up
+  bool is_disc = false;                      ///< round the reference point
+  bool outside = false;                      ///< of all polygons, at `last`
+  TimedPoint last{-kInfinity, {}};           ///< where its last piece ended
+  bool ends_exactly = true;                  ///< whether `last` is rounded
+  std::uint64_t serial = 0;                  ///< of its last piece
+  std::uint64_t continued = 0;               ///< the piece that its last one continues
+  std::shared_ptr<const TurnedBody> turned;  ///< during its last piece; null: as it was given
 };
 
 SweptBody swept_body(RigidBody shape) {
@@ -132,6 +141,16 @@ Chorded chorded(const Motion& motion) {
   return m;
 }
 
+/// The chord of an arc.
+Chorded chorded(const StraightMotion& piece, const TurningMotion& arc) {
+  Chorded m{piece, nullptr};
+  // The arc ends where the chord does up to the rounding of its twist: less than 2^-46 of the way.
+  const double rounded = 0x1p-46 * norm(piece.to.at - piece.from.at);
+  m.stray = (stray_of(arc.twist, {}, arc.end - arc.start) + rounded) * (1.0 + 0x1p-40);
+  m.is_exact_at_start = m.is_exact_at_end = false;
+  return m;
+}
+
 /// One motion of one body that is under way.
 struct Piece {
   Box box;                                    ///< holds the body all the time
@@ -140,13 +159,30 @@ struct Piece {
   double stray = 0.0;                         ///< m, of the curve from the chord
   std::uint64_t serial = 0;                   ///< from 1, rising as pieces come
   std::uint32_t body = 0;
-  bool continues = false;  ///< begins when and where the body's piece before it ends
+  std::shared_ptr<const TurnedBody> turned{};  ///< null: the body as it was given
+  bool continues = false;                      ///< begins when, where and as turned as the body's piece before it ends
   /// Continues, and lasts: what is met at its first moment is met by the piece before it, too. (A way that is gone in
   /// no time meets others as a whole.)
   bool follows = false;
 
   Motion whole() const { return curve ? Motion(*curve) : Motion(motion); }
+  bool turns() const { return turned && turned->turned.by != 0.0; }
+  Turned how_turned() const { return turned ? turned->turned : Turned{}; }
 };
+
+/// A straight piece as a motion that may turn.
+TurningMotion arc_of(const Piece& piece) {
+  return turning_motion(piece.motion, piece.how_turned());
+}
+
+/// Where a body is at a moment of its piece, and how it is turned.
+Pose pose_at(const Piece& piece, double time) {
+  const Turned turned = piece.how_turned();
+  if (!piece.turns()) return {position_at(piece.whole(), time), turned.from};
+  const TurningMotion arc = arc_of(piece);
+  const Displacement d = displacement_after(arc.twist, time - arc.start);
+  return {arc.at + d.by, turned.from + arc.twist.turn * (time - arc.start)};
+}
 
 /// Holds the body and half of what counts as near; rounded outward: three roundings of 2^-53 are less than 2^-50.
 Box swept_box(const StraightMotion& m, double body_reach, double near) {
@@ -411,10 +447,13 @@ class Events {
   Events(std::function<void(const MotionEvent&)> report, MotionCheck& check)
       : report_(std::move(report)), check_(check) {}
 
-  void add(const MotionVerdict& v, std::size_t body, bool with_obstacle, std::size_t other, Vec2 at, Vec2 other_at) {
+  void add(const TurningVerdict& verdict, std::size_t body, bool with_obstacle, std::size_t other, const Pose& pose,
+           const Pose& other_pose) {
     const Key key{body, with_obstacle, other};
-    const MotionEvent event{v.encounter, body,           with_obstacle, other, v.first, v.last,
-                            v.clearance, v.nearest_time, v.place,       at,    other_at};
+    const MotionVerdict& v = verdict.verdict;
+    const MotionEvent event{v.encounter,   body,         with_obstacle,      other,          v.first,
+                            v.last,        v.clearance,  v.nearest_time,     v.place,        pose.at,
+                            other_pose.at, pose.heading, other_pose.heading, verdict.is_open};
     const auto [last, is_new] = last_of_pair_.try_emplace(key, next_number_);
     if (!is_new && event.first.low <= open_.at(last->second).last.high) {
       join(open_.at(last->second), event);
@@ -432,7 +471,9 @@ class Events {
       ends_.pop();
       const auto open = open_.find(number);
       if (open == open_.end() || open->second.last.high != end) continue;  // it has gone on, or is reported already
-      ++(open->second.encounter == Encounter::overlap ? check_.overlaps : check_.contacts);
+      ++(open->second.is_open                           ? check_.open
+         : open->second.encounter == Encounter::overlap ? check_.overlaps
+                                                        : check_.contacts);
       report_(open->second);
       open_.erase(open);
       const auto last = last_of_pair_.find(key);
@@ -453,9 +494,13 @@ class Events {
       open.place = next.place;
       open.at = next.at;
       open.other_at = next.other_at;
+      open.turned = next.turned;
+      open.other_turned = next.other_turned;
     }
     open.clearance = {std::min(open.clearance.low, next.clearance.low),
                       std::min(open.clearance.high, next.clearance.high)};
+    // A contact for certain, or an overlap, is one whatever else is open.
+    open.is_open = open.is_open && next.is_open;
     open.encounter = std::max(open.encounter, next.encounter);
   }
   std::function<void(const MotionEvent&)> report_;
@@ -600,11 +645,14 @@ class Sweep {
     return bodies_.size() - 1;
   }
 
-  void add(std::size_t number, const Motion& given) {
+  void add(std::size_t number, const Motion& given, Turned turned) {
     EXACTVO_REQUIRE(number < bodies_.size(), std::to_string(number));
     SweptBody& body = bodies_[number];
     require_motion(given);
-    Chorded chord = chorded(given);
+    if (body.is_disc) turned = {};
+    const auto* straight = std::get_if<StraightMotion>(&given);
+    require_turned(straight, turned);
+    Chorded chord = turned.by == 0.0 ? chorded(given) : chorded(*straight, turning_motion(*straight, turned));
     const StraightMotion& motion = chord.chord;
     EXACTVO_REQUIRE(now_ <= motion.from.time && body.last.time <= motion.from.time,
                     hex_text(motion.from.time) + " after " + hex_text(std::max(now_, body.last.time)));
@@ -614,14 +662,16 @@ class Sweep {
       now_ = motion.from.time;
       events_.advance(now_);
     }
-    const bool continues = chord.is_exact_at_start && body.ends_exactly && body.last.time == motion.from.time &&
-                           body.last.at == motion.from.at;
+    const bool is_turned_alike = turn(body, turned);
+    const bool continues = is_turned_alike && chord.is_exact_at_start && body.ends_exactly &&
+                           body.last.time == motion.from.time && body.last.at == motion.from.at;
     const Piece piece{swept_box(motion, body.reach + chord.stray, near_),
                       motion,
                       std::move(chord.curve),
                       chord.stray,
                       ++check_.pieces,
                       static_cast<std::uint32_t>(number),
+                      body.turned,
                       continues,
                       continues && motion.from.time < motion.to.time};
     if (piece.follows) {
@@ -674,11 +724,60 @@ class Sweep {
     at_ends_.resize(kept);
   }
 
+  void require_turned(const StraightMotion* straight, const Turned& turned) {
+    EXACTVO_REQUIRE(std::isfinite(turned.from) && std::fabs(turned.by) <= kPi,
+                    hex_text(turned.from) + " " + hex_text(turned.by));
+    EXACTVO_REQUIRE(turned.by == 0.0 || (straight && straight->from.time < straight->to.time), "no straight piece");
+    has_turns_ |= turned.by != 0.0;
+    has_others_ |= !straight || (straight->from.time == straight->to.time && straight->from.at != straight->to.at);
+    EXACTVO_REQUIRE(!has_turns_ || !has_others_, "bodies that turn, and curves or ways that are gone in no time");
+  }
+
+  /// Whether the body is turned as it was at the end of its last piece.
+  static bool turn(SweptBody& body, const Turned& turned) {
+    const Turned last = body.turned ? body.turned->turned : Turned{};
+    if (turned.from == last.from && turned.by == 0.0 && last.by == 0.0) return true;
+    body.turned = turned.from == 0.0 && turned.by == 0.0
+                      ? nullptr
+                      : std::make_shared<const TurnedBody>(TurnedBody{turned_body(body.shape, turned.from), turned});
+    return false;
+  }
+
+  const RigidBody& shape_of(const Piece& piece) const {
+    return piece.turned ? piece.turned->shape : bodies_[piece.body].shape;
+  }
+
+  /// Nothing where they are clear and no clearance is asked for.
+  std::optional<TurningVerdict> judged(const Piece& piece, const std::vector<Segment>& edges,
+                                       const Obstacle& obstacle) const {
+    const RigidBody& shape = shape_of(piece);
+    if (piece.turns()) return geometry::examine(arc_of(piece), shape, obstacle, edges);
+    const Motion whole = piece.whole();
+    if (near_ == 0.0 && encounter(whole, shape, obstacle) == Encounter::clear) return std::nullopt;
+    return TurningVerdict{examine(whole, shape, obstacle), false};
+  }
+  std::optional<TurningVerdict> judged(const Piece& a, const Piece& b) const {
+    return judged(a, b.whole(), shape_of(b), b.turns() ? std::optional(arc_of(b)) : std::nullopt);
+  }
+  /// `arc`: of the other, if it turns.
+  std::optional<TurningVerdict> judged(const Piece& a, const Motion& other, const RigidBody& other_shape,
+                                       const std::optional<TurningMotion>& arc) const {
+    const RigidBody& shape = shape_of(a);
+    if (a.turns() || arc) {
+      const auto as_turning = [](const StraightMotion& m) { return turning_motion(m, {}); };
+      return geometry::examine(arc_of(a), shape, arc ? *arc : as_turning(std::get<StraightMotion>(other)), other_shape);
+    }
+    const Motion motion = a.whole();
+    if (near_ == 0.0 && encounter(motion, shape, other, other_shape) == Encounter::clear) return std::nullopt;
+    return TurningVerdict{examine(motion, shape, other, other_shape), false};
+  }
+
   void meet_map(const Piece& piece, SweptBody& body) {
     const StraightMotion& m = piece.motion;
     const bool stays_outside = body.outside && piece.continues;
     suspects_.clear();
     met_.clear();
+    edges_.clear();
     map_.for_each_edge(swept_box(m, body.reach + piece.stray, 2.0 * near_), [&](const Segment& edge, std::size_t k) {
       ++check_.edge_pairs;
       if (options_.met) met_.push_back(k);
@@ -686,6 +785,7 @@ class Sweep {
         if (near_ > 0.0) approach_edge(piece, body, edge, k);
       } else {
         suspects_.push_back(k);
+        if (piece.turns()) edges_.emplace_back(k, edge);
       }
     });
     if (!stays_outside)
@@ -696,19 +796,21 @@ class Sweep {
     keep_each_once(suspects_);
     if (options_.met) {
       keep_each_once(met_);
-      for (const std::size_t k : met_) options_.met({piece.body, piece.whole(), true, k, {}});
+      for (const std::size_t k : met_) options_.met({piece.body, piece.whole(), true, k, {}, piece.how_turned(), {}});
     }
     body.outside = true;
     if (suspects_.empty()) return;
-    const Motion whole = piece.whole();
     for (const std::size_t k : suspects_) {
       ++check_.examined;
-      if (near_ == 0.0 && encounter(whole, body.shape, map_[k]) == Encounter::clear) continue;
-      const MotionVerdict verdict = examine(whole, body.shape, map_[k]);
-      approaches_.add(verdict, piece.body, true, k);
-      if (verdict.encounter == Encounter::clear) continue;
+      std::vector<Segment> near;
+      for (const auto& [owner, edge] : edges_)
+        if (owner == k) near.push_back(edge);
+      const std::optional<TurningVerdict> verdict = judged(piece, near, map_[k]);
+      if (!verdict) continue;
+      approaches_.add(verdict->verdict, piece.body, true, k);
+      if (verdict->verdict.encounter == Encounter::clear) continue;
       body.outside = false;
-      events_.add(verdict, piece.body, true, k, position_at(whole, verdict.nearest_time), {});
+      events_.add(*verdict, piece.body, true, k, pose_at(piece, verdict->verdict.nearest_time), {});
     }
   }
 
@@ -718,17 +820,15 @@ class Sweep {
     map_.for_each_disc(swept_box(m, body.reach + piece.stray, 2.0 * near_), [&](const Disc& disc, std::size_t k) {
       ++check_.edge_pairs;
       const StraightMotion rest = held({m.from.time, disc.center}, m.to.time);
-      if (options_.met) options_.met({piece.body, piece.whole(), true, k, rest});
+      if (options_.met) options_.met({piece.body, piece.whole(), true, k, rest, piece.how_turned(), {}});
       const double more = strayed(approaches_.limit(piece.body, true, k), piece.stray);
       if (surely_clear(m, body.reach, rest, disc.radius, more)) return;
       ++check_.examined;
-      const RigidBody round = disc_body(disc.radius);
-      const Motion whole = piece.whole();
-      if (near_ == 0.0 && encounter(whole, body.shape, rest, round) == Encounter::clear) return;
-      const MotionVerdict verdict = examine(whole, body.shape, rest, round);
-      approaches_.add(verdict, piece.body, true, k);
-      if (verdict.encounter == Encounter::clear) return;
-      events_.add(verdict, piece.body, true, k, position_at(whole, verdict.nearest_time), {});
+      const std::optional<TurningVerdict> verdict = judged(piece, rest, disc_body(disc.radius), {});
+      if (!verdict) return;
+      approaches_.add(verdict->verdict, piece.body, true, k);
+      if (verdict->verdict.encounter == Encounter::clear) return;
+      events_.add(*verdict, piece.body, true, k, pose_at(piece, verdict->verdict.nearest_time), {});
     });
   }
 
@@ -737,7 +837,8 @@ class Sweep {
     const double more = strayed(approaches_.limit(piece.body, true, k), piece.stray);
     if (surely_clear_of(piece.motion, body.reach, edge, more)) return;
     ++check_.examined;
-    approaches_.add(examine(piece.whole(), body.shape, Polyline{{edge.a, edge.b}}), piece.body, true, k);
+    const Polyline wall{{edge.a, edge.b}};
+    if (const auto verdict = judged(piece, {edge}, wall)) approaches_.add(verdict->verdict, piece.body, true, k);
   }
 
   void meet_body(const Piece& one, const Piece& another) {
@@ -745,17 +846,16 @@ class Sweep {
     const bool in_order = one.body < another.body;
     const Piece &a = in_order ? one : another, &b = in_order ? another : one;
     const SweptBody &body = bodies_[a.body], &other = bodies_[b.body];
-    if (options_.met) options_.met({a.body, a.whole(), false, b.body, b.whole()});
+    if (options_.met) options_.met({a.body, a.whole(), false, b.body, b.whole(), a.how_turned(), b.how_turned()});
     const double more = strayed(approaches_.limit(a.body, false, b.body), a.stray + b.stray);
     if (surely_clear(a.motion, body.reach, b.motion, other.reach, more)) return;
     ++check_.examined;
-    const Motion motion = a.whole(), other_motion = b.whole();
-    if (near_ == 0.0 && encounter(motion, body.shape, other_motion, other.shape) == Encounter::clear) return;
-    const MotionVerdict verdict = examine(motion, body.shape, other_motion, other.shape);
-    approaches_.add(verdict, a.body, false, b.body);
-    if (verdict.encounter == Encounter::clear) return;
-    const double t = verdict.nearest_time;
-    events_.add(verdict, a.body, false, b.body, position_at(motion, t), position_at(other_motion, t));
+    const std::optional<TurningVerdict> verdict = judged(a, b);
+    if (!verdict) return;
+    approaches_.add(verdict->verdict, a.body, false, b.body);
+    if (verdict->verdict.encounter == Encounter::clear) return;
+    const double t = verdict->verdict.nearest_time;
+    events_.add(*verdict, a.body, false, b.body, pose_at(a, t), pose_at(b, t));
   }
 
   /// m: how far apart chords must be for curves to be apart by `more`; rounded up.
@@ -775,12 +875,24 @@ class Sweep {
   MovingGrid grid_;
   std::vector<SweptBody> bodies_;
   std::vector<std::size_t> suspects_, met_;
+  std::vector<std::pair<std::size_t, Segment>> edges_;  ///< of suspects, for a body that turns
   std::vector<AtEnd> at_ends_;
   double now_ = -kInfinity;
+  bool has_turns_ = false, has_others_ = false;
 };
 
 }  // namespace
 }  // namespace motions
+
+TurningMotion turning_motion(const StraightMotion& piece, const Turned& turned) {
+  const auto& [from, to] = piece;
+  const double duration = to.time - from.time;
+  EXACTVO_REQUIRE(duration > 0.0 || from.at == to.at, hex_text(from.time) + " " + hex_text(to.time));
+  if (!(duration > 0.0)) return {from.time, to.time, from.at, {}};
+  const Vec2 way = to.at - from.at;
+  if (turned.by == 0.0) return {from.time, to.time, from.at, {way / duration, 0.0}};
+  return {from.time, to.time, from.at, twist_between({{}, 0.0}, {way, turned.by}, duration)};
+}
 
 struct MotionStream::State {
   motions::Sweep sweep;
@@ -796,8 +908,8 @@ std::size_t MotionStream::add_body(RigidBody body) {
   return state_->sweep.add_body(std::move(body));
 }
 
-void MotionStream::add(std::size_t body, const Motion& piece) {
-  state_->sweep.add(body, piece);
+void MotionStream::add(std::size_t body, const Motion& piece, const Turned& turned) {
+  state_->sweep.add(body, piece, turned);
 }
 
 MotionCheck MotionStream::finish() {
@@ -822,7 +934,7 @@ MotionCheck check_motions(const std::vector<Trajectory>& trajectories, const std
     return std::tie(x.time, x.body, x.number) < std::tie(y.time, y.body, y.number);
   });
   for (const Begin& begin : begins)
-    sweep.add(begin.body, motions::motion_of(trajectories[begin.body], options.between, begin.number));
+    sweep.add(begin.body, motions::motion_of(trajectories[begin.body], options.between, begin.number), {});
   return sweep.finish();
 }
 

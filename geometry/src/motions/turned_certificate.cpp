@@ -12,6 +12,8 @@ namespace {
 
 /// How often a piece of time is halved before the proof is given up.
 constexpr int kMostHalvingsOfTurn = 40;
+/// Two that touch have no proof, however long it is.
+constexpr std::size_t kMostSeparations = std::size_t{1} << 16;
 /// rad: `proves_clear` takes no more.
 constexpr double kMostTurned = 64.0;
 
@@ -21,8 +23,8 @@ Vec2 nearest_on_edge(Vec2 p, Vec2 a, Vec2 b) {
   return a + (length2 > 0.0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0.0) * e;
 }
 
-/// From the edge to the hull of the corners, between the points of both that are nearest.
-Vec2 direction_from(const Segment& edge, const std::vector<Vec2>& corners) {
+/// From one hull to the other, between the points of both that are nearest.
+Vec2 direction_between(const std::vector<Vec2>& from, const std::vector<Vec2>& to) {
   Vec2 best;
   double least = kInfinity;
   const auto take = [&](Vec2 between) {
@@ -31,74 +33,107 @@ Vec2 direction_from(const Segment& edge, const std::vector<Vec2>& corners) {
       best = between;
     }
   };
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2 a = corners[i], b = corners[(i + 1) % corners.size()];
-    take(a - nearest_on_edge(a, edge.a, edge.b));
-    take(nearest_on_edge(edge.a, a, b) - edge.a);
-    take(nearest_on_edge(edge.b, a, b) - edge.b);
-  }
+  for (std::size_t i = 0; i < to.size(); ++i)
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      take(to[i] - nearest_on_edge(to[i], from[k], from[(k + 1) % from.size()]));
+      take(nearest_on_edge(from[k], to[i], to[(i + 1) % to.size()]) - from[k]);
+    }
   return normalized(best);
 }
 
+/// A convex part on its way, seen from where another motion begins.
+struct Drive {
+  const TurningMotion& motion;
+  const RoundedPolygon& part;
+  Vec2 at;  ///< of the reference point at the start
+
+  std::vector<Vec2> corners_at(double time) const {
+    const Displacement d = displacement_after(motion.twist, time - motion.start);
+    std::vector<Vec2> corners;
+    for (const Vec2 c : part.corners) corners.push_back(at + d.moved(c));
+    return corners;
+  }
+  double stray(double time) const {
+    double most = 0.0;
+    for (const Vec2 c : part.corners) most = std::max(most, stray_of(motion.twist, c, time));
+    return most;
+  }
+};
+
 class TurnProver {
  public:
-  TurnProver(const TurningMotion& m, std::vector<Separation>& separations) : m_(m), separations_(separations) {}
+  explicit TurnProver(std::vector<Separation>& separations) : separations_(separations) {}
 
-  bool prove(std::size_t part, std::size_t other, const RoundedPolygon& body, const Segment& edge, double from,
-             double to, int halvings = 0) {
+  bool prove(std::size_t part, std::size_t other, const Drive& a, const Drive& b, double from, double to,
+             int halvings = 0) {
     const double middle = from + 0.5 * (to - from);
-    const Segment seen{edge.a - m_.at, edge.b - m_.at};
-    const Vec2 n = direction_from(seen, corners_at(body, middle));
-    const double margin = n == Vec2{} ? -1.0 : margin_along(n, body, seen, from, to);
+    const Vec2 n = direction_between(b.corners_at(middle), a.corners_at(middle));
+    const double margin = n == Vec2{} ? -1.0 : margin_along(n, a, b, from, to);
     if (margin > 0.0) {
       separations_.push_back({part, other, from, to, n, margin});
       return true;
     }
-    if (halvings == kMostHalvingsOfTurn || !(from < middle && middle < to)) return false;
-    return prove(part, other, body, edge, from, middle, halvings + 1) &&
-           prove(part, other, body, edge, middle, to, halvings + 1);
+    if (halvings == kMostHalvingsOfTurn || separations_.size() > kMostSeparations || !(from < middle && middle < to))
+      return false;
+    return prove(part, other, a, b, from, middle, halvings + 1) && prove(part, other, a, b, middle, to, halvings + 1);
   }
 
  private:
-  std::vector<Vec2> corners_at(const RoundedPolygon& body, double time) const {
-    const Displacement d = displacement_after(m_.twist, time - m_.start);
-    std::vector<Vec2> corners;
-    for (const Vec2 c : body.corners) corners.push_back(d.moved(c));
-    return corners;
-  }
-
   /// A margin that is likely to hold; not above 0 where there is none.
-  double margin_along(Vec2 n, const RoundedPolygon& body, const Segment& edge, double from, double to) const {
-    double least = kInfinity, size = norm(edge.a) + norm(edge.b);
-    for (const double time : {from, to})
-      for (const Vec2 c : corners_at(body, time)) {
-        least = std::min(least, dot(n, c));
+  static double margin_along(Vec2 n, const Drive& a, const Drive& b, double from, double to) {
+    double least = kInfinity, size = 0.0;
+    for (const double time : {from, to}) {
+      double lowest = kInfinity, highest = -kInfinity;
+      for (const Vec2 c : a.corners_at(time)) {
+        lowest = std::min(lowest, dot(n, c));
         size = std::max(size, norm(c));
       }
-    double stray = 0.0;
-    for (const Vec2 c : body.corners) stray = std::max(stray, stray_of(m_.twist, c, to - from));
-    const double margin = least - stray - std::max(dot(n, edge.a), dot(n, edge.b)) - body.radius;
+      for (const Vec2 c : b.corners_at(time)) {
+        highest = std::max(highest, dot(n, c));
+        size = std::max(size, norm(c));
+      }
+      least = std::min(least, lowest - highest);
+    }
+    const double margin = least - a.stray(to - from) - b.stray(to - from) - a.part.radius - b.part.radius;
     return margin * (1.0 - 0x1p-40) - 0x1p-44 * size;
   }
 
-  const TurningMotion& m_;
   std::vector<Separation>& separations_;
 };
+
+/// Just below, since the product is rounded.
+bool turns_little(const TurningMotion& m) {
+  return std::fabs(m.twist.turn) * (m.end - m.start) <= kMostTurned * (1.0 - 0x1p-50);
+}
 
 }  // namespace
 }  // namespace turned
 
 std::optional<MotionCertificate> certify(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle) {
-  // Just below, since the product is rounded.
-  const double angle = std::fabs(motion.twist.turn) * (motion.end - motion.start);
-  if (angle > turned::kMostTurned * (1.0 - 0x1p-50)) return std::nullopt;
-  if (encounter(motion, body, obstacle) != Encounter::clear) return std::nullopt;
+  using turned::Drive;
+  if (!turned::turns_little(motion) || encounter(motion, body, obstacle) != Encounter::clear) return std::nullopt;
   const std::vector<Segment> edges = edges_of(obstacle);
+  const TurningMotion rest{motion.start, motion.end, {}, {}};
   MotionCertificate certificate;
-  turned::TurnProver prover(motion, certificate.separations);
+  turned::TurnProver prover(certificate.separations);
   for (std::size_t part = 0; part < body.size(); ++part)
-    for (std::size_t k = 0; k < edges.size(); ++k)
-      if (!prover.prove(part, k, body[part], edges[k], motion.start, motion.end)) return std::nullopt;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      const RoundedPolygon edge{{edges[k].a, edges[k].b}, 0.0};
+      if (!prover.prove(part, k, {motion, body[part], {}}, {rest, edge, -motion.at}, motion.start, motion.end))
+        return std::nullopt;
+    }
+  return certificate;
+}
+
+std::optional<MotionCertificate> certify(const TurningMotion& a, const RigidBody& body_a, const TurningMotion& b,
+                                         const RigidBody& body_b) {
+  if (!turned::turns_little(a) || !turned::turns_little(b)) return std::nullopt;
+  const double from = std::max(a.start, b.start), to = std::min(a.end, b.end);
+  MotionCertificate certificate;
+  turned::TurnProver prover(certificate.separations);
+  for (std::size_t part = 0; part < body_a.size(); ++part)
+    for (std::size_t k = 0; k < body_b.size() && from <= to; ++k)
+      if (!prover.prove(part, k, {a, body_a[part], {}}, {b, body_b[k], b.at - a.at}, from, to)) return std::nullopt;
   return certificate;
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "exactvo/geometry/turning_motions.h"
 
@@ -86,27 +88,6 @@ class TurnCheck {
 
   bool is_small() const { return abs(turn_) * (Number(m_.end) - Number(m_.start)) <= kMostAngle; }
 
-  bool separates(const Separation& s, const RoundedPolygon& part, const Segment& edge) const {
-    const bool finite = is_finite(s.direction) && std::isfinite(s.margin) && s.margin >= 0.0;
-    if (!finite || s.direction == Vec2{}) return false;
-    const Place n{Number(s.direction.x), Number(s.direction.y)};
-    const Number most =
-        std::max(along(n, Number(edge.a.x), Number(edge.a.y)), along(n, Number(edge.b.x), Number(edge.b.y)));
-    const Number span = Number(s.to) - Number(s.from);
-    const Number reach = Number(part.radius) + Number(s.margin);
-    for (const Vec2 c : part.corners) {
-      const Number x(c.x), y(c.y), speed_x = vx_ - turn_ * y, speed_y = vy_ + turn_ * x;
-      const Number stray = abs(turn_) * root_above(Number(speed_x * speed_x + speed_y * speed_y)) * span * span / 8;
-      const Number needed = reach + stray, length2 = n.x * n.x + n.y * n.y;
-      for (const double time : {s.from, s.to}) {
-        const Number gap = lowest(n, x, y, time) - most;
-        const Number left = gap * gap, right = needed * needed * length2;
-        if (!(sgn(gap) > 0 && (s.margin > 0.0 ? left >= right : left > right))) return false;
-      }
-    }
-    return true;
-  }
-
   /// Whether the corner begins inside, by the even-odd rule.
   bool begins_inside(Vec2 corner, const std::vector<Segment>& edges) const {
     const Number x = Number(m_.at.x) + Number(corner.x), y = Number(m_.at.y) + Number(corner.y);
@@ -119,22 +100,76 @@ class TurnCheck {
     return inside;
   }
 
- private:
-  /// No more than the corner's place along n.
-  Number lowest(const Place& n, const Number& x, const Number& y, double time) const {
+  /// Of each corner of a part, no more than its place along n at a time, and how far it strays from the chord of its
+  /// way in `span` s at most.
+  struct Seen {
+    Number lowest, stray;
+  };
+  std::vector<Seen> seen(const Place& n, const RoundedPolygon& part, double time, const Number& span) const {
     const Number at = along(n, Number(m_.at.x), Number(m_.at.y)), passed = Number(time) - Number(m_.start);
-    if (sgn(turn_) == 0) return at + along(n, Number(x + passed * vx_), Number(y + passed * vy_));
-    // at + (sin v + (1 - cos) J v) / w + cos q + sin J q, with J (x, y) = (-y, x).
-    const Number across = along(n, Number(-vy_), vx_) / turn_;
-    const Number of_sine = along(n, vx_, vy_) / turn_ + along(n, Number(-y), x), of_cosine = along(n, x, y) - across;
-    const SineAndCosine e = enclosed(turn_ * passed);
-    return at + across + of_sine * (sgn(of_sine) > 0 ? e.sine.low : e.sine.high) +
-           of_cosine * (sgn(of_cosine) > 0 ? e.cosine.low : e.cosine.high);
+    std::optional<SineAndCosine> turned;
+    if (sgn(turn_) != 0) turned = enclosed(turn_ * passed);
+    std::vector<Seen> all;
+    for (const Vec2 c : part.corners) {
+      const Number x(c.x), y(c.y), speed_x = vx_ - turn_ * y, speed_y = vy_ + turn_ * x;
+      const Number stray = abs(turn_) * root_above(Number(speed_x * speed_x + speed_y * speed_y)) * span * span / 8;
+      if (!turned) {
+        all.push_back({Number(at + along(n, Number(x + passed * vx_), Number(y + passed * vy_))), stray});
+        continue;
+      }
+      // at + (sin v + (1 - cos) J v) / w + cos q + sin J q, with J (x, y) = (-y, x).
+      const Number across = along(n, Number(-vy_), vx_) / turn_;
+      const Number of_sine = along(n, vx_, vy_) / turn_ + along(n, Number(-y), x), of_cosine = along(n, x, y) - across;
+      all.push_back({Number(at + across + of_sine * (sgn(of_sine) > 0 ? turned->sine.low : turned->sine.high) +
+                            of_cosine * (sgn(of_cosine) > 0 ? turned->cosine.low : turned->cosine.high)),
+                     stray});
+    }
+    return all;
   }
 
+ private:
   const TurningMotion& m_;
   Number turn_, vx_, vy_;
 };
+
+/// Whether a direction keeps two parts apart over a piece of time: along it, the way of a corner less that of another
+/// is nowhere less than at one of the ends, less what both stray.
+bool separates(const Separation& s, const TurnCheck& a, const RoundedPolygon& part, const TurnCheck& b,
+               const RoundedPolygon& other) {
+  const bool finite = is_finite(s.direction) && std::isfinite(s.margin) && s.margin >= 0.0;
+  if (!finite || s.direction == Vec2{}) return false;
+  const Place n{Number(s.direction.x), Number(s.direction.y)}, back{Number(-n.x), Number(-n.y)};
+  const Number span = Number(s.to) - Number(s.from), length2 = n.x * n.x + n.y * n.y;
+  const Number reach = Number(part.radius) + Number(other.radius) + Number(s.margin);
+  for (const double time : {s.from, s.to})
+    for (const TurnCheck::Seen& p : a.seen(n, part, time, span))
+      for (const TurnCheck::Seen& q : b.seen(back, other, time, span)) {
+        const Number gap = p.lowest + q.lowest, needed = reach + p.stray + q.stray;
+        const Number left = gap * gap, right = needed * needed * length2;
+        if (!(sgn(gap) > 0 && (s.margin > 0.0 ? left >= right : left > right))) return false;
+      }
+  return true;
+}
+
+/// Whether the separations are those of these parts, pair after pair, each over the whole of the time.
+bool covers(const MotionCertificate& certificate, const TurnCheck& a, const RigidBody& body_a, const TurnCheck& b,
+            const RigidBody& body_b, double from, double to) {
+  std::size_t next = 0;
+  for (std::size_t part = 0; part < body_a.size(); ++part)
+    for (std::size_t other = 0; other < body_b.size(); ++other) {
+      double reached = from;
+      bool some = false;
+      for (; next < certificate.separations.size() && !(some && reached == to); ++next) {
+        const Separation& s = certificate.separations[next];
+        if (s.part != part || s.other != other || s.from != reached || !(s.to >= s.from && s.to <= to)) break;
+        if (!separates(s, a, body_a[part], b, body_b[other])) return false;
+        reached = s.to;
+        some = true;
+      }
+      if (!some || reached != to) return false;
+    }
+  return next == certificate.separations.size();
+}
 
 bool is_readable(const TurningMotion& m, const RigidBody& body) {
   return std::isfinite(m.start) && std::isfinite(m.end) && is_finite(m.at) && is_finite(m.twist.velocity) &&
@@ -156,21 +191,20 @@ bool proves_clear(const MotionCertificate& certificate, const TurningMotion& mot
   if (has_interior(obstacle))
     for (const RoundedPolygon& part : body)
       if (check.begins_inside(part.corners.at(0), edges)) return false;
-  std::size_t next = 0;
-  for (std::size_t part = 0; part < body.size(); ++part)
-    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-      double reached = motion.start;
-      bool some = false;
-      for (; next < certificate.separations.size() && !(some && reached == motion.end); ++next) {
-        const Separation& s = certificate.separations[next];
-        if (s.part != part || s.other != edge || s.from != reached || !(s.to >= s.from && s.to <= motion.end)) break;
-        if (!check.separates(s, body[part], edges[edge])) return false;
-        reached = s.to;
-        some = true;
-      }
-      if (!some || reached != motion.end) return false;
-    }
-  return next == certificate.separations.size();
+  RigidBody sides;
+  for (const Segment& edge : edges) sides.push_back({{edge.a, edge.b}, 0.0});
+  const TurningMotion rest{motion.start, motion.end, {}, {}};
+  return turn_check::covers(certificate, check, body, turn_check::TurnCheck(rest), sides, motion.start, motion.end);
+}
+
+bool proves_clear(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
+                  const TurningMotion& b, const RigidBody& body_b) {
+  if (!turn_check::is_readable(a, body_a) || !turn_check::is_readable(b, body_b)) return false;
+  const turn_check::TurnCheck check_a(a), check_b(b);
+  if (!(a.start <= a.end && b.start <= b.end) || !check_a.is_small() || !check_b.is_small()) return false;
+  const double from = std::max(a.start, b.start), to = std::min(a.end, b.end);
+  if (from > to) return certificate.separations.empty();
+  return turn_check::covers(certificate, check_a, body_a, check_b, body_b, from, to);
 }
 
 }  // namespace exactvo::geometry

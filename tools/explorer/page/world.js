@@ -305,12 +305,14 @@ function drawOnWheels(ctx, view, colours, wheels, positions, i) {
   line(ctx, ...at(0, 0), ...at(wheels.reference, 0));
 }
 
-// A body that is no disc: its convex parts.
-function traceOutline(ctx, view, rings, x, y) {
+// A body that is no disc: its convex parts, turned.
+function traceOutline(ctx, view, rings, x, y, heading) {
+  const c = Math.cos(heading), s = Math.sin(heading);
   for (const ring of rings) {
     for (let k = 0; k < ring.length; k += 2) {
-      if (k === 0) ctx.moveTo(view.px(x + ring[0]), view.py(y + ring[1]));
-      else ctx.lineTo(view.px(x + ring[k]), view.py(y + ring[k + 1]));
+      const px = view.px(x + c * ring[k] - s * ring[k + 1]), py = view.py(y + s * ring[k] + c * ring[k + 1]);
+      if (k === 0) ctx.moveTo(px, py);
+      else ctx.lineTo(px, py);
     }
     ctx.closePath();
   }
@@ -323,7 +325,7 @@ function drawRobot(ctx, view, colours, run, ui, positions, i) {
   const body = run.robots[i].body_radius;  // smaller than the disc where it may be off
   ctx.globalAlpha = wheels || body ? 0.3 : 0.85;
   ctx.beginPath();
-  if (run.robots[i].outline) traceOutline(ctx, view, run.robots[i].outline, positions.x[i], positions.y[i]);
+  if (run.robots[i].outline) traceOutline(ctx, view, run.robots[i].outline, positions.x[i], positions.y[i], positions.heading[i]);
   else ctx.arc(x, y, r, 0, 2 * Math.PI);
   ctx.fill();
   ctx.globalAlpha = 1;

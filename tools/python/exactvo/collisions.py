@@ -50,7 +50,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
 class MotionEvent:
     """Two bodies, or a body and an obstacle, that touch or overlap for a while. Bounds are certified."""
 
-    kind: str  #: "overlap" or "contact"
+    kind: str  #: "overlap", "contact", or "close": footprints that turn, and it is open whether they touch
     body: str
     with_obstacle: bool
     other: Union[str, int]  #: id of the other body, or number of the obstacle
@@ -121,6 +121,7 @@ class CheckResult:
     between: str  #: what was assumed between rows
     overlaps: int
     contacts: int
+    open: int  #: of footprints that turn: pairs so near to touching that it is not known whether they do
     rows: int
     repeated_rows: int  #: left out, since they repeat the row before
     pieces: int  #: of motion that were looked at
@@ -135,8 +136,8 @@ class CheckResult:
 
     @property
     def clear(self) -> bool:
-        """Whether nothing overlaps at any moment. Exact; contact is clear."""
-        return self.overlaps == 0
+        """Whether nothing overlaps at any moment. Exact; contact is clear. False where it is not known (`open`)."""
+        return self.overlaps == 0 and self.open == 0
 
     @property
     def speeds(self) -> dict[str, float]:
@@ -180,7 +181,7 @@ def check(
     frame_rate: float | None = None,
     scale: float = 1.0,
 ) -> CheckResult:
-    """Whether bodies on trajectories touch each other or a map at any time. Exact.
+    """Whether bodies on trajectories touch each other or a map at any time. Exact; of footprints that turn certified.
 
     trajectories  a path (any format of `trajectory_formats()`, or the folder of a run; several paths of polynomials, or a
                   folder of them, are one fleet); a dict of ids to
@@ -191,7 +192,7 @@ def check(
     unknown       what unknown cells of a ROS map are, "free" (the default, which `notes` says) or "blocked"
     radius        m: of all, or of each: by id, or in the order of the robots of an array. Grows a footprint. Of a run by
                   default its own
-    footprint     a polygon round the place, or a wall of half width `radius`; turned by theta, which must not change
+    footprint     a polygon round the place, or a wall of half width `radius`; turned by theta, evenly from row to row
     time          s, for an array of positions: one time a step
     between       what lies between rows: "straight", "hold", "cubic" (with the rows' velocities, else Catmull-Rom), "none"
     near          m: list pairs that come nearer; by default the radius, or the reach of the footprint
@@ -237,7 +238,7 @@ def check(
         max_gap,
     )
     return CheckResult(
-        **{k: native[k] for k in ("file", "format", "between", "overlaps", "contacts", "rows", "repeated_rows", "pieces", "pairs", "near", "jump_speed")},
+        **{k: native[k] for k in ("file", "format", "between", "overlaps", "contacts", "open", "rows", "repeated_rows", "pieces", "pairs", "near", "jump_speed")},
         events=tuple(MotionEvent(*e) for e in native["events"]),
         approaches=tuple(Approach(*a) for a in native["approaches"]),
         findings=tuple(Finding(*f) for f in native["findings"]),

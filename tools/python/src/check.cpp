@@ -117,14 +117,14 @@ void set_bodies(const TrajectoryReader& reader, const TrajectorySurvey& survey, 
       continue;
     }
     const datasets::AgentSurvey& agent = survey.agents()[k];
-    if (agent.turns_at > 0)
+    if (agent.turns_at > 0 && question.between == Between::cubic)
       reader.refuse(datasets::DataCode::out_of_range, agent.turns_at,
                     "agent " + file.agents[k] + " at another heading than before",
-                    "one heading of an agent: a footprint that turns is not decided; a radius takes a disc round it");
+                    "one heading of an agent: on cubics, a footprint that turns is not decided");
     const RigidBody body = footprint_of(*footprint, grown);
     for (const geometry::RoundedPolygon& part : body)
       for (const Vec2 c : part.corners) question.reach = std::max(question.reach, norm(c) + part.radius);
-    question.bodies.push_back(turned_body(body, std::isnan(agent.heading) ? 0.0 : agent.heading));
+    question.bodies.push_back(body);
   }
 }
 
@@ -142,7 +142,9 @@ Answer answer_of(TrajectoryReader& reader, const TrajectorySurvey& survey, const
         if (move.speed() > question.jump_speed) answer.jumps.push_back(move);
         if (move.interval() > survey.gap_of(move.agent)) answer.gaps.push_back(move);
       },
-      [&](std::size_t agent, const geometry::Motion& piece) { stream.add(agent, piece); });
+      [&](std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
+        stream.add(agent, piece, turned);
+      });
   answer.check = stream.finish();
   return answer;
 }
@@ -162,9 +164,11 @@ py::dict as_dict(const TrajectoryFile& file, const TrajectorySurvey& survey, con
   py::list events, approaches, findings, bodies;
   for (const MotionEvent& e : answer.events)
     events.append(py::make_tuple(
-        e.encounter == geometry::Encounter::overlap ? "overlap" : "contact", file.agents[e.body], e.with_obstacle,
-        e.with_obstacle ? py::cast(e.other) : py::cast(file.agents[e.other]), as_tuple(e.first), as_tuple(e.last),
-        as_tuple(e.clearance), e.nearest_time, python::as_tuple(e.place)));
+        e.is_open                                     ? "close"
+        : e.encounter == geometry::Encounter::overlap ? "overlap"
+                                                      : "contact",
+        file.agents[e.body], e.with_obstacle, e.with_obstacle ? py::cast(e.other) : py::cast(file.agents[e.other]),
+        as_tuple(e.first), as_tuple(e.last), as_tuple(e.clearance), e.nearest_time, python::as_tuple(e.place)));
   for (const geometry::Approach& a : answer.check.approaches)
     approaches.append(py::make_tuple(file.agents[a.body], a.with_obstacle,
                                      a.with_obstacle ? py::cast(a.other) : py::cast(file.agents[a.other]),
@@ -182,7 +186,7 @@ py::dict as_dict(const TrajectoryFile& file, const TrajectorySurvey& survey, con
   }
   return py::dict("file"_a = file.file, "format"_a = file.format, "rows"_a = survey.rows(),
                   "repeated_rows"_a = file.repeated, "overlaps"_a = answer.check.overlaps,
-                  "contacts"_a = answer.check.contacts, "pieces"_a = answer.check.pieces,
+                  "contacts"_a = answer.check.contacts, "open"_a = answer.check.open, "pieces"_a = answer.check.pieces,
                   "pairs"_a = answer.check.pairs, "near"_a = question.near, "jump_speed"_a = question.jump_speed,
                   "between"_a = file.curves.empty() ? between_names()[static_cast<std::size_t>(question.between)]
                                                     : std::string("polynomials"),

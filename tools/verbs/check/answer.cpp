@@ -44,8 +44,9 @@ std::string between_text(double low, double high) {
   return a == b ? a + " m" : fmt::format("{} to {} m", a, b);
 }
 
-const char* word_of(Encounter encounter) {
-  return encounter == Encounter::overlap ? "overlap" : "contact";
+/// `close`: it is open whether two bodies that turn touch.
+const char* word_of(const MotionEvent& e) {
+  return e.is_open ? "close" : e.encounter == Encounter::overlap ? "overlap" : "contact";
 }
 
 /// How bodies move between rows, in words.
@@ -76,7 +77,7 @@ OrderedJson bounds_json(const Bounds& b) {
 }
 
 OrderedJson extreme_json(const Extreme& e) {
-  return {{"value", e.value}, {"time", e.time}, {"line", e.line}};
+  return {{"value", e.value}, {"time", e.time}, {"line", e.line > 0 ? OrderedJson(e.line) : OrderedJson()}};
 }
 
 std::string line_of(const OrderedJson& json) {
@@ -148,7 +149,7 @@ void CheckAnswer::begin() {
 
 void CheckAnswer::add(const MotionEvent& e) {
   if (json_) {
-    OrderedJson json{{"event", word_of(e.encounter)}, {"body", name_of(e.body)}};
+    OrderedJson json{{"event", word_of(e)}, {"body", name_of(e.body)}};
     json[e.with_obstacle ? "obstacle" : "other"] = e.with_obstacle ? asked_.obstacles[e.other].id : name_of(e.other);
     json["first"] = bounds_json(e.first);
     json["last"] = bounds_json(e.last);
@@ -161,10 +162,11 @@ void CheckAnswer::add(const MotionEvent& e) {
   const std::string when =
       first == last ? fmt::format("at {} s", first) : fmt::format("from {} s to {} s", first, last);
   std::string text =
-      fmt::format("{}: {} and {}, {}", word_of(e.encounter), name_of(e.body), other_of(e.with_obstacle, e.other), when);
+      fmt::format("{}: {} and {}, {}", word_of(e), name_of(e.body), other_of(e.with_obstacle, e.other), when);
   if (e.encounter == Encounter::overlap)
-    text +=
-        fmt::format(", {} deep at {} s", between_text(-e.clearance.high, -e.clearance.low), seconds(e.nearest_time));
+    text += fmt::format(", {} deep at {} s", between_text(0.0 - e.clearance.high, 0.0 - e.clearance.low),
+                        seconds(e.nearest_time));
+  if (e.is_open) text += fmt::format(", nearer than {:.3g} m; whether they touch is open", e.clearance.high);
   put(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
 }
 
@@ -254,6 +256,7 @@ OrderedJson CheckAnswer::summary_json(const geometry::MotionCheck& check, std::u
       {"repeated_rows", asked_.file.repeated},
       {"overlaps", check.overlaps},
       {"contacts", check.contacts},
+      {"open", check.open},
       {"jumps", jumps_},
       {"jump_speed", number_or_null(asked_.jump_speed)},
       {"gaps", gaps_},
@@ -279,11 +282,11 @@ void CheckAnswer::put_greatest(const char* what, Extreme AgentSurvey::*member, c
   const auto most = std::max_element(all.begin(), all.end(), [&](const AgentSurvey& a, const AgentSurvey& b) {
     return (a.*member).value < (b.*member).value;
   });
-  if (most == all.end() || ((*most).*member).line == 0) return;
+  if (most == all.end() || (((*most).*member).line == 0 && ((*most).*member).value == 0.0)) return;
   const Extreme& e = (*most).*member;
-  put(shown(fmt::format("greatest {}: {:.6g} {}, {} at {} s, {} {}", what, e.value, unit,
-                        name_of(static_cast<std::size_t>(most - all.begin())), seconds(e.time), asked_.file.row_word,
-                        e.line)) +
+  const std::string where = e.line > 0 ? fmt::format(", {} {}", asked_.file.row_word, e.line) : "";
+  put(shown(fmt::format("greatest {}: {:.6g} {}, {} at {} s{}", what, e.value, unit,
+                        name_of(static_cast<std::size_t>(most - all.begin())), seconds(e.time), where)) +
       "\n");
 }
 
@@ -293,7 +296,8 @@ void CheckAnswer::put_counts(const geometry::MotionCheck& check, std::uint64_t m
                     asked_.samples == 1 ? "misses" : "miss", missed, counted(check.overlaps, "overlap")));
   const std::string bound =
       std::isfinite(asked_.jump_speed) ? fmt::format(" (faster than {:.6g} m/s)", asked_.jump_speed) : "";
-  put(fmt::format("{}, {}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"),
+  const std::string open = check.open == 0 ? "" : fmt::format(", {} open", check.open);
+  put(fmt::format("{}, {}{}, {}{}, {}\n", counted(check.overlaps, "overlap"), counted(check.contacts, "contact"), open,
                   counted(jumps_, "jump"), bound, counted(gaps_, "gap")));
 }
 

@@ -111,16 +111,22 @@ Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const Trajecto
 Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const TrajectorySurvey& survey) {
   const RigidBody footprint = footprint_body(footprint_shape(flags.footprint), flags.radius.value_or(0.0));
   Bodies bodies{{}, reach_of(footprint), "the footprint at its heading"};
+  bool some_turn = false;
   for (std::size_t k = 0; k < survey.agents().size(); ++k) {
     const datasets::AgentSurvey& agent = survey.agents()[k];
-    if (agent.turns_at > 0)
+    some_turn |= agent.turns_at > 0;
+    if (agent.turns_at > 0 && flags.between == "cubic")
       reader.refuse(DataCode::out_of_range, agent.turns_at,
                     fmt::format("agent {} at another heading than before", reader.file().agents[k]),
-                    "one heading of an agent: a footprint that turns is not decided; --radius takes a disc round it");
-    bodies.of_agent.push_back(turned_body(footprint, std::isnan(agent.heading) ? 0.0 : agent.heading));
+                    "one heading of an agent: on cubics, a footprint that turns is not decided");
+    bodies.of_agent.push_back(footprint);
   }
-  bodies.words += survey.has_headings() ? ", which no agent changes (corners rounded)"
-                                        : " as given, since the file has no headings";
+  if (!survey.has_headings())
+    bodies.words += " as given, since the file has no headings";
+  else if (some_turn && flags.between == "straight")
+    bodies.words += ", which turns evenly from row to row, on the arc of a constant twist (corners rounded)";
+  else
+    bodies.words += some_turn ? " (corners rounded)" : ", which no agent changes (corners rounded)";
   if (flags.radius) bodies.words += fmt::format(", grown by {:.6g} m", *flags.radius);
   return bodies;
 }
@@ -190,18 +196,24 @@ class CertificateFile {
         map_(map) {}
 
   void add(const MetPair& pair) {
-    const BodyInMotion a{pair.motion, &bodies_.of_agent[pair.body]};
-    const geometry::Motion &motion = pair.motion, &other = pair.other_motion;
-    if (pair.with_obstacle && !map_.discs[pair.other]) {
-      const formation::SceneObstacle& obstacle = map_.obstacles[pair.other];
-      const auto proof = geometry::certify(motion, *a.body, obstacle.shape);
-      return proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
+    const RigidBody body = turned_body(bodies_.of_agent[pair.body], pair.turned.from);
+    const formation::SceneObstacle* obstacle =
+        pair.with_obstacle && !map_.discs[pair.other] ? &map_.obstacles[pair.other] : nullptr;
+    const bool turns = pair.turned.by != 0.0 || pair.other_turned.by != 0.0;
+    if (obstacle)
+      return turns ? add(arc_of(pair.motion, pair.turned), body, *obstacle, pair)
+                   : add({pair.motion, &body}, *obstacle, pair);
+    // An obstacle that is a disc is a body at rest.
+    const RigidBody other = pair.with_obstacle ? geometry::disc_body(map_.discs[pair.other]->radius)
+                                               : turned_body(bodies_.of_agent[pair.other], pair.other_turned.from);
+    if (turns) {
+      const geometry::TurningMotion a = arc_of(pair.motion, pair.turned),
+                                    b = arc_of(pair.other_motion, pair.other_turned);
+      const auto proof = geometry::certify(a, body, b, other);
+      return proof ? write(certificate_json(*proof, a, body, b, other)) : write_none(pair);
     }
-    RigidBody disc;  // an obstacle that is one is a body at rest
-    if (pair.with_obstacle) disc = geometry::disc_body(map_.discs[pair.other]->radius);
-    const BodyInMotion b{pair.other_motion, pair.with_obstacle ? &disc : &bodies_.of_agent[pair.other]};
-    const auto proof = geometry::certify(motion, *a.body, other, *b.body);
-    proof ? write(certificate_json(*proof, a, b)) : write_none(pair);
+    const auto proof = geometry::certify(pair.motion, body, pair.other_motion, other);
+    proof ? write(certificate_json(*proof, {pair.motion, &body}, {pair.other_motion, &other})) : write_none(pair);
   }
   void finish() {
     put({{"summary", {{"certificates", count_}, {"without", without_}}}});
@@ -211,6 +223,18 @@ class CertificateFile {
   }
 
  private:
+  static geometry::TurningMotion arc_of(const geometry::Motion& piece, const geometry::Turned& turned) {
+    return geometry::turning_motion(std::get<geometry::StraightMotion>(piece), turned);
+  }
+  void add(const BodyInMotion& a, const formation::SceneObstacle& obstacle, const MetPair& pair) {
+    const auto proof = geometry::certify(a.motion, *a.body, obstacle.shape);
+    proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
+  }
+  void add(const geometry::TurningMotion& a, const RigidBody& body, const formation::SceneObstacle& obstacle,
+           const MetPair& pair) {
+    const auto proof = geometry::certify(a, body, obstacle.shape);
+    proof ? write(certificate_json(*proof, a, body, obstacle)) : write_none(pair);
+  }
   void write(OrderedJson certificate) {
     ++count_;
     put({{"certificate", std::move(certificate)}});
@@ -299,9 +323,9 @@ class Byproducts {
   void add(const TrajectoryRow& row) {
     if (picture_) picture_->add(row);
   }
-  void add(std::size_t agent, const geometry::Motion& piece) {
+  void add(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
     if (flags_.samples > 0) sampled_.add(agent, piece);
-    if (page_) page_->add(agent, piece);
+    if (page_) page_->add(agent, piece, turned);
   }
   void add(const geometry::MotionEvent& event) {
     if (flags_.samples > 0 && event.encounter == geometry::Encounter::overlap && !sampled_.finds(event)) ++missed_;
@@ -330,7 +354,7 @@ class Byproducts {
 /// One file, or several files of polynomials together.
 ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
   TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale});
-  const TrajectorySurvey survey = survey_of(reader);
+  TrajectorySurvey survey = survey_of(reader);
   const TrajectoryFile file = reader.file();
   say_what_was_read(file, survey);
   const Bodies bodies = flags.footprint.empty() ? discs(flags, file, survey) : footprints(flags, reader, survey);
@@ -362,9 +386,10 @@ ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>&
         if (interrupted()) throw Interrupted();
         if (progress.is_due()) progress.show(static_cast<double>(done), "checking");
       },
-      [&](std::size_t agent, const geometry::Motion& piece) {
-        byproducts.add(agent, piece);
-        stream.add(agent, piece);
+      [&](std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
+        survey.add(agent, piece);
+        byproducts.add(agent, piece, turned);
+        stream.add(agent, piece, turned);
       });
   progress.clear();
   answer.set_progress(nullptr);
@@ -448,7 +473,7 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
   app.add_option(
       "--footprint", flags.footprint,
       "WKT or FILE: a polygon round the agent's place, or with --radius a line with that half width. --radius "
-      "grows a polygon. Each agent keeps one heading");
+      "grows a polygon. It turns with the agent's heading (theta)");
   app.add_option("--map", flags.map, "Obstacle file of any readable format; by default the obstacles of a recording");
   app.add_option(
       "--map-format", flags.reading.format,

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "exactvo/geometry/counted.h"
-#include "figures/local_origin.h"
+#include "figures/body_panel.h"
 
 namespace exactvo::tools {
 
@@ -26,76 +26,10 @@ constexpr double kFinest = 1.0 / 2000.0;
 /// Places of overlaps that are drawn.
 constexpr std::size_t kMostPlaces = 2000;
 
-std::vector<Points> outlines_of(const RigidBody& body, Vec2 at) {
-  std::vector<Points> rings;
-  for (const geometry::RoundedPolygon& part : body) rings.push_back(hull_outline(part, {at, 0.0}));
-  return rings;
+void draw_way(BodyPanel& panel, const std::string& title, const Points& way, const char* colour) {
+  panel.way(title, way, line_style(1.4, colour));
+  panel.points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
 }
-
-/// A square round the box, a little larger.
-Box square_round(const Box& box) {
-  const double half = 0.54 * std::max({box.width(), box.height(), 1e-6});
-  const Vec2 middle = 0.5 * (box.low + box.high);
-  return {middle - Vec2{half, half}, middle + Vec2{half, half}};
-}
-
-std::string line_style_of(double width, const char* colour) {
-  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
-}
-
-std::string body_style_of(const char* colour) {
-  return fmt::format("with filledcurves closed fs transparent solid 0.3 border lc rgb '{0}' fc rgb '{0}'", colour);
-}
-
-/// One panel: data sets and the command that draws them.
-class Panel {
- public:
-  Panel(const Box& view, DataFile& data) : view_(view), origin_(view), data_(data) { origin_.prepare(data); }
-
-  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed) {
-    const int index = data_.begin(title, "x, y [m]");
-    for (const Points& curve : curves) closed ? data_.ring(curve) : data_.curve(curve);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  void points(const std::string& title, const Points& points, const std::string& style) {
-    const int index = data_.begin(title, "x, y [m]");
-    data_.rows(points);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  /// With its rows. gnuplot draws no line between two points that are out of view.
-  void way(const std::string& title, const Points& way, const char* colour) {
-    std::vector<Points> seen;
-    for (std::size_t k = 1; k < way.size(); ++k)
-      if (Points piece = segment_within(view_, way[k - 1], way[k]); !piece.empty()) seen.push_back(std::move(piece));
-    curves(title, seen, line_style_of(1.4, colour), false);
-    points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
-  }
-  void map(const std::vector<geometry::Obstacle>& obstacles) {
-    std::vector<Points> solids, walls;
-    for (const geometry::Obstacle& obstacle : obstacles) {
-      if (const auto* wall = std::get_if<geometry::Polyline>(&obstacle)) {
-        for (std::size_t k = 1; k < wall->points.size(); ++k)
-          if (Points piece = segment_within(view_, wall->points[k - 1], wall->points[k]); !piece.empty())
-            walls.push_back(std::move(piece));
-        continue;
-      }
-      Points ring = clipped_to(tied_together(std::get<geometry::Polygon>(obstacle)), view_);
-      if (ring.size() > 2) solids.push_back(std::move(ring));
-    }
-    curves("obstacles", solids, fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill),
-           true);
-    curves("walls", walls, fmt::format("with lines lw 2 lc rgb '{}'", kObstacleLine), false);
-  }
-  SheetPanel done(const std::string& title) const {
-    return {quoted(title + origin_.in_title()), origin_.ranges(view_), plot_.text()};
-  }
-
- private:
-  Box view_;
-  LocalOrigin origin_;
-  DataFile& data_;
-  PlotCommand plot_;
-};
 
 constexpr const char* kPlaceStyle = "with points pt 6 ps 1.4 lw 2 lc rgb '#e00000'";
 
@@ -138,11 +72,11 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
     for (const Vec2 p : agent.way) all.add(p);
   for (const geometry::Obstacle& obstacle : map_)
     for (const Vec2 p : geometry::vertices_of(obstacle)) all.add(p);
-  Panel whole(square_round(all), data);
+  BodyPanel whole(square_view(all, 0.54), data);
   whole.map(map_);
   std::vector<Points> ways, alone;
   for (const Agent& agent : agents_) (agent.way.size() > 1 ? ways : alone).push_back(agent.way);
-  whole.curves("ways", ways, line_style_of(0.8, kWayColour), false);
+  whole.curves("ways", ways, line_style(0.8, kWayColour));
   Points places;
   for (const Points& way : alone)
     if (!way.empty()) places.push_back(way.front());
@@ -151,20 +85,21 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   sheet.panels.push_back(whole.done("(a) all ways"));
   for (std::size_t k = 0; k < close_.size(); ++k) {
     const Close& c = close_[k];
-    const std::vector<Points> body = outlines_of(bodies_[c.event.body], c.event.at);
+    const std::vector<Points> body = outlines_of(bodies_[c.event.body], {c.event.at, c.event.turned});
     const std::vector<Points> other =
-        c.event.with_obstacle ? std::vector<Points>{} : outlines_of(bodies_[c.event.other], c.event.other_at);
+        c.event.with_obstacle ? std::vector<Points>{}
+                              : outlines_of(bodies_[c.event.other], {c.event.other_at, c.event.other_turned});
     Box near;
     for (const auto* rings : {&body, &other})
       for (const Points& ring : *rings)
         for (const Vec2 p : ring) near.add(p);
     near = near.grown(0.6 * std::max(near.width(), near.height()));
-    Panel panel(square_round(near), data);
+    BodyPanel panel(square_view(near, 0.54), data);
     panel.map(map_);
-    panel.curves("first body", body, body_style_of(kFirstColour), true);
-    panel.curves("other body", other, body_style_of(kOtherColour), true);
-    panel.way("way of the first", c.way, kFirstColour);
-    panel.way("way of the other", c.other_way, kOtherColour);
+    panel.rings("first body", body, filled_style(kFirstColour, 0.3));
+    panel.rings("other body", other, filled_style(kOtherColour, 0.3));
+    draw_way(panel, "way of the first", c.way, kFirstColour);
+    draw_way(panel, "way of the other", c.other_way, kOtherColour);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
     const std::string names = c.event.with_obstacle
                                   ? asked_.file.agents[c.event.body] + " and " + asked_.obstacles[c.event.other].id
@@ -179,14 +114,11 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   sheet.columns = close_.empty() ? 1 : close_.size() <= 1 ? 2 : 3;
   sheet.panel_width = sheet.panel_height = close_.empty() ? 560.0 : 300.0;
   sheet.gap = 60.0;
-  sheet.legend = {{"keyentry " + line_style_of(0.8, kWayColour), "way"},
+  sheet.legend = {{"keyentry " + line_style(0.8, kWayColour), "way"},
                   {std::string("keyentry ") + kPlaceStyle, "where an overlap is deepest"}};
   if (!close_.empty()) {
-    sheet.legend.push_back(
-        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kFirstColour),
-         "first body; dots are its rows"});
-    sheet.legend.push_back(
-        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kOtherColour), "other body"});
+    sheet.legend.push_back({filled_key(kFirstColour, 0.3), "first body; dots are its rows"});
+    sheet.legend.push_back({filled_key(kOtherColour, 0.3), "other body"});
   }
   return sheet_figure("check", data.text(), "Ways of agents, and where they overlap.", sheet);
 }

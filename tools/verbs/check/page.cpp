@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/pi.h"
 #include "explorer/page.h"
 #include "figures/outlines.h"
 #include "support/footprint.h"
@@ -50,15 +52,21 @@ void CheckPage::put(std::size_t agent, const Knot& knot) {
   has_last_[agent] = true;
 }
 
-void CheckPage::add(std::size_t agent, const geometry::Motion& piece) {
+void CheckPage::add(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
+  has_headings_ |= (turned.from != 0.0 || turned.by != 0.0) && !is_plain_disc(bodies_[agent]);
   const double start = start_of(piece), end = end_of(piece);
   const bool goes_on = has_last_[agent] && (last_[agent].time == start || asked_.between == geometry::Between::none);
   const Vec2 from = position_at(piece, start);
-  if (!goes_on || last_[agent].at != from || last_[agent].time != start) put(agent, {start, from, !goes_on});
-  const int chords = std::holds_alternative<geometry::StraightMotion>(piece) ? 1 : kChords;
+  const bool is_moved = last_[agent].at != from || last_[agent].heading != turned.from;
+  if (!goes_on || is_moved || last_[agent].time != start) put(agent, {start, from, !goes_on, turned.from});
+  const bool is_chord = turned.by == 0.0 && std::holds_alternative<geometry::StraightMotion>(piece);
+  const int chords = is_chord ? 1 : kChords;
+  std::optional<geometry::TurningMotion> arc;
+  if (turned.by != 0.0) arc = turning_motion(std::get<geometry::StraightMotion>(piece), turned);
   for (int k = 1; k <= chords && start < end; ++k) {
     const double time = k == chords ? end : start + (end - start) * k / chords;
-    put(agent, {time, position_at(piece, time), false});
+    const Vec2 at = arc ? arc->at + displacement_after(arc->twist, time - start).by : position_at(piece, time);
+    put(agent, {time, at, false, turned.from + turned.by * k / chords});
   }
 }
 
@@ -179,7 +187,12 @@ std::string CheckPage::packed(const geometry::MotionCheck& check) const {
       const double span = to.time - from.time;
       // As a way ends, the velocity is the last one.
       if (is_on_way || time > from.time) step.robots[k].velocity = span > 0.0 ? (to.at - from.at) / span : Vec2{};
-      step.robots[k].position = from.at + (span > 0.0 ? (time - from.time) / span : 0.0) * (to.at - from.at);
+      const double share = span > 0.0 ? (time - from.time) / span : 0.0;
+      step.robots[k].position = from.at + share * (to.at - from.at);
+      if (!has_headings_) continue;
+      const double heading = from.heading + share * std::remainder(to.heading - from.heading, 2.0 * geometry::kPi);
+      step.robots[k].wheels.emplace();
+      step.robots[k].wheels->heading = {std::cos(heading), std::sin(heading)};
     }
     packer.add_positions(step);
   }

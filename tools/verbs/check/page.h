@@ -18,16 +18,17 @@ class CheckPage {
   CheckPage(const CheckedFile& asked, const std::vector<geometry::RigidBody>& bodies);
 
   /// Pieces of one agent by time.
-  void add(std::size_t agent, const geometry::Motion& piece);
+  void add(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned);
   void add(const geometry::MotionEvent& event);
   /// The whole page.
   std::string page(const geometry::MotionCheck& check) const;
 
  private:
   struct Knot {
-    double time = 0.0;    ///< s
-    geometry::Vec2 at;    ///< m
-    bool begins = false;  ///< the agent was not there just before
+    double time = 0.0;     ///< s
+    geometry::Vec2 at;     ///< m
+    bool begins = false;   ///< the agent was not there just before
+    double heading = 0.0;  ///< rad
   };
 
   void put(std::size_t agent, const Knot& knot);
@@ -41,6 +42,7 @@ class CheckPage {
   const std::vector<geometry::RigidBody>& bodies_;
   PackedRunLimits limits_;
   double least_step_ = 0.0;  ///< s, between knots of one way
+  bool has_headings_ = false;
   std::vector<std::vector<Knot>> ways_;
   std::vector<Knot> last_;  ///< of each agent, not kept yet
   std::vector<bool> has_last_;

@@ -80,6 +80,17 @@ geometry::Vec2 point_in(const JsonCursor& at) {
   return {finite_number(at.at(0)), finite_number(at.at(1))};
 }
 
+void refuse_unknown_keys(const JsonCursor& object, const std::vector<std::string>& known) {
+  if (!object.json().is_object()) return;
+  std::vector<std::string> missing;  // a key that is there already was not meant
+  for (const std::string& name : known)
+    if (!object.has(name)) missing.push_back(name);
+  for (const auto& [key, value] : object.json().items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      object.at(key).refuse(fmt::format("a known key, which \"{}\" is not{}", key, suggestion(key, missing)),
+                            DataCode::key_unknown);
+}
+
 /// From the place `first` of the list on: x, y, heading.
 geometry::Pose pose_in(const JsonCursor& list, std::size_t first) {
   return {{finite_number(list.at(first)), finite_number(list.at(first + 1))}, finite_number(list.at(first + 2))};
@@ -100,6 +111,7 @@ Command command_in(const JsonCursor& line) {
 
 void read_mover(const JsonCursor& at, MonitorQuestion& question) {
   Mover mover;
+  refuse_unknown_keys(at, {"id", "position", "polygon", "radius", "max_speed", "position_error"});
   if (at.has("polygon") == at.has("position"))
     at.refuse("either \"position\" and \"radius\", or \"polygon\"", DataCode::no_alternative);
   mover.shape.corners.clear();
@@ -120,6 +132,7 @@ void read_mover(const JsonCursor& at, MonitorQuestion& question) {
 
 MonitorQuestion question_in(const JsonCursor& line) {
   MonitorQuestion question;
+  refuse_unknown_keys(line, {"id", "pose", "velocity", "turn", "frame", "trajectory", "movers"});
   if (line.has("id")) question.id = line.at("id").json();
   if (line.has("trajectory")) {
     const JsonCursor list = line.at("trajectory");
@@ -166,7 +179,8 @@ class ProofFile {
           reach = std::max(reach, norm(corner) + part.radius);
         }
       }
-      reach += norm(arc.motion.twist.velocity) * (arc.motion.end - arc.motion.start);
+      // What ends a share is as far away as that, up to rounding: its proof is wanted.
+      reach += norm(arc.motion.twist.velocity) * (arc.motion.end - arc.motion.start) + formation::kMonitorSlack;
       for (std::size_t k = 0; k < boxes_.size(); ++k) {
         if (geometry::distance_below(boxes_[k], arc.motion.at) > reach * (1.0 + 0x1p-40)) continue;
         const formation::SceneObstacle& obstacle = setup_.obstacles[k];

@@ -151,10 +151,6 @@ std::string solid_fill(const std::string& colour) {
   return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", colour);
 }
 
-std::string line_style(double width, const std::string& colour, const std::string& dash) {
-  return fmt::format("with lines lw {} lc rgb '{}'{}", width, colour, dash);
-}
-
 void MapLayers::curves(const std::string& title, const std::vector<Points>& curves, const std::string& style,
                        bool closed, bool in_key) {
   if (curves.empty()) return;

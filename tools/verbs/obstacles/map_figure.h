@@ -12,6 +12,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/obstacle_shapes.h"
+#include "figures/body_panel.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
 
@@ -47,9 +48,8 @@ class MapLayers {
   Box view_;
 };
 
-/// "with ..." for MapLayers::curves.
+/// "with ..." for MapLayers::curves, as `line_style` is.
 std::string solid_fill(const std::string& colour);
-std::string line_style(double width, const std::string& colour, const std::string& dash = "");
 
 /// Solid grey with holes left free, and walls as lines.
 void add_obstacles(const std::vector<geometry::Obstacle>& obstacles, bool with_edges, MapLayers& map);

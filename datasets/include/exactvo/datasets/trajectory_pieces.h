@@ -26,8 +26,11 @@ class TrajectoryPieces {
     double longest_gap =
         std::numeric_limits<double>::infinity();  ///< s: an agent without a row for longer counts as absent
   };
-  /// Gets an agent's number and its next piece.
-  using Take = std::function<void(std::size_t agent, const geometry::Motion& piece)>;
+  /// Gets an agent's number, its next piece, and how the agent is turned: by its headings, evenly from one row to the
+  /// next by less than half a turn (of `hold` and `none` not between rows). A row without a heading has that of
+  /// the row before; rows before the first heading have this one. Cubics and polynomials have headings at their start
+  /// only.
+  using Take = std::function<void(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned)>;
 
   /// `agents`: of the survey, which knows how many rows each agent has. They must outlive this object.
   TrajectoryPieces(const std::vector<AgentSurvey>& agents, const Options& options, Take take);
@@ -42,10 +45,12 @@ class TrajectoryPieces {
   struct Knot {
     geometry::TimedPoint point;
     geometry::Vec2 velocity;
+    double heading = 0.0;
   };
   struct Agent {
     TrajectoryRow last;
-    Knot before{};  ///< where a cubic begins that ends at `last`
+    double heading = 0.0;  ///< rad, at `last`
+    Knot before{};         ///< where a cubic begins that ends at `last`
     std::uint64_t rows = 0;
     bool is_open = false;    ///< a piece that begins at `last` may follow
     bool has_cubic = false;  ///< from `before` to `last`: its last velocity is not known yet
@@ -54,6 +59,7 @@ class TrajectoryPieces {
   };
   struct Waiting {
     geometry::Motion piece;
+    geometry::Turned turned;
     double begin;
     std::size_t agent;
     std::uint64_t number;
@@ -63,9 +69,9 @@ class TrajectoryPieces {
   };
   using Begin = std::pair<double, std::size_t>;
 
-  void put(std::size_t agent, const geometry::Motion& piece);
+  void put(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned);
   /// From the agent's last row to this one.
-  void go_on(std::size_t agent, const TrajectoryRow& row);
+  void go_on(std::size_t agent, const TrajectoryRow& row, double heading);
   void put_cubic(std::size_t agent, geometry::Vec2 end_velocity);
   /// Ends a stay. If it has one row, or the data is held, its last row is a piece of its own.
   void close(std::size_t agent);

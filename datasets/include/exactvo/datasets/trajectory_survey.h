@@ -38,7 +38,7 @@ class LogHistogram {
 struct Extreme {
   double value = 0.0;      ///< rounded
   double time = 0.0;       ///< s, the start of the move
-  std::uint64_t line = 0;  ///< of the row at its end; 0: none
+  std::uint64_t line = 0;  ///< of the row at its end; 0: none, or on a curve
 };
 
 /// One agent, over all its rows.
@@ -78,6 +78,9 @@ class TrajectorySurvey {
  public:
   /// Takes rows in the order of the file.
   void add(const TrajectoryRow& row);
+  /// Takes a piece of motion. Once one of an agent's is a curve, the greatest speed and acceleration of the agent are
+  /// those on its curves, which name no line, instead of those from row to row.
+  void add(std::size_t agent, const geometry::Motion& piece);
 
   /// By number.
   const std::vector<AgentSurvey>& agents() const { return agents_; }
@@ -109,6 +112,7 @@ class TrajectorySurvey {
   struct Pace {
     geometry::Vec2 velocity;
     double interval = 0.0;  ///< s; 0: none
+    bool on_curves = false;
   };
   std::vector<Pace> paces_;
   LogHistogram intervals_, speeds_;

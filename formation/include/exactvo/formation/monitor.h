@@ -246,6 +246,7 @@ class Monitor {
   std::vector<geometry::Vec2> part_corners_, turned_;
   std::vector<Part> parts_;
   double body_reach_ = 0.0;  ///< m: a disc about the reference point that holds the footprint
+  double part_reach_ = 0.0;  ///< m: the largest radius of a part, with the margin
   double held_ = 0.0;        ///< s, at share 1
   bool is_trajectory_ = false;
   double brake_time_ = 0.0;              ///< s, at share 1

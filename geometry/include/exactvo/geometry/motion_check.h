@@ -6,9 +6,10 @@
 ///
 /// A sweep in time goes over the pieces of motion, and a grid finds those that are near each other at the same time.
 /// The cost grows as n log n with the number of pieces n, and with the pairs that are near; memory grows with the
-/// pieces that are under way at a time. Every verdict is exact (motions.h).
+/// pieces that are under way at a time. Every verdict is exact (motions.h). Bodies may turn: verdicts on those that do
+/// are certified (turning_pairs.h).
 ///
-/// See also: motions.h (one pair).
+/// See also: motions.h (one pair), turning_pairs.h (one pair of which one turns).
 
 #include <cstddef>
 #include <functional>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "exactvo/geometry/motions.h"
+#include "exactvo/geometry/turning_motions.h"
 
 namespace exactvo::geometry {
 
@@ -36,6 +38,14 @@ enum class Between : int {
   none = 3       ///< nowhere: only the timed points count
 };
 
+/// How a body is turned during a piece of motion.
+struct Turned {
+  double from = 0.0;  ///< rad, counter-clockwise, at the start: from how the body was given
+  /// rad, over the whole piece, at most half a turn either way. If it is not 0, the body goes evenly along the arc of a
+  /// constant twist to the end of a straight piece (`twist_between`, rounded), not straight.
+  double by = 0.0;
+};
+
 /// Two pieces of motion, or one and an obstacle, whose boxes meet at the same time.
 struct MetPair {
   std::size_t body = 0;        ///< the body's number; the lower one if both are bodies
@@ -43,6 +53,8 @@ struct MetPair {
   bool with_obstacle = false;  ///< whether `other` is an obstacle
   std::size_t other = 0;       ///< number of the other body, or of the obstacle
   Motion other_motion;         ///< the other body's; for a disc obstacle a motion at rest
+  Turned turned;               ///< of `body`
+  Turned other_turned;         ///< of the other body
 };
 
 /// Options of a check.
@@ -70,6 +82,11 @@ struct MotionEvent {
   Vec2 place;                                ///< m, rounded: where, at that moment
   Vec2 at;                                   ///< m, rounded: the body's reference point at that moment
   Vec2 other_at;                             ///< m, rounded: the other body's; (0, 0) for an obstacle
+  double turned = 0.0;                       ///< rad, rounded: how the body is turned at that moment
+  double other_turned = 0.0;                 ///< rad, rounded: how the other body is
+  /// Of two bodies of which one turns: they come nearer than clearance.high, and whether they touch or overlap is not
+  /// known. The encounter is `contact`.
+  bool is_open = false;
 };
 
 /// Two bodies, or a body and an obstacle, that come nearer to each other than `near`, over all time.
@@ -90,6 +107,7 @@ struct MotionCheck {
   std::size_t examined = 0;          ///< pairs of both kinds that the quick filter could not clear
   std::size_t overlaps = 0;          ///< events
   std::size_t contacts = 0;          ///< events
+  std::size_t open = 0;              ///< events of bodies that turn: neither a contact nor an overlap for certain
   std::size_t most_held = 0;         ///< pieces in memory at a time
   std::vector<Approach> approaches;  ///< by body, bodies before obstacles, then by other; empty for `near` 0
 };
@@ -107,8 +125,10 @@ class MotionStream {
   /// Returns the body's number: 0, 1, ... REQUIRES: a body as motions.h requires.
   std::size_t add_body(RigidBody body);
   /// REQUIRES: a number from `add_body`; finite numbers; a duration >= 0; pieces in the order of their beginnings; a
-  /// body's piece begins no earlier than its previous piece ends.
-  void add(std::size_t body, const Motion& piece);
+  /// body's piece begins no earlier than its previous piece ends; only straight pieces that last may turn, and then no
+  /// piece of any body is curved, or a way that is gone in no time. Discs round the reference point are taken not to
+  /// turn.
+  void add(std::size_t body, const Motion& piece, const Turned& turned = {});
   /// Reports the events that are still open. REQUIRES: called once, last.
   MotionCheck finish();
 
@@ -123,5 +143,9 @@ class MotionStream {
 /// one entry for each obstacle, finite, with a radius >= 0.
 MotionCheck check_motions(const std::vector<Trajectory>& trajectories, const std::vector<Obstacle>& map,
                           const MotionCheckOptions& options, const std::function<void(const MotionEvent&)>& report);
+
+/// The motion of a straight piece whose body turns: along the arc of a constant twist. Rounded.
+/// REQUIRES: a piece that lasts.
+TurningMotion turning_motion(const StraightMotion& piece, const Turned& turned);
 
 }  // namespace exactvo::geometry

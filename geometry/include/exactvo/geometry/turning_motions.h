@@ -12,7 +12,8 @@
 /// Doubles in, exact inside: a filter (turning.h) decides what it can, `stage_counts` (predicates.h) counts both. What
 /// is meant by *overlap* and *contact* stands in motions.h; here every part of the body has an interior.
 ///
-/// See also: motions.h (bodies that keep their heading), turning.h (both move; certified, not exact).
+/// See also: motions.h (bodies that keep their heading), turning_pairs.h (moments and clearance; both move; certified,
+/// not exact).
 
 #include <cstddef>
 #include <optional>
@@ -49,10 +50,17 @@ Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Ri
 ///
 /// REQUIRES: as `encounter`.
 std::optional<MotionCertificate> certify(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle);
+/// The same of two bodies that both may turn, over the time that both have; none too where more than 2^16 pieces of
+/// time would be needed.
+std::optional<MotionCertificate> certify(const TurningMotion& a, const RigidBody& body_a, const TurningMotion& b,
+                                         const RigidBody& body_b);
 
 /// Whether the certificate proves that the two stay clear. In rationals, by code of its own: sines and cosines are
 /// enclosed by their series. False too where the body turns by more than 64 rad. REQUIRES: as `encounter`.
 bool proves_clear(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
                   const Obstacle& obstacle);
+/// The same of two bodies.
+bool proves_clear(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
+                  const TurningMotion& b, const RigidBody& body_b);
 
 }  // namespace exactvo::geometry
