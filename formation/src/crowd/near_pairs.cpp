@@ -238,7 +238,9 @@ std::size_t lowest(std::uint32_t bits) {
 
 template <class Column>
 void grow(Column& column, std::size_t size) {
-  if (column.size() < size) column.resize(size + size / 4);
+  if (column.size() >= size) return;
+  column.reserve(size + size / 8);  // resize alone may take twice as much
+  column.resize(size + size / 8);
 }
 
 }  // namespace
