@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "exactvo/geometry/counted.h"
-#include "figures/local_origin.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 
@@ -32,82 +32,22 @@ std::vector<Points> outlines_of(const RigidBody& body, Vec2 at) {
   return rings;
 }
 
-/// A square round the box, a little larger.
-Box square_round(const Box& box) {
-  const double half = 0.54 * std::max({box.width(), box.height(), 1e-6});
-  const Vec2 middle = 0.5 * (box.low + box.high);
-  return {middle - Vec2{half, half}, middle + Vec2{half, half}};
+/// With its rows.
+void draw_way(const std::string& title, const Points& way, const char* colour, Panel& panel) {
+  panel.curves(title, {way}, line_style(1.4, colour));
+  panel.points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
 }
 
-std::string line_style_of(double width, const char* colour) {
-  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
+SheetPanel on_sheet(const Panel& panel, const std::string& title) {
+  return panel.on_sheet(quoted(title + panel.origin.in_title()));
 }
-
-std::string body_style_of(const char* colour) {
-  return fmt::format("with filledcurves closed fs transparent solid 0.3 border lc rgb '{0}' fc rgb '{0}'", colour);
-}
-
-/// One panel: data sets and the command that draws them.
-class Panel {
- public:
-  Panel(const Box& view, DataFile& data) : view_(view), origin_(view), data_(data) { origin_.prepare(data); }
-
-  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed) {
-    const int index = data_.begin(title, "x, y [m]");
-    for (const Points& curve : curves) closed ? data_.ring(curve) : data_.curve(curve);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  void points(const std::string& title, const Points& points, const std::string& style) {
-    const int index = data_.begin(title, "x, y [m]");
-    data_.rows(points);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  /// With its rows. gnuplot draws no line between two points that are out of view.
-  void way(const std::string& title, const Points& way, const char* colour) {
-    std::vector<Points> seen;
-    for (std::size_t k = 1; k < way.size(); ++k)
-      if (Points piece = segment_within(view_, way[k - 1], way[k]); !piece.empty()) seen.push_back(std::move(piece));
-    curves(title, seen, line_style_of(1.4, colour), false);
-    points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
-  }
-  void map(const std::vector<geometry::Obstacle>& obstacles) {
-    std::vector<Points> solids, walls;
-    for (const geometry::Obstacle& obstacle : obstacles) {
-      if (const auto* wall = std::get_if<geometry::Polyline>(&obstacle)) {
-        for (std::size_t k = 1; k < wall->points.size(); ++k)
-          if (Points piece = segment_within(view_, wall->points[k - 1], wall->points[k]); !piece.empty())
-            walls.push_back(std::move(piece));
-        continue;
-      }
-      Points ring = clipped_to(tied_together(std::get<geometry::Polygon>(obstacle)), view_);
-      if (ring.size() > 2) solids.push_back(std::move(ring));
-    }
-    curves("obstacles", solids, fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill),
-           true);
-    curves("walls", walls, fmt::format("with lines lw 2 lc rgb '{}'", kObstacleLine), false);
-  }
-  SheetPanel done(const std::string& title) const {
-    return {quoted(title + origin_.in_title()), origin_.ranges(view_), plot_.text()};
-  }
-
- private:
-  Box view_;
-  LocalOrigin origin_;
-  DataFile& data_;
-  PlotCommand plot_;
-};
 
 constexpr const char* kPlaceStyle = "with points pt 6 ps 1.4 lw 2 lc rgb '#e00000'";
 
 }  // namespace
 
-CheckPicture::CheckPicture(const CheckedFile& asked, const std::vector<geometry::Obstacle>& map,
-                           const std::vector<RigidBody>& bodies)
-    : asked_(asked),
-      map_(map),
-      bodies_(bodies),
-      least_step_(kFinest * asked.survey.extent().diagonal()),
-      agents_(bodies.size()) {}
+CheckPicture::CheckPicture(const CheckedFile& asked, const std::vector<RigidBody>& bodies)
+    : asked_(asked), bodies_(bodies), least_step_(kFinest * asked.survey.extent().diagonal()), agents_(bodies.size()) {}
 
 void CheckPicture::add(const datasets::TrajectoryRow& row) {
   Agent& agent = agents_[row.agent];
@@ -136,19 +76,19 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   Box all;
   for (const Agent& agent : agents_)
     for (const Vec2 p : agent.way) all.add(p);
-  for (const geometry::Obstacle& obstacle : map_)
-    for (const Vec2 p : geometry::vertices_of(obstacle)) all.add(p);
-  Panel whole(square_round(all), data);
-  whole.map(map_);
+  for (const formation::SceneObstacle& obstacle : asked_.obstacles)
+    for (const Vec2 p : geometry::vertices_of(obstacle.shape)) all.add(p);
+  Panel whole(square_round(all, 0.54), data);
+  whole.obstacles(asked_.obstacles, 2.0, false);
   std::vector<Points> ways, alone;
   for (const Agent& agent : agents_) (agent.way.size() > 1 ? ways : alone).push_back(agent.way);
-  whole.curves("ways", ways, line_style_of(0.8, kWayColour), false);
+  whole.curves("ways", ways, line_style(0.8, kWayColour));
   Points places;
   for (const Points& way : alone)
     if (!way.empty()) places.push_back(way.front());
   whole.points("agents that do not move", places, fmt::format("with points pt 7 ps 0.3 lc rgb '{}'", kWayColour));
   whole.points("overlaps", places_, kPlaceStyle);
-  sheet.panels.push_back(whole.done("(a) all ways"));
+  sheet.panels.push_back(on_sheet(whole, "(a) all ways"));
   for (std::size_t k = 0; k < close_.size(); ++k) {
     const Close& c = close_[k];
     const std::vector<Points> body = outlines_of(bodies_[c.event.body], c.event.at);
@@ -159,18 +99,18 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
       for (const Points& ring : *rings)
         for (const Vec2 p : ring) near.add(p);
     near = near.grown(0.6 * std::max(near.width(), near.height()));
-    Panel panel(square_round(near), data);
-    panel.map(map_);
-    panel.curves("first body", body, body_style_of(kFirstColour), true);
-    panel.curves("other body", other, body_style_of(kOtherColour), true);
-    panel.way("way of the first", c.way, kFirstColour);
-    panel.way("way of the other", c.other_way, kOtherColour);
+    Panel panel(square_round(near, 0.54), data);
+    panel.obstacles(asked_.obstacles, 2.0, false);
+    panel.rings("first body", body, clear_fill(kFirstColour, 0.3));
+    panel.rings("other body", other, clear_fill(kOtherColour, 0.3));
+    draw_way("way of the first", c.way, kFirstColour, panel);
+    draw_way("way of the other", c.other_way, kOtherColour, panel);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
     const std::string names = c.event.with_obstacle
                                   ? asked_.file.agents[c.event.body] + " and " + asked_.obstacles[c.event.other].id
                                   : asked_.file.agents[c.event.body] + " and " + asked_.file.agents[c.event.other];
-    sheet.panels.push_back(
-        panel.done(fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
+    sheet.panels.push_back(on_sheet(
+        panel, fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
   }
   const std::string file = std::filesystem::path(asked_.file.file).filename().string();
   sheet.title = quoted(shortened(fmt::format("{}: {}", file, geometry::counted(check.overlaps, "overlap")), 70));
@@ -179,7 +119,7 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   sheet.columns = close_.empty() ? 1 : close_.size() <= 1 ? 2 : 3;
   sheet.panel_width = sheet.panel_height = close_.empty() ? 560.0 : 300.0;
   sheet.gap = 60.0;
-  sheet.legend = {{"keyentry " + line_style_of(0.8, kWayColour), "way"},
+  sheet.legend = {{"keyentry " + line_style(0.8, kWayColour), "way"},
                   {std::string("keyentry ") + kPlaceStyle, "where an overlap is deepest"}};
   if (!close_.empty()) {
     sheet.legend.push_back(

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "figures/local_origin.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 namespace {
@@ -32,58 +32,6 @@ Pose pose_on(const std::vector<formation::MonitorArc>& way, double share) {
   return {m.at + d.by, way[k].heading + m.twist.turn * (at - m.start)};
 }
 
-class MonitorPanel {
- public:
-  MonitorPanel(const Box& view, DataFile& data) : view_(view), origin_(view), data_(data) { origin_.prepare(data); }
-
-  void rings(const std::string& title, const std::vector<Points>& rings, const std::string& style) {
-    const int index = data_.begin(title, "x, y [m]");
-    for (const Points& ring : rings) data_.ring(ring);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  void points(const std::string& title, const Points& points, const std::string& style) {
-    const int index = data_.begin(title, "x, y [m]");
-    data_.rows(points);
-    plot_.data(index, origin_.using_columns() + " " + style);
-  }
-  void obstacles(const std::vector<formation::SceneObstacle>& all) {
-    std::vector<Points> solids;
-    const int walls = data_.begin("walls", "x, y [m]");
-    for (const formation::SceneObstacle& obstacle : all) {
-      if (const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape)) {
-        for (std::size_t k = 1; k < wall->points.size(); ++k)
-          if (const Points piece = segment_within(view_, wall->points[k - 1], wall->points[k]); !piece.empty())
-            data_.curve(piece);
-      } else if (Points ring = clipped_to(tied_together(std::get<geometry::Polygon>(obstacle.shape)), view_);
-                 ring.size() > 2) {
-        solids.push_back(std::move(ring));
-      }
-    }
-    plot_.data(walls, origin_.using_columns() + fmt::format(" with lines lw 2.5 lc rgb '{}'", kObstacleLine));
-    rings(
-        "obstacles", solids,
-        fmt::format("with filledcurves closed fs solid border lc rgb '{}' fc rgb '{}'", kObstacleLine, kObstacleFill));
-  }
-  SheetPanel done(const std::string& title) const {
-    return {quoted(title + origin_.in_title()), origin_.ranges(view_), plot_.text()};
-  }
-
- private:
-  Box view_;
-  LocalOrigin origin_;
-  DataFile& data_;
-  PlotCommand plot_;
-};
-
-std::string outline_style(const char* colour, double width) {
-  return fmt::format("with lines lw {} lc rgb '{}'", width, colour);
-}
-
-std::string filled_style(const char* colour, double opacity) {
-  return fmt::format("with filledcurves closed fs transparent solid {0} border lc rgb '{1}' fc rgb '{1}'", opacity,
-                     colour);
-}
-
 SheetPanel panel_of(const MonitorSetup& setup, const JudgedLine& line, char letter, DataFile& data) {
   std::vector<Points> first, proven, rest, beyond, seen, later;
   const auto add = [&](std::vector<Points>& rings, const Pose& pose) {
@@ -105,20 +53,18 @@ SheetPanel panel_of(const MonitorSetup& setup, const JudgedLine& line, char lett
   for (const auto* rings : {&first, &proven, &rest, &beyond, &seen})
     for (const Points& ring : *rings)
       for (const Vec2 p : ring) view.add(p);
-  const double half = 0.58 * std::max(view.width(), view.height());
-  const Vec2 middle = 0.5 * (view.low + view.high);
-  MonitorPanel panel({middle - Vec2{half, half}, middle + Vec2{half, half}}, data);
-  panel.obstacles(setup.obstacles);
-  panel.rings("where movers may be when the robot rests", later, outline_style(kMoverColour, 1.0));
-  panel.rings("movers", seen, filled_style(kMoverColour, 0.5));
-  panel.rings("not proven", beyond, outline_style(kBeyondColour, 0.8));
-  panel.rings("proven", proven, outline_style(kProvenColour, 0.8));
-  panel.rings("robot at rest", rest, filled_style(kProvenColour, 0.45));
-  panel.rings("robot now", first, filled_style("#555555", 0.35));
+  Panel panel(square_round(view, 0.58), data);
+  panel.obstacles(setup.obstacles, 2.5, false);
+  panel.rings("where movers may be when the robot rests", later, line_style(1.0, kMoverColour));
+  panel.rings("movers", seen, clear_fill(kMoverColour, 0.5));
+  panel.rings("not proven", beyond, line_style(0.8, kBeyondColour));
+  panel.rings("proven", proven, line_style(0.8, kProvenColour));
+  panel.rings("robot at rest", rest, clear_fill(kProvenColour, 0.45));
+  panel.rings("robot now", first, clear_fill("#555555", 0.35));
   Points places;
   if (line.verdict.witness) places.push_back(line.verdict.witness->place);
   panel.points("too near", places, kWitnessStyle);
-  return panel.done(fmt::format("({}) {}", letter, line.title));
+  return panel.on_sheet(quoted(fmt::format("({}) {}", letter, line.title) + panel.origin.in_title()));
 }
 
 }  // namespace
@@ -139,8 +85,8 @@ Figure MonitorPicture::figure(const std::string& title) const {
   };
   sheet.legend = {{box("#555555", 0.35), "robot now"},
                   {box(kProvenColour, 0.45), "at rest, after the share that is proven"},
-                  {"keyentry " + outline_style(kProvenColour, 0.8), "proven clear"},
-                  {"keyentry " + outline_style(kBeyondColour, 0.8), "the rest of the command"},
+                  {"keyentry " + line_style(0.8, kProvenColour), "proven clear"},
+                  {"keyentry " + line_style(0.8, kBeyondColour), "the rest of the command"},
                   {box(kMoverColour, 0.5), "mover, and where it may come"},
                   {std::string("keyentry ") + kWitnessStyle, "too near"}};
   return sheet_figure("monitor", data.text(), "Commands of a robot, and how much of each is proven clear.", sheet);
