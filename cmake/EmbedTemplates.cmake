@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# exactvo_embed_templates(OUT FILES...): writes OUT, a source file with the text of the gnuplot templates FILES, so that
-# the program needs no files of its own to draw.
+# exactvo_embed_templates(OUT FILES...): writes OUT, a source file with the text of FILES, gnuplot templates and JSON, so
+# that the program needs no files of its own.
 include(WriteIfChanged)
 
 function(exactvo_embed_templates out)
@@ -10,7 +10,7 @@ function(exactvo_embed_templates out)
     file(READ "${file}" text)
     string(APPEND entries "      {\"${name}\", R\"template(${text})template\"},\n")
   endforeach()
-  set(source "// Made by cmake/EmbedTemplates.cmake of tools/figures/templates.
+  set(source "// Made by cmake/EmbedTemplates.cmake of the files that tools/CMakeLists.txt names.
 #include \"figures/figure.h\"
 
 namespace exactvo::tools {

@@ -134,9 +134,7 @@ void draw(const fs::path& folder, const std::string& name, const std::string& se
         curves[i].label);
   }
   figure.body = "set key outside right\nset grid lc rgb '#dddddd'\n" + setup + plot.text();
-  const tools::RenderResult result = tools::render({tools::write_sources(figure, folder)});
-  if (result.outcome == tools::Rendering::no_gnuplot) throw std::runtime_error("gnuplot is not installed");
-  if (result.outcome == tools::Rendering::failed) throw std::runtime_error("gnuplot failed: " + result.message);
+  tools::draw({tools::write_sources(figure, folder)});
 }
 
 /// The set "<kind><m>" with the smallest and larger m.

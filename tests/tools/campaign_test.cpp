@@ -11,7 +11,6 @@
 #include <map>
 
 #include "exactvo/datasets/provenance.h"
-#include "paper/parts.h"
 #include "run_program.h"
 #include "support/c_library.h"
 

@@ -10,8 +10,8 @@
 #include <regex>
 #include <set>
 
+#include "explorer/page.h"
 #include "run_program.h"
-#include "support/base64.h"
 
 namespace exactvo::tools {
 namespace {

@@ -359,7 +359,7 @@ TEST(VerbVo, FiguresHatchTheForbiddenSideOfHalfPlanes) {
   const auto side = [&](const std::vector<double>& p) {
     return h["normal"][0].get<double>() * p[0] + h["normal"][1].get<double>() * p[1] - h["offset"].get<double>();
   };
-  const auto strokes = rows_of(place.read("a.dat"), "strokes");
+  const auto strokes = rows_of(place.read("a.dat"), "half-plane: hatching on the forbidden side");
   ASSERT_GE(strokes.size(), 20u);
   ASSERT_EQ(strokes.size() % 2, 0u);
   for (std::size_t i = 0; i < strokes.size(); i += 2) {

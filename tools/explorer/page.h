@@ -44,6 +44,9 @@ void make_key_distinct(PageRun& run, const std::set<std::string>& taken);
 /// Whole. `is_guide`: the runs are scenes to start from, listed with their words, rather than the user's own.
 std::string explorer_page(const std::vector<PageRun>& runs, bool is_guide = false);
 
+/// Bytes as text of 64 characters (RFC 4648).
+std::string base64(const std::string& bytes);
+
 /// The page's name beside other output.
 inline constexpr const char* kPageName = "explorer.html";
 

@@ -6,7 +6,7 @@
 /// token of 128 bits. A request is answered only if its Host is this server's own (a page of another origin that has
 /// its name resolve to 127.0.0.1 does not get in), its Origin, where it has one, too, and its token the right one.
 /// Requests are bounded in size and time, connections in number. Nothing is read from disk: the page is in memory, and
-/// what is asked for is computed from the request (live.cpp).
+/// what is asked for is computed from the request.
 ///
 /// What the page of `exactvo serve` asks while things are dragged in it: a scenario as it stands at a moment, and what
 /// a robot decides then. A question holds everything it needs; nothing is kept from one to the next. An answer is a

@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
-#include "figures/local_origin.h"
-#include "figures/outlines.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 
@@ -132,28 +131,24 @@ Canvas canvas_for(const Box& plane) {
 }
 
 /// Obstacles, and bodies where they stood at the start.
-void add_obstacles(const CrowdCourse& course, const Box& plane, DataFile& data, PlotCommand& plot) {
-  if (!course.edges.empty()) {
-    const int index = data.begin("edges of obstacles", "x [m], y [m]");
-    for (const geometry::Segment& edge : course.edges) data.curve(segment_within(plane, edge.a, edge.b));
-    plot.data(index, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", kObstacleLine));
-  }
-  if (course.bodies.empty()) return;
-  const int index = data.begin("bodies at the start", "x [m], y [m]");
-  for (const geometry::ConvexShape& body : course.bodies) data.ring(outline(body));
-  plot.data(index, fmt::format("using 1:2 with lines lw 1 dt (4,3) lc rgb '{}'", kObstacleLine));
+void add_obstacles(const CrowdCourse& course, Panel& panel) {
+  std::vector<Points> edges, bodies;
+  for (const geometry::Segment& edge : course.edges) edges.push_back(segment_within(panel.view, edge.a, edge.b));
+  for (const geometry::ConvexShape& body : course.bodies) bodies.push_back(outline(body));
+  panel.curves("edges of obstacles", edges, line_style(1, kObstacleLine));
+  panel.rings("bodies at the start", bodies, line_style(1, kObstacleLine, " dt (4,3)"));
 }
 
-/// Cells where nobody was stay white.
-void add_cells(const CrowdCourse& course, const Value& value, DataFile& data, PlotCommand& plot) {
-  const int index = data.begin("cells", "x [m], y [m] of the middle, value; NaN: nobody was there");
+/// Cells that were always empty stay white.
+void add_cells(const CrowdCourse& course, const Value& value, Panel& panel) {
+  const int index = panel.data.begin("cells", "x [m], y [m] of the middle, value; NaN: always empty");
   for (std::size_t k = 0; k < course.cells.size(); ++k) {
     const Vec2 at = course.grid.centre(k);
     const bool is_empty = !(course.cells[k].time > 0.0);
-    data.row({at.x, at.y, is_empty ? std::numeric_limits<double>::quiet_NaN() : value(course.cells[k])});
-    if ((k + 1) % course.grid.columns == 0) data.gap();
+    panel.data.row({at.x, at.y, is_empty ? std::numeric_limits<double>::quiet_NaN() : value(course.cells[k])});
+    if ((k + 1) % course.grid.columns == 0) panel.data.gap();
   }
-  plot.data(index, "using 1:2:3 with image");
+  panel.draw(index, "with image", "", ":3");
 }
 
 double largest(const CrowdCourse& course, const Value& value) {
@@ -164,7 +159,7 @@ double largest(const CrowdCourse& course, const Value& value) {
 }
 
 /// The mean flow of blocks of cells; the strongest arrow is as long as a block.
-void add_arrows(const CrowdCourse& course, DataFile& data, PlotCommand& plot) {
+void add_arrows(const CrowdCourse& course, Panel& panel) {
   const CellGrid& g = course.grid;
   const std::size_t block = std::max<std::size_t>(1, std::max(g.columns, g.rows) / kMostArrows);
   CellGrid blocks{g.low, g.cell * static_cast<double>(block), (g.columns + block - 1) / block,
@@ -173,58 +168,48 @@ void add_arrows(const CrowdCourse& course, DataFile& data, PlotCommand& plot) {
   for (std::size_t k = 0; k < course.cells.size(); ++k) flow[blocks.at(g.centre(k))] += course.cells[k].moved;
   double most = 0.0;
   for (const Vec2 f : flow) most = std::max(most, norm(f));
-  const int index = data.begin("flow of blocks of cells", "x [m], y [m] of the tail, then of the arrow");
+  const int index = panel.data.begin("flow of blocks of cells", "x [m], y [m] of the tail, then of the arrow");
   for (std::size_t k = 0; k < flow.size(); ++k) {
     if (!(norm(flow[k]) > kLeastArrow * most)) continue;
     const Vec2 arrow = 0.95 * blocks.cell / most * flow[k], tail = blocks.centre(k) - 0.5 * arrow;
-    data.row({tail.x, tail.y, arrow.x, arrow.y});
+    panel.data.row({tail.x, tail.y, arrow.x, arrow.y});
   }
-  plot.data(index, "using 1:2:3:4 with vectors head filled size screen 0.006,20 lw 1 lc rgb '#c1440e'");
+  panel.draw(index, "with vectors head filled size screen 0.006,20 lw 1 lc rgb '#c1440e'", "", ":3:4");
 }
 
 Figure map_figure(const CrowdCourse& course, const std::string& name, const std::string& what, const std::string& unit,
                   const Value& value, bool has_arrows) {
-  const Box plane = plane_of(course);
-  const Canvas canvas = canvas_for(plane);
   DataFile data;
-  PlotCommand plot;
-  add_cells(course, value, data, plot);
-  add_obstacles(course, plane, data, plot);
-  if (has_arrows) add_arrows(course, data, plot);
+  Panel panel(plane_of(course), data);
+  add_cells(course, value, panel);
+  add_obstacles(course, panel);
+  if (has_arrows) add_arrows(course, panel);
+  const Canvas canvas = canvas_for(panel.view);
   const std::string title = title_of(course, what);
   return {name, data.text(), title + fmt::format(". Cells of {:.3g} m.", course.grid.cell), canvas,
-          filled("crowd_map", {{"title", quoted(shortened(title, characters_in(canvas.width - 60.0)))},
-                               {"ranges", axis_ranges(plane)},
-                               {"value", markup(unit)},
+          filled("crowd_map", {{"value", markup(unit)},
                                {"most", fmt::format("{:.6g}", largest(course, value))},
-                               {"plot", plot.text()}})};
+                               {"plane", panel.body(quoted(shortened(title, characters_in(canvas.width - 60.0))))}})};
 }
 
 Figure paths_of_some(const CrowdCourse& course) {
-  const Box plane = plane_of(course);
-  const Canvas canvas = canvas_for(plane);
   DataFile data;
-  PlotCommand plot;
-  add_obstacles(course, plane, data, plot);
+  Panel panel(plane_of(course), data);
+  add_obstacles(course, panel);
   for (std::size_t p = 0; p < course.paths.size(); ++p) {
-    const int index = data.begin("the way of a robot", "x [m], y [m]");
-    data.rows(course.paths[p]);
-    plot.data(index, fmt::format("using 1:2 with lines lw 1.2 lc rgb '{}'", series_colour(p)));
-    if (course.paths[p].empty()) continue;
-    const int last = data.begin("where it was at the end", "x [m], y [m]");
-    data.rows({course.paths[p].back()});
-    plot.data(last, fmt::format("using 1:2 with points pt 7 ps 0.4 lc rgb '{}'", series_colour(p)));
+    const std::vector<Vec2>& path = course.paths[p];
+    panel.curves("the way of a robot", {path}, line_style(1.2, series_colour(p)));
+    if (!path.empty())
+      panel.points("where it was at the end", {path.back()},
+                   fmt::format("with points pt 7 ps 0.4 lc rgb '{}'", series_colour(p)));
   }
+  const Canvas canvas = canvas_for(panel.view);
   const std::string what = course.paths.size() == course.robots
                                ? "the ways of all"
                                : fmt::format("the ways of {} of them", course.paths.size());
   const std::string title = title_of(course, what);
   return {"paths", data.text(), title + ".", canvas,
-          filled("paths", {{"title", quoted(shortened(title, characters_in(canvas.width - 60.0)))},
-                           {"ranges", axis_ranges(plane)},
-                           {"x_label", "'x [m]'"},
-                           {"y_label", "'y [m]'"},
-                           {"plot", plot.text()}})};
+          panel.body(quoted(shortened(title, characters_in(canvas.width - 60.0))))};
 }
 
 Figure speeds_figure(const CrowdCourse& course) {

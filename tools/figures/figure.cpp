@@ -173,10 +173,11 @@ int DataFile::begin(const std::string& title, const std::string& columns) {
 }
 
 void DataFile::row(const std::vector<double>& values) {
+  constexpr double kLarge = 1e5;
   const char* separator = "";
   for (const double value : values) {
     text_ += separator;
-    text_ += all_digits_ ? fmt::format("{}", value) : fmt::format("{:.9g}", value);
+    text_ += std::fabs(value) < kLarge ? fmt::format("{:.9g}", value) : fmt::format("{}", value);
     separator = " ";
   }
   text_ += '\n';

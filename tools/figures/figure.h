@@ -56,10 +56,8 @@ class DataFile {
  public:
   /// Starts a data set and returns the number that `index` takes in a script.
   int begin(const std::string& title, const std::string& columns);
-  /// Rows have nine significant digits a number, which is enough for drawing; from now on as many as it takes to read
-  /// the same doubles back.
-  void write_all_digits() { all_digits_ = true; }
-  /// One line of the current data set.
+  /// One line of the current data set. Numbers have nine significant digits, which is enough for drawing; from 10^5 on
+  /// as many as it takes to read the same doubles back.
   void row(const std::vector<double>& values);
   /// One line per point.
   void rows(const std::vector<geometry::Vec2>& points);
@@ -81,7 +79,6 @@ class DataFile {
   int count_ = 0;
   bool empty_ = false;  ///< the current data set has no row yet
   bool lifted_ = true;
-  bool all_digits_ = false;
 };
 
 /// Items of one `plot` command.

@@ -7,16 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -52,74 +49,39 @@ struct Format {
   const char* in_words;
 };
 /// Those of templates/frame.gp.
-constexpr Format kFormats[kPicturesOfScript] = {{"svg", "svg", "SVG (its terminal svg)"},
-                                                {"png", "pngcairo", "PNG (its terminal pngcairo)"},
-                                                {"pdf", "pdfcairo", "PDF (its terminal pdfcairo)"}};
-
-/// What the driver prints of a terminal that this gnuplot was built without, and after each picture.
-const std::string kMissing = "exactvo: no terminal for ", kDrawn = "exactvo: drawn";
-
-std::string has_terminal(const Format& format) {
-  return fmt::format("strstrt(' ' . GPVAL_TERMINALS . ' ', ' {} ')", format.terminal);
-}
+constexpr Format kFormats[] = {{"svg", "svg", "SVG (its terminal svg)"},
+                               {"png", "pngcairo", "PNG (its terminal pngcairo)"},
+                               {"pdf", "pdfcairo", "PDF (its terminal pdfcairo)"}};
 
 /// One format of one script.
-struct Picture {
-  const fs::path* script = nullptr;
-  const Format* format = nullptr;
-};
+using Picture = std::pair<const fs::path*, const Format*>;
 
 /// Absolute folders begin with a slash and scripts have plain names: neither is taken for a command. A script draws
-/// `formats`; "reset session" forgets it.
+/// `formats`, none where this gnuplot was built without the terminal; "reset session" forgets it.
 std::string driver_text(const std::vector<Picture>& pictures) {
   std::string text;
-  for (const Format& format : kFormats)
-    text += fmt::format("if (!{}) {{ print '{}{}' }}\n", has_terminal(format), kMissing, format.name);
-  for (const Picture& picture : pictures) {
-    const fs::path &script = *picture.script, folder = fs::absolute(script).parent_path();
-    text += fmt::format("reset session\nformats = ''\nif ({}) {{ formats = '{}' }}\n", has_terminal(*picture.format),
-                        picture.format->name);
-    text += "cd " + exact_string(folder.string()) + "\nload " + exact_string(script.filename().string()) + "\n";
-    text += "print '" + kDrawn + "'\n";
-  }
+  for (const auto& [script, format] : pictures)
+    text += fmt::format(
+        "reset session\nformats = strstrt(' ' . GPVAL_TERMINALS . ' ', ' {} ') ? '{}' : ''\ncd {}\nload {}\n",
+        format->terminal, format->name, exact_string(fs::absolute(*script).parent_path().string()),
+        exact_string(script->filename().string()));
   return text;
 }
 
-std::vector<std::string> missing_formats(const std::string& messages) {
-  std::vector<std::string> missing;
-  for (const Format& format : kFormats)
-    if (messages.find(kMissing + format.name + "\n") != std::string::npos) missing.push_back(format.in_words);
-  return missing;
+fs::path picture_of(const fs::path& script, const Format& format) {
+  return fs::path(script).replace_extension(format.name);
 }
 
 void remove_pictures(const std::vector<fs::path>& scripts) {
-  for (fs::path picture : scripts)
-    for (const Format& format : kFormats) fs::remove(picture.replace_extension(format.name));
+  for (const fs::path& script : scripts)
+    for (const Format& format : kFormats) fs::remove(picture_of(script, format));
 }
 
-/// So far. The place at which a process goes on writing, which is the same for both, stays where it is.
 std::string contents(std::FILE* file) {
   std::string text;
-  std::array<char, 4096> buffer{};
-  for (ssize_t count = 0;
-       (count = ::pread(fileno(file), buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
-    text.append(buffer.data(), static_cast<std::size_t>(count));
+  std::rewind(file);
+  for (int c = 0; (c = std::fgetc(file)) != EOF;) text += static_cast<char>(c);
   return text;
-}
-
-std::size_t count_of(const std::string& line, const std::string& text) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(line); at != std::string::npos; at = text.find(line, at + 1)) ++count;
-  return count;
-}
-
-/// What gnuplot said, without what the driver has it print.
-std::string without_notes(const std::string& messages) {
-  std::string kept;
-  std::istringstream lines(messages);
-  for (std::string line; std::getline(lines, line);)
-    if (line != kDrawn && line.rfind(kMissing, 0) != 0) kept += line + "\n";
-  return kept;
 }
 
 /// This program's, with UTC as the time zone of the date that is in a PDF: one length everywhere (undate).
@@ -157,14 +119,7 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, const std::vector<char*
 struct Process {
   TemporaryFile driver = temporary_file(), messages = temporary_file();
   pid_t pid = 0;
-  bool has_ended = false;
 };
-
-/// Whether it has, whose number stays taken, so that no other process can have it meanwhile.
-bool has_ended(pid_t pid) {
-  siginfo_t info{};
-  return ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT | WNOHANG) == 0 && info.si_pid == pid;
-}
 
 bool succeeded(pid_t pid) {
   int status = 0;
@@ -190,50 +145,14 @@ int start_gnuplot(Process& process, const std::vector<Picture>& pictures, KillCh
   return error;
 }
 
-std::size_t drawn_by(const std::vector<Process>& processes) {
-  std::size_t count = 0;
-  for (const Process& process : processes) count += count_of(kDrawn, contents(process.messages.get()));
-  return count;
-}
-
-/// Until all have ended.
-void await_ends(std::vector<Process>& processes, std::size_t pictures, const RenderProgress& progress) {
-  constexpr auto kPause = std::chrono::milliseconds(5), kBetweenLooks = std::chrono::milliseconds(200);
-  auto looked_at = std::chrono::steady_clock::now();
-  const auto all_have_ended = [&] {
-    for (Process& process : processes) process.has_ended = process.has_ended || has_ended(process.pid);
-    return std::all_of(processes.begin(), processes.end(), [](const Process& p) { return p.has_ended; });
-  };
-  while (!all_have_ended()) {
-    if (interrupted())  // Ctrl-C reaches all, a SIGTERM only this program
-      for (const Process& process : processes) ::kill(process.pid, SIGTERM);
-    std::this_thread::sleep_for(kPause);
-    const auto now = std::chrono::steady_clock::now();
-    if (!progress || now - looked_at < kBetweenLooks) continue;
-    progress(drawn_by(processes), pictures);
-    looked_at = now;
+/// Until all have ended; their numbers stay taken, so that no other process can have them meanwhile.
+void await_ends(const std::vector<Process>& processes) {
+  for (const Process& process : processes) {
+    siginfo_t info{};
+    while (::waitid(P_PID, static_cast<id_t>(process.pid), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR)
+      if (interrupted())  // Ctrl-C reaches all, a SIGTERM only this program
+        for (const Process& each : processes) ::kill(each.pid, SIGTERM);
   }
-}
-
-/// The largest first, each to the process that has least to do.
-std::vector<std::vector<Picture>> shared_out(const std::vector<Picture>& pictures, std::size_t processes) {
-  const auto cost = [](const Picture& picture) {
-    std::error_code unknown;
-    const std::uintmax_t bytes = fs::file_size(fs::path(*picture.script).replace_extension(".dat"), unknown);
-    return unknown ? std::uintmax_t{1} : bytes + 1;
-  };
-  std::vector<std::pair<std::uintmax_t, Picture>> largest_first;
-  for (const Picture& picture : pictures) largest_first.emplace_back(cost(picture), picture);
-  std::stable_sort(largest_first.begin(), largest_first.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::vector<Picture>> shares(processes);
-  std::vector<std::uintmax_t> load(processes);
-  for (const auto& [bytes, picture] : largest_first) {
-    const auto least = static_cast<std::size_t>(std::min_element(load.begin(), load.end()) - load.begin());
-    shares[least].push_back(picture);
-    load[least] += bytes;
-  }
-  return shares;
 }
 
 std::size_t process_count(std::size_t pictures) {
@@ -257,13 +176,16 @@ void undate(const fs::path& pdf) {
 
 }  // namespace
 
-RenderResult render(const std::vector<fs::path>& scripts, const RenderProgress& progress) {
-  if (scripts.empty()) return {};
-  std::vector<Picture> pictures;
-  for (const fs::path& script : scripts)
-    for (const Format& format : kFormats) pictures.push_back({&script, &format});
-  const std::vector<std::vector<Picture>> shares = shared_out(pictures, process_count(pictures.size()));
-  std::vector<Process> processes(shares.size());
+void draw(const std::vector<fs::path>& scripts, const std::string& what) {
+  if (scripts.empty()) return;
+  ProgressLine line(0.0, "");
+  line.say("drawing figures" + (what.empty() ? "" : " of " + what));
+  remove_pictures(scripts);  // those of earlier figures
+  const std::size_t pictures = scripts.size() * std::size(kFormats);
+  std::vector<Process> processes(process_count(pictures));
+  std::vector<std::vector<Picture>> shares(processes.size());
+  for (std::size_t k = 0; k < pictures; ++k)
+    shares[k % shares.size()].push_back({&scripts[k / std::size(kFormats)], &kFormats[k % std::size(kFormats)]});
   int error = 0;
   {
     KillChildrenOnSignal until_they_end;
@@ -271,24 +193,28 @@ RenderResult render(const std::vector<fs::path>& scripts, const RenderProgress& 
       error = start_gnuplot(processes[k], shares[k], until_they_end);
       if (error != 0) processes.resize(k);
     }
-    await_ends(processes, pictures.size(), progress);
+    await_ends(processes);
   }
-  std::string failure, said;
-  bool has_failed = false;
-  for (const Process& process : processes) {
-    const std::string words = contents(process.messages.get());
-    said += words;
-    if (succeeded(process.pid) || has_failed) continue;
-    has_failed = true;
-    failure = without_notes(words);
+  line.clear();
+  std::optional<std::string> failure;
+  for (const Process& process : processes)
+    if (!succeeded(process.pid) && !failure) failure = contents(process.messages.get());
+  if (error == ENOENT)
+    return message(
+        "gnuplot is not installed (Debian: gnuplot-nox): the figures' data and scripts are written, no pictures");
+  if (error != 0) failure = std::generic_category().message(error);
+  if (failure) {
+    remove_pictures(scripts);                // one of them may be half a picture
+    if (interrupted()) throw Interrupted();  // Ctrl-C reaches gnuplot too
+    throw std::runtime_error("gnuplot failed: " + *failure);
   }
-  if (error == ENOENT) return {Rendering::no_gnuplot, "", {}};
-  if (error != 0 || has_failed) {
-    remove_pictures(scripts);  // one of them may be half a picture
-    return {Rendering::failed, error != 0 ? std::generic_category().message(error) : failure, {}};
-  }
+  std::vector<std::string> missing;
+  for (const Format& format : kFormats)
+    if (!fs::exists(picture_of(scripts.front(), format))) missing.push_back(format.in_words);
+  if (!missing.empty())
+    message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
+                        fmt::join(missing, " and ")));
   for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
-  return {Rendering::done, "", missing_formats(said)};
 }
 
 }  // namespace exactvo::tools

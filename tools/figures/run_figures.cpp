@@ -11,7 +11,6 @@
 
 #include "exactvo/formation/metrics.h"
 #include "figures/outlines.h"
-#include "figures/thinning.h"
 
 namespace exactvo::tools {
 
@@ -49,7 +48,7 @@ std::string point_style(std::size_t i) {
   return fmt::format("with points pt 7 lc rgb '{}'", series_colour(i));
 }
 
-std::string line_style(std::size_t i) {
+std::string style_of(std::size_t i) {
   return fmt::format("with lines lw 2{} lc rgb '{}'", series_dash(i), series_colour(i));
 }
 
@@ -110,7 +109,7 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, const 
       for (const std::size_t k : drawn_rows(times, values, shown_time(run), range, whole))
         data.row({times[k], values[k]});
     }
-    plot.data(index, "using 1:2 " + (times.size() == 1 ? point_style(first) : line_style(first)),
+    plot.data(index, "using 1:2 " + (times.size() == 1 ? point_style(first) : style_of(first)),
               robot_in_legend(first, all.size(), all[first].label, kKeyLength));
   }
 }
@@ -450,25 +449,15 @@ Figure formation_error_figure(const RecordingFile& run) {
 
 }  // namespace
 
-std::vector<Figure> run_figures(const datasets::RecordingFile& run, const std::function<void(const char*)>& begins) {
-  const bool has_obstacles = !run.scenario.obstacles.empty() || !run.scenario.moving_obstacles.empty();
-  const struct {
-    bool applies;
-    const char* name;
-    Figure (*make)(const RecordingFile&);
-  } all[] = {{true, "paths", paths_figure},
-             {has_obstacles, "obstacle_distance", obstacle_distance_figure},
-             {run.scenario.robots.size() > 1, "robot_distance", robot_distance_figure},
-             {true, "velocity", velocity_figure},
-             {has_wheels(run), "wheels", wheel_figure},
-             {run.scenario.formation.has_value(), "formation_error", formation_error_figure},
-             {!run.lyapunov.empty(), "lyapunov", lyapunov_figure}};
-  std::vector<Figure> figures;
-  for (const auto& figure : all) {
-    if (!figure.applies) continue;
-    if (begins) begins(figure.name);
-    figures.push_back(figure.make(run));
-  }
+std::vector<Figure> run_figures(const datasets::RecordingFile& run) {
+  std::vector<Figure> figures{paths_figure(run)};
+  if (!run.scenario.obstacles.empty() || !run.scenario.moving_obstacles.empty())
+    figures.push_back(obstacle_distance_figure(run));
+  if (run.scenario.robots.size() > 1) figures.push_back(robot_distance_figure(run));
+  figures.push_back(velocity_figure(run));
+  if (has_wheels(run)) figures.push_back(wheel_figure(run));
+  if (run.scenario.formation) figures.push_back(formation_error_figure(run));
+  if (!run.lyapunov.empty()) figures.push_back(lyapunov_figure(run));
   return figures;
 }
 

@@ -7,7 +7,6 @@
 /// enclosures, the robots' paths and where they were when.
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,8 @@
 namespace exactvo::tools {
 
 /// Those that apply, in this order: `paths`; `obstacle_distance` (with obstacles); `robot_distance` (with two robots or
-/// more); `velocity`; `wheels` (with robots on wheels); `formation_error` and `lyapunov` (with a formation). `begins`
-/// gets the name of each before it is made.
-std::vector<Figure> run_figures(const datasets::RecordingFile& run,
-                                const std::function<void(const char*)>& begins = {});
+/// more); `velocity`; `wheels` (with robots on wheels); `formation_error` and `lyapunov` (with a formation).
+std::vector<Figure> run_figures(const datasets::RecordingFile& run);
 
 /// `lyapunov`: the paper's (18) and its derivative above, the function that holds and its derivative below.
 /// REQUIRES: a formation's run with its rows of `lyapunov`.
@@ -34,14 +31,15 @@ std::string run_title(const datasets::RecordingFile& run);
 /// times and where it ended; a red cross where it was deepest in an obstacle or another robot.
 Figure paths_figure(const datasets::RecordingFile& run);
 
-struct Panel {
+struct PathsPanel {
   std::string title;
   const datasets::RecordingFile* run = nullptr;
 };
 
 /// Many runs side by side on one sheet, each in a panel with its letter, all at one scale, with one legend below: for
 /// comparing. REQUIRES: a panel.
-Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns);
+Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<PathsPanel>& panels,
+                   int columns);
 
 /// When the robot came to rest for good, s; the end of the run where it never did.
 double end_of_motion(const datasets::RecordingFile& run, std::size_t robot);

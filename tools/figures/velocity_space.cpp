@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "figures/outlines.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 
@@ -33,11 +33,10 @@ constexpr const char* kPartly =
 constexpr int kArcPoints = 200;
 /// More velocity obstacles than this are drawn paler and thinner.
 constexpr int kFewCones = 4;
-constexpr int kHatchesAcross = 45;  // over the width of the view
 
 class VelocitySpace {
  public:
-  explicit VelocitySpace(const Decision& decision) : d_(decision), view_(view()) {
+  explicit VelocitySpace(const Decision& decision) : d_(decision), panel_(Panel::of_velocities(view(), data_)) {
     add_allowed();
     add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
     add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
@@ -54,8 +53,7 @@ class VelocitySpace {
   }
 
   std::string data() const { return data_.text(); }
-  std::string plot() const { return plot_.text(); }
-  const Box& box() const { return view_; }
+  const Panel& panel() const { return panel_; }
 
  private:
   /// A velocity obstacle.
@@ -98,10 +96,8 @@ class VelocitySpace {
     for (const formation::OwnConstraint& c : d_.step.own)
       if (c.hard && d_.step.own_stage == formation::OwnStage::held) ring = clipped(ring, c.half_plane);
     if (ring.size() < 3) return;
-    const int index = data_.begin("allowed velocities", "v_x [m/s], v_y [m/s]");
-    data_.ring(ring);
-    plot_.data(index, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", kAllowedColour),
-               d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
+    panel_.rings("allowed velocities", {ring}, solid_fill(kAllowedColour),
+                 d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
   }
 
   /// Those that have a cone: what the robot overlaps has none.
@@ -119,19 +115,19 @@ class VelocitySpace {
     const std::vector<Cone> all = of_kind(robots);
     if (all.empty()) return;
     std::vector<Points> rings;
-    for (const Cone& c : all) rings.push_back(velocity_obstacle_in(view_, c.shape, c.time_horizon, c.velocity));
+    for (const Cone& c : all) rings.push_back(velocity_obstacle_in(panel_.view, c.shape, c.time_horizon, c.velocity));
     // Many on top of each other would hide what lies below.
     const double opacity = 0.3 * std::min(1.0, kFewCones / static_cast<double>(all.size()));
-    add_curves(rings, title,
-               fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs transparent solid {:.2f} noborder",
-                           colour, opacity),
-               title);
+    add_curves(
+        rings, title,
+        fmt::format("with filledcurves closed fc rgb '{}' fs transparent solid {:.2f} noborder", colour, opacity),
+        title);
     add_cone_lines(all, colour);
   }
 
   bool is_in_view(const Points& curve) const {
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-      if (!segment_within(view_, curve[i], curve[i + 1]).empty()) return true;
+      if (!segment_within(panel_.view, curve[i], curve[i + 1]).empty()) return true;
     }
     return false;
   }
@@ -143,9 +139,7 @@ class VelocitySpace {
     std::copy_if(curves.begin(), curves.end(), std::back_inserter(seen),
                  [&](const Points& c) { return is_in_view(c); });
     if (seen.empty()) return;
-    const int index = data_.begin(what, "v_x [m/s], v_y [m/s]");
-    for (const Points& curve : seen) data_.curve(curve);
-    plot_.data(index, style, title);
+    panel_.curves(what, seen, style, title);
   }
 
   void add_cone_lines(const std::vector<Cone>& all, const char* colour) {
@@ -159,7 +153,7 @@ class VelocitySpace {
     }
     const double thinner = all.size() > kFewCones ? 0.6 : 1.0;
     const auto lines = [&](double width, const char* dash) {
-      return fmt::format("using 1:2 with lines lw {:.2g} {}lc rgb '{}'", thinner * width, dash, colour);
+      return fmt::format("with lines lw {:.2g} {}lc rgb '{}'", thinner * width, dash, colour);
     };
     add_curves(legs, "their legs", lines(1.5, ""), "  its legs");
     add_curves(cut_offs, "their cut-offs", lines(3.0, ""), "  its cut-off");
@@ -175,7 +169,7 @@ class VelocitySpace {
     const auto legs = leg_normals(c.shape);
     const Vec2 left = tangent_point(c, legs->first), right = tangent_point(c, legs->second);
     // Beyond any corner of the view, wherever in it or near it the leg starts.
-    const double length = 4.0 * view_.diagonal() + norm(left) + norm(right);
+    const double length = 4.0 * panel_.view.diagonal() + norm(left) + norm(right);
     curves.push_back({left, left - length * perp(legs->first)});
     curves.push_back({right, right + length * perp(legs->second)});
   }
@@ -195,47 +189,35 @@ class VelocitySpace {
     curves.push_back(ring);
   }
 
-  void add_half_planes(Effect effect, const std::string& line_style, const char* colour) {
-    std::vector<std::pair<Points, Vec2>> lines;
-    for (const DecisionConstraint& c : constraints()) {
-      const Points line = effect_of(d_, c) == effect ? boundary_within(view_, c.half_plane) : Points{};
-      if (!line.empty()) lines.emplace_back(line, c.half_plane.normal);
-    }
-    if (lines.empty()) return;
+  void add_half_planes(Effect effect, const std::string& style, const char* colour) {
+    std::vector<geometry::HalfPlane> all;
+    for (const DecisionConstraint& c : constraints())
+      if (effect_of(d_, c) == effect) all.push_back(c.half_plane);
     const std::string title = "half-plane, " + name(effect);
-    const int boundaries = data_.begin(title + ": boundaries", "v_x [m/s], v_y [m/s]");
-    for (const auto& [line, normal] : lines) data_.curve(line);
-    const int strokes = data_.begin(title + ": hatching on the forbidden side", "v_x [m/s], v_y [m/s]");
-    for (const auto& [line, normal] : lines)
-      for (const Points& stroke : hatching(line, normal, view_.width() / kHatchesAcross)) data_.curve(stroke);
-    plot_.data(boundaries, fmt::format("using 1:2 with lines {} lc rgb '{}'", line_style, colour), title);
-    plot_.data(strokes, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
+    panel_.half_planes(title, all, fmt::format("with lines {} lc rgb '{}'", style, colour), line_style(1, colour),
+                       title);
   }
 
   void add_speed_bound() {
-    const int index = data_.begin("speed bound", "v_x [m/s], v_y [m/s]");
-    data_.ring(speed_bound_ring());
-    plot_.data(index, "using 1:2 with lines lw 1.5 dt (6,4) lc rgb 'black'", "speed bound");
+    panel_.rings("speed bound", {speed_bound_ring()}, line_style(1.5, "black", " dt (6,4)"), "speed bound");
   }
 
   void add_numbers_of(Effect effect, const char* colour) {
-    std::vector<std::pair<Vec2, std::size_t>> numbers;
+    std::vector<Label> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
-      const Points line = boundary_within(view_, constraints()[i].half_plane);
+      const Points line = boundary_within(panel_.view, constraints()[i].half_plane);
       if (effect_of(d_, constraints()[i]) != effect || line.empty()) continue;
-      numbers.emplace_back(free_place(line, constraints()[i].half_plane.normal), i + 1);
+      numbers.push_back({free_place(line, constraints()[i].half_plane.normal), fmt::format("[{}]", i + 1)});
     }
-    if (numbers.empty()) return;
-    const int index = data_.begin("numbers of the half-planes", "v_x [m/s], v_y [m/s], number");
-    for (const auto& [at, number] : numbers) data_.labelled_row({at.x, at.y}, fmt::format("[{}]", number));
-    plot_.data(index, fmt::format("using 1:2:3 with labels boxed font ',11' textcolor rgb '{}'", colour));
+    panel_.labels("numbers of the half-planes", numbers,
+                  fmt::format("with labels boxed font ',11' textcolor rgb '{}'", colour));
   }
 
   /// On the allowed side of the line, in view, as far as possible from the numbers that are there: the first place
   /// that is far enough, else the farthest.
   Vec2 free_place(const Points& line, Vec2 normal) {
-    const Vec2 aside = 0.03 * view_.width() * normalized(normal);
-    const Box inner = view_.grown(-0.02 * view_.width());
+    const Vec2 aside = 0.03 * panel_.view.width() * normalized(normal);
+    const Box inner = panel_.view.grown(-0.02 * panel_.view.width());
     Vec2 best = line[0] + 0.5 * (line[1] - line[0]) + aside;
     double room = -1.0;
     for (const double along : {0.12, 0.88, 0.25, 0.75, 0.06, 0.94, 0.35, 0.65, 0.5}) {
@@ -245,28 +227,27 @@ class VelocitySpace {
         room = here;
         best = place;
       }
-      if (room > 0.07 * view_.width()) break;
+      if (room > 0.07 * panel_.view.width()) break;
     }
     numbers_.push_back(best);
     return best;
   }
 
   double distance_to_numbers(Vec2 place) const {
-    double least = view_.diagonal();
+    double least = panel_.view.diagonal();
     for (const Vec2 other : numbers_) least = std::min(least, norm(place - other));
     return least;
   }
 
   void add_hatching_key() {
-    if (!constraints().empty()) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
+    if (!constraints().empty())
+      panel_.plot.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
   }
 
   /// `tip`: the size of the point at its end.
   void add_arrow(const std::string& title, Vec2 v, const std::string& shaft, double tip, const char* colour) {
-    const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
-    data_.row({0.0, 0.0, v.x, v.y});
-    plot_.data(index, fmt::format("using 1:2:3:4 with vectors {} lc rgb '{}'", shaft, colour), title);
-    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps {} lc rgb '{}'", tip, colour));
+    panel_.arrow(title, {}, v, fmt::format("{} lc rgb '{}'", shaft, colour), title);
+    panel_.points(title + ": tip", {v}, fmt::format("with points pt 7 ps {} lc rgb '{}'", tip, colour));
   }
 
   void add_arrows() {
@@ -278,22 +259,12 @@ class VelocitySpace {
   }
 
   const Decision& d_;
-  Box view_;
   DataFile data_;
-  PlotCommand plot_;
+  Panel panel_;
   Points numbers_;  ///< where numbers stand
 };
 
 }  // namespace
-
-std::string velocity_plane(const std::string& title, const Box& view, const std::string& plot) {
-  return filled("velocity_plane", {{"title", title},
-                                   {"x_low", fmt::format("{:.6g}", view.low.x)},
-                                   {"x_high", fmt::format("{:.6g}", view.high.x)},
-                                   {"y_low", fmt::format("{:.6g}", view.low.y)},
-                                   {"y_high", fmt::format("{:.6g}", view.high.y)},
-                                   {"plot", plot}});
-}
 
 Figure velocity_space_figure(const Decision& decision) {
   const VelocitySpace space(decision);
@@ -302,7 +273,11 @@ Figure velocity_space_figure(const Decision& decision) {
                   shortened(decision.who().id, kNameLength), decision.time, decision.method);
   std::string titles = quoted(shortened(title, characters_in(kTitleRoom)));
   if (!decision.has_all_half_planes) titles += ".\"\\n\"." + quoted(kPartly);
-  return {"velocity_space", space.data(), title + ".", {1060, 740}, velocity_plane(titles, space.box(), space.plot())};
+  return {"velocity_space",
+          space.data(),
+          title + ".",
+          {1060, 740},
+          velocity_plane(titles, space.panel().view, space.panel().plot.text())};
 }
 
 }  // namespace exactvo::tools

@@ -11,9 +11,6 @@
 
 namespace exactvo::tools {
 
-/// The plot of a velocity plane as the body of a figure; `title` is a gnuplot string.
-std::string velocity_plane(const std::string& title, const Box& view, const std::string& plot);
-
 Figure velocity_space_figure(const Decision& decision);
 
 }  // namespace exactvo::tools

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "exactvo/datasets/markup.h"
-#include "support/base64.h"
+#include "explorer/page.h"
 
 namespace exactvo::tools {
 

@@ -12,6 +12,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stability.h"
 #include "explorer/page.h"
+#include "figures/figure.h"
 #include "paper/expected.h"
 
 namespace exactvo::tools {
@@ -360,6 +361,19 @@ void add_sources(const ReportData& data, Document& d) {
 }
 
 }  // namespace
+
+const std::vector<Equation>& equations() {
+  static const std::vector<Equation> all = [] {
+    std::vector<Equation> equations;
+    for (const Json& e : Json::parse(embedded_templates().at("equations"))) {
+      const auto text = [](const Json& of, const char* key) { return of.at(key).get<std::string>(); };
+      equations.push_back({text(e, "number"), text(e, "printed"), text(e, "trouble"), text(e, "implemented"), {}});
+      for (const Json& p : e.at("places")) equations.back().places.push_back({text(p, "file"), text(p, "symbol")});
+    }
+    return equations;
+  }();
+  return all;
+}
 
 Document reproduction_report(const ReportData& data, const fs::path& folder) {
   Document d("Multi-Robot Formation with Obstacle Avoidance: a reproduction", folder);

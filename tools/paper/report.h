@@ -17,7 +17,7 @@
 
 namespace exactvo::tools {
 
-// --- What it tells: the paper's equations (equations.cpp), and its claims, held against the runs (claims.cpp) ---
+// --- What it tells: the paper's equations (equations.json), and its claims, held against the runs (claims.cpp) ---
 
 struct EquationPlace {
   std::string file;    ///< from the top of the sources

@@ -41,13 +41,9 @@ class Experiments {
       : flags_(std::move(flags)), out_(std::move(out)), line_(kRuns, "runs") {}
 
   void run_all() {
-    print(avoidance_head());
     for (int i = 0; i < kAvoidanceScenarios; ++i) run_avoidance("A" + std::to_string(i));
-    print(formation_head());
     for (int i = 0; i < kFormationScenarios; ++i) run_formation("B" + std::to_string(i));
     line_.clear();
-    print_jitter_ratios();
-    print_footnotes();
   }
 
   std::string summary() const { return datasets::summary_json(metrics_); }
@@ -61,40 +57,6 @@ class Experiments {
   }
 
  private:
-  void print(const std::string& text) {
-    line_.clear();
-    if (!flags_.quiet_tables) tools::print(text);
-  }
-
-  static std::string avoidance_head() {
-    std::string text = fmt::format("Section V.A: last arrival [s], X where a robot never arrives\n{:<5}", "");
-    for (const Method m : kMethods) text += fmt::format("{:>13}", name(m));
-    return text + "   minimum clearance of ivo [m]: obstacles, robots\n";
-  }
-
-  static std::string formation_head() {
-    return fmt::format(
-        "\nSection V.B: three robots and a virtual leader, method ivo\n"
-        "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11}\n",
-        "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
-  }
-
-  /// The paper's open problem: how many times less the default jitters than the corrected signs alone.
-  void print_jitter_ratios() {
-    std::string text = "\nJitter, paper-signs over default:";
-    for (int i = 0; i < kFormationScenarios; ++i) {
-      const auto& [before, after] = jitter_[static_cast<std::size_t>(i)];
-      text += fmt::format("  B{} {:.0f}", i, after > 0.0 ? before / after : 0.0);
-    }
-    print(text + "\n");
-  }
-
-  void print_footnotes() {
-    print(
-        "\n!  touched an obstacle or another robot on the way. Errors are final values, clearances minima "
-        "[m].\n");
-  }
-
   FinishedRun run_one(const std::string& scenario_name, Method method, Controller controller) {
     const fs::path file = flags_.scenarios / (scenario_name + ".json");
     formation::SimulationOptions options;
@@ -117,36 +79,17 @@ class Experiments {
     pages_.push_back({page_key(scenario + "-" + how), scenario + ", " + how, "", std::move(finished.packed)});
   }
 
-  static std::string arrival_cell(const formation::Metrics& m) {
-    const std::string text = m.all_arrived ? shown(m.last_arrival_time, "{:.1f}") : "X";
-    return fmt::format("{:>12}{}", text, touched(m) ? '!' : ' ');
-  }
-
   void run_avoidance(const std::string& scenario) {
-    std::string row = fmt::format("{:<5}", scenario);
-    std::string clearances;
-    for (const Method method : kMethods) {
-      FinishedRun finished = run_one(scenario, method, Controller::standard);
-      row += arrival_cell(finished.metrics);
-      clearances = fmt::format("   {}, {}", shown(finished.metrics.min_obstacle_clearance, "{:.3f}"),
-                               shown(finished.metrics.min_robot_clearance, "{:.3f}"));
-      keep_avoidance(scenario, std::move(finished), method);
-    }
-    print(row + clearances + "\n");
+    for (const Method method : kMethods)
+      keep_avoidance(scenario, run_one(scenario, method, Controller::standard), method);
   }
 
   void run_formation(const std::string& scenario) {
     for (const Controller controller : kControllers) {
       FinishedRun finished = run_one(scenario, Method::ivo, controller);
-      const formation::Metrics& m = finished.metrics;
-      const bool diverged = finished.file.recording.diverged;
       auto& [before, after] = jitter_[static_cast<std::size_t>(scenario.back() - '0')];
-      if (controller == Controller::paper_signs) before = m.jitter;
-      if (controller == Controller::standard) after = m.jitter;
-      print(fmt::format("{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
-                        shown(m.formation_position_error, "{:.2g}"), shown(m.formation_velocity_error, "{:.2g}"),
-                        shown(m.min_obstacle_clearance, "{:.3f}"), shown(m.min_robot_clearance, "{:.3f}"), m.jitter,
-                        touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
+      if (controller == Controller::paper_signs) before = finished.metrics.jitter;
+      if (controller == Controller::standard) after = finished.metrics.jitter;
       keep_formation(scenario, std::move(finished), controller);
     }
   }
@@ -187,11 +130,11 @@ class Experiments {
 
   void add_sheets() {
     for (const Method method : kMethods) {
-      std::vector<Panel> panels;
+      std::vector<PathsPanel> panels;
       for (const auto& run : avoidance_[method]) panels.push_back({panel_title(run), &run});
       add_sheet(std::string("all-") + name(method), std::string("Section V.A, method ") + name(method), panels, 4);
     }
-    std::vector<Panel> panels;
+    std::vector<PathsPanel> panels;
     for (const auto& run : formation_) panels.push_back({panel_title(run), &run});
     add_sheet("all-formation", "Section V.B, method ivo: one column per controller", panels, 3);
     add_comparison();
@@ -224,7 +167,7 @@ class Experiments {
   }
 
   void add_comparison() {
-    std::vector<Panel> panels;
+    std::vector<PathsPanel> panels;
     for (const Method method : {Method::orca, Method::ivo}) {
       for (const auto& run : avoidance_[method]) {
         if (run.info.scenario == kComparison) panels.push_back({std::string("method ") + name(method), &run});
@@ -233,7 +176,8 @@ class Experiments {
     add_sheet("two-walls", "Two robots and two walls", panels, 2);
   }
 
-  void add_sheet(const std::string& stem, const std::string& title, const std::vector<Panel>& panels, int columns) {
+  void add_sheet(const std::string& stem, const std::string& title, const std::vector<PathsPanel>& panels,
+                 int columns) {
     if (panels.empty()) return;  // scenarios of another --data have other names
     scripts_.push_back(write_sources(paths_sheet(stem, title, panels, columns), out_ / "figures"));
   }

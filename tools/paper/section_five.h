@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Section V of the paper: every scenario, every method and controller, a table and the figures.
+/// Section V of the paper: every scenario, every method and controller, and the figures.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,11 +15,10 @@ struct SectionFiveOptions {
   std::filesystem::path scenarios;        ///< the folder that holds A1.json and so on
   std::vector<std::string> command_line;  ///< for provenance
   std::uint64_t seed = 0;                 ///< for provenance
-  bool quiet_tables = false;              ///< no tables on stdout
   bool no_figures = false;
 };
 
-/// Runs all, prints the tables as they grow, writes summary.json, figures/ and explorer.html into `out`, and returns
+/// Runs all, writes summary.json, figures/ and explorer.html into `out`, and returns
 /// the summary.
 std::string run_section_five(const SectionFiveOptions& options, const std::filesystem::path& out);
 

@@ -19,9 +19,9 @@
 #include "exactvo/vo/containment.h"
 #include "support/certificate_json.h"
 #include "support/fields.h"
+#include "support/json_layout.h"
 #include "support/motion_certificates.h"
 #include "support/route_certificates.h"
-#include "support/unsigned_zero.h"
 
 namespace exactvo::tools {
 

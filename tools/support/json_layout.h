@@ -10,12 +10,19 @@
 
 #include "exactvo/geometry/region.h"
 #include "exactvo/geometry/vec2.h"
-#include "support/unsigned_zero.h"
 
 namespace exactvo::tools {
 
 /// Keys stay in the order in which they were added.
 using OrderedJson = nlohmann::ordered_json;
+
+/// 0 for -0; every other number as it is.
+inline double unsigned_zero(double x) {
+  return x == 0.0 ? 0.0 : x;
+}
+inline geometry::Vec2 unsigned_zero(geometry::Vec2 v) {
+  return {unsigned_zero(v.x), unsigned_zero(v.y)};
+}
 
 inline OrderedJson json_point(geometry::Vec2 v) {
   return OrderedJson::array({v.x, v.y});

@@ -160,37 +160,7 @@ std::vector<fs::path> write_figures(const std::vector<Figure>& figures, const fs
 }
 
 void draw_figures_of(const datasets::RecordingFile& run, const fs::path& folder) {
-  const std::string& name = run.info.scenario;
-  std::vector<fs::path> scripts;
-  {
-    ProgressLine line(0.0, "");
-    const auto begins = [&](const char* figure) { line.say("drawing figures of " + name + ": data of " + figure); };
-    scripts = write_figures(run_figures(run, begins), folder);
-  }
-  draw(scripts, name);
-}
-
-void draw(const std::vector<fs::path>& scripts, const std::string& what) {
-  const std::string doing = "drawing figures" + (what.empty() ? "" : " of " + what);
-  ProgressLine line(static_cast<double>(kPicturesOfScript * scripts.size()), "pictures");
-  line.show(0.0, doing);
-  const RenderResult result =
-      render(scripts, [&](std::size_t drawn, std::size_t) { line.show(static_cast<double>(drawn), doing); });
-  line.clear();
-  switch (result.outcome) {
-    case Rendering::done:
-      if (!result.missing.empty())
-        message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
-                            fmt::join(result.missing, " and ")));
-      return;
-    case Rendering::no_gnuplot:
-      message("gnuplot is not installed (Debian: gnuplot-nox): the figures' data and scripts are written, no pictures");
-      return;
-    case Rendering::failed:
-      // Ctrl-C reaches gnuplot too.
-      if (interrupted()) throw Interrupted();
-      throw std::runtime_error("gnuplot failed: " + result.message);
-  }
+  draw(write_figures(run_figures(run), folder), run.info.scenario);
 }
 
 datasets::LoadedScenario read_scenario(const std::string& path) {

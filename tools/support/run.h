@@ -14,6 +14,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
 #include "figures/figure.h"
+#include "figures/gnuplot.h"
 #include "support/run_recorder.h"
 
 namespace exactvo::tools {
@@ -56,11 +57,7 @@ std::optional<std::filesystem::path> recording_at(const std::filesystem::path& p
 std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figures,
                                                  const std::filesystem::path& folder);
 
-/// Runs gnuplot on the scripts; a message where it is absent. Says on a terminal how far it is and how long it will
-/// take: "drawing figures of `what`". Throws std::runtime_error where it fails.
-void draw(const std::vector<std::filesystem::path>& scripts, const std::string& what = "");
-
-/// The figures of a run, drawn into `folder`, which is created. Says what it is at.
+/// The figures of a run, drawn into `folder`, which is created.
 void draw_figures_of(const datasets::RecordingFile& run, const std::filesystem::path& folder);
 
 /// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-". Its notes are said.

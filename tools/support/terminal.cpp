@@ -156,63 +156,20 @@ double ProgressLine::elapsed() const {
 }
 
 void ProgressLine::show(double done, const std::string& doing) {
-  if (!enabled_) return;
-  const double seconds = elapsed();
-  const std::string now = fmt::format("{:.4g} of {:.4g} {}: {}", done, total_, unit_, shown(doing));
-  const double rate = seconds > 0.0 ? done / seconds : 0.0;
-  put_line(now, rate > 0.0 ? fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate)
-                           : std::string());
+  const double seconds = elapsed(), rate = seconds > 0.0 ? done / seconds : 0.0;
+  std::string text = fmt::format("{:.4g} of {:.4g} {}: {}", done, total_, unit_, doing);
+  if (rate > 0.0) text += fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
+  say(text);
 }
 
 void ProgressLine::say(const std::string& doing) {
-  if (enabled_) put_line(shown(doing), "");
-}
-
-ProgressLine::~ProgressLine() {
-  clear();
-  if (!clock_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    at_end_ = true;
-  }
-  ends_.notify_all();
-  clock_.join();
-}
-
-/// Of the line. Nothing as long as it is short. REQUIRES: the mutex is held.
-std::string ProgressLine::how_long() const {
-  constexpr double kLong = 2.0;  // s
-  const double since = elapsed() - changed_at_;
-  return since < kLong ? "" : fmt::format("; at it for {:.0f} s", since);
-}
-
-void ProgressLine::put_line(const std::string& now, const std::string& pace) {
-  const std::lock_guard lock(mutex_);
-  if (now != line_) changed_at_ = elapsed();
-  print_to_stderr("\r\033[K" + now + pace + how_long());
-  line_ = now;
-  pace_ = pace;
-  if (clock_.joinable()) return;
-  // Signals are for the thread that works: it is the one that waits for files and children.
-  sigset_t all, before;
-  ::sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  clock_ = std::thread([this] { say_how_long(); });
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-}
-
-void ProgressLine::say_how_long() {
-  std::unique_lock lock(mutex_);
-  while (!ends_.wait_for(lock, std::chrono::seconds(1), [this] { return at_end_; })) {
-    const std::string more = line_.empty() ? "" : how_long();
-    if (!more.empty()) print_to_stderr("\r\033[K" + line_ + pace_ + more);
-  }
+  if (!enabled_) return;
+  print_to_stderr("\r\033[K" + shown(doing));
+  is_shown_ = true;
 }
 
 void ProgressLine::clear() {
-  const std::lock_guard lock(mutex_);
-  if (!line_.empty()) print_to_stderr("\r\033[K");
-  line_.clear();
+  if (std::exchange(is_shown_, false)) print_to_stderr("\r\033[K");
 }
 
 }  // namespace exactvo::tools

@@ -4,13 +4,12 @@
 /// \file
 /// Words for people, on stderr: messages, and a line that says how far a long run has come. Results go to stdout.
 
+#include <fmt/format.h>
+
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
-#include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 namespace exactvo::tools {
 
@@ -42,6 +41,14 @@ class ChunkedOutput {
   std::string text_;
 };
 
+/// "52 kB", three digits.
+inline std::string size_text(double bytes) {
+  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
+  std::size_t k = 0;
+  for (; bytes >= 1000.0 && k + 1 < std::size(units); ++k) bytes /= 1000.0;
+  return fmt::format("{:.3g} {}", bytes, units[k]);
+}
+
 /// Nobody reads stdout any more (`| head`): what would go on printing for long ends here, with success.
 struct ReaderLeft : std::runtime_error {
   ReaderLeft() : std::runtime_error("the reader of stdout has left") {}
@@ -65,13 +72,12 @@ struct Interrupted : std::runtime_error {
 };
 
 /// How far a long run has come, with its rate and the time left, on one line of a terminal that is written over and
-/// over; nothing where stderr is no terminal. Where nothing new is shown for two seconds, as while a plan is searched
-/// for, it says how long.
+/// over; nothing where stderr is no terminal.
 class ProgressLine {
  public:
   /// `unit`: what is counted, "runs" or "s simulated".
   ProgressLine(double total, std::string unit);
-  ~ProgressLine();
+  ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
@@ -89,24 +95,12 @@ class ProgressLine {
   void clear();
 
  private:
-  /// With the pace, or how long the line has been there.
-  void put_line(const std::string& now, const std::string& pace);
-  std::string how_long() const;
-  void say_how_long();
-
   bool enabled_;
   double total_;
   std::string unit_;
   std::chrono::steady_clock::time_point start_;
   double due_at_ = 0.0;  ///< s
-
-  std::thread clock_{};  ///< says how long the line has been there
-  std::mutex mutex_;     ///< of what follows, and of writing
-  std::condition_variable ends_{};
-  bool at_end_ = false;
-  std::string line_{};       ///< shown last, without pace and time; empty: none
-  std::string pace_{};       ///< its rate and the time left
-  double changed_at_ = 0.0;  ///< s, since when it has been that
+  bool is_shown_ = false;
 };
 
 }  // namespace exactvo::tools

@@ -116,7 +116,6 @@ void bind_routes(py::module_& module) {
   py::class_<RouteMap>(module, "RouteMap")
       .def(py::init(&make_map))
       .def_property_readonly("vertex_count", &RouteMap::vertex_count)
-      .def_property_readonly("cell_count", &RouteMap::cell_count)
       .def_property_readonly("largest_radius", &RouteMap::largest_radius)
       .def("covers", [](const RouteMap& map, py::handle point) { return map.covers(vector(point, "point")); })
       .def("widest_radius",

@@ -151,13 +151,6 @@ py::list convex_cover_of(const Obstacles& obstacles) {
   return result;
 }
 
-py::tuple smallest_ellipse(const Obstacles& obstacles) {
-  if (obstacles.list.size() != 1)
-    throw ArgumentError("obstacle", std::to_string(obstacles.list.size()) + " obstacles", "one");
-  const geometry::ObstacleShapes shapes = geometry::shapes_of(obstacles.list.front().shape);
-  return py::make_tuple(as_tuple(ConvexShape(shapes.smallest_ellipse)), shapes.ellipse_contains.certified);
-}
-
 }  // namespace
 
 ConvexShape convex_shape(py::handle object, const char* name) {
@@ -206,8 +199,7 @@ void bind_shapes(py::module_& module) {
       }))
       .def("__len__", [](const Obstacles& o) { return o.list.size(); })
       .def("ragged", &ragged)
-      .def("convex_cover", &convex_cover_of)
-      .def("smallest_ellipse", &smallest_ellipse);
+      .def("convex_cover", &convex_cover_of);
   module.def("normalised_shape",
              [](py::handle shape, const char* name) { return as_tuple(convex_shape(shape, name)); });
   module.def("hull", [](py::handle vertices) {

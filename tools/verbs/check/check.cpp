@@ -311,7 +311,7 @@ class Byproducts {
   Byproducts(const CheckFlags& flags, const CheckedFile& asked, const Bodies& bodies, const CheckMap& map)
       : flags_(flags), sampled_(flags.samples, bodies.of_agent.size()) {
     if (!flags.certificates.empty()) certificates_.emplace(flags.certificates, asked.file, bodies, map);
-    if (!flags.figure.empty()) picture_.emplace(asked, map.shapes, bodies.of_agent);
+    if (!flags.figure.empty()) picture_.emplace(asked, bodies.of_agent);
     if (!flags.page.empty()) page_.emplace(asked, bodies.of_agent);
   }
 
@@ -475,12 +475,7 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
       "WKT or FILE: a polygon round the agent's place, or with --radius a line with that half width. --radius "
       "grows a polygon. It turns with the agent's heading (theta)");
   app.add_option("--map", flags.map, "Obstacle file of any readable format; by default the obstacles of a recording");
-  app.add_option(
-      "--map-format", flags.reading.format,
-      fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
-  app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
-  app.add_option("--unknown", flags.reading.unknown, "What unknown cells of a ROS map are: free or blocked");
-  app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
+  declare_reading_flags(app, flags.reading, "--map-format");
   app.add_option("--between", flags.between,
                  "How bodies move between two rows: straight (and uniform), hold (at rest until the next row), cubic "
                  "(with the file's velocities, else Catmull-Rom), none (only the rows count)")

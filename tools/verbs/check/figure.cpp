@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "exactvo/geometry/counted.h"
-#include "figures/body_panel.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 
@@ -26,22 +26,28 @@ constexpr double kFinest = 1.0 / 2000.0;
 /// Places of overlaps that are drawn.
 constexpr std::size_t kMostPlaces = 2000;
 
-void draw_way(BodyPanel& panel, const std::string& title, const Points& way, const char* colour) {
-  panel.way(title, way, line_style(1.4, colour));
+std::vector<Points> outlines_of(const RigidBody& body, Vec2 at, double turned) {
+  std::vector<Points> rings;
+  for (const geometry::RoundedPolygon& part : body) rings.push_back(hull_outline(part, {at, turned}));
+  return rings;
+}
+
+/// With its rows.
+void draw_way(const std::string& title, const Points& way, const char* colour, Panel& panel) {
+  panel.curves(title, {way}, line_style(1.4, colour));
   panel.points(title, way, fmt::format("with points pt 7 ps 0.5 lc rgb '{}'", colour));
+}
+
+SheetPanel on_sheet(const Panel& panel, const std::string& title) {
+  return panel.on_sheet(quoted(title + panel.origin.in_title()));
 }
 
 constexpr const char* kPlaceStyle = "with points pt 6 ps 1.4 lw 2 lc rgb '#e00000'";
 
 }  // namespace
 
-CheckPicture::CheckPicture(const CheckedFile& asked, const std::vector<geometry::Obstacle>& map,
-                           const std::vector<RigidBody>& bodies)
-    : asked_(asked),
-      map_(map),
-      bodies_(bodies),
-      least_step_(kFinest * asked.survey.extent().diagonal()),
-      agents_(bodies.size()) {}
+CheckPicture::CheckPicture(const CheckedFile& asked, const std::vector<RigidBody>& bodies)
+    : asked_(asked), bodies_(bodies), least_step_(kFinest * asked.survey.extent().diagonal()), agents_(bodies.size()) {}
 
 void CheckPicture::add(const datasets::TrajectoryRow& row) {
   Agent& agent = agents_[row.agent];
@@ -70,10 +76,10 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   Box all;
   for (const Agent& agent : agents_)
     for (const Vec2 p : agent.way) all.add(p);
-  for (const geometry::Obstacle& obstacle : map_)
-    for (const Vec2 p : geometry::vertices_of(obstacle)) all.add(p);
-  BodyPanel whole(square_view(all, 0.54), data);
-  whole.map(map_);
+  for (const formation::SceneObstacle& obstacle : asked_.obstacles)
+    for (const Vec2 p : geometry::vertices_of(obstacle.shape)) all.add(p);
+  Panel whole(square_round(all, 0.54), data);
+  whole.obstacles(asked_.obstacles, 2.0, false);
   std::vector<Points> ways, alone;
   for (const Agent& agent : agents_) (agent.way.size() > 1 ? ways : alone).push_back(agent.way);
   whole.curves("ways", ways, line_style(0.8, kWayColour));
@@ -82,30 +88,30 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
     if (!way.empty()) places.push_back(way.front());
   whole.points("agents that do not move", places, fmt::format("with points pt 7 ps 0.3 lc rgb '{}'", kWayColour));
   whole.points("overlaps", places_, kPlaceStyle);
-  sheet.panels.push_back(whole.done("(a) all ways"));
+  sheet.panels.push_back(on_sheet(whole, "(a) all ways"));
   for (std::size_t k = 0; k < close_.size(); ++k) {
     const Close& c = close_[k];
-    const std::vector<Points> body = outlines_of(bodies_[c.event.body], {c.event.at, c.event.turned});
+    const std::vector<Points> body = outlines_of(bodies_[c.event.body], c.event.at, c.event.turned);
     const std::vector<Points> other =
         c.event.with_obstacle ? std::vector<Points>{}
-                              : outlines_of(bodies_[c.event.other], {c.event.other_at, c.event.other_turned});
+                              : outlines_of(bodies_[c.event.other], c.event.other_at, c.event.other_turned);
     Box near;
     for (const auto* rings : {&body, &other})
       for (const Points& ring : *rings)
         for (const Vec2 p : ring) near.add(p);
     near = near.grown(0.6 * std::max(near.width(), near.height()));
-    BodyPanel panel(square_view(near, 0.54), data);
-    panel.map(map_);
-    panel.rings("first body", body, filled_style(kFirstColour, 0.3));
-    panel.rings("other body", other, filled_style(kOtherColour, 0.3));
-    draw_way(panel, "way of the first", c.way, kFirstColour);
-    draw_way(panel, "way of the other", c.other_way, kOtherColour);
+    Panel panel(square_round(near, 0.54), data);
+    panel.obstacles(asked_.obstacles, 2.0, false);
+    panel.rings("first body", body, clear_fill(kFirstColour, 0.3));
+    panel.rings("other body", other, clear_fill(kOtherColour, 0.3));
+    draw_way("way of the first", c.way, kFirstColour, panel);
+    draw_way("way of the other", c.other_way, kOtherColour, panel);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
     const std::string names = c.event.with_obstacle
                                   ? asked_.file.agents[c.event.body] + " and " + asked_.obstacles[c.event.other].id
                                   : asked_.file.agents[c.event.body] + " and " + asked_.file.agents[c.event.other];
-    sheet.panels.push_back(
-        panel.done(fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
+    sheet.panels.push_back(on_sheet(
+        panel, fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
   }
   const std::string file = std::filesystem::path(asked_.file.file).filename().string();
   sheet.title = quoted(shortened(fmt::format("{}: {}", file, geometry::counted(check.overlaps, "overlap")), 70));
@@ -117,8 +123,11 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   sheet.legend = {{"keyentry " + line_style(0.8, kWayColour), "way"},
                   {std::string("keyentry ") + kPlaceStyle, "where an overlap is deepest"}};
   if (!close_.empty()) {
-    sheet.legend.push_back({filled_key(kFirstColour, 0.3), "first body; dots are its rows"});
-    sheet.legend.push_back({filled_key(kOtherColour, 0.3), "other body"});
+    sheet.legend.push_back(
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kFirstColour),
+         "first body; dots are its rows"});
+    sheet.legend.push_back(
+        {fmt::format("keyentry with boxes fs transparent solid 0.3 noborder fc rgb '{}'", kOtherColour), "other body"});
   }
   return sheet_figure("check", data.text(), "Ways of agents, and where they overlap.", sheet);
 }

@@ -17,8 +17,7 @@ namespace exactvo::tools {
 
 class CheckPicture {
  public:
-  CheckPicture(const CheckedFile& asked, const std::vector<geometry::Obstacle>& map,
-               const std::vector<geometry::RigidBody>& bodies);
+  CheckPicture(const CheckedFile& asked, const std::vector<geometry::RigidBody>& bodies);
 
   void add(const datasets::TrajectoryRow& row);
   void add(const geometry::MotionEvent& event);
@@ -42,7 +41,6 @@ class CheckPicture {
   Points recent_of(std::size_t agent) const;
 
   const CheckedFile& asked_;
-  const std::vector<geometry::Obstacle>& map_;
   const std::vector<geometry::RigidBody>& bodies_;
   double least_step_;  ///< m, between points of a thinned way
   std::vector<Agent> agents_;

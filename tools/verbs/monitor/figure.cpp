@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "figures/body_panel.h"
+#include "figures/plane.h"
 
 namespace exactvo::tools {
 namespace {
@@ -35,7 +35,7 @@ Pose pose_on(const std::vector<formation::MonitorArc>& way, double share) {
 SheetPanel panel_of(const MonitorSetup& setup, const JudgedLine& line, char letter, DataFile& data) {
   std::vector<Points> first, proven, rest, beyond, seen, later;
   const auto add = [&](std::vector<Points>& rings, const Pose& pose) {
-    for (Points& ring : outlines_of(setup.footprint, pose)) rings.push_back(std::move(ring));
+    for (const geometry::RoundedPolygon& part : setup.footprint) rings.push_back(hull_outline(part, pose));
   };
   const double length = line.whole.back().motion.end, cleared = line.proven.back().motion.end;
   add(first, pose_on(line.whole, 0.0));
@@ -53,20 +53,18 @@ SheetPanel panel_of(const MonitorSetup& setup, const JudgedLine& line, char lett
   for (const auto* rings : {&first, &proven, &rest, &beyond, &seen})
     for (const Points& ring : *rings)
       for (const Vec2 p : ring) view.add(p);
-  std::vector<geometry::Obstacle> map;
-  for (const formation::SceneObstacle& obstacle : setup.obstacles) map.push_back(obstacle.shape);
-  BodyPanel panel(square_view(view, 0.58), data);
-  panel.map(map);
+  Panel panel(square_round(view, 0.58), data);
+  panel.obstacles(setup.obstacles, 2.5, false);
   panel.rings("where movers may be when the robot rests", later, line_style(1.0, kMoverColour));
-  panel.rings("movers", seen, filled_style(kMoverColour, 0.5));
+  panel.rings("movers", seen, clear_fill(kMoverColour, 0.5));
   panel.rings("not proven", beyond, line_style(0.8, kBeyondColour));
   panel.rings("proven", proven, line_style(0.8, kProvenColour));
-  panel.rings("robot at rest", rest, filled_style(kProvenColour, 0.45));
-  panel.rings("robot now", first, filled_style("#555555", 0.35));
+  panel.rings("robot at rest", rest, clear_fill(kProvenColour, 0.45));
+  panel.rings("robot now", first, clear_fill("#555555", 0.35));
   Points places;
   if (line.verdict.witness) places.push_back(line.verdict.witness->place);
   panel.points("too near", places, kWitnessStyle);
-  return panel.done(fmt::format("({}) {}", letter, line.title));
+  return panel.on_sheet(quoted(fmt::format("({}) {}", letter, line.title) + panel.origin.in_title()));
 }
 
 }  // namespace
@@ -82,11 +80,14 @@ Figure MonitorPicture::figure(const std::string& title) const {
   sheet.columns = lines_.size() == 1 ? 1 : lines_.size() == 2 || lines_.size() == 4 ? 2 : 3;
   sheet.panel_width = sheet.panel_height = lines_.size() == 1 ? 520.0 : 300.0;
   sheet.gap = 60.0;
-  sheet.legend = {{filled_key("#555555", 0.35), "robot now"},
-                  {filled_key(kProvenColour, 0.45), "at rest, after the share that is proven"},
+  const auto box = [](const char* colour, double opacity) {
+    return fmt::format("keyentry with boxes fs transparent solid {} noborder fc rgb '{}'", opacity, colour);
+  };
+  sheet.legend = {{box("#555555", 0.35), "robot now"},
+                  {box(kProvenColour, 0.45), "at rest, after the share that is proven"},
                   {"keyentry " + line_style(0.8, kProvenColour), "proven clear"},
                   {"keyentry " + line_style(0.8, kBeyondColour), "the rest of the command"},
-                  {filled_key(kMoverColour, 0.5), "mover, and where it may come"},
+                  {box(kMoverColour, 0.5), "mover, and where it may come"},
                   {std::string("keyentry ") + kWitnessStyle, "too near"}};
   return sheet_figure("monitor", data.text(), "Commands of a robot, and how much of each is proven clear.", sheet);
 }

@@ -377,12 +377,7 @@ void declare_monitor(CLI::App& app, MonitorFlags& flags) {
       "WKT or FILE: a polygon in body axes: x ahead, origin at the pose; --radius grows it. Or with --radius a "
       "line with that half width");
   app.add_option("--map", flags.map, "Obstacle file of any readable format: what stands still");
-  app.add_option(
-      "--map-format", flags.reading.format,
-      fmt::format("Format of the map: {}; by default detected", fmt::join(datasets::readable_formats(), " ")));
-  app.add_option("--units", flags.reading.units, "Units of the map's coordinates: automatic, metres or degrees");
-  app.add_option("--unknown", flags.reading.unknown, "What unknown cells of ROS maps are: free or blocked");
-  app.add_option("--cell-size", flags.reading.cell_size, "Cell size of a map that is a grid without a scale, m");
+  declare_reading_flags(app, flags.reading, "--map-format");
   MonitorSetup& setup = flags.setup;
   app.add_option("--max-deceleration", setup.max_deceleration, "Deceleration that the robot always reaches, m/s^2")
       ->capture_default_str();

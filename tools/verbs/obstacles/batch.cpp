@@ -16,10 +16,10 @@
 #include "support/parse_errors.h"
 #include "support/robot_numbers.h"
 #include "support/simulation_flags.h"
-#include "support/size_text.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
 
@@ -43,12 +43,8 @@ struct BatchFlags {
   bool repair = false;
   std::uint64_t limit_memory = 0;
   std::string shard;
-  std::string format;
-  std::string units = "automatic";
-  std::string unknown = "free";
-  double cell_size = 0.0;
+  ReadingFlags reading;
   double tolerance = 0.0;
-  std::string partition = "triangles";
   std::string write = "measurements,pictures";
   bool metres = false;
   std::optional<double> time_horizon;
@@ -71,7 +67,6 @@ void choose_outputs(const std::string& text, BatchConfiguration& configuration) 
 }
 
 void check_numbers(const BatchFlags& flags) {
-  require_length("--cell-size", flags.cell_size);
   require_length("--tolerance", flags.tolerance);
   if (!is_radius(flags.radius)) throw UsageError("--radius", fmt::format("{}", flags.radius), kRadii);
   const std::optional<double>& horizon = flags.time_horizon;
@@ -96,14 +91,9 @@ std::optional<datasets::BatchRobot> robot_of(const BatchFlags& flags) {
 BatchConfiguration configuration_of(const BatchFlags& flags) {
   check_numbers(flags);
   BatchConfiguration configuration;
-  configuration.reading.format = flags.format;
+  configuration.reading = reading_options(flags.reading);
   configuration.reading.repair = flags.repair;
-  configuration.reading.cell_size = flags.cell_size;
-  require(parse(flags.units, configuration.reading.units), "--units", flags.units, "automatic, metres or degrees");
-  require(parse(flags.unknown, configuration.reading.unknown), "--unknown", flags.unknown, "free or blocked");
   configuration.shapes.facades.tolerance = flags.tolerance;
-  configuration.shapes.partition =
-      parse_choice<geometry::PartitionMethod>("--partition", flags.partition, geometry::partition_method_names());
   configuration.memory_limit = flags.limit_memory;
   configuration.robot = robot_of(flags);
   choose_outputs(flags.write, configuration);
@@ -328,14 +318,7 @@ void declare_run(CLI::App& app, BatchFlags& flags) {
 
 void declare_reading(CLI::App& app, BatchFlags& flags) {
   app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
-  app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
-  app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
-  app.add_option("--unknown", flags.unknown, "Unknown cells of ROS maps: free, blocked")->capture_default_str();
-  app.add_option("--cell-size", flags.cell_size, "Cell size of grids without a scale (1) and of scans (0.05), m");
-  app.add_option("--partition", flags.partition,
-                 "Method for convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
-                 "approximate, optimal")
-      ->capture_default_str();
+  declare_reading_flags(app, flags.reading);
   app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m")
       ->capture_default_str();
 }

@@ -9,11 +9,11 @@
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
 #include "figures/figure.h"
+#include "figures/plane.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/obstacles/map_figure.h"
 #include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
@@ -101,7 +101,9 @@ void draw_figure(const GenerateFlags& flags, std::uint64_t count) {
   const std::uint64_t drawn = std::min(count, kMostItemsDrawn);
   if (drawn < count) message(fmt::format("the figure shows the first {} of {} items", drawn, count));
   const std::string title = fmt::format("{}, seed {}, {}", flags.kind, flags.seed, geometry::counted(drawn, "item"));
-  write_figure(map_figure(items(flags, drawn), title), flags.figure);
+  MapLayers map;
+  map.obstacles(items(flags, drawn));
+  write_figure(map.figure(title), flags.figure);
 }
 
 ExitCode generate(const GenerateFlags& flags) {

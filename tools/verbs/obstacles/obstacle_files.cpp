@@ -15,8 +15,8 @@
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/files.h"
+#include "support/json_layout.h"
 #include "support/terminal.h"
-#include "support/unsigned_zero.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {

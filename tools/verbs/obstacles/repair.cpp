@@ -10,11 +10,11 @@
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
 #include "figures/figure.h"
+#include "figures/plane.h"
 #include "support/escape.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/obstacles/map_figure.h"
 #include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
@@ -224,7 +224,58 @@ void print_report(const std::vector<FileAnswer>& answers) {
   }
 }
 
-// --- The figure ---
+// --- The figure: polygons side by side, the rings as given with their problems marked, and the polygons that they
+// became, a colour each ---
+
+/// As many as go onto a sheet.
+constexpr std::size_t kMostDrawn = 6;
+constexpr double kSideOfPlot = 340.0;  // px of what the axes enclose
+constexpr double kGapOfPlots = 60.0;   // px
+/// "-1.2e+06", eight characters of 6 px, and a gap of two.
+constexpr double kWidthOfTic = 60.0;  // px
+
+/// The least of 1, 2, 5, 10, ... metres that is as wide as a label.
+double distance_of_tics(const Box& view) {
+  const double least = kWidthOfTic / kSideOfPlot * std::max(view.width(), view.height());
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= least) return digit * power;
+  return 10.0 * power;
+}
+
+constexpr const char* kProblemMark = "with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'";
+
+void add_panel(const std::string& title, const Panel& panel, Sheet& sheet) {
+  const std::string from = panel.origin.in_title();
+  const std::size_t room = characters_in(1.3 * (kSideOfPlot + 0.5 * kGapOfPlots));
+  const std::string words = letter_of(sheet.panels.size()) + " " + title;
+  sheet.panels.push_back(panel.on_sheet(quoted(shortened(words, room - std::min(from.size(), room / 2)) + from)));
+  sheet.panels.back().settings += fmt::format("\nset xtics {:.9g}", distance_of_tics(panel.view));
+}
+
+/// Before and after. Each polygon with its own holes: what lies in a hole of another keeps its colour.
+void add_row(const std::string& title, const std::vector<geometry::Ring>& given, const Points& problems,
+             const std::vector<geometry::Polygon>& after, DataFile& data, Sheet& sheet) {
+  Box box;
+  for (const geometry::Ring& ring : given)
+    for (const Vec2 p : ring) box.add(p);
+  const Box view = square_round(box, 0.56);
+  Panel as_given(view, data), repaired(view, data);
+  as_given.rings("before: " + title, given, line_style(2, kObstacleLine));
+  as_given.points("problems", problems, kProblemMark);
+  add_panel("before: " + title, as_given, sheet);
+  std::vector<Points> rings;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    repaired.rings(
+        "polygon, its holes tied to it", {tied_together(after[k])},
+        fmt::format("with filledcurves closed fs transparent solid 0.45 noborder fc rgb '{}'", series_colour(k)));
+    rings.push_back(after[k].outer);
+    rings.insert(rings.end(), after[k].holes.begin(), after[k].holes.end());
+  }
+  repaired.rings("rings after", rings, line_style(1.5, kObstacleLine));
+  add_panel(after.empty() ? "after: cannot be repaired" : "after: " + geometry::counted(after.size(), "polygon"),
+            repaired, sheet);
+}
 
 /// What became of one polygon: the obstacles "7", "7-2", "7-3".
 std::vector<geometry::Polygon> outcome(const ObstacleFile& file, const RepairRecord& record) {
@@ -249,23 +300,33 @@ std::vector<geometry::Vec2> places_of_problems(const ObstacleFile& file, const R
 }
 
 void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
-  std::vector<RepairedPolygon> polygons;
+  DataFile data;
+  Sheet sheet;
   std::size_t number = 0;
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const RepairRecord& r : answer.content->repairs) {
       // Only those that are drawn: each takes a look at all findings and obstacles.
-      if (!r.recombined || ++number > kMostRepairedDrawn) continue;
+      if (!r.recombined || ++number > kMostDrawn) continue;
       const std::string name = std::filesystem::path(answer.file).filename().string();
-      polygons.push_back(
-          {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
+      add_row(name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r), data,
+              sheet);
     }
   }
-  if (polygons.empty()) return message("no figure: nothing had to be cut");
-  if (number > polygons.size())
-    message(
-        fmt::format("the figure shows {} of {} that were cut", polygons.size(), geometry::counted(number, "polygon")));
-  write_figure(repair_figure(polygons), out);
+  if (number == 0) return message("no figure: nothing had to be cut");
+  if (number > kMostDrawn)
+    message(fmt::format("the figure shows {} of {} that were cut", kMostDrawn, geometry::counted(number, "polygon")));
+  sheet.title = "'Polygons before and after their repair'";
+  sheet.x_label = "'x [m]'";
+  sheet.y_label = "'y [m]'";
+  sheet.columns = 2;
+  sheet.panel_width = sheet.panel_height = kSideOfPlot;
+  sheet.gap = kGapOfPlots;
+  sheet.legend = {{"keyentry " + line_style(2, kObstacleLine), "outline"},
+                  {std::string("keyentry ") + kProblemMark, "problem"},
+                  {fmt::format("keyentry with boxes fs transparent solid 0.45 noborder fc rgb '{}'", series_colour(0)),
+                   "polygon, a colour each"}};
+  write_figure(sheet_figure("repair", data.text(), "Polygons before and after a repair.", sheet), out);
 }
 
 // --- The verb ---

@@ -12,12 +12,11 @@
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
+#include "figures/plane.h"
 #include "support/escape.h"
-#include "support/size_text.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/obstacles/map_figure.h"
 #include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
@@ -235,11 +234,53 @@ std::string title_of_shapes(const std::vector<std::string>& files, std::size_t o
   return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
 }
 
-void draw_figure(const std::vector<Decomposed>& all, const SegmentFlags& flags) {
-  if (all.empty()) return message("no figure: no obstacle");
-  std::vector<ObstacleShapes> shapes;
-  for (const Decomposed& t : all) shapes.push_back(t.shapes);
-  write_figure(shapes_figure(shapes, title_of_shapes(flags.files, all.size())), flags.figure);
+// --- The figure ---
+
+/// Neighbouring pieces in different colours, as far as taking turns does that.
+void draw_pieces(const std::vector<Decomposed>& obstacles, MapLayers& map) {
+  constexpr std::size_t kColours = 4;
+  std::vector<std::vector<Points>> by_colour(kColours);
+  for (const Decomposed& t : obstacles) {
+    std::size_t turn = 0;
+    for (const geometry::ConvexShape& piece : t.shapes.pieces)
+      if (const Points ring = outline(piece); ring.size() > 2) by_colour[turn++ % kColours].push_back(ring);
+  }
+  bool in_key = true;
+  for (std::size_t k = 0; k < kColours; ++k) {
+    map.curves("convex pieces", by_colour[k],
+               fmt::format("with filledcurves closed fs transparent solid 0.22 border lc rgb '#8a919c' fc rgb '{}'",
+                           series_colour(k + 1)),
+               true, in_key);
+    in_key = in_key && by_colour[k].empty();
+  }
+}
+
+/// Pieces filled in pale colours, facades as bold lines, hulls dashed, the smallest ellipses, the facades' and the
+/// trap-free ones.
+Figure shapes_figure(const std::vector<Decomposed>& obstacles, const std::string& title) {
+  MapLayers map;
+  std::vector<formation::SceneObstacle> all;
+  for (const Decomposed& t : obstacles) all.push_back({"", t.shapes.obstacle});
+  constexpr std::size_t kMostDrawnBold = 40;
+  const bool crowded = obstacles.size() > kMostDrawnBold;
+  map.obstacles(all);
+  draw_pieces(obstacles, map);
+  std::vector<Points> of_facades, hulls, smallest, trap_free, facades;
+  for (const Decomposed& t : obstacles) {
+    const ObstacleShapes& s = t.shapes;
+    for (const geometry::FacadeEnclosure& e : s.facade_ellipses) of_facades.push_back(outline(e.ellipse));
+    hulls.push_back(s.hull.vertices);
+    smallest.push_back(outline(s.smallest_ellipse));
+    if (s.trap_free.ellipse) trap_free.push_back(outline(*s.trap_free.ellipse));
+    for (const geometry::Segment& f : s.facades.facades) facades.push_back({f.a, f.b});
+  }
+  map.curves("facade ellipses", of_facades, line_style(crowded ? 0.4 : 0.8, "#56B4E9"), true);
+  map.curves("hulls", hulls, line_style(1.6, "#009E73", " dt (8,5)"), true);
+  map.curves("smallest ellipses", smallest, line_style(1.8, "#0072B2"), true);
+  map.curves("trap-free ellipses", trap_free, line_style(1.8, "#CC79A7", " dt (3,3)"), true);
+  map.curves("facades", facades,
+             crowded ? line_style(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
+  return map.figure(title);
 }
 
 // --- The verb ---
@@ -273,7 +314,9 @@ ExitCode segment(const SegmentFlags& flags) {
     write_out(all, flags);
     message("wrote " + flags.out);
   }
-  if (!flags.figure.empty()) draw_figure(all, flags);
+  if (!flags.figure.empty() && all.empty()) message("no figure: no obstacle");
+  if (!flags.figure.empty() && !all.empty())
+    write_figure(shapes_figure(all, title_of_shapes(flags.files, all.size())), flags.figure);
   if (flags.json) print(records(all));
   if (!flags.json && flags.out.empty()) {
     for (const Decomposed& t : all) print(words_of(t));

@@ -84,14 +84,17 @@ void renew_report(const PaperFlags& flags) {
 
 ExitCode section_five(const PaperFlags& flags) {
   StagedFolder folder(flags.out);
-  const SectionFiveOptions options{scenarios_for(flags), command_line(), flags.seed, flags.json, flags.no_figures};
+  const SectionFiveOptions options{scenarios_for(flags), command_line(), flags.seed, flags.no_figures};
   const std::string summary = run_section_five(options, folder.path());
   if (interrupted()) throw Interrupted();
   // The campaigns' pictures, where an earlier command left some, are found beside those of this one.
   const bool campaigns_before = copy_pictures(flags.out, folder.path());
-  write_report(ReportData(folder.path(), flags.out, options.scenarios), folder.path());
+  const ReportData data(folder.path(), flags.out, options.scenarios);
+  write_report(data, folder.path());
   if (campaigns_before) fs::remove_all(folder.path() / "ablations");
   if (flags.json) print(summary);
+  for (const Claim& c : flags.json ? std::vector<Claim>{} : claims(data))
+    print(fmt::format("{:<13} {}: {}\n", name(c.verdict), c.where, c.text));
   if (flags.no_figures) remove_figures(flags.out);
   folder.publish("summary.json");
   message("wrote " + flags.out + "/summary.json, report.html, report.md" +
@@ -160,7 +163,7 @@ void declare_paper(CLI::App& app, PaperFlags& flags) {
                      "Threads for --random and --ablations, by default one per processor; results do not depend on it")
           ->check(whole_number(1, 1024));
   declare_seed(app, flags.seed, "Seed of the random fields; recorded in the provenance");
-  app.add_flag("--json", flags.json, "Print the JSON instead of the tables");
+  app.add_flag("--json", flags.json, "Print the JSON instead of the verdicts and tables");
   app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
 }
 

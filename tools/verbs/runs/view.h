@@ -3,7 +3,7 @@
 
 /// \file
 /// The runs of a page, from what the command line of `view` and `serve` names: recordings, recordings of crowds, and
-/// scenarios, which are run with every half-plane, or without decisions (support/way.h).
+/// scenarios, which are run with every half-plane, or without decisions (support/simulation_flags.h).
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -13,7 +13,6 @@
 #include "explorer/packed_run.h"
 #include "explorer/page.h"
 #include "support/simulation_flags.h"
-#include "support/way.h"
 
 namespace exactvo::tools {
 

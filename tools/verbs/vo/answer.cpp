@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/vo/answer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/predicates.h"
+#include "support/json_layout.h"
 
 namespace exactvo::tools {
 
+using geometry::Bracket;
 using geometry::HalfPlane;
+using geometry::Sign;
+using vo::AlgebraicDirection;
+using vo::FreeArrangement;
+using vo::ShiftedCone;
+
+namespace {
 
 bool any_overlaps(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.overlaps; });
@@ -18,30 +30,37 @@ bool any_contains(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.contains; });
 }
 
-const char* word_of_allowed(const std::optional<bool>& allowed) {
-  if (!allowed) return "no cone";
-  return *allowed ? "allows" : "forbids";
-}
-
+/// Why there is no certificate: "contact" or "rounding"; nothing where there is one.
 const char* why_no_certificate(const ConeAnswer& a) {
   if (a.certificate) return nullptr;
   return a.overlaps ? "contact" : "rounding";
 }
 
+/// Whose half-plane excludes the piece.
 Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
   if (a.free->half_planes.empty()) return {};
   return place_of(a.question, a.free->cone_of[piece.half_plane]);
 }
 
-namespace {
+/// What can be proven where the robot is in contact or within a few ulps of it. For an obstacle that moves the offset
+/// is rounded up: two products and a sum err by less than 2u of the sum of their magnitudes, u = 2^-53.
+std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
+  constexpr double kFourRoundings = 4.0 * 0x1p-53;
+  std::optional<HalfPlane> h = a.cone.contact_half_plane();
+  const Vec2 u = a.encounter.obstacle_velocity;
+  if (h)
+    h->offset =
+        geometry::dot(h->normal, u) + kFourRoundings * (std::fabs(h->normal.x * u.x) + std::fabs(h->normal.y * u.y));
+  return h;
+}
 
-constexpr geometry::Names<Taken, 5> kTaken{{{Taken::itself, "itself"},
-                                            {Taken::convex_pieces, "convex pieces"},
-                                            {Taken::convex_hull, "convex hull"},
-                                            {Taken::smallest_ellipse, "smallest ellipse"},
-                                            {Taken::trap_free_ellipse, "trap-free ellipse"}}};
-
-// --- JSON ---
+/// Where the half-plane of contact stands: below, and under which key.
+std::string contact_words(const VoAnswer& a) {
+  const bool any =
+      std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.contact.has_value(); });
+  return any ? "The half-plane of contact stands below (\"contact_half_plane\" with --json).\n"
+             : "No half-plane of contact can be proven (\"contact_half_plane\" with --json is null).\n";
+}
 
 using Json = OrderedJson;
 
@@ -55,6 +74,335 @@ Json json_of(const char* side, const vo::Leg& leg) {
           {"touch", json_point(leg.touch)},
           {"bracket", {{"inside", json_point(leg.normal)}, {"outside", json_point(leg.normal_outside)}}}};
 }
+
+namespace {
+
+std::string ellipse_words(const VoQuestion& question, std::size_t cone) {
+  return fmt::format("obstacle {} takes part as an ellipse, whose offset has degree eight",
+                     place_of(question, cone).obstacle);
+}
+
+std::string contact_words(const VoQuestion& question, std::size_t cone) {
+  return fmt::format("the robot touches or overlaps obstacle {}", place_of(question, cone).obstacle);
+}
+
+std::string curves_words(const std::vector<ShiftedCone>& cones) {
+  std::size_t curves = 0;
+  for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
+  return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
+}
+
+/// REQUIRES: not Refusal::none.
+std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, const VoQuestion& question) {
+  switch (refusal) {
+    case vo::Refusal::ellipse: {
+      const auto held = [](const ShiftedCone& c) { return FreeArrangement::can_hold(c); };
+      const auto first = std::find_if_not(cones.begin(), cones.end(), held);
+      return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
+    }
+    case vo::Refusal::cones:
+      return fmt::format("{}, more than {}", geometry::counted(cones.size(), "convex shape"), vo::kMostCones);
+    case vo::Refusal::curves:
+      return curves_words(cones);
+    case vo::Refusal::range:
+      return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
+    default:
+      return "the scene's magnitudes are too different for exact results";
+  }
+}
+
+OrderedJson json_of(const vo::PointBracket& p) {
+  return OrderedJson::array({json_bracket(p.x), json_bracket(p.y)});
+}
+
+OrderedJson json_of(const vo::FreeArc& arc, const VoQuestion& question) {
+  OrderedJson json{{"kind", name(arc.kind)}, {"obstacle", nullptr}, {"cone", nullptr}};
+  if (arc.kind != vo::ArcKind::speed_circle) {
+    const Place place = place_of(question, arc.cone);
+    json["obstacle"] = place.obstacle;
+    json["cone"] = place.cone;
+  }
+  json["from"] = json_of(arc.from);
+  json["to"] = json_of(arc.to);
+  if (arc.turn == 0) return json;
+  json["center"] = json_point(arc.center);
+  json["radius"] = arc.radius;
+  json["turn"] = arc.turn;
+  return json;
+}
+
+OrderedJson json_of(const vo::FreePiece& piece, const VoQuestion& question) {
+  OrderedJson arcs = OrderedJson::array();
+  for (const vo::FreeArc& arc : piece.boundary) arcs.push_back(json_of(arc, question));
+  return {{"area", json_bracket(piece.area)}, {"arcs", arcs}};
+}
+
+const char* word_of(bool inside) {
+  return inside ? "yes" : "no";
+}
+
+/// Of the slope: narrower than a double of it.
+constexpr double kWidth = 0x1p-60;
+
+OrderedJson leg_json(const char* side, const AlgebraicDirection& leg) {
+  const AlgebraicDirection fine = leg.refined(kWidth);
+  return {{"side", side},
+          {"polynomial", fine.polynomial()},
+          {"slope", {fine.low(), fine.high()}},
+          {"quarter_turns", fine.quarter_turns()},
+          {"direction", json_point(fine.rounded())}};
+}
+
+std::string polynomial_words(const std::vector<std::string>& coefficients) {
+  std::string text;
+  for (std::size_t i = coefficients.size(); i-- > 0;) {
+    const std::string& c = coefficients[i];
+    if (c == "0") continue;
+    const bool minus = c.front() == '-';
+    text += text.empty() ? (minus ? "-" : "") : (minus ? " - " : " + ");
+    text += minus ? c.substr(1) : c;
+    if (i > 0) text += i == 1 ? " t" : fmt::format(" t^{}", i);
+  }
+  return text;
+}
+
+std::string leg_words(const char* side, const AlgebraicDirection& leg) {
+  const geometry::Vec2 d = leg.rounded();
+  return fmt::format("{:<17} ({:.6g}, {:.6g}): (1, t) turned by {} quarters, {} = 0\n", side, d.x, d.y,
+                     leg.quarter_turns(), polynomial_words(leg.polynomial()));
+}
+
+}  // namespace
+
+/// The cones are those of the question's encounters. `half_planes` is null where a cone has none.
+ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion& question,
+                        const std::vector<geometry::HalfPlane>* half_planes) {
+  const auto touched = std::find_if(cones.begin(), cones.end(), [](const ShiftedCone& c) { return c.cone.overlaps(); });
+  if (touched != cones.end())
+    return {{}, {}, contact_words(question, static_cast<std::size_t>(touched - cones.begin()))};
+  FreeArrangement::Attempt attempt = FreeArrangement::attempt(cones, question.max_speed);
+  if (!attempt.free) return {{}, {}, words(attempt.refusal, cones, question)};
+  ExactFree exact{std::move(attempt.free), {}, ""};
+  if (half_planes) exact.region_inside = exact.free->attempt_holds(*half_planes);
+  return exact;
+}
+
+/// Null where there is none.
+OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question) {
+  if (!exact.free) return nullptr;
+  OrderedJson pieces = OrderedJson::array();
+  for (const vo::FreePiece& piece : exact.free->pieces()) pieces.push_back(json_of(piece, question));
+  return {{"components", pieces.size()},
+          {"area", json_bracket(exact.free->area())},
+          {"region_inside", exact.region_inside ? OrderedJson(word_of(*exact.region_inside)) : OrderedJson()},
+          {"pieces", pieces}};
+}
+
+/// One line or two.
+std::string exact_free_words(const ExactFree& exact) {
+  if (!exact.free) return fmt::format("exact result      none: {}\n", exact.why_not);
+  const std::size_t pieces = exact.free->pieces().size();
+  const Bracket area = exact.free->area();
+  const std::string text = fmt::format("exact result      area {:.10g} to {:.10g} (m/s)^2, {}", area.low, area.high,
+                                       geometry::counted(pieces, "connected part"));
+  return text + (exact.region_inside
+                     ? fmt::format("; all that the half-planes allow is free: {}\n", word_of(*exact.region_inside))
+                     : "\n");
+}
+
+/// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
+OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
+  return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
+}
+
+/// The exact legs counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
+/// cones share a leg.
+OrderedJson legs_by_angle_json(const VoAnswer& answer) {
+  std::vector<std::pair<const AlgebraicDirection*, OrderedJson>> legs;
+  for (std::size_t k = 0; k < answer.cones.size(); ++k) {
+    const std::optional<vo::ExactLegs>& exact = answer.cones[k].exact_legs;
+    if (!exact) continue;
+    const Place place = place_of(answer.question, k);
+    const auto add = [&](const char* side, const AlgebraicDirection& leg) {
+      legs.emplace_back(&leg, OrderedJson{{"obstacle", place.obstacle}, {"cone", place.cone}, {"side", side}});
+    };
+    add("left", exact->left);
+    add("right", exact->right);
+  }
+  std::stable_sort(legs.begin(), legs.end(),
+                   [](const auto& a, const auto& b) { return compare(*a.first, *b.first) == Sign::negative; });
+  OrderedJson groups = OrderedJson::array();
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    if (i == 0 || compare(*legs[i - 1].first, *legs[i].first) != Sign::zero) groups.push_back(OrderedJson::array());
+    groups.back().push_back(legs[i].second);
+  }
+  return groups;
+}
+
+std::string exact_legs_words(const vo::ExactLegs& legs) {
+  return leg_words("left leg", legs.left) + leg_words("right leg", legs.right);
+}
+
+/// "its 3 convex pieces", "the smallest ellipse round it".
+std::string in_words(const AskedObstacle& o) {
+  switch (o.taken) {
+    case Taken::itself:
+      return "it stands";
+    case Taken::convex_pieces:
+      return fmt::format("its {} convex pieces", o.encounters);
+    case Taken::convex_hull:
+      return "its convex hull, which is larger";
+    case Taken::smallest_ellipse:
+      return "the smallest ellipse round it";
+    case Taken::trap_free_ellipse:
+      break;
+  }
+  return "a trap-free ellipse round it";
+}
+
+std::string text_of(const HalfPlane& h) {
+  return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", unsigned_zero(h.normal.x), unsigned_zero(h.normal.y),
+                     unsigned_zero(h.offset));
+}
+
+const char* why_words(const std::string& why) {
+  return why == "contact"
+             ? "in contact, no velocity is certified safe"
+             : "rounding: too near contact, or magnitudes too different, to certify a half-plane in doubles";
+}
+
+std::string half_plane_words(const ConeAnswer& a) {
+  const char* why = why_no_certificate(a);
+  const std::string verdict = why ? fmt::format("none: {}", why_words(why)) : name(check(*a.certificate));
+  std::string text;
+  if (a.half_plane) text += fmt::format("half-plane        {}\n", text_of(*a.half_plane));
+  if (a.contact)
+    text += fmt::format("half-plane        {}, away from the nearest point (contact)\n", text_of(*a.contact));
+  text += fmt::format("certificate       {}{}\n", verdict, a.certificate ? ", of this half-plane" : "");
+  if (a.shared)
+    text += fmt::format(
+        "shared            {}: responsibility {:g}, not certified,\n"
+        "                  holds only if the other side takes the rest\n",
+        text_of(*a.shared), a.encounter.responsibility);
+  return text;
+}
+
+/// To the boundary either way; only a velocity that collides has to change.
+std::string nearest_words(const ConeAnswer& a) {
+  return fmt::format(
+      "nearest boundary  {}, {:.6g} m/s away\n"
+      "u                 ({:.6g}, {:.6g}) m/s, {}\n",
+      name(a.nearest->part), std::fabs(a.nearest->signed_distance), unsigned_zero(a.nearest->u.x),
+      unsigned_zero(a.nearest->u.y),
+      a.contains ? "the least change that avoids it" : "to that boundary; no change is needed");
+}
+
+/// Directions from the apex, which is the obstacle's velocity.
+std::string legs_words(const ConeAnswer& a) {
+  const auto legs = a.overlaps ? std::nullopt : a.cone.legs();
+  if (!legs) return "";
+  const auto words = [](const char* side, const vo::Leg& leg) {
+    return fmt::format("{:<17} direction ({:.6g}, {:.6g}), touches at ({:.6g}, {:.6g}) m from the robot\n", side,
+                       unsigned_zero(leg.direction.x), unsigned_zero(leg.direction.y), unsigned_zero(leg.touch.x),
+                       unsigned_zero(leg.touch.y));
+  };
+  return words("left leg", legs->left) + words("right leg", legs->right);
+}
+
+std::string cone_words(const ConeAnswer& a) {
+  return legs_words(a) + (a.nearest ? nearest_words(a) : "") + half_plane_words(a) +
+         (a.exact_legs ? exact_legs_words(*a.exact_legs) : "");
+}
+
+std::string verdict_words(bool overlaps, bool contains, const char* what) {
+  if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
+  return contains ? "The velocity collides within the horizon (contact counts as a collision).\n"
+                  : "The velocity is free within the horizon.\n";
+}
+
+}  // namespace
+
+std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& o) {
+  const auto* obstacle = std::get_if<geometry::Obstacle>(&o.given);
+  const auto* ellipse = std::get_if<geometry::Ellipse>(&question.encounters[o.first_encounter].obstacle);
+  if (!obstacle || !ellipse) return std::nullopt;
+  const std::vector<Vec2> vertices = vertices_of(*obstacle);
+  const auto contained =
+      std::count_if(vertices.begin(), vertices.end(), [&](Vec2 x) { return geometry::contains(*ellipse, x); });
+  return Enclosed{vertices.size(), static_cast<std::size_t>(contained), vo::certify_containment(*ellipse, vertices)};
+}
+
+namespace {
+
+std::string taken_words(const VoQuestion& q, const AskedObstacle& o) {
+  if (o.taken == Taken::itself) return "";
+  const std::string text = fmt::format("The obstacle is taken as {}", in_words(o));
+  const auto enclosed = enclosed_of(q, o);
+  if (!enclosed) return text + ".\n";
+  return text + fmt::format(";\nit contains {} of its {} vertices exactly, certificate: {}.\n", enclosed->contained,
+                            enclosed->vertices, enclosed->certificate ? name(check(*enclosed->certificate)) : "none");
+}
+
+std::string single_words(const VoAnswer& a) {
+  const AskedObstacle& o = a.question.obstacles.front();
+  const bool stands_in = o.taken != Taken::itself && o.taken != Taken::convex_pieces;
+  const std::string what = stands_in ? in_words(o) : "the obstacle";
+  std::string text = taken_words(a.question, o) + verdict_words(any_overlaps(a), any_contains(a), what.c_str());
+  if (any_overlaps(a)) text += contact_words(a);
+  if (a.cones.size() == 1) return text + cone_words(a.cones.front());
+  for (std::size_t k = 0; k < a.cones.size(); ++k)
+    text += fmt::format("piece {}: {}{}", k, verdict_words(a.cones[k].overlaps, a.cones[k].contains, "it"),
+                        cone_words(a.cones[k]));
+  const bool all_proven =
+      std::all_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.certificate.has_value(); });
+  return text + (all_proven ? "A velocity is safe that satisfies the half-planes of all pieces.\n"
+                            : "No velocity is proven safe: a piece has no half-plane.\n");
+}
+
+/// IVO's ellipse reaches beyond the obstacle, so that the robot may be in contact with it alone.
+std::string member_words(const vo::Member& m, bool overlaps, Vec2 velocity) {
+  const auto answer = m.allows(velocity);
+  if (answer) return fmt::format("{:<17} {} the velocity\n", name(m.variant), word_of_allowed(answer));
+  const char* ellipse = m.variant == vo::Variant::ivo ? "in contact with its ellipse, or rounding" : "rounding";
+  return fmt::format("{:<17} {}: {}\n", name(m.variant), word_of_allowed(answer), overlaps ? "in contact" : ellipse);
+}
+
+std::string region_words(const VoAnswer& a) {
+  const vo::RegionReport& report = *a.free->report;
+  std::string text = fmt::format("half-planes       allow an area of {:.6g} to {:.6g} (m/s)^2; all of it is free: {}\n",
+                                 report.area.low, report.area.high, name(report.inside));
+  text += fmt::format("free, excluded    area {:.6g} to {:.6g} (m/s)^2{}\n", report.given_away.low,
+                      report.given_away.high, report.lost.empty() ? "" : ", in these parts:");
+  for (const vo::LostPiece& piece : report.lost) {
+    const auto [obstacle, cone] = place_of(a, piece);
+    const bool one = a.question.obstacles[obstacle].encounters == 1;
+    text += fmt::format(
+        "  {:.4g} (m/s)^2, excluded by the half-plane of obstacle {}{}; farthest beyond it: ({:.4g}, {:.4g}) m/s\n",
+        piece.area.high, obstacle, one ? "" : fmt::format(", piece {}", cone), unsigned_zero(piece.farthest.x),
+        unsigned_zero(piece.farthest.y));
+  }
+  return text;
+}
+
+std::string free_words(const VoAnswer& a) {
+  const FreeAnswer& f = *a.free;
+  std::string text;
+  for (std::size_t k = 0; k < a.question.obstacles.size(); ++k)
+    if (const AskedObstacle& o = a.question.obstacles[k]; o.taken != Taken::itself)
+      text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
+  text += fmt::format("free velocities   area {:.6g} to {:.6g} (m/s)^2, at least {}\n", f.free.area().low,
+                      f.free.area().high, geometry::counted(f.free.least_components(), "connected part"));
+  text += exact_free_words(f.exact);
+  if (f.report) return text + region_words(a);
+  return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: no velocity is free.\n"
+                                 : "half-planes       an obstacle has no proven one: they allow no velocity\n");
+}
+
+constexpr geometry::Names<Taken, 5> kTaken{{{Taken::itself, "itself"},
+                                            {Taken::convex_pieces, "convex pieces"},
+                                            {Taken::convex_hull, "convex hull"},
+                                            {Taken::smallest_ellipse, "smallest ellipse"},
+                                            {Taken::trap_free_ellipse, "trap-free ellipse"}}};
 
 Json legs_json(const ConeAnswer& a) {
   const auto legs = a.overlaps ? std::nullopt : a.cone.legs();
@@ -196,8 +544,6 @@ Json single_json(const VoAnswer& a) {
   return json;
 }
 
-// --- The same of --free ---
-
 void add_piece(const ConeAnswer& a, Json& json) {
   add_shape(a, json);
   json["overlaps"] = a.overlaps;
@@ -250,32 +596,6 @@ Json free_json(const VoAnswer& a) {
   json["kinds"] = kinds_of_free(a);
   add_stages(json);
   return json;
-}
-
-}  // namespace
-
-std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& o) {
-  const auto* obstacle = std::get_if<geometry::Obstacle>(&o.given);
-  const auto* ellipse = std::get_if<geometry::Ellipse>(&question.encounters[o.first_encounter].obstacle);
-  if (!obstacle || !ellipse) return std::nullopt;
-  const std::vector<Vec2> vertices = vertices_of(*obstacle);
-  const auto contained =
-      std::count_if(vertices.begin(), vertices.end(), [&](Vec2 x) { return geometry::contains(*ellipse, x); });
-  return Enclosed{vertices.size(), static_cast<std::size_t>(contained), vo::certify_containment(*ellipse, vertices)};
-}
-
-namespace {
-
-/// What can be proven where the robot is in contact or within a few ulps of it. For an obstacle that moves the offset
-/// is rounded up: two products and a sum err by less than 2u of the sum of their magnitudes, u = 2^-53.
-std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
-  constexpr double kFourRoundings = 4.0 * 0x1p-53;
-  std::optional<HalfPlane> h = a.cone.contact_half_plane();
-  const Vec2 u = a.encounter.obstacle_velocity;
-  if (h)
-    h->offset =
-        geometry::dot(h->normal, u) + kFourRoundings * (std::fabs(h->normal.x * u.x) + std::fabs(h->normal.y * u.y));
-  return h;
 }
 
 ConeAnswer answer_of(const vo::Encounter& e, double responsibility) {
@@ -332,6 +652,11 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
 
 }  // namespace
 
+const char* word_of_allowed(const std::optional<bool>& allowed) {
+  if (!allowed) return "no cone";
+  return *allowed ? "allows" : "forbids";
+}
+
 VoAnswer answer_of(const VoQuestion& question) {
   VoAnswer a{question, {}, {}, {}};
   for (const vo::Encounter& e : question.encounters) {
@@ -345,6 +670,18 @@ VoAnswer answer_of(const VoQuestion& question) {
 
 std::string to_json(const VoAnswer& a) {
   return laid_out(a.free ? free_json(a) : single_json(a));
+}
+
+std::string in_words(const VoAnswer& a) {
+  if (!a.free) {
+    std::string text = single_words(a);
+    for (const vo::Member& m : a.members) text += member_words(m, any_overlaps(a), a.question.velocity);
+    return text;
+  }
+  std::string text = free_words(a);
+  for (const ConeAnswer& cone : a.cones)
+    if (cone.exact_legs) text += exact_legs_words(*cone.exact_legs);
+  return text;
 }
 
 }  // namespace exactvo::tools

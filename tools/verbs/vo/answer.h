@@ -4,7 +4,7 @@
 /// \file
 /// What `exactvo vo` answers, as JSON, in words and drawn.
 ///
-/// The unrounded answers (exact_answer.cpp): free velocities (--free), and why there are none to show where an ellipse
+/// The unrounded answers: free velocities (--free), and why there are none to show where an ellipse
 /// takes part, where the curves are too many, and in contact; the algebraic legs (--exact-legs).
 
 #include <cstddef>
@@ -28,21 +28,6 @@ struct ExactFree {
   std::optional<bool> region_inside;  ///< whether all that the half-planes keep is free; without half-planes nothing
   std::string why_not;                ///< where `free` is nothing
 };
-
-/// The cones are those of the question's encounters. `half_planes` is null where a cone has none.
-ExactFree exact_free_of(const std::vector<vo::ShiftedCone>& cones, const VoQuestion& question,
-                        const std::vector<geometry::HalfPlane>* half_planes);
-
-/// Null where there is none.
-OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question);
-
-/// One line or two.
-std::string exact_free_words(const ExactFree& exact);
-
-/// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
-OrderedJson exact_legs_json(const vo::ExactLegs& legs);
-
-std::string exact_legs_words(const vo::ExactLegs& legs);
 
 /// About one obstacle. Velocities are absolute; the cone is for velocities relative to the obstacle's.
 struct ConeAnswer {
@@ -75,7 +60,6 @@ struct Enclosed {
   std::size_t contained = 0;
   std::optional<vo::Containment> certificate;  ///< of the vertices; nothing for a flat ellipse
 };
-std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& obstacle);
 
 struct VoAnswer {
   VoQuestion question;
@@ -86,24 +70,8 @@ struct VoAnswer {
 
 VoAnswer answer_of(const VoQuestion& question);
 
-/// The exact legs counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
-/// cones share a leg.
-OrderedJson legs_by_angle_json(const VoAnswer& answer);
-
-bool any_overlaps(const VoAnswer& answer);
-bool any_contains(const VoAnswer& answer);
-
 /// What a rule says of a velocity (`Member::allows`): "allows", "forbids" or "no cone".
 const char* word_of_allowed(const std::optional<bool>& allowed);
-
-/// Why there is no certificate: "contact" or "rounding"; nothing where there is one.
-const char* why_no_certificate(const ConeAnswer& answer);
-
-/// Whose half-plane excludes the piece.
-Place place_of(const VoAnswer& answer, const vo::LostPiece& piece);
-
-/// "its 3 convex pieces", "the smallest ellipse round it".
-std::string in_words(const AskedObstacle& obstacle);
 
 std::string to_json(const VoAnswer& answer);
 std::string in_words(const VoAnswer& answer);

@@ -19,7 +19,7 @@ namespace exactvo::tools {
 using geometry::Vec2;
 
 // --- An obstacle as an option gives it: WKT, the name of a file, or the numbers of a disc or an ellipse, which no
-// obstacle format has (given_obstacle.cpp) ---
+// obstacle format has ---
 
 /// A polygon or a wall; or a disc or an ellipse, convex as it stands.
 using GivenObstacle = std::variant<geometry::Obstacle, geometry::ConvexShape>;

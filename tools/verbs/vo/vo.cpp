@@ -18,9 +18,9 @@
 #include "exactvo/vo/membership.h"
 #include "figures/figure.h"
 #include "support/fields.h"
+#include "support/json_layout.h"
 #include "support/robot_numbers.h"
 #include "support/terminal.h"
-#include "support/unsigned_zero.h"
 #include "verb.h"
 #include "verbs/vo/answer.h"
 
