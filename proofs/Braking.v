@@ -11,7 +11,7 @@ Definition along (p : point) (t : Q) (v : point) : point := (qadd (fst p) (qmul 
 Definition over_product (t : Q) (p : point) : point := let one := Qmake (Zpos (Qden t)) (Qden t) in (qmul one (fst p), qmul one (snd p)).
 Definition way_of_braking (tau : Q) (d : driver) : motion :=
   let x := over_product tau (now_at d) in {| from := x; to := along x tau (chosen d); size := its_radius d |}.
-Definition at_most_length (l : Q) (v : point) : bool := qle (pdot v v) (qmul l l).
+Definition at_most_length (l : Q) (v : point) : bool := qle 0 l && qle (pdot v v) (qmul l l).
 Definition brakes (os : list obstacle) (poles : list pole) (step tau : Q) (ds : list driver) : bool :=
   qlt 0 step && qle step tau
   && forallb (fun d => at_most_length (qmul (its_most d) step) (psub (chosen d) (had d)) && at_most_length (qmul (its_most d) tau) (chosen d)) ds
@@ -62,7 +62,7 @@ Proof.
 Qed.
 
 Lemma at_most_length_ok l v : at_most_length l v = true -> no_longer (Q2R l) (real v).
-Proof. unfold at_most_length, no_longer. intro h. apply qle_R in h. now rewrite Q2R_dot, Q2R_mul in h. Qed.
+Proof. unfold at_most_length, no_longer. intro h. apply andb_true_iff in h; destruct h as [_ h]. apply qle_R in h. now rewrite Q2R_dot, Q2R_mul in h. Qed.
 
 Lemma shrinks keep n x y r : 0 <= keep <= 1 -> x * x + y * y <= r * r -> 
   (keep ^ n * x) * (keep ^ n * x) + (keep ^ n * y) * (keep ^ n * y) <= r * r.

@@ -128,6 +128,8 @@ Definition no_room : ~ room box (Q2R (13 # 20)) (real (7 # 2, 2)).
 Proof. apply (blocked_sound _ _ _ 0%nat (Some 3%nat)). vm_compute. reflexivity. Qed.
 Example half_a_metre_has_room : blocked box (1 # 2) (7 # 2, 2) 0%nat (Some 3%nat) = false.
 Proof. vm_compute. reflexivity. Qed.
+Example no_radius_is_below_0 : blocked box (-1) (7 # 2, 2) 0%nat (Some 3%nat) = false.
+Proof. vm_compute. reflexivity. Qed.
 
 (* --- A run: the first rows of two robots in a room, past an edge of it --- *)
 Definition edge_of_the_room : list obstacle := [Wall [(d 4 0, d 1351079888211149 50); (d 5854679515581645 50, d 1351079888211149 50)]].

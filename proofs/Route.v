@@ -179,7 +179,7 @@ Definition nearer (r : Q) (x : point) (e : edge) : bool :=
   qlt (pdot w w) rr || qlt (pdot u u) rr ||
   (qlt 0 dd && qle 0 dw && qle dw dd && (let k := pcross d w in qlt (qmul k k) (qmul rr dd))).
 Definition blocked (os : list obstacle) (r : Q) (x : point) (o : nat) (e : option nat) : bool :=
-  match nth_error os o with
+  qle 0 r && match nth_error os o with
   | None => false
   | Some o => match e with
     | Some k => match nth_error (edges_of o) k with Some e => nearer r x e | None => false end
@@ -205,7 +205,7 @@ Qed.
 
 Theorem blocked_sound os r x o e : blocked os r x o e = true -> ~ room os (Q2R r) (real x).
 Proof.
-  unfold blocked. intros h [k2 k1]. destruct (nth_error os o) as [ob|] eqn:ho; [|discriminate]. apply nth_error_In in ho.
+  unfold blocked. intros h [k2 k1]. apply andb_true_iff in h; destruct h as [_ h]. destruct (nth_error os o) as [ob|] eqn:ho; [|discriminate]. apply nth_error_In in ho.
   destruct e as [i|].
   - destruct (nth_error (edges_of ob) i) as [e|] eqn:he; [|discriminate]. apply nth_error_In in he.
     apply nearer_ok in h. destruct h as [y [hy n]]. apply n. now apply (k1 ob e).

@@ -85,7 +85,8 @@ let pair_of v = match Json.arr v with [x; y] -> (Json.num x, Json.num y) | _ -> 
 let answer p a =
   let q = over (max (Certificates.bits_needed p) (Certificates.bits_needed a)) in
   let at v = let x, y = pair_of v in (q x, q y) in
-  let optional = function Some (Json.Num x) -> Some (q x) | _ -> None in
+  (* The statements square the speed bound: one below 0 would count as its absolute value. *)
+  let optional = function Some (Json.Num x) when x < 0. -> raise Json.Bad | Some (Json.Num x) -> Some (q x) | _ -> None in
   let bound = Option.value (Json.find "bound" p) ~default:(Json.Obj []) in
   let box = match Json.find "box" bound with Some (Json.Arr [x; y]) -> [optional (Some x); optional (Some y)] | _ -> [None; None] in
   let soft c = Json.find "priority" c = Some (Json.Str "soft") in
@@ -205,7 +206,7 @@ let recording file text =
     if List.exists Wheels.has_footprint Json.(arr (get "robots" !scenario)) then not_covered := !not_covered @ ["that robots keep clear of obstacles: some have footprints, which turn, and audit asks it"];
     if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points: that bodies and wheels follow, audit asks"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
-    not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
+    not_covered := !not_covered @ ["that the bodies of half-planes hold their obstacles: audit asks it"; "plans, half-planes that are not counted above, and that none is missing";
       "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices and from one another in time, and that the scenario is the one that was meant"];
     brakes := Braking.start !scenario;
     prepare (Certificates.bits_needed !scenario) in

@@ -46,10 +46,9 @@ void examine_points(const std::vector<Vec2>& points) {
   const std::string text = "ring " + geometry::to_string(points);
   const bool good = is_place(points);
   guarded(good, text, [&] {
+    const geometry::Ellipse ellipse = geometry::fast_smallest_ellipse(points).ellipse;
     for (const Vec2 p : points)
-      for (const geometry::Ellipse& e :
-           {geometry::smallest_ellipse(points), geometry::fast_smallest_ellipse(points).ellipse})
-        if (!test::in_ellipse(e, p)) fail("a point outside its ellipse", text);
+      if (!test::in_ellipse(ellipse, p)) fail("a point outside its ellipse", text);
   });
   guarded(good, text, [&] {
     const geometry::Disc disc = geometry::smallest_circle(points);
