@@ -11,11 +11,17 @@ let drive robot = match Json.find "kinematics" robot with
 let number key v = Json.(num (get key v))
 let speed_and_acceleration k = (number "max_wheel_speed" k, number "max_wheel_acceleration" k)
 
-let tracking scenario = match Json.find "uncertainty" scenario with Some u -> number "tracking" u | None -> 0.
+let tracking scenario = match Json.find "uncertainty" scenario with
+  | Some u -> let e = number "tracking" u in if e < 0. then raise Json.Bad else e
+  | None -> 0.
 
-(* Of the body, as seen from its axle: corners, or a disc. *)
+(* The corners of a footprint, as seen from the axle. Only a robot on wheels has one, in place of a radius. *)
 let corners robot = match Json.find "footprint" robot with
-  | Some f -> List.map (fun c -> match Json.arr c with [x; y] -> Json.(num x, num y) | _ -> raise Json.Bad) Json.(arr (get "polygon" f))
+  | Some f ->
+    let corner c = match Json.arr c with [x; y] -> Json.(num x, num y) | _ -> raise Json.Bad in
+    let cs = List.map corner Json.(arr (get "polygon" f)) in
+    if drive robot = None || Json.find "radius" robot <> None || List.length cs < 3 then raise Json.Bad;
+    cs
   | None -> []
 
 let disc_fits left robot ahead speed step =
@@ -53,18 +59,19 @@ let of_chain ahead more = function
 let has_footprint robot = Json.find "footprint" robot <> None
 
 let as_disc step tracking robot =
+  let corners = corners robot in
   match robot, drive robot with
   | Json.Obj members, Some k ->
     let ahead = number "reference" k and speed, _ = speed_and_acceleration k in
     let way = speed *. step in
     let stray = (1. +. 1e-12) *. (way *. way /. (4. *. ((2. *. ahead) -. way))) in
-    let body = match corners robot with
+    let body = match corners with
       | [] -> number "radius" robot +. ahead
       | cs -> List.fold_left (fun most (x, y) -> Float.max most ((let x = x -. ahead in Float.sqrt ((x *. x) +. (y *. y))))) 0. cs in
     let radius = rounded_up *. (body +. stray +. tracking) in
     if not (holds radius robot ahead speed step tracking) then raise Json.Bad;
     let others = List.filter (fun (key, _) -> key <> "radius" && key <> "max_speed") members in
-    Json.Obj (("radius", Json.Num radius) :: ("max_speed", Json.Num speed) :: of_chain ahead (stray +. tracking) (corners robot) @ others)
+    Json.Obj (("radius", Json.Num radius) :: ("max_speed", Json.Num speed) :: of_chain ahead (stray +. tracking) corners @ others)
   | Json.Obj members, None when tracking > 0. ->
     let body = number "radius" robot in
     let radius = rounded_up *. (body +. tracking) in

@@ -10,6 +10,7 @@
 
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
@@ -188,6 +189,26 @@ TEST(Chain, AnMp500PassesADoorOf70Centimetres) {
   EXPECT_GE(*metrics.min_obstacle_clearance, 0.0);
   EXPECT_LT(*metrics.min_obstacle_clearance, gap);
   std::printf("door of 0.70 m: %.2f s, least gap of the body %.3f m\n", last_arrival(file), gap);
+}
+
+/// For a body that is round about its reference point the first disc of the chain is larger than the disc between
+/// robots, and routes are planned for either.
+TEST(Chain, ABodyThatIsRoundAboutItsReferencePointArrives) {
+  DifferentialDrive d;
+  d.wheel_separation = 0.5;
+  d.max_wheel_speed = 0.5;
+  d.max_wheel_acceleration = 1.0;
+  d.reference = 0.3;
+  d.footprint = {{0.8, 0.0},  {0.65, 0.35},   {0.3, 0.5},  {-0.05, 0.35},
+                 {-0.2, 0.0}, {-0.05, -0.35}, {0.3, -0.5}, {0.65, -0.35}};
+  Scenario s;
+  s.name = "round";
+  s.robots = {on_wheels(d, {-2.3, 0.0}, 0.0, {{2.5, 0.0}})};
+  s.obstacles.push_back(disc_obstacle("post", {{0.0, 0.05}, 0.03}));
+  ASSERT_GT(obstacle_radius(s.robots[0]), s.robots[0].radius);
+  const datasets::RecordingFile file = recorded(s);
+  EXPECT_THAT(file.recording.outcome, testing::HasSubstr("all robots arrived"));
+  EXPECT_TRUE(datasets::audit(file).clean());
 }
 
 /// With half-planes about the first disc alone the tail would cut a corner: the audit refutes such a run.

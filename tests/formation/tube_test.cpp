@@ -10,6 +10,7 @@
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/navigator.h"
 #include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
@@ -95,6 +96,26 @@ TEST(Tube, TheAuditAsksForItAndSaysWhatIsAssumed) {
   const datasets::RecordingFile without = recorded(burgers_on_circle(1, 1.0, false));
   EXPECT_FALSE(datasets::audit(without).has_tube);
   EXPECT_EQ(assumed_words(without.scenario), "");
+}
+
+TEST(Tube, NavigatorsOfAScenarioAndTheirNeighboursHaveItsRadii) {
+  const Scenario s = mixed_scene();
+  std::size_t driven = 0;
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const NavigatorSetup setup = navigator_setup(s, i);
+    EXPECT_NO_THROW(Navigator(setup, s.robots[i].goals));
+    if (!setup.drive) {
+      EXPECT_EQ(setup.radius, s.robots[i].radius);
+      continue;
+    }
+    ++driven;
+    EXPECT_EQ(setup.drive->tracking, kTracking);
+    const DifferentialDrive& drive = *s.robots[i].drive;
+    const Neighbour seen = neighbour_on_wheels(i, drive, s.time_step, drive.axle, {heading_vector(drive.heading), {}});
+    EXPECT_EQ(seen.radius, s.robots[i].radius);
+    EXPECT_EQ(seen.position, s.robots[i].position);
+  }
+  EXPECT_EQ(driven, 4u);
 }
 
 /// Without it the same bodies come nearer than twice the error: the tube is what keeps them apart.

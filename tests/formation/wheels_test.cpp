@@ -19,6 +19,7 @@
 #include "exactvo/vo/lp/solve.h"
 #include "motion/differential.h"
 #include "scene/braking.h"
+#include "scene/decision_rules.h"
 #include "support/seeded_random.h"
 #include "wheels_scenes.h"
 
@@ -519,6 +520,25 @@ TEST(Wheels, NavigatorsBesideRobotsOnWheelsBrakeAsTheyDo) {
   Navigator navigator(setup, {{1, 2}});
   EXPECT_GT(norm(navigator.decide({0.0, {1, 0}, {}, {}}).chosen), 0.29);
   EXPECT_THROW(navigator.decide({0.05, {1, 0}, {}, {}}, {{0, {3, 0}, {}, 0.2, 0.3, false}}), NavigatorError);
+}
+
+/// Subnormal numbers have no direction, which the way of braking of a footprint rests on.
+TEST(Wheels, BrakingKeepsItsDirectionUntilTheRobotRests) {
+  test::SeededRandom random(test::seed_of_run(7));
+  std::size_t steps = 0, rested = 0;
+  for (int k = 0; k < 50; ++k) {
+    detail::DecisionRules rules;
+    rules.braking_time = random.uniform(rules.time_step, 10.0 * rules.time_step);
+    const Vec2 first = random.uniform(0.01, 3.0) * random.direction();
+    Vec2 now = first;
+    for (int step = 0; step < 10000 && now != Vec2{}; ++step, ++steps) {
+      EXPECT_LE(std::fabs(cross(now / norm(now), first / norm(first))), 1e-12);
+      now = rules.braked(now);
+    }
+    rested += now == Vec2{};
+  }
+  EXPECT_EQ(rested, 50u);
+  EXPECT_GT(steps, 5000u);
 }
 
 // --- Files, and what cannot be run ---

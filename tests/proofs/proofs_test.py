@@ -387,6 +387,13 @@ def recordings(tools):
         header["header"]["scenario"]["obstacles"] = discs
         status, _, words = tools.verified("discs.jsonl", "".join([json.dumps(header, separators=(",", ":")) + "\n", *bodies] + still))
         require((status == 0) == holds and "one of 0 obstacles with 0 edges and of 2 discs" in words, more, words)
+    # A tracking error below 0 would make discs smaller; a footprint that the robot cannot have would take obstacles away.
+    for change in (lambda s: s.update(uncertainty={"tracking": -0.1}), lambda s: s["robots"][1].update(footprint=None),
+                   lambda s: s["robots"][1].update(footprint={"polygon": [[-1, -1], [1, -1], [0, 1]]})):
+        odd = json.loads(lines[0])
+        change(odd["header"]["scenario"])
+        status, _, words = tools.verified("odd.jsonl", json.dumps(odd, separators=(",", ":")) + "\n" + "".join(lines[1:]))
+        require(status == 2 and "E_FORMAT_SYNTAX" in words, status, words)
     # Robots inside a polygon whose edges they never meet are in no row clear of it, nor could they brake.
     brakes = tools.folder / "brakes"
     run(tools.program, "simulate", tools.file("brakes.json", json.dumps(dict(ACCELERATING, obstacles=[]))), "--no-figures", "--out", brakes, check=True)

@@ -60,8 +60,8 @@ class NearLists {
   std::vector<std::uint16_t> near;  ///< by row, bit `lane`: could be met; the first round writes it
 
   void clear() { packs.clear(), rows_ = 0; }
-  /// The next robots. `meeting`, `most`: by lane, squared lattice steps: who is nearer is near; neighbours that were
-  /// sought. Whoever has so many near it is unknown, as are the lanes of `unknown`.
+  /// The next robots. `meeting`, by lane, squared lattice steps: robots that are nearer are near; `most`, by lane: how
+  /// many neighbours were sought. A lane with this many near robots is unknown, as are the lanes of `unknown`.
   void add(std::size_t begin, std::size_t size, const Candidates& others, const Ranked& ranked, const float* meeting,
            const std::int32_t* most, std::uint32_t unknown);
   std::size_t rows() const { return rows_; }

@@ -75,6 +75,7 @@ void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_ste
   robot.drive = drive;
   robot.position = drive.axle + drive.reference * heading_vector(drive.heading);
   robot.radius = kRounding * (body + stray_of(drive, time_step) + tracking);
+  robot.drive->tracking = tracking;
   robot.drive->chain.clear();
   if (!drive.footprint.empty()) robot.drive->chain = chain_of(drive, stray_of(drive, time_step) + tracking);
   robot.max_speed = drive.max_wheel_speed;

@@ -94,7 +94,9 @@ std::vector<Vec2> places_about(Vec2 place, double reach) {
 }
 
 Terrain terrain_of(const Scenario& scenario) {
-  return {scenario.obstacles, places_of(scenario), largest_radius(scenario.robots)};
+  double largest = 0.0;
+  for (const Robot& robot : scenario.robots) largest = std::max({largest, robot.radius, obstacle_radius(robot)});
+  return {scenario.obstacles, places_of(scenario), largest};
 }
 
 Reachability::Reachability(const Terrain& terrain, double most_extra, bool routes)

@@ -99,7 +99,7 @@ Robot robot_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
   robot.max_speed = setup.max_speed;
   robot.cooperates = setup.cooperates;
   robot.goals = std::move(goals);
-  if (setup.drive) put_on_wheels(robot, DifferentialDrive(*setup.drive), setup.time_step);
+  if (setup.drive) put_on_wheels(robot, DifferentialDrive(*setup.drive), setup.time_step, setup.drive->tracking);
   return robot;
 }
 
@@ -135,7 +135,9 @@ void require_drive(const NavigatorSetup& setup) {
   s.robots = {robot_of(setup, {Vec2{}})};
   s.robots[0].drive->heading = 0.0;
   s.robots[0].drive->axle = {};
-  put_on_wheels(s.robots[0], DifferentialDrive(*s.robots[0].drive), s.time_step);
+  const double tracking = setup.drive->tracking;
+  if (tracking != 0.0) s.uncertainty = Uncertainty{tracking};
+  put_on_wheels(s.robots[0], DifferentialDrive(*s.robots[0].drive), s.time_step, tracking);
   std::vector<ScenarioProblem> problems = detail::field_problems(s);
   const std::string of_robot = "/robots/0";
   for (ScenarioProblem& p : problems)
@@ -210,7 +212,7 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
 Neighbour neighbour_on_wheels(std::size_t id, const DifferentialDrive& drive, double time_step, Vec2 axle,
                               const OnWheels& wheels) {
   Robot robot;
-  put_on_wheels(robot, drive, time_step);
+  put_on_wheels(robot, drive, time_step, drive.tracking);
   const OnWheels now = usable(drive, time_step, wheels);
   return {id, axle + drive.reference * now.heading, velocity_before(drive, time_step, now), robot.radius,
           robot.max_speed};
@@ -333,15 +335,19 @@ class Navigator::Core {
     const auto choose = [&](Vec2 preferred) { own_.choose(preferred, here(), others_, decision_, kept_); };
     choose(wish);
     if (limits_)
-      keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose, [&](Vec2 u) {
-        return !space_ ||
-               links_are_clear(*space_, *robot_.drive, now_.position, now_.wheels.heading, u, rules_.braking_time);
-      });
+      keep_wheels_within_limits(on_wheels_, braked.velocity, decision_, choose,
+                                [&](Vec2 u) { return may_turn(braked.velocity, u); });
     // Within less room than there is between doubles: braking satisfies all of them.
     if (decision_.status == lp::Status::optimal) return;
     choose(braked.velocity);
-    if (limits_ && !limits_->allows(on_wheels_.state.heading, on_wheels_.state.speeds, decision_.chosen))
+    if (limits_ && !(limits_->allows(on_wheels_.state.heading, on_wheels_.state.speeds, decision_.chosen) &&
+                     may_turn(braked.velocity, decision_.chosen)))
       decision_.status = lp::Status::relaxed;  // data from which no braking is possible
+  }
+  /// A footprint has room to turn on the way of u; it always has while it brakes.
+  bool may_turn(Vec2 braked, Vec2 u) const {
+    return !space_ || u == braked ||
+           links_are_clear(*space_, *robot_.drive, now_.position, now_.wheels.heading, u, rules_.braking_time);
   }
   bool is_in_sight(const Neighbour& n) const {
     return norm(n.position - now_.position) <=

@@ -6,6 +6,7 @@
 /// makes them once.
 
 #include <algorithm>
+#include <cmath>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
@@ -27,8 +28,12 @@ struct DecisionRules {
   double braking_time = 0.0;                          ///< s, tau of braking; 0: velocities jump
 
   bool has_brakes() const { return braking_time > 0.0; }
-  /// The velocity after a step of braking, of this one: what is allowed whatever else is (`braking.h`).
-  Vec2 braked(Vec2 velocity) const { return (1.0 - time_step / braking_time) * velocity; }
+  /// The velocity after a step of braking, of this one: what is allowed whatever else is (`braking.h`). It keeps its
+  /// direction, which subnormal numbers cannot: a robot that brakes for long comes to rest.
+  Vec2 braked(Vec2 velocity) const {
+    const Vec2 left = (1.0 - time_step / braking_time) * velocity;
+    return std::max(std::fabs(left.x), std::fabs(left.y)) < 0x1p-500 ? Vec2{} : left;
+  }
   /// s: within this time nothing may be met that a robot did not look at.
   double least_look() const { return std::max(time_step, braking_time); }
   /// s: horizons against static obstacles are not shorter.

@@ -41,6 +41,8 @@ struct DifferentialDrive {
   /// m, in the same axes, by `put_on_wheels`: discs that together hold the footprint, each with the stray of a step and
   /// the tracking error, the first about the reference point. They keep clear of obstacles. Empty without a footprint.
   std::vector<geometry::Disc> chain = {};
+  /// m, by `put_on_wheels`: the tracking error that disc and chain hold.
+  double tracking = 0.0;
 };
 
 /// A disc that moves.
