@@ -59,10 +59,23 @@ struct Quiet {
   int patience = 1;     ///< how many steps to wait if it is worth nothing again
 };
 
-/// Where something was between two rows.
+/// How the chain of a footprint moves during a step.
+struct Swing {
+  Vec2 from;              ///< m, the reference point at the step's start
+  Vec2 heading;           ///< at the step's start
+  geometry::Twist twist;  ///< of the reference point, in the axes of the world
+
+  /// m: the centre of a disc that is `ahead` of the reference point, `time` s after the step's start.
+  Vec2 at(double ahead, double time) const {
+    return from + geometry::displacement_after(twist, time).moved(ahead * heading);
+  }
+};
+
+/// Where a robot and what it touches were between two rows.
 struct Moment {
-  double time = 0.0;  ///< s, of the first
+  double time = 0.0;  ///< s, of the first row
   Motion robot, other;
+  std::optional<Swing> swing = {};  ///< of a robot with a chain
 };
 
 /// Consecutive steps in which a pair touches: one collision.
@@ -287,7 +300,7 @@ class ClearanceSweep::Sweep {
     Moment moment{};
     if (touched(clearance)) {
       moment = {rows_.back().time, motions_[robot],
-                motions_[other.first == CollisionKind::robot ? other.second : robot]};
+                motions_[other.first == CollisionKind::robot ? other.second : robot], swing_of(robot)};
       // Chords with an end inside a polygon know the depth of their ends only.
       clearance = std::min(clearance, deepest(robot, other, moment).clearance);
     }
@@ -337,29 +350,34 @@ class ClearanceSweep::Sweep {
         0.0, 1.0, enough);
   }
 
-  /// Of the chain of a footprint, beside its first disc, on the twist that led to the row. (Its discs have room for
-  /// more than roundings: the stray of the reference point, which is on this twist.)
-  double links_clearance(std::size_t obstacle, std::size_t robot, double enough) const {
+  /// The twist of a robot with a chain that leads to the row that comes; nothing where the rows have no wheels.
+  std::optional<Swing> swing_of(std::size_t robot) const {
     const std::optional<DifferentialDrive>& drive = scenario_.robots[robot].drive;
     const RowState::Robot &from = rows_.back().robots[robot], &to = arrived_->robots[robot];
-    double least = kInfinity;
-    if (!drive || !from.wheels || !to.wheels) return least;
+    if (!drive || drive->chain.empty() || !from.wheels || !to.wheels) return std::nullopt;
     const double turn = (to.wheels->speeds.right - to.wheels->speeds.left) / drive->wheel_separation;
     const Vec2 e = from.wheels->heading, left{-e.y, e.x};
     const double ahead = 0.5 * (to.wheels->speeds.left + to.wheels->speeds.right);
-    const geometry::Twist twist{ahead * e + drive->reference * turn * left, turn};
+    return Swing{from.position, e, {ahead * e + drive->reference * turn * left, turn}};
+  }
+
+  /// The clearance of the chain of a footprint without its first disc, on the twist that leads to the row. (Its discs
+  /// have room for more than roundings: the stray of the reference point, which is on this twist.)
+  double links_clearance(std::size_t obstacle, std::size_t robot, double enough) const {
+    double least = kInfinity;
+    const std::optional<Swing> swing = swing_of(robot);
+    if (!swing) return least;
+    const DifferentialDrive& drive = *scenario_.robots[robot].drive;
     const double step = run_.time_step;
-    for (std::size_t k = 1; k < drive->chain.size(); ++k) {
-      const Vec2 q = (drive->chain[k].center.x - drive->reference) * e;
-      const auto at = [&](double share) {
-        return from.position + geometry::displacement_after(twist, share * step).moved(q);
-      };
+    for (std::size_t k = 1; k < drive.chain.size(); ++k) {
+      const double ahead = drive.chain[k].center.x - drive.reference;
+      const Vec2 q = ahead * swing->heading;
       least = std::min(least, disc_clearance(
-                                  obstacle, drive->chain[k].radius, norm(q), std::min(enough, least),
+                                  obstacle, drive.chain[k].radius, norm(q), std::min(enough, least),
                                   [&](double start, double end) {
-                                    return Segment{at(start), at(end)};
+                                    return Segment{swing->at(ahead, start * step), swing->at(ahead, end * step)};
                                   },
-                                  [&](double share) { return geometry::stray_of(twist, q, share * step); }));
+                                  [&](double share) { return geometry::stray_of(swing->twist, q, share * step); }));
     }
     return least;
   }
@@ -460,7 +478,8 @@ class ClearanceSweep::Sweep {
 
   // --- Collisions ---
 
-  /// m: the clearance at one moment, a share of the way through the step.
+  /// m: the clearance at one moment, a share of the way through the step. Every disc of a chain counts against an
+  /// obstacle at rest; beside moving obstacles there are no chains (scenario.h).
   double clearance_at(std::size_t robot, Other other, const Moment& moment, double share) const {
     const Vec2 place = moment.robot.at(share);
     const double radius = obstacle_radius(scenario_.robots[robot]);
@@ -468,7 +487,18 @@ class ClearanceSweep::Sweep {
     const auto [kind, index] = other;
     if (kind == CollisionKind::robot)
       return norm(place - moment.other.at(share)) - scenario_.robots[robot].radius - scenario_.robots[index].radius;
-    if (kind == CollisionKind::obstacle) return signed_distance(scenario_.obstacles[index], place) - radius;
+    if (kind == CollisionKind::obstacle) {
+      const SceneObstacle& obstacle = scenario_.obstacles[index];
+      double least = signed_distance(obstacle, place) - radius;
+      if (!moment.swing) return least;
+      const DifferentialDrive& drive = *scenario_.robots[robot].drive;
+      for (std::size_t k = 1; k < drive.chain.size(); ++k) {
+        const double ahead = drive.chain[k].center.x - drive.reference;
+        const Vec2 center = moment.swing->at(ahead, share * run_.time_step);
+        least = std::min(least, signed_distance(obstacle, center) - drive.chain[k].radius);
+      }
+      return least;
+    }
     const std::vector<WayPiece>& way = ways_[index];
     const Vec2 moved = way[std::min(piece_at(way, time), way.size() - 1)].at(time);
     return signed_distance(scenario_.moving_obstacles[index], place - moved) - radius;

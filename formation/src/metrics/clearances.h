@@ -34,7 +34,7 @@ struct RowState {
 /// Takes the rows of a run one after the other, and keeps the last two.
 class ClearanceSweep {
  public:
-  /// Of `run` what is known before the first row: motion, time step, tracking gain. Both must outlive it.
+  /// Uses what is known of `run` before its first row: motion, time step, tracking gain. Both must outlive it.
   ClearanceSweep(const Scenario& scenario, const Recording& run);
   ~ClearanceSweep();
   void add(const Step& row);

@@ -61,7 +61,7 @@ std::string of_detours(const Metrics& m) {
   return text;
 }
 
-/// Of a scenario whose robots may start in overlap: such pairs have not collided. Each is said.
+/// Where robots may start in overlap, such pairs have not collided: each gets a warning instead.
 void tell_starts(const Scenario& scenario, Metrics& m) {
   if (!scenario.separate) return;
   constexpr double kRounding = 1e-9;  // m
@@ -81,7 +81,7 @@ void tell_starts(const Scenario& scenario, Metrics& m) {
   m.collisions.erase(std::remove_if(m.collisions.begin(), m.collisions.end(), starts), m.collisions.end());
 }
 
-/// Of a robot that is not at its goal.
+/// Says where a robot is that is not at its goal.
 std::string where_words(const Robot& spec, const detail::RobotCourse& course) {
   const double speed = norm(course.velocity);
   const bool rests = !(speed > detail::RobotCourse::kLeastHeadway * spec.max_speed);
@@ -116,12 +116,12 @@ struct Evaluator::Parts {
   const Recording run;
   detail::MetricsAccumulator measures;
   std::optional<detail::ClearanceSweep> clearances;
-  // Of rows.
+  // For rows.
   TakeRow take_row;
   std::optional<StuckWatch> stuck;
   std::optional<detail::LyapunovAccumulator> lyapunov;
   std::shared_ptr<const Step> last;
-  // Of states.
+  // For states.
   RunSink* next = nullptr;
 };
 
@@ -278,15 +278,31 @@ bool is_safe(const Metrics& m) {
   return clear(m.min_obstacle_clearance) && clear(m.min_robot_clearance) && m.uncertified_half_planes == 0;
 }
 
+namespace {
+
+/// The discs of a robot that keep clear of obstacles: the chain of its footprint, or the one about its place. Without a
+/// heading, only the first disc of a chain is known.
+std::vector<geometry::Disc> obstacle_discs(const Robot& robot, const RobotStep& now) {
+  std::vector<geometry::Disc> discs{{now.position, obstacle_radius(robot)}};
+  if (robot.drive && now.wheels)
+    for (std::size_t link = 1; link < robot.drive->chain.size(); ++link)
+      discs.push_back(link_at(*robot.drive, link, now.position, now.wheels->heading));
+  return discs;
+}
+
+}  // namespace
+
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot) {
   std::vector<double> series;
   for (const Step& row : recording.steps) {
     double least = geometry::kInfinity;
-    const Vec2 place = row.robots[robot].position;
-    for (const SceneObstacle& o : scenario.obstacles) least = std::min(least, signed_distance(o, place));
-    for (const MovingObstacle& o : scenario.moving_obstacles)
-      least = std::min(least, signed_distance(o, place - displacement_at(o, row.time)));
-    series.push_back(least - obstacle_radius(scenario.robots[robot]));
+    for (const geometry::Disc& disc : obstacle_discs(scenario.robots[robot], row.robots[robot])) {
+      for (const SceneObstacle& o : scenario.obstacles)
+        least = std::min(least, signed_distance(o, disc.center) - disc.radius);
+      for (const MovingObstacle& o : scenario.moving_obstacles)
+        least = std::min(least, signed_distance(o, disc.center - displacement_at(o, row.time)) - disc.radius);
+    }
+    series.push_back(least);
   }
   return series;
 }

@@ -128,7 +128,7 @@ inline double way_to_goals(const Robot& robot) {
 /// Takes the rows of a run one after the other, and keeps of them what the next one needs.
 class MetricsAccumulator {
  public:
-  /// Of `run` what is known before the first row: time step, offsets. Both must outlive it.
+  /// Uses what is known of `run` before its first row: time step, offsets. Both must outlive it.
   MetricsAccumulator(const Scenario& scenario, const Recording& run);
   void add(const Step& row);
   /// A row without decisions, of robots with goals. Margins between robots are not measured then.

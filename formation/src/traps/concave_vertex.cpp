@@ -19,7 +19,7 @@ using geometry::GrownShape;
 constexpr double kMostTurn = 0.1;  // rad, of one stretch of a curved boundary
 /// An arc that turns by less than kMostTurn is at most this many times as long as its chord: 1 / cos(turn / 2).
 constexpr double kArcToChord = 1.002;
-/// Of the robot's radius: stretches are not divided further.
+/// A share of the robot's radius: shorter stretches are not divided further.
 constexpr double kFinestShare = 0.01;
 /// Normals this near to parallel: the boundaries run along each other, and no vertex is there.
 constexpr double kParallel = 1e-3;

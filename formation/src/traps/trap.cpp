@@ -157,9 +157,10 @@ TrapFinding examine(const Facade& f, std::size_t number, const std::vector<Facad
   TrapFinding finding;
   finding.goal = goal;
   finding.place = {{f.edge, {f.obstacle}, geometry::EnclosureGrade::tight}, number, f.edge};
-  finding.start_clear = clear_of(f.edge, robot.radius, robot.position);
-  finding.goal_clear = clear_of(f.edge, robot.radius, goal);
-  finding.equilibria = rests_at(f, all, robot.radius, goal);
+  const double radius = obstacle_radius(robot);
+  finding.start_clear = clear_of(f.edge, radius, robot.position);
+  finding.goal_clear = clear_of(f.edge, radius, goal);
+  finding.equilibria = rests_at(f, all, radius, goal);
   finding.stall_possible = !finding.equilibria.empty();
   return finding;
 }
@@ -189,11 +190,13 @@ class Examination {
 
  private:
   const Robot& robot() const { return scenario_.robots[robot_]; }
+  /// m, beside obstacles.
+  double radius() const { return obstacle_radius(robot()); }
 
   /// m; how near the robot comes to the shape: a bare piece is kept off by the margin that an ellipse has inside.
   double radius_at(const TrapPlace& place) const {
     const bool tight = place.enclosure.grade == geometry::EnclosureGrade::tight;
-    return robot().radius + (tight ? scenario_.margins.obstacle : 0.0);
+    return radius() + (tight ? scenario_.margins.obstacle : 0.0);
   }
 
   TrapFinding about(const TrapPlace& place) const {
@@ -201,15 +204,15 @@ class Examination {
     f.robot = robot_;
     f.goal = goal_;
     f.place = place;
-    f.start_clear = clear_of(place.enclosure.shape, robot().radius, robot().position);
-    f.goal_clear = clear_of(place.enclosure.shape, robot().radius, goal_);
+    f.start_clear = clear_of(place.enclosure.shape, radius(), robot().position);
+    f.goal_clear = clear_of(place.enclosure.shape, radius(), goal_);
     return f;
   }
 
   /// Inside the grown enclosure by more than the robot may stay away from its goal.
   bool goal_is_shut_in(const ConvexShape& shape) const {
-    return !clear_of(shape, robot().radius, goal_) &&
-           detail::distance_to({shape, {}, robot().radius}, goal_) < -scenario_.arrival_tolerance;
+    return !clear_of(shape, radius(), goal_) &&
+           detail::distance_to({shape, {}, radius()}, goal_) < -scenario_.arrival_tolerance;
   }
 
   TrapFinding alone(const TrapPlace& place) const {
@@ -217,7 +220,7 @@ class Examination {
     TrapFinding f = about(place);
     f.stall_possible = stall_possible(shape, goal_) || goal_is_shut_in(shape);
     if (const Ellipse* e = std::get_if<Ellipse>(&shape)) f.margin = evolute_margin(*e, goal_);
-    const detail::Boundary boundary(shape, robot().radius);
+    const detail::Boundary boundary(shape, radius());
     f.equilibria = equilibria_of(boundary, goal_);
     if (!f.goal_clear || !f.start_clear || !boundary.smooth()) return f;
     if (const auto hit = first_hit(boundary, robot().position, goal_))
@@ -248,8 +251,8 @@ class Examination {
   bool is_covered(Vec2 place, std::size_t i, std::size_t j) const {
     constexpr double kDeep = 1e-6;  // m, beyond rounding
     for (std::size_t k = 0; k < places_.size(); ++k) {
-      if (k == i || k == j || clear_of(places_[k].enclosure.shape, robot().radius, place)) continue;
-      if (clear_of(places_[k].enclosure.shape, robot().radius, robot().position) &&
+      if (k == i || k == j || clear_of(places_[k].enclosure.shape, radius(), place)) continue;
+      if (clear_of(places_[k].enclosure.shape, radius(), robot().position) &&
           detail::distance_to(grown_[k], place) < -kDeep)
         return true;
     }
@@ -287,7 +290,7 @@ void mark_out_of_reach(const Scenario& scenario, std::vector<TrapFinding>& findi
   detail::Reachability reach(detail::terrain_of(scenario), 0.0, false);
   for (TrapFinding& f : findings) {
     const Robot& robot = scenario.robots[f.robot];
-    const double radius = (1.0 - kRounded) * robot.radius;
+    const double radius = (1.0 - kRounded) * obstacle_radius(robot);
     for (Equilibrium& e : f.equilibria)
       e.reachable = !reach.map().covers(robot.position) || !reach.map().covers(e.position) ||
                     reach.plan(radius).is_reachable(robot.position, e.position);
@@ -330,7 +333,8 @@ std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOpt
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
     const Vec2 goal = first_goal(scenario, options, i);
-    const detail::StaticField field(scene, rules, robot.radius, robot.position, goal, detail::HorizonRule::clamped);
+    const detail::StaticField field(scene, rules, obstacle_radius(robot), robot.position, goal,
+                                    detail::HorizonRule::clamped);
     for (std::size_t k = 0; k < facades.size(); ++k) {
       findings.push_back(examine(facades[k], k, facades, robot, goal));
       findings.back().robot = i;

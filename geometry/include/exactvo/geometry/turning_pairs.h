@@ -17,9 +17,9 @@
 
 namespace exactvo::geometry {
 
-/// The verdict, with moments and clearance as MotionVerdict has them, all certified.
+/// Whether two bodies of which one turns meet: certified.
 struct TurningVerdict {
-  MotionVerdict verdict;
+  MotionVerdict verdict;  ///< encounter, moments and clearance
   /// The two come nearer than verdict.clearance.high, and whether they touch or overlap is not known; the encounter is
   /// `contact`.
   bool is_open = false;
