@@ -13,7 +13,10 @@
 #include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/trap.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/twist.h"
+#include "metrics/clearances.h"
 #include "motion/differential.h"
 #include "scene/chain.h"
 #include "support/seeded_random.h"
@@ -228,6 +231,79 @@ TEST(Chain, WithoutTheCheckOfItsTurnsTheAuditRefutesTheRun) {
   const AuditReport report = datasets::audit(file);
   EXPECT_GT(report[AuditPoint::braking].refuted, 0u);
   EXPECT_GT(report[AuditPoint::motions].refuted + report[AuditPoint::motions].open, 0u);
+}
+
+/// A turn on the spot swings the rear of an MP-500 into a wall beside it, while its first disc moves away.
+TEST(Chain, ItsRearCountsInDistancesAndCollisions) {
+  Scenario s;
+  s.time_step = kStep;
+  s.robots = {on_wheels(mp500(), {}, 0.0, {{6.0, 0.0}})};
+  const Robot& robot = s.robots[0];
+  const DifferentialDrive& d = *robot.drive;
+  const double below = -(obstacle_radius(robot) + 0.02);
+  const geometry::Polyline wall{{{-2.0, below}, {-0.4, below}}};
+  s.obstacles = {{"wall", wall}};
+  const WheelSpeeds speeds{-0.5, 0.5};
+  const double turn = (speeds.right - speeds.left) / d.wheel_separation;
+  const Vec2 ahead{1.0, 0.0}, turned = geometry::rotated(ahead, kStep * turn);
+  const geometry::Twist twist{{0.0, d.reference * turn}, turn};
+  const Vec2 end = robot.position + geometry::displacement_after(twist, kStep).by;
+  double least = 1e9;
+  for (std::size_t link = 1; link < d.chain.size(); ++link) {
+    const geometry::Disc disc = link_at(d, link, end, turned);
+    least = std::min(least, geometry::swept_distance(wall, {disc.center, disc.center}) - disc.radius);
+  }
+  ASSERT_LT(least, -0.01);
+  ASSERT_GT(geometry::swept_distance(wall, {robot.position, end}) - obstacle_radius(robot), 0.02);
+
+  Recording run;
+  run.motion = MotionLaw::straight;
+  run.time_step = kStep;
+  run.steps.resize(2);
+  for (Step& row : run.steps) row.robots.resize(1);
+  run.steps[1].time = kStep;
+  run.steps[0].robots[0].position = robot.position;
+  run.steps[0].robots[0].wheels = OnWheels{ahead, {}};
+  run.steps[1].robots[0].position = end;
+  run.steps[1].robots[0].wheels = OnWheels{turned, speeds};
+
+  const std::vector<double> series = obstacle_distance_series(s, run, 0);
+  ASSERT_EQ(series.size(), 2u);
+  EXPECT_NEAR(series[0], 0.02, 1e-9);
+  EXPECT_NEAR(series[1], least, 1e-9);
+
+  detail::ClearanceSweep sweep(s, run);
+  for (const Step& row : run.steps) sweep.add(row);
+  const detail::Clearances found = sweep.result();
+  ASSERT_EQ(found.collisions.size(), 1u);
+  const Collision& c = found.collisions.front();
+  EXPECT_NEAR(c.depth, -least, 2e-3);
+  EXPECT_NEAR(c.deepest_at, kStep, 1e-9) << "the rear is deepest at the end of its swing";
+  EXPECT_NEAR(norm(c.place - end), 0.0, 1e-9);
+}
+
+/// Against obstacles the trap test asks about the first disc, not about the wide one that holds between robots.
+TEST(Chain, TheTrapTestTakesTheRadiusBesideObstacles) {
+  Scenario s;
+  s.name = "wall";
+  s.time_step = kStep;
+  s.obstacles = {{"wall", box({3.0, -2.0}, {3.15, 2.0})}};
+  s.robots = {on_wheels(mp500(), {2.2, 0.0}, 0.0, {{6.0, 0.0}})};
+  const double radius = obstacle_radius(s.robots[0]), gap = 3.0 - s.robots[0].position.x;
+  ASSERT_LT(radius, gap);
+  ASSERT_GT(s.robots[0].radius, gap);
+  SimulationOptions options;
+  options.method = Method::orca;
+  int rests = 0;
+  for (const TrapFinding& finding : trap_test(s, options)) {
+    EXPECT_TRUE(finding.start_clear);
+    for (const Equilibrium& e : finding.equilibria) {
+      ++rests;
+      EXPECT_NEAR(e.position.x, 3.0 - radius, 1e-12);
+      EXPECT_TRUE(e.reachable);
+    }
+  }
+  EXPECT_EQ(rests, 1);
 }
 
 TEST(Chain, ForgeriesAreRefuted) {

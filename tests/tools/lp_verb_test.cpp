@@ -271,6 +271,40 @@ TEST(Lp, AnswersCarryTheNamesThatCsvGivesToProblems) {
   EXPECT_THAT(here.run("lp p.csv --check a.csv").out, AllOf(HasSubstr("    slow "), HasSubstr("    free ")));
 }
 
+TEST(LpCheck, AnswersBelongToTheProblemsThatTheyName) {
+  const Workplace here;
+  here.write("p.csv",
+             "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset\n"
+             "slow,2,2,0,-1,0,-0.5\nfree,,0,1,,,\n");
+  for (const char* answers :
+       {"problem,vx,vy\nfree,0,1\nslow,0.5,0\n", "index,vx,vy,problem\n1,0,1,free\n,0.5,0,slow\n"}) {
+    here.write("a.csv", answers);
+    const Outcome outcome = here.run("lp p.csv --check a.csv");
+    EXPECT_EQ(outcome.status, 0) << answers << outcome.out << outcome.err;
+  }
+  here.write("a.csv", "problem,vx,vy\nfree,0.5,0\nslow,0,1\n");
+  EXPECT_EQ(here.run("lp p.csv --check a.csv").status, 1) << "the answers of each other";
+  here.write("p.jsonl", kThree);
+  here.write("a.csv", "problem,vx,vy\n2,0,1\n0,0.5,0\n");
+  EXPECT_THAT(here.run("lp p.jsonl --check a.csv").out, HasSubstr("2 right, 1 wrong"));
+  here.write("twice.csv",
+             "problem,disc,preferred_x,preferred_y,normal_x,normal_y,offset\na,,0,1,,,\nb,,0,1,,,\na,,1,0,,,\n");
+  const std::tuple<const char*, const char*, const char*, const char*> cases[] = {
+      {"p.csv", "problem,vx,vy\nfast,0,1\n", "line 2: found an answer to problem \"fast\"", "[E_OPTION]"},
+      {"p.csv", "problem,vx,vy\nfree,0,1\nfree,0,1\n", "line 3: found a second answer to problem 1", "[E_COUNT]"},
+      {"p.csv", "problem,vx,vy,index\nfree,0,1,0\n", "line 2: found index 0 of problem \"free\"", "[E_RANGE]"},
+      {"p.csv", "problem,vx,vy,speed\nfree,0,1,2\n", "line 1: found an unknown column \"speed\"", "[E_KEY_UNKNOWN]"},
+      {"p.csv", "vx,vy,vx\n0,1,2\n", "line 1: found column \"vx\" a second time", "[E_JSON_DUPLICATE_KEY]"},
+      {"p.jsonl", "problem,vx,vy\nfree,0,1\n", "these problems have no names", "[E_OPTION]"},
+      {"twice.csv", "problem,vx,vy\na,0,1\n", "the name of two problems", "[E_COUNT]"}};
+  for (const auto& [problems, answers, words, code] : cases) {
+    here.write("a.csv", answers);
+    const Outcome outcome = here.run(std::string("lp ") + problems + " --check a.csv");
+    EXPECT_EQ(outcome.status, 2) << answers;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(words), HasSubstr(code))) << answers;
+  }
+}
+
 TEST(Lp, ATableIsTheSameProblemsAsLinesOfJson) {
   const Workplace here;
   here.write("p.csv", std::string(kHeader) + "a,2,2,0,-1,0,-0.5,soft\n\na,2,2,0,0,1,0.25,hard\nb,,0,1,,,,\n");

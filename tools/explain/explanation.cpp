@@ -40,7 +40,7 @@ Vec2 direction(int i) {
 constexpr double kNotSeen = 0.005;
 /// m/s: a velocity this near a line lies on it, whatever a solver rounded.
 constexpr double kOnLine = 1e-6;
-/// Of the greatest speed: slower than this while wanting more, a robot is being held.
+/// A share of the greatest speed: slower than this while wanting more, a robot is being held.
 constexpr double kHeld = 0.05;
 /// m/s: what the balance may leave over before it explains nothing; solvers keep far below it.
 constexpr double kBalanced = 1e-3;
@@ -58,7 +58,7 @@ std::string velocity(Vec2 v) {
   return fmt::format("{} m/s, speed {}", vector(v), number(norm(v)));
 }
 
-/// Of a violation: what two decimals do not show has one digit that counts.
+/// A violation in words: what two decimals do not show has one digit that counts.
 std::string amount(double violation) {
   return violation < kNotSeen ? fmt::format("{:.1g}", violation) : number(violation);
 }

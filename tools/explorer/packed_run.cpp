@@ -64,7 +64,7 @@ class PackedColumns {
     append(name, "u8", stride, coded);
   }
 
-  /// Of each column its name, type, number of entries and stride.
+  /// The name, type, number of entries and stride of each column.
   const Json& names() const { return names_; }
   const std::string& bytes() const { return bytes_; }
 
@@ -137,6 +137,16 @@ Json to_json(const vo::Body& body) {
   return json;
 }
 
+/// The discs of a footprint that keep clear of obstacles: how far ahead of the reference point, and the radius, m.
+Json chain_json(const formation::DifferentialDrive& drive) {
+  Json chain = Json::array();
+  for (const geometry::Disc& disc : drive.chain) {
+    chain.push_back(disc.center.x - drive.reference);
+    chain.push_back(disc.radius);
+  }
+  return chain;
+}
+
 Json robots_json(const formation::Scenario& scenario) {
   Json robots = Json::array();
   for (const formation::Robot& robot : scenario.robots) {
@@ -151,7 +161,8 @@ Json robots_json(const formation::Scenario& scenario) {
                                     {"wheel_separation", drive->wheel_separation},
                                     {"max_wheel_speed", drive->max_wheel_speed},
                                     {"body_radius", drive->body_radius},
-                                    {"footprint", flat(drive->footprint)}};
+                                    {"footprint", flat(drive->footprint)},
+                                    {"chain", chain_json(*drive)}};
     else if (robot.body_radius > 0.0)
       robots.back()["body_radius"] = robot.body_radius;
   }
@@ -298,7 +309,7 @@ std::int32_t in_quanta(double value, double quantum) {
   return std::isfinite(value) ? static_cast<std::int32_t>(std::llround(value / quantum)) : 0;
 }
 
-/// Of values that need not be finite: a run may have diverged.
+/// For values that need not be finite: a run may have diverged.
 double larger(double largest, double value) {
   return std::isfinite(value) ? std::max(largest, std::fabs(value)) : largest;
 }
@@ -339,7 +350,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   std::vector<const DecisionConstraint*> half_planes;
   for (const Step& row : rows) {
     time.push_back(row.time);
-    // Of each robot the one that holds it most, by its number from 1 on.
+    // For each robot the one that holds it most, by its number from 1 on.
     for (const std::vector<std::size_t>& by : formation::waiting_in(scenario, row))
       waits.push_back(by.empty() ? 0 : static_cast<std::uint32_t>(by.front() + 1));
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
@@ -485,7 +496,7 @@ void RunPacker::add_positions(const Step& row) {
   ++count_;
 }
 
-/// Of the rows the columns, and the quanta they are rounded to.
+/// Adds the columns of the rows; returns the quanta that they are rounded to.
 Json RunPacker::add_rows(std::size_t robots, PackedColumns& columns) const {
   double reach = 0.0, speed = 0.0;
   for (const Row& row : rows_)

@@ -96,7 +96,7 @@ constexpr double kLongestSide = 760.0;  // px, of the plane
 constexpr std::size_t kNameLength = 40;
 /// Arrows along the longer side of the map.
 constexpr std::size_t kMostArrows = 28;
-/// Of the strongest flow: where less passes, there is no arrow.
+/// A share of the strongest flow: where less passes, there is no arrow.
 constexpr double kLeastArrow = 0.03;
 constexpr double kLeastRange = 1e-9;  // of values: gnuplot draws no empty range
 

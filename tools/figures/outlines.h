@@ -55,7 +55,7 @@ Points outline(const geometry::ConvexShape& shape);
 /// The boundary of a convex part of a body at a pose, grown by `grown` m.
 Points hull_outline(const geometry::RoundedPolygon& part, const geometry::Pose& pose = {}, double grown = 0.0);
 
-/// Of S scaled by 1/tau: the points of the velocity plane that reach S at exactly time tau.
+/// The boundary of S scaled by 1/tau: the points of the velocity plane that reach S at exactly time tau.
 Points scaled_outline(const geometry::GrownShape& s, double tau);
 
 /// One closed path: the outer ring with each hole tied to it by a bridge walked there and back, which no filling shows.

@@ -221,7 +221,7 @@ void add_scene(PanelLayers& to) {
 constexpr int kFewRobots = 3;
 /// With more robots than this, not even the last time is written over something else.
 constexpr int kSomeRobots = 12;
-/// Of a polygon that stands for a circle.
+/// For a polygon that stands for a circle.
 constexpr int kLeastCorners = 8;
 
 class RobotLayers {
@@ -286,7 +286,7 @@ class RobotLayers {
     return names_of(robots, [&](std::size_t i) { return to_.run.scenario.robots[i].id; });
   }
 
-  /// Of robots that look alike.
+  /// Draws the ways of robots that look alike.
   void add_ways(const std::vector<std::size_t>& alike) {
     const std::size_t first = alike.front(), count = to_.run.scenario.robots.size();
     const int index = to_.data.begin("path of " + names(alike), "x [m], y [m], t [s]");
@@ -319,7 +319,7 @@ class RobotLayers {
     return ring;
   }
 
-  /// Of many robots, small as they are: gnuplot writes several kilobytes a circle into an SVG.
+  /// The outlines of many robots, small as they are: gnuplot writes several kilobytes a circle into an SVG.
   void add_outlines(const std::vector<std::size_t>& alike) {
     std::vector<Points> rings;
     for (const std::size_t i : alike)
@@ -374,8 +374,7 @@ class RobotLayers {
 
   void add_on_wheels(const formation::DifferentialDrive& drive, const formation::RobotStep& robot) {
     const Vec2 e = robot.wheels->heading, axle = robot.position - drive.reference * e;
-    Points corners;
-    for (const Vec2 c : drive.footprint) corners.push_back(axle + c.x * e + c.y * Vec2{-e.y, e.x});
+    const Points corners = footprint_at(drive, robot.position, e);
     to_.data.ring(corners.empty() ? circle(axle, drive.body_radius) : corners);
     to_.data.curve({axle, robot.position});
   }

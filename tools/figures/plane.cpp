@@ -42,6 +42,13 @@ std::string clear_fill(const std::string& colour, double opacity) {
                      colour);
 }
 
+Points footprint_at(const formation::DifferentialDrive& drive, Vec2 at, Vec2 heading) {
+  const Vec2 axle = at - drive.reference * heading, left{-heading.y, heading.x};
+  Points corners;
+  for (const Vec2 c : drive.footprint) corners.push_back(axle + c.x * heading + c.y * left);
+  return corners;
+}
+
 Box square_round(const Box& box, double share) {
   constexpr double kLeast = 1e-9;  // a range that gnuplot can still put tics on
   const double half = share * std::max({box.width(), box.height(), kLeast});

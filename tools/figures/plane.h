@@ -26,6 +26,9 @@ std::string solid_fill(const std::string& colour);
 /// With a border; `opacity` in [0, 1].
 std::string clear_fill(const std::string& colour, double opacity);
 
+/// The corners of the footprint of a robot on wheels whose reference point is at `at`, m; empty where it has none.
+Points footprint_at(const formation::DifferentialDrive& drive, Vec2 at, Vec2 heading);
+
 /// A square round the middle of the box, `share` of its longer side from the middle to each side, never empty.
 Box square_round(const Box& box, double share);
 
@@ -77,7 +80,7 @@ struct ChainLines {
 class Panel {
  public:
   Panel(const Box& shown, DataFile& file) : data(file), view(shown), origin(shown) {}
-  /// Of velocities, whose axes count from (0, 0).
+  /// A panel of velocities, whose axes count from (0, 0).
   static Panel of_velocities(const Box& view, DataFile& data) { return {view, data, "v_x [m/s], v_y [m/s]"}; }
 
   /// Draws a data set whose first two columns are x and y, and its columns `more`; `how` is what gnuplot has after

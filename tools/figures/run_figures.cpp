@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "exactvo/formation/metrics.h"
 #include "figures/outlines.h"
@@ -31,7 +32,7 @@ constexpr std::size_t kMostRobotsInPairs = 4;
 constexpr std::size_t kKeyLength = 32;
 /// Entries of a legend in one column.
 constexpr std::size_t kKeyRows = 22;
-/// Of values: nothing is to be seen in less, and gnuplot draws no empty range.
+/// The least range of values: nothing is to be seen in less, and gnuplot draws no empty range.
 constexpr double kLeastRange = 1e-6;
 /// s: the time axis of a run that is over as it begins.
 constexpr double kLeastTime = 1.0;
@@ -61,7 +62,7 @@ double shown_time(const RecordingFile& run) {
   return std::max(kLeastTime, run.scenario.formation ? end : std::min(end, 1.5 * end_of_motion(run) + 1.0));
 }
 
-/// Of a vertical axis.
+/// What a vertical axis shows.
 struct Range {
   double low = 0.0, high = 0.0;
   bool is_logarithmic = false;
@@ -274,10 +275,10 @@ const std::vector<Curve> kSoundRates{
 
 enum class Axis { linear, logarithmic, rates };
 
-/// Of V on a logarithmic axis, m^2/s^2: what is smaller is drawn here.
+/// m^2/s^2: smaller values of V are drawn here on a logarithmic axis.
 constexpr double kLeastShown = 1e-24;
 
-/// Of the whole figure.
+/// How many curves the whole figure has.
 constexpr std::size_t kCurves = 20;
 
 void add_curve(const Curve& curve, std::size_t number, const std::vector<LyapunovRow>& rows, double floor,
@@ -307,7 +308,7 @@ std::vector<double> finite_values(const std::vector<Curve>& curves, const std::v
   return values;
 }
 
-/// Of a derivative: what all but the shortest spikes (the start, the leader's stop) need.
+/// The range of a derivative: what all but the shortest spikes (the start, the leader's stop) need.
 Range range_of_rates(std::vector<double> values) {
   constexpr double kShare = 0.98;  // of the values
   for (double& value : values) value = std::fabs(value);
@@ -317,7 +318,7 @@ Range range_of_rates(std::vector<double> values) {
   return {-most, most};
 }
 
-/// Of values in one panel. REQUIRES: not empty.
+/// The range of the values in one panel. REQUIRES: not empty.
 Range panel_range(const std::vector<double>& values, Axis axis) {
   if (axis == Axis::rates) return range_of_rates(values);
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -382,27 +383,32 @@ Figure velocity_figure(const RecordingFile& run) {
           filled("velocity", {{"x", x}, {"y", y}})};
 }
 
+/// With a line at each greatest speed that the robots have. REQUIRES a robot on wheels.
 std::string wheel_panel(const RecordingFile& run, const std::string& title, double formation::WheelSpeeds::*wheel,
                         DataFile& data) {
   PlotCommand plot;
   std::vector<Series> all;
-  double most = 0.0;
+  std::map<double, std::vector<std::string>> limits;  // m/s, and whose they are
   for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
     const formation::Robot& robot = run.scenario.robots[i];
     if (!robot.drive) continue;
-    most = std::max(most, robot.drive->max_wheel_speed);
+    limits[robot.drive->max_wheel_speed].push_back(robot.id);
     Series& series = all.emplace_back(Series{robot.id, {}});
     for (const Step& step : run.recording.steps)
       series.values.push_back(step.robots[i].wheels ? step.robots[i].wheels->speeds.*wheel : 0.0);
   }
   Range range = range_of(all);
-  range.high = std::max(range.high, 1.05 * most);
+  range.high = std::max(range.high, 1.05 * limits.rbegin()->first);
   add_series(run, all, range, data, plot);
-  plot.item(fmt::format("{:.6g} with lines lw 1.5 dt (5,4) lc rgb 'black'", most), "greatest speed");
+  for (const auto& [speed, robots] : limits) {
+    const std::string key =
+        limits.size() == 1 ? "greatest speed" : fmt::format("at most {:.4g} m/s: {}", speed, fmt::join(robots, ", "));
+    plot.item(fmt::format("{:.6g} with lines lw 1.5 dt (5,4) lc rgb 'black'", speed), shortened(key, kKeyLength));
+  }
   return series_body(run, title, "speed on the ground [m/s]", y_axis(range), plot);
 }
 
-/// Of both wheels. REQUIRES a robot on wheels.
+/// The speeds of both wheels. REQUIRES a robot on wheels.
 Figure wheel_figure(const RecordingFile& run) {
   DataFile data;
   const std::string left =
@@ -417,7 +423,7 @@ bool has_wheels(const RecordingFile& run) {
   return std::any_of(robots.begin(), robots.end(), [](const formation::Robot& r) { return r.drive.has_value(); });
 }
 
-/// Of values above 0.
+/// The range of values above 0.
 Range logarithmic_range(const std::vector<Series>& all) {
   Range range{1.0, 1.0, true};
   for (const Series& series : all) {

@@ -133,7 +133,7 @@ class MetricsAccumulator {
   void add(const Step& row);
   /// A row without decisions, of robots with goals. Margins between robots are not measured then.
   void add(double time, const std::vector<Vec2>& positions, const std::vector<Vec2>& velocities);
-  /// Of the rows so far, at least one. Writes paths, arrivals, errors, the formation's course, jitter and counts into
+  /// Writes paths, arrivals, errors, the formation's course, jitter and counts of the rows so far, at least one, into
   /// `m`.
   void write_to(Metrics& m) const;
   /// In the last row. REQUIRES: a row.

@@ -169,7 +169,7 @@ class SvgRecorder {
     this.dx += x;
     this.dy += y;
   }
-  // Of a rectangle, until restore().
+  // Clips to a rectangle, until restore().
   clip() {
     const id = `clip${this.parts.length}`;
     const begin = this.stack[this.stack.length - 1][10];

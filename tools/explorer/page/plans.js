@@ -10,7 +10,7 @@ function planAt(run, robot, t) {
   return found;
 }
 
-// Of each robot of a plan its places in order, from where it was when the plan begins: [{robot, places: [x, y, x, y, ...]}].
+// The places of each robot of a plan in order, from where it was when the plan begins: [{robot, places: [x, y, x, y, ...]}].
 function pathsOf(plan) {
   if (plan.paths) return plan.paths;
   const of = new Map(plan.robots.map((robot, k) => [robot, [plan.starts[2 * k], plan.starts[2 * k + 1]]]));
@@ -19,7 +19,7 @@ function pathsOf(plan) {
   return plan.paths;
 }
 
-// Of the plan that the chosen robot goes by: its own path strongly, those of the others faintly, a dot at each place.
+// Draws the plan that the chosen robot goes by: its own path strongly, those of the others faintly, a dot at each place.
 function drawPlan(ctx, view, colours, run, ui) {
   const plan = planAt(run, ui.robot, ui.t);
   if (!plan) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the pointer does: moving views, dragging, hovering, choosing.
-import {distanceToObstacle} from './shapes.js';
+import {clearanceOf, hasChain} from './shapes.js';
 import {shortName} from './draw.js';
 import {contactWords, effectWords, lineWords, modeWords, number} from './words.js';
 import {pickInWorld} from './world.js';
@@ -85,15 +85,15 @@ function worldTip(found) {
       (away ? `\nout of reach: ${shortName(away.why, 400)}` : '');
   }
   if (found.obstacle !== undefined) {
-    const x = positions.x[ui.robot], y = positions.y[ui.robot];
+    const robot = run.robots[ui.robot], at = [positions.x[ui.robot], positions.y[ui.robot], positions.heading[ui.robot]];
     return `obstacle ${shortName(run.obstacles[found.obstacle].id, 120)}\n` +
-      `${number(distanceToObstacle(run.obstacles[found.obstacle], x, y, 0, 0) - run.robots[ui.robot].radius)} m from the rim of ` +
-      shortName(run.robots[ui.robot].id, 40);
+      `${number(clearanceOf(robot, ...at, run.obstacles[found.obstacle], 0, 0))} m from ` +
+      `${hasChain(robot) ? 'the discs of the footprint' : 'the rim'} of ${shortName(robot.id, 40)}`;
   }
   if (found.moving !== undefined) return `moving obstacle ${shortName(run.moving[found.moving].id, 120)}`;
   const i = found.robot, row = positions.row, vx = run.vx(row, i), vy = run.vy(row, i);
   return `robot ${shortName(run.robots[i].id, 120)}\nat (${number(positions.x[i])}, ${number(positions.y[i])}) m, ` +
-    `${run.robots[i].outline ? 'within' : 'radius'} ${run.robots[i].radius} m${run.robots[i].body_radius ? `, of which the body ${run.robots[i].body_radius} m` : ''}\nspeed ${number(Math.hypot(vx, vy))} of ${run.robots[i].max_speed} m/s${run.about.method === 'check' ? '' : `\n${modeWords(run, row, i)}`}`;
+    `${run.robots[i].outline ? 'within' : 'radius'} ${run.robots[i].radius} m${hasChain(run.robots[i]) ? ` beside robots, discs of ${number(run.robots[i].obstacle_radius, 3)} m beside obstacles` : ''}${run.robots[i].body_radius ? `, of which the body ${run.robots[i].body_radius} m` : ''}\nspeed ${number(Math.hypot(vx, vy))} of ${run.robots[i].max_speed} m/s${run.about.method === 'check' ? '' : `\n${modeWords(run, row, i)}`}`;
 }
 
 function connectPointer() {

@@ -112,7 +112,7 @@ function fillMetrics() {
   $('metrics').replaceChildren(...rows);
 }
 
-// Of the chosen robot: counted by the page from what it holds.
+// Metrics of the chosen robot, which the page counts from what it holds.
 function fillRobotMetrics() {
   for (const old of [...$('metrics').querySelectorAll('tr.robot')]) old.remove();
   const run = page.run, i = ui.robot, metrics = run.head.metrics;

@@ -151,19 +151,42 @@ function isCounted(run, row, robot) {
   return !run.robots[robot].outline && run.isThere(robot, run.time[row]);
 }
 
+// The discs of a robot that keep clear of obstacles: how far ahead of its place each is, and its radius. One disc, or
+// the chain of its footprint; [ahead, radius, ahead, radius, ...].
+function obstacleDiscs(robot) {
+  return hasChain(robot) ? robot.on_wheels.chain : [0, robot.obstacle_radius];
+}
+
+function hasChain(robot) {
+  return Boolean(robot.on_wheels && robot.on_wheels.chain.length);
+}
+
+// From the discs of a robot at (x, y), turned by its heading (radians), to an obstacle moved by (ox, oy). Negative where
+// they overlap.
+function clearanceOf(robot, x, y, heading, obstacle, ox, oy) {
+  const chain = obstacleDiscs(robot);
+  let least = Infinity;
+  for (let k = 0; k < chain.length; k += 2) {
+    const ahead = chain[k], discX = x + ahead * Math.cos(heading), discY = y + ahead * Math.sin(heading);
+    least = Math.min(least, distanceToObstacle(obstacle, discX, discY, ox, oy) - chain[k + 1]);
+  }
+  return least;
+}
+
 // Sampled at a row: from the robot's rim to the nearest obstacle, and to the nearest other robot's rim. Infinite where
 // there is none.
 function obstacleClearance(run, row, robot) {
   if (!isCounted(run, row, robot)) return Infinity;
-  const x = run.x(row, robot), y = run.y(row, robot), radius = run.robots[robot].radius;
+  const x = run.x(row, robot), y = run.y(row, robot), body = run.robots[robot];
+  const heading = hasChain(body) ? run.heading(row, robot) : 0;
   let least = Infinity;
-  for (const o of run.obstacles) least = Math.min(least, distanceToObstacle(o, x, y, 0, 0));
+  for (const o of run.obstacles) least = Math.min(least, clearanceOf(body, x, y, heading, o, 0, 0));
   const moved = run.columns['moving'];
   for (let k = 0; k < run.moving.length; ++k) {
     const at = 2 * (row * run.moving.length + k);
-    least = Math.min(least, distanceToObstacle(run.moving[k], x, y, moved[at], moved[at + 1]));
+    least = Math.min(least, clearanceOf(body, x, y, heading, run.moving[k], moved[at], moved[at + 1]));
   }
-  return least - radius;
+  return least;
 }
 
 function robotClearance(run, row, robot) {
@@ -194,5 +217,5 @@ function timeToContact(h, anchor, vx, vy) {
   return first > last ? null : first;
 }
 
-export {velocityObstacle, ringOf, clipped, speedRing, distanceToSegment, distanceToObstacle, obstacleClearance,
+export {velocityObstacle, ringOf, clipped, speedRing, distanceToSegment, hasChain, clearanceOf, obstacleClearance,
   robotClearance, distanceOf, timeToContact};

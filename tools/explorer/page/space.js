@@ -87,7 +87,7 @@ function drawCone(ctx, view, colours, h, obstacle, isMarked, strength) {
   ctx.globalAlpha = 1;
 }
 
-// Of a half-plane that is slack, binding or violated.
+// The colour of a half-plane that is slack, binding or violated.
 function paintOf(colours, effect) {
   return effect === 'slack' ? colours.slack : effect === 'binding' ? colours.active : colours.bad;
 }

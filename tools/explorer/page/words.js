@@ -30,7 +30,7 @@ function effectOf(d, h) {
   return h.active && violation >= -NOT_SEEN ? 'binding' : 'slack';
 }
 
-// Of a violation: what two decimals do not show has one digit that counts.
+// A violation in words: what two decimals do not show has one digit that counts.
 function amount(violation) {
   return violation < NOT_SEEN ? String(Number(violation.toPrecision(1))) : number(violation);
 }

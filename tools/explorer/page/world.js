@@ -193,7 +193,7 @@ function drawRoutes(ctx, view, colours, run, ui) {
   ctx.setLineDash([]);
 }
 
-// Of each robot the goals that are proven out of its reach, with why: [{robot, goal, why}].
+// The goals of each robot that are proven out of its reach, with why: [{robot, goal, why}].
 function unreachableOf(run) {
   const found = (run.head.routes || []).filter((route) => route.why_not).map((route) => ({robot: route.robot, goal: route.goal, why: route.why_not}));
   for (const e of run.head.events) {

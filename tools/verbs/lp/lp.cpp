@@ -85,12 +85,22 @@ using Tree = nlohmann::json;
 
 constexpr const char* kStatusWords = "optimal, relaxed, infeasible or no-interior";
 
-/// Collects answers by their numbers: those that name theirs, and those that come in the order of the problems.
+/// Collects answers by the numbers of their problems: those that say which one, by its number or name, and those that
+/// come in the order of the problems.
 class AnswersByNumber {
  public:
-  explicit AnswersByNumber(std::size_t count) : all_(count) {}
+  /// `names`: of the problems; empty where they have numbers only. Must outlive this.
+  AnswersByNumber(std::size_t count, const std::vector<std::string>& names) : all_(count), names_(&names) {}
 
-  void put(const TableLines& at, std::optional<double> index, GivenAnswer answer) {
+  void put(const TableLines& at, std::optional<double> index, std::optional<std::string_view> name,
+           GivenAnswer answer) {
+    if (name) {
+      const auto named = static_cast<double>(number_of(at, *name));
+      if (index.value_or(named) != named)
+        at.refuse(DataCode::out_of_range, fmt::format("index {} of problem \"{}\"", *index, *name),
+                  fmt::format("{}, the index of that problem", named));
+      index = named;
+    }
     const double number = index.value_or(static_cast<double>(next_));
     if (!(number >= 0.0 && number < static_cast<double>(all_.size())) || number != std::floor(number))
       at.refuse(DataCode::out_of_range, fmt::format("an answer to problem {}", number),
@@ -105,7 +115,27 @@ class AnswersByNumber {
   std::vector<std::optional<GivenAnswer>> take() { return std::move(all_); }
 
  private:
+  std::size_t number_of(const TableLines& at, std::string_view name) {
+    if (numbers_.empty())
+      for (std::size_t k = 0; k < all_.size(); ++k) {
+        const bool is_named = k < names_->size();
+        const auto [place, is_first] = numbers_.try_emplace(is_named ? (*names_)[k] : std::to_string(k), k);
+        if (!is_first) place->second.reset();
+      }
+    const auto found = numbers_.find(std::string(name));
+    if (found == numbers_.end())
+      at.refuse(DataCode::not_an_option, fmt::format("an answer to problem \"{}\"", name),
+                names_->empty() ? "the number of a problem; these problems have no names"
+                                : "the name of a problem of the file");
+    if (!found->second)
+      at.refuse(DataCode::wrong_count, fmt::format("\"{}\", the name of two problems", name),
+                "a name of one problem, or answers by index");
+    return *found->second;
+  }
+
   std::vector<std::optional<GivenAnswer>> all_;
+  const std::vector<std::string>* names_;
+  std::map<std::string, std::optional<std::size_t>> numbers_;  ///< by name; nothing where two problems share it
   std::size_t next_ = 0;
 };
 
@@ -141,21 +171,30 @@ void put_json_line(const TableLines& at, AnswersByNumber& answers) {
   require_velocity_or_status(at, answer);
   const Tree index = line.value("index", Tree());
   if (!index.is_null() && !index.is_number()) at.refuse(DataCode::wrong_type, index.dump(), "the number of a problem");
-  answers.put(at, index.is_number() ? std::optional(index.get<double>()) : std::nullopt, answer);
+  answers.put(at, index.is_number() ? std::optional(index.get<double>()) : std::nullopt, std::nullopt, answer);
 }
+
+constexpr const char* kAnswerColumns = "the columns vx and vy and, where wanted, index, problem and status";
 
 /// Which column is which, by the first line.
 class AnswerColumns {
  public:
   explicit AnswerColumns(const TableLines& at) {
     const std::vector<std::string_view> names = fields_of(at.line());
-    for (std::size_t k = 0; k < names.size(); ++k) column_[std::string(names[k])] = k;
     width_ = names.size();
-    if (column_.count("vx") == 0 || column_.count("vy") == 0)
-      at.refuse(
-          DataCode::format_unknown, at.line(),
-          "answers: an object of JSON on each line, or CSV with the columns vx and vy and, where wanted, index and "
-          "status");
+    const bool is_table =
+        std::count(names.begin(), names.end(), "vx") > 0 && std::count(names.begin(), names.end(), "vy") > 0;
+    if (!is_table)
+      at.refuse(DataCode::format_unknown, at.line(),
+                fmt::format("answers: an object of JSON on each line, or CSV with {}", kAnswerColumns));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      constexpr std::array<std::string_view, 5> kKnown{"vx", "vy", "index", "problem", "status"};
+      if (std::find(kKnown.begin(), kKnown.end(), names[k]) == kKnown.end())
+        at.refuse(DataCode::key_unknown, fmt::format("an unknown column \"{}\"", names[k]), kAnswerColumns);
+      if (!column_.emplace(names[k], k).second)
+        at.refuse(DataCode::json_duplicate_key, fmt::format("column \"{}\" a second time", names[k]),
+                  "each column once");
+    }
   }
 
   void put(const TableLines& at, AnswersByNumber& answers) const {
@@ -168,7 +207,9 @@ class AnswerColumns {
     if (const auto status = column_.find("status"); status != column_.end())
       answer.status = status_of(at, fields[status->second]);
     require_velocity_or_status(at, answer);
-    answers.put(at, number(at, fields, "index"), answer);
+    std::optional<std::string_view> name;
+    if (const auto problem = column_.find("problem"); problem != column_.end()) name = fields[problem->second];
+    answers.put(at, number(at, fields, "index"), name, answer);
   }
 
  private:
@@ -243,10 +284,12 @@ const char* name(LpVerdict verdict) {
 }
 
 /// One for each of `count` problems, in their order; nothing where the file has none. JSON Lines, such as `lp --json`
-/// prints, or CSV with the columns vx and vy and, where wanted, index and status. Throws datasets::DataError.
-std::vector<std::optional<GivenAnswer>> read_lp_answers(const std::string& file, std::size_t count) {
+/// prints, or CSV with `kAnswerColumns`. `names`: of the problems, empty where they have none. Throws
+/// datasets::DataError.
+std::vector<std::optional<GivenAnswer>> read_lp_answers(const std::string& file, std::size_t count,
+                                                        const std::vector<std::string>& names) {
   TableLines lines(file);
-  AnswersByNumber answers(count);
+  AnswersByNumber answers(count, names);
   if (!lines.next())
     throw DataError(DataCode::format_unknown, file, "", "no answer", "an object of JSON on each line, or CSV");
   if (lines.line().front() == '{') {
@@ -341,6 +384,7 @@ Json certificate_json(const lp::Certificate& c) {
 class ProblemNames {
  public:
   std::vector<std::string>& all() { return names_; }
+  const std::vector<std::string>& all() const { return names_; }
   Json line(std::size_t index) const {
     Json out = {{"index", index}};
     if (index < names_.size()) out["name"] = names_[index];
@@ -525,7 +569,7 @@ void print_judged_table(const std::vector<JudgedAnswer>& all, const ProblemNames
 }
 
 ExitCode check_answers(const std::vector<lp::Problem>& problems, const ProblemNames& names, const LpFlags& flags) {
-  const std::vector<std::optional<GivenAnswer>> answers = read_lp_answers(flags.answers, problems.size());
+  const std::vector<std::optional<GivenAnswer>> answers = read_lp_answers(flags.answers, problems.size(), names.all());
   std::vector<JudgedAnswer> all;
   for (std::size_t k = 0; k < problems.size(); ++k) {
     if (interrupted()) throw Interrupted();
@@ -676,8 +720,8 @@ void declare_lp(CLI::App& app, LpFlags& flags) {
   app.add_option(
       "--check", flags.answers,
       "FILE, or - for stdin: answers of another solver, JSON Lines (such as --json prints) or CSV with the "
-      "columns vx, vy and, where wanted, index and status; each is judged by a proof, and status 1 says that "
-      "one is wrong");
+      "columns vx, vy and, where wanted, index, problem (the name of one) and status; each is judged by a proof, and "
+      "status 1 says that one is wrong");
   app.add_option("--tolerance", flags.tolerance,
                  "With --check: m/s, by which an answer may violate a constraint or be worse than the best one")
       ->capture_default_str();

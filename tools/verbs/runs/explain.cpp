@@ -139,7 +139,7 @@ class AtStep : public formation::RunSink {
     geometry::ConvexShape shape;
   };
 
-  /// Of bodies that move, and of discs at rest, each in the order of the scenario.
+  /// Bodies that move, and discs at rest, come in the order of the scenario.
   Owner owner_of(const Crowd& crowd, formation::ObstacleId id) const {
     std::size_t moving = 0, obstacle = 0;
     for (const formation::CrowdBodyState& body : crowd.bodies()) {
@@ -305,7 +305,7 @@ class RunUntil {
   std::size_t rows() const { return rows_; }
   double end() const { return end_; }
   const formation::Step& decision() const { return *decided_; }
-  /// Of `run` it takes what is known beside rows.
+  /// Uses what `run` holds beside its rows.
   std::vector<formation::StuckReport> stuck(formation::Recording& run) const {
     run.steps = {*first_, *last_};
     if (is_cut_) run.diverged = formation::has_diverged(run);
@@ -404,7 +404,7 @@ CrowdMade made_as(const std::filesystem::path& recording) {
   return made;
 }
 
-/// Of a recording, or of a scenario that is run until then.
+/// Explains a decision of a recording, or of a scenario that is run until then.
 Explained explained_by(const ExplainFlags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
   const auto recording = recording_at(flags.scenario);
@@ -447,6 +447,13 @@ std::string printed(Vec2 v) {
   return fmt::format("({}, {})", rounded(v.x), rounded(v.y));
 }
 
+/// The footprint at its heading where the robot has one, else its disc.
+Points body_outline(const formation::Robot& robot, const RobotStep& now) {
+  if (robot.drive && now.wheels && !robot.drive->footprint.empty())
+    return footprint_at(*robot.drive, now.position, now.wheels->heading);
+  return outline(geometry::Disc{now.position, robot.radius});
+}
+
 /// Where a robot is among the obstacles, its route from there and the place that it heads for; of a goal out of reach
 /// the closed chain that separates them.
 Figure route_map_figure(const Decision& decision, const formation::RouteAhead& ahead) {
@@ -457,7 +464,7 @@ Figure route_map_figure(const Decision& decision, const formation::RouteAhead& a
   add_chain(ahead.route.chain, map);
   if (!ahead.route.points.empty())
     map.curves("route from here", {ahead.route.points}, line_style(2.2, kRouteColour), false);
-  map.curves(robot.id, {outline(geometry::Disc{here, robot.radius})}, line_style(2.0, kRobotColour), true);
+  map.curves(robot.id, {body_outline(robot, decision.step)}, line_style(2.0, kRobotColour), true);
   if (ahead.heads_for) {
     map.curves("heads for", {{here, *ahead.heads_for}}, line_style(1.2, kRobotColour, " dt (4,3)"), false);
     map.curves("", {{*ahead.heads_for}}, fmt::format("with points pt 6 ps 1.2 lw 2 lc rgb '{}'", kRobotColour), false,

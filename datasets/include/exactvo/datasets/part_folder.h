@@ -3,8 +3,8 @@
 
 /// \file
 /// The parts of long work as files in a folder, so that work that was killed goes on: each part appears whole or not at
-/// all. Nothing waits for the disk, so that a power cut may take back or cut off the last parts: who reads one must see
-/// whether it is whole, as `read_sealed` does.
+/// all. Nothing waits for the disk, so that a power cut may take back or cut off the last parts: a reader must
+/// check that a part is whole, as `read_sealed` does.
 
 #include <filesystem>
 #include <optional>
