@@ -307,6 +307,25 @@ TEST(TurningPairs, StreamFindsTwoThatTurnIntoEachOther) {
   EXPECT_EQ(check.open, 0u);
 }
 
+TEST(TurningPairs, AMomentThatIsShorterThanDoublesCanDivideIsDecided) {
+  const TurningMotion a{0.0, 1.0, {0, 0}, {{0, 0}, 0.5}}, b{-1.0, 1e-320, {2, 0}, {}};
+  const RigidBody bar{{{{0, 0}, {1, 0}}, 0.5}}, disc{{{{0, 0}}, 0.5}};
+  EXPECT_NE(examine(a, bar, b, disc).verdict.encounter, Encounter::overlap);  // at the start they touch
+}
+
+/// The distance of corners that overlap counts as 0, so that discs beside them are what is deepest.
+TEST(TurningPairs, DepthIsCountedFromTheRims) {
+  const RigidBody square = box(1.0, 1.0, 1.0);
+  RigidBody first = square, second = square;
+  first.push_back({{{0, 10}}, 0.25});
+  second.push_back({{{2, 10}}, 0.25});
+  const TurningVerdict v =
+      examine(TurningMotion{0.0, 2.0, {0, 0}, {{1, 0}, 1e-9}}, first, TurningMotion{0.0, 2.0, {0, 0}, {}}, second);
+  EXPECT_EQ(v.verdict.encounter, Encounter::overlap);
+  EXPECT_NEAR(v.verdict.clearance.high, -0.5, 1e-6);
+  EXPECT_NEAR(v.verdict.nearest_time, 2.0, 1e-6);
+}
+
 TEST(TurningPairs, ABodyThatIsTurnedAndDoesNotTurnIsDecidedAsItStands) {
   const RigidBody body = box(0.5, 1.0, 0.25);
   const Obstacle wall = Polyline{{{-4, 0.6}, {4, 0.6}}};

@@ -201,6 +201,25 @@ TEST(Solve, ExactAnswersToNormalsOfVeryDifferentLengthsAreThoseToUnitNormals) {
   EXPECT_EQ(solved, 12U);
 }
 
+// The coordinate of the answer is subnormal, and a long normal multiplies what rounding takes from it.
+TEST(Solve, LongNormalsBesideSubnormalVelocitiesEnd) {
+  std::size_t ended = 0;
+  for (const double length : {1e200, 1e300}) {
+    const double u = length * std::numeric_limits<double>::denorm_min();
+    for (const Priority second : {Priority::hard, Priority::soft}) {
+      Problem p = in_disc(1.0, {-1.0, 0.0});
+      add(p, {length, 0.0}, 1.3 * u);
+      add(p, {second == Priority::hard ? length : -length, 0.0}, (second == Priority::hard ? 1.4 : -1.2) * u, second);
+      for (const Solution& s : {solve(p), solve_exact(p).solution}) {
+        EXPECT_GE(length * s.velocity.x, 1.0 * u);
+        EXPECT_LE(length * s.velocity.x, 2.0 * u);
+        ++ended;
+      }
+    }
+  }
+  EXPECT_EQ(ended, 8U);
+}
+
 TEST(Solve, ContradictingHardConstraintsAreInfeasible) {
   Problem p = in_disc(2.0, {0.0, 0.0});
   add(p, {1.0, 0.0}, 1.0);

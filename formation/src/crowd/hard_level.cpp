@@ -100,7 +100,9 @@ class FewRows {
     double missing = rows_[0].missing(m);
     for (std::size_t k = 1; k < count_; ++k) {
       const double its = rows_[k].missing(m);
-      if (its > missing) missing = its, most = k;
+      // The order of rows depends on how robots are divided among threads: they break no tie.
+      const bool is_before = rows_[k].x != rows_[most].x ? rows_[k].x < rows_[most].x : rows_[k].y < rows_[most].y;
+      if (its > missing || (its == missing && is_before)) missing = its, most = k;
     }
     return most;
   }

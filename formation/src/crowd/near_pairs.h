@@ -74,7 +74,7 @@ class NearLists {
   std::size_t rows_ = 0;
 };
 
-/// Of the robots of a range the pairs whose rows are needed, each once. Of a thread.
+/// The pairs of a range whose rows are needed, each once. One object per thread.
 class NearPairs {
  public:
   static constexpr std::uint8_t kCut = 1,  ///< one of its rows may not allow its wish
@@ -85,14 +85,14 @@ class NearPairs {
   std::vector<std::int32_t> cut;    ///< those with kCut
   std::size_t overlapping = 0;      ///< robots that another overlaps by more than kRoundedContact
 
-  /// Of robots `first` to `last`, whose lists are given, the pairs that (6) leaves open. Says in Robots::next_kept
-  /// which could meet another.
+  /// Finds the pairs of robots `first` to `last`, whose lists are given, that (6) leaves open. Marks in
+  /// Robots::next_kept which could meet another.
   void find(Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
             NearLists& lists);
   /// All pairs of robots whose safe motion is not what they wish.
   void find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
                   const NearLists& lists);
-  /// Pairs have rows: says who is cut and who stays.
+  /// REQUIRES: pairs with rows. Marks the robots that are cut short and those that stay.
   void judge_rows(const Robots& robots);
   /// After `find`: the other pairs of those that are cut.
   void add_clear(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists);

@@ -92,8 +92,8 @@ class Proofs {
         walls_(scenario.obstacles),
         reach_(detail::terrain_of(scenario), 0.0, false) {}
 
-  /// Where a robot gets to that proofs are looked for about; else null. Who starts in a wall is pushed out of it:
-  /// nothing holds it in its cover. Whose goal is out of reach has no use of passing. A chain has no one radius.
+  /// Where a robot gets to that proofs are looked for about; else null. A robot that starts in a wall is pushed out of
+  /// it: nothing holds it in its cover. A robot whose goal is out of reach is left out, as is one with a chain of discs.
   const SquareCover* little_room(std::size_t i) {
     const Robot& r = scenario_.robots[i];
     if (r.goals.size() != 1 || !(r.radius > 0.0) || obstacle_radius(r) < r.radius ||

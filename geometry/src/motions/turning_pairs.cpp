@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "exactvo/geometry/hull.h"
@@ -169,7 +170,8 @@ class Span {
     const double now = kept_until(pair, from, to, 0.0);
     if (now >= to) return;
     found.first = std::min(found.first, now);
-    for (double by = 0x1p-32 * duration_;; by *= 2.0) {
+    // A duration may be so short that a share of it is 0.
+    for (double by = std::max(0x1p-32 * duration_, std::numeric_limits<double>::denorm_min());; by *= 2.0) {
       const double then = std::min(to, now + by);
       if (surely_overlaps(pair, then)) {
         found.witness = then;
@@ -293,7 +295,7 @@ class Examination {
 
   void try_moment(double time) {
     for (const Pair& pair : pairs_) {
-      const double gap = span_.gap(pair, time);
+      const double gap = distance_of(pair, time);
       if (gap < least_) {
         least_ = gap;
         nearest_time_ = time;
@@ -333,9 +335,11 @@ class Examination {
   }
   double least_gap(double time) {
     double least = kInfinity;
-    for (const Pair& pair : pairs_) least = std::min(least, span_.gap(pair, time));
+    for (const Pair& pair : pairs_) least = std::min(least, distance_of(pair, time));
     return least;
   }
+  /// Of the rims. The distance of sets that overlap counts as 0, however deep they do.
+  double distance_of(const Pair& pair, double time) { return std::max(span_.gap(pair, time), -pair.reach); }
 
   /// `guess` comes first. The distance of parts that overlap counts as 0.
   Bounds clearance(Encounter encounter, bool is_open, bool is_within) {
@@ -416,9 +420,12 @@ TurningVerdict examine(const TurningMotion& a, const RigidBody& body_a, const Tu
     const auto against = [&](const TurningMotion& m, const RigidBody& body, std::size_t part,
                              const TurningMotion& other, const RigidBody& other_body,
                              std::size_t other_part) -> std::optional<Encounter> {
-      if (!is_at_rest(other) || m.start != window.from) return std::nullopt;
-      return encounter(TurningMotion{m.start, window.to, m.at, m.twist}, RigidBody{body[part]},
-                       RigidBody{other_body[other_part]}, other.at);
+      if (!is_at_rest(other)) return std::nullopt;
+      const Encounter found = encounter(TurningMotion{m.start, window.to, m.at, m.twist}, RigidBody{body[part]},
+                                        RigidBody{other_body[other_part]}, other.at);
+      // Of more time than both have, `clear` alone holds of less.
+      if (m.start != window.from && found != Encounter::clear) return std::nullopt;
+      return found;
     };
     const auto found = against(a, body_a, pair.a, b, body_b, pair.b);
     return found ? found : against(b, body_b, pair.b, a, body_a, pair.a);

@@ -25,7 +25,7 @@ std::optional<Vec2> optimum_inside(const Problem& problem, double slack_units);
 /// False where the kernel cannot settle the problem; `solve` of solve.h says what it takes.
 bool run_kernel(const SingleProblem& problem, Solution& answer);
 
-/// So many lines `copy_unit_lines` takes.
+/// The most lines that `copy_unit_lines` takes.
 inline constexpr std::size_t kMostCopied = 64;
 
 /// Where it writes them; each with room for kMostCopied.

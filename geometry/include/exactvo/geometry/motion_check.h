@@ -126,7 +126,7 @@ class MotionStream {
   std::size_t add_body(RigidBody body);
   /// REQUIRES: a number from `add_body`; finite numbers; a duration >= 0; pieces in the order of their beginnings; a
   /// body's piece begins no earlier than its previous piece ends; only straight pieces that last may turn, and then no
-  /// piece of any body is curved, or a way that is gone in no time. Discs round the reference point are taken not to
+  /// piece of any body is curved, or a move of zero duration. Discs round the reference point are taken not to
   /// turn.
   void add(std::size_t body, const Motion& piece, const Turned& turned = {});
   /// Reports the events that are still open. REQUIRES: called once, last.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lp/exact/exact_abscissa.h"
 #include "lp/problem/region.h"
@@ -52,7 +53,8 @@ double rounded_coordinate(const WideDouble& a, const WideDouble& b, const WideDo
                           double& error) {
   const double x = std::ldexp(a.mantissa / w.mantissa, a.exponent - w.exponent);
   const double y = std::ldexp(b.mantissa * root.mantissa / w.mantissa, b.exponent + root.exponent - w.exponent);
-  error += kConversion * (std::abs(x) + std::abs(y));
+  // Below the normal range a double is off by half the least one, which a long normal makes large.
+  error += kConversion * (std::abs(x) + std::abs(y)) + 2.0 * std::numeric_limits<double>::denorm_min();
   return x + y;
 }
 
