@@ -260,6 +260,25 @@ TEST(TrajectoryFile, RepeatedRowsAreLeftOutAndCounted) {
   EXPECT_EQ(c.file.repeated, 1u);
 }
 
+TEST(TrajectoryFile, ASecondVelocityAtOneTimeIsRefusedWhereAsked) {
+  const std::string rows = "t,id,x,y,vx,vy\n0,A,1,2,0,0\n0,A,1,2,1,0\n";
+  EXPECT_EQ(content_of(rows).file.repeated, 1u);
+  TrajectoryOptions options;
+  options.one_velocity = true;
+  const DataError error = refusal_of(rows, options);
+  EXPECT_EQ(error.code(), DataCode::out_of_range);
+  EXPECT_THAT(error.what(), HasSubstr("a second velocity at 0 s of agent A"));
+  EXPECT_EQ(content_of("t,id,x,y,vx,vy\n0,A,1,2,1,0\n0,A,1,2,1,0\n", options).file.repeated, 1u);
+}
+
+TEST(TrajectoryFile, AnEmptyHeadingIsNone) {
+  const Content c = content_of("t,id,x,y,theta\n0,A,1,2,\n1,A,1,2,0.5\n2,A,1,2, \n");
+  ASSERT_EQ(c.rows.size(), 3u);
+  EXPECT_TRUE(std::isnan(c.rows[0].heading));
+  EXPECT_EQ(c.rows[1].heading, 0.5);
+  EXPECT_TRUE(std::isnan(c.rows[2].heading));
+}
+
 // --- Refusals ---
 
 TEST(TrajectoryFile, RefusalsNameTheLine) {
@@ -277,6 +296,9 @@ TEST(TrajectoryFile, RefusalsNameTheLine) {
       {"t,id,x,y\n0,A,1,2\n1,,1,2\n", DataCode::format_syntax, "line 3"},
       {"t,id,x,y\n1,A,1,2\n0.5,A,1,2\n", DataCode::out_of_range, "no time before that of line 2"},
       {"t,id,x,y\n1,A,1,2\n1,A,1,3\n", DataCode::out_of_range, "line 2 has another"},
+      {"t,id,x,y,theta\n1,A,1,2,0\n1,A,1,2,0.5\n", DataCode::out_of_range, "a second heading at 1 s of agent A"},
+      {"t,id,x,y,theta\n1,A,1,2,\n1,A,1,2,0.5\n", DataCode::out_of_range, "line 2 has another, or none"},
+      {"t,id,x,y,theta\n1,A,1,2,north\n", DataCode::number, "line 2"},
       {"t,id,x,y\n1,A,1e40,2\n", DataCode::out_of_range, "2^100"},
       {"t,id,x,y\n", DataCode::format_syntax, "no row"},
       {"t,id,x,y\n0,\"A,1,2\n", DataCode::format_syntax, "quotation mark"},

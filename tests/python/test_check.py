@@ -161,6 +161,23 @@ def test_a_run_brings_its_radii_obstacles_and_ids(tmp_path, program):
         exactvo.check(tmp_path / "none")
 
 
+BURGER = {"name": "a Burger", "time_limit": 60, "arrival_tolerance": 0.02, "robots": [
+    {"id": "R1", "position": [0, 0], "heading": 90, "radius": 0.105, "goal": [0, 1],
+     "kinematics": {"type": "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}}]}  # fmt: skip
+LONG = [(-1, -0.1), (0.5, -0.1), (0.5, 0.1), (-1, 0.1)]
+
+
+def test_bodies_of_robots_on_wheels_are_about_the_axle(tmp_path):
+    exactvo.simulate(BURGER).write(tmp_path / "recording.jsonl")
+    behind, beside = [exactvo.Wall([(-0.05, -0.95), (0.05, -0.95)])], [exactvo.Wall([(-0.9, -0.5), (-0.9, 1.5)])]
+    answer = exactvo.check(tmp_path, map=behind, footprint=LONG)
+    assert answer.overlaps == 1 and answer.events[0].first[0] == 0 and "places of robots on wheels are the axle's centre" in answer.notes
+    assert exactvo.check(tmp_path, map=beside, footprint=LONG).clear
+    close, ahead = [exactvo.Wall([(-0.05, -0.1), (0.05, -0.1)])], [exactvo.Wall([(-0.05, 1.06), (0.05, 1.06)])]
+    assert exactvo.check(tmp_path, map=close, radius=0.105).overlaps == 1 and exactvo.check(tmp_path, map=ahead, radius=0.105).clear
+    assert exactvo.check(tmp_path, map=ahead).overlaps == 1  # the disc about the reference point
+
+
 def test_moving_obstacles_of_a_run_are_left_out_and_the_answer_says_so(tmp_path):
     cart = {"id": "cart", "polygon": [[5, 5], [6, 5], [6, 6], [5, 6]], "path": [[0, 0], [1, 0]], "speed": 0.5}
     run = exactvo.simulate({**TWO, "moving_obstacles": [cart]})
@@ -221,7 +238,8 @@ def test_wrong_arguments_are_named(given, options, where):
 
 
 def test_bad_rows_are_named(tmp_path):
-    for rows, code in (([(0, 0, 0), (1, np.nan, 0)], "E_NOT_FINITE"), ([(1, 0, 0), (0, 1, 0)], "E_RANGE"), ([(0, 0, 0), (0, 1, 0)], "E_RANGE")):
+    back, second_place, second_heading = [(1, 0, 0), (0, 1, 0)], [(0, 0, 0), (0, 1, 0)], [(0, 0, 0, 0), (0, 0, 0, 1)]
+    for rows, code in (([(0, 0, 0), (1, np.nan, 0)], "E_NOT_FINITE"), *((bad, "E_RANGE") for bad in (back, second_place, second_heading))):
         with pytest.raises(exactvo.DataError) as caught:
             exactvo.check({"A": rows}, radius=1)
         assert (caught.value.code, caught.value.where) == (code, "row 2")

@@ -437,6 +437,50 @@ TEST(CheckVerb, RecordingsBringTheirRadiiAndObstacles) {
   EXPECT_EQ(json_lines(table.out).back()["summary"]["rows"], whole["rows"]);
 }
 
+TEST(CheckVerb, BodiesOfRobotsOnWheelsAreAboutTheAxle) {
+  const Workplace here;
+  // The axle goes from (0, 0) to (0, 0.92), heading along y; the reference point is 0.08 m ahead.
+  here.write("burger.json", R"({"name": "a Burger", "time_limit": 60, "arrival_tolerance": 0.02, "robots": [
+    {"id": "R1", "position": [0, 0], "heading": 90, "radius": 0.105, "goal": [0, 1], "kinematics": {"type":
+     "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}}]})");
+  ASSERT_EQ(here.run("simulate burger.json --out run --no-figures").status, 0);
+  here.write("behind.wkt", "LINESTRING (-0.05 -0.95, 0.05 -0.95)\n");
+  here.write("beside.wkt", "LINESTRING (-0.9 -0.5, -0.9 1.5)\n");
+  const std::string footprint = " --footprint 'POLYGON ((-1 -0.1, 0.5 -0.1, 0.5 0.1, -1 0.1))'";
+  const Outcome behind = here.run("check run --map behind.wkt" + footprint);
+  EXPECT_EQ(behind.status, 1) << behind.out << behind.err;
+  EXPECT_THAT(behind.out, AllOf(HasSubstr("overlap: R1 and wall 1, from 0 s"), HasSubstr("at the axle's centre")));
+  const Outcome beside = here.run("check run --map beside.wkt" + footprint);
+  EXPECT_EQ(beside.status, 0) << beside.out << beside.err;
+  EXPECT_THAT(beside.out, Not(HasSubstr("no headings")));
+  here.write("close.wkt", "LINESTRING (-0.05 -0.1, 0.05 -0.1)\n");
+  here.write("ahead.wkt", "LINESTRING (-0.05 1.06, 0.05 1.06)\n");
+  const Outcome close = here.run("check run --map close.wkt --radius 0.105");
+  EXPECT_EQ(close.status, 1) << close.out << close.err;
+  EXPECT_THAT(close.out, HasSubstr("round the axle's centre"));
+  EXPECT_EQ(here.run("check run --map ahead.wkt --radius 0.105").status, 0);
+  const Outcome own = here.run("check run --map ahead.wkt");
+  EXPECT_EQ(own.status, 1) << "the disc about the reference point";
+  EXPECT_THAT(own.out, HasSubstr("discs of the file's radii, of robots on wheels round the reference point"));
+}
+
+TEST(CheckVerb, ARunWithAFootprintNeedsOneOfItsOwn) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("robots/mp500_doors.json") + " --out run --no-figures").status, 0);
+  const Outcome refused = here.run("check run");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("which has a footprint"), HasSubstr("[E_SCENARIO]")));
+  // The MP-500 passes its doors; a body that is wider than they are does not.
+  const auto with_width = [&](const std::string& half) {
+    return here.run("check run --near 0 --footprint 'POLYGON ((-0.527 -" + half + ", 0.296 -" + half + ", 0.296 " +
+                    half + ", -0.527 " + half + "))'");
+  };
+  const Outcome passes = with_width("0.296");
+  EXPECT_EQ(passes.status, 0) << passes.out << passes.err;
+  EXPECT_THAT(passes.out, HasSubstr("on the arc of a constant twist"));
+  EXPECT_EQ(with_width("0.36").status, 1);
+}
+
 TEST(CheckVerb, RecordingsOfCrowdsAreChecked) {
   const Workplace here;
   here.write("c.json", R"({"name": "c", "robots": [{"id": "a", "position": [0, 0], "goal": [4, 0]},
@@ -570,6 +614,8 @@ TEST(CheckVerb, BadInputIsNamed) {
       {"t,id,x,y\n1,A,1,2\n0,A,1,2\n", "--radius 1", "line 3"},
       {"t,id,x,y\n0,A,1,2\n0,A,1,3\n", "--radius 1", "line 3"},
       {"t,id,x,y\n0,A,1,2\n1,A,inf,2\n", "--radius 1", "line 3"},
+      {"t,id,x,y,theta\n0,A,1,2,0\n0,A,1,2,1\n", "--radius 1", "a second heading at 0 s"},
+      {"t,id,x,y,vx,vy\n0,A,1,2,0,0\n0,A,1,2,1,0\n", "--radius 1 --between cubic", "a second velocity at 0 s"},
       {"t,id,x,y\nnan,A,1,2\n", "--radius 1", "E_NOT_FINITE"},
       {"t,id,x,y\n0,A,1e300,2\n", "--radius 1", "2^100"},
       {"t,id,x,y\n0,A,1\n", "--radius 1", "E_COUNT"},
@@ -611,7 +657,33 @@ TEST(CheckVerb, MixedFrameRatesAreDecidedExactly) {
 TEST(CheckVerb, ARowThatComesTwiceIsLeftOutAndSaid) {
   const Outcome outcome = checked("t,id,x,y\n0,A,1,2\n0,A,1,2\n1,A,1,2\n", "--radius 1");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("1 row that repeat"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 row that repeats the one before was left out"));
+  const Outcome two = checked("t,id,x,y,theta\n0,A,1,2,0\n0,A,1,2,0\n0,A,1,2,\n1,A,1,2,0\n", "--radius 1");
+  EXPECT_EQ(two.status, 0);
+  EXPECT_THAT(two.err, HasSubstr("2 rows that repeat the one before were left out"));
+  EXPECT_EQ(checked("t,id,x,y,vx,vy\n0,A,1,2,0,0\n0,A,1,2,1,0\n1,A,1,2,0,0\n", "--radius 1").status, 0)
+      << "velocities matter to cubics only";
+}
+
+TEST(CheckVerb, TheDepthOfPolygonsIsNotMeasured) {
+  const std::string rows = "t,id,x,y\n0,A,0,0\n0,B,2,0\n1,A,4,0\n1,B,2,0\n";
+  const std::string square = "--footprint 'POLYGON ((-0.5 -0.5, 0.5 -0.5, 0.5 0.5, -0.5 0.5))'";
+  const Outcome outcome = checked(rows, square);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("depth of polygons is not measured"), HasSubstr("for example at "),
+                                 Not(HasSubstr(" deep at "))));
+  EXPECT_THAT(checked(rows, square + " --radius 0.1").out, HasSubstr("0.2 m deep at "));
+  const json event = json_lines(checked(rows, square + " --json").out).front();
+  for (const json& bound : event.at("clearance")) {
+    EXPECT_EQ(bound.get<double>(), 0.0);
+    EXPECT_FALSE(std::signbit(bound.get<double>()));
+  }
+}
+
+TEST(CheckVerb, HeadingsInDegreesAreNoted) {
+  const char* const words = "most headings are beyond 2 pi: they are read in radians";
+  EXPECT_THAT(checked("t,id,x,y,yaw\n0,A,0,0,90\n1,A,1,0,90\n", "--radius 0.1").err, HasSubstr(words));
+  EXPECT_THAT(checked("t,id,x,y,yaw\n0,A,0,0,6\n1,A,1,0,7\n", "--radius 0.1").err, Not(HasSubstr(words)));
 }
 
 TEST(CheckVerb, MillionsOfRowsOfOneAgentNeedLittleMemory) {

@@ -9,6 +9,7 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
@@ -70,7 +71,7 @@ std::size_t TrajectorySink::agent(std::string_view id) {
   const auto [at, is_new] = numbers_.try_emplace(id_, numbers_.size());
   if (is_new) {
     file_.agents.push_back(id_);
-    last_.push_back({-std::numeric_limits<double>::infinity(), {}, 0});
+    last_.push_back({-std::numeric_limits<double>::infinity(), {}, 0, 0.0, {}});
   }
   return at->second;
 }
@@ -88,6 +89,7 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
   const geometry::Vec2 metres_a_second = options_.scale * velocity;  // no numbers: none is known
   if (std::fabs(metres_a_second.x) > kLargestCoordinate || std::fabs(metres_a_second.y) > kLargestCoordinate)
     refuse(DataCode::out_of_range, line, "a velocity beyond 2^100", "velocities in m/s up to 2^100");
+  if (std::isinf(heading)) refuse(DataCode::not_finite, line, number_text(heading), "a finite heading, or none");
   Last& last = last_[agent];
   const auto words = [&](double t) { return number_text(t) + " s of agent " + file_.agents[agent]; };
   const auto place_of_last = [&] { return file_.row_word + " " + std::to_string(last.line); };
@@ -98,11 +100,27 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
     if (metres != last.at)
       refuse(DataCode::out_of_range, line, "a second place at " + words(time),
              "one place at a time; " + place_of_last() + " has another");
+    // A row without a heading or a velocity repeats any.
+    if (!std::isnan(heading) && heading != last.heading)
+      refuse(DataCode::out_of_range, line, "a second heading at " + words(time),
+             "one heading at a time; " + place_of_last() + " has another, or none");
+    if (options_.one_velocity && is_finite(metres_a_second) && metres_a_second != last.velocity)
+      refuse(DataCode::out_of_range, line, "a second velocity at " + words(time),
+             "one velocity at a time; " + place_of_last() + " has another, or none");
     ++file_.repeated;
     return;
   }
-  last = {time, metres, line};
+  last = {time, metres, line, heading, metres_a_second};
+  if (!std::isnan(heading)) {
+    ++headings_;
+    large_headings_ += std::fabs(heading) > 2.0 * geometry::kPi ? 1 : 0;
+  }
   take_({agent, time, metres, heading, metres_a_second, line});
+}
+
+void TrajectorySink::finish() {
+  if (2 * large_headings_ > headings_)
+    file_.notes.emplace_back("most headings are beyond 2 pi: they are read in radians, not in degrees");
 }
 
 double TrajectorySink::time_of_frame(double frame, double of_file) {
@@ -247,6 +265,7 @@ const TrajectoryFile& TrajectoryReader::read(const std::function<void(const Traj
       throw DataError(error.code(), name, error.place(), error.found(), error.expected());
     }
   }
+  sink.finish();
   if (s.file.agents.empty())
     throw DataError(DataCode::format_syntax, s.file.file, "", "no row", "at least one row of a trajectory");
   return s.file;

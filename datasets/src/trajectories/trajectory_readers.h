@@ -32,6 +32,9 @@ class TrajectorySink {
            double heading = std::numeric_limits<double>::quiet_NaN(),
            geometry::Vec2 velocity = TrajectoryRow().velocity);
   double scale() const { return options_.scale; }  ///< m
+  const TrajectoryOptions& options() const { return options_; }
+  /// Behind the last row: notes on all of them.
+  void finish();
   /// s, of a frame. Notes once where no frame rate is known. `of_file`: frames a second as the file says, 0 if not.
   double time_of_frame(double frame, double of_file);
   [[noreturn]] void refuse(DataCode code, std::uint64_t line, const std::string& found,
@@ -44,6 +47,8 @@ class TrajectorySink {
     double time;
     geometry::Vec2 at;
     std::uint64_t line;
+    double heading;
+    geometry::Vec2 velocity;
   };
   const TrajectoryOptions& options_;
   const std::function<void(const TrajectoryRow&)>& take_;
@@ -51,6 +56,7 @@ class TrajectorySink {
   std::unordered_map<std::string, std::size_t> numbers_;
   std::string id_;  ///< to look up without allocating each time
   std::vector<Last> last_;
+  std::uint64_t headings_ = 0, large_headings_ = 0;  ///< rows with one, and with one beyond a whole turn
   bool rate_noted_ = false;
 };
 

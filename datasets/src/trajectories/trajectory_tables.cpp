@@ -156,8 +156,9 @@ class TableRows {
     const double time = columns_[kTimeColumn] != kNoColumn
                             ? number(kTimeColumn, "a time")
                             : out_.time_of_frame(number(kFrameColumn, "a frame"), frame_rate);
-    const double heading = columns_[kHeadingColumn] == kNoColumn ? std::numeric_limits<double>::quiet_NaN()
-                                                                 : number(kHeadingColumn, "a heading");
+    const bool has_heading =
+        columns_[kHeadingColumn] != kNoColumn && !trimmed(fields[columns_[kHeadingColumn]]).empty();
+    const double heading = has_heading ? number(kHeadingColumn, "a heading") : std::numeric_limits<double>::quiet_NaN();
     std::string_view id = columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : fields[columns_[kIdColumn]];
     if (ids_ == Ids::numbers) id = plain_id(id, memory_);
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");

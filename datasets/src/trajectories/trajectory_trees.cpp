@@ -160,15 +160,30 @@ void begin(const formation::Scenario& scenario, TrajectorySink& out) {
   TrajectoryFile& file = out.file();
   file.row_word = "row";
   for (const formation::Robot& robot : scenario.robots) {
-    if (obstacle_radius(robot) < robot.radius)
+    if (!out.options().at_axles && obstacle_radius(robot) < robot.radius)
       throw DataError(DataCode::scenario, file.file, "", "robot '" + robot.id + "', which has a footprint",
-                      "robots that are discs; audit proves runs of others");
+                      "robots that are discs, or --footprint with the body round the axle; audit proves such runs");
     out.agent(robot.id);
     file.radii.push_back(robot.radius);
+    file.on_wheels += robot.drive ? 1 : 0;
   }
+  if (out.options().at_axles && file.on_wheels > 0)
+    file.notes.emplace_back("places of robots on wheels are the axle's centre");
   file.obstacles = scenario.obstacles;
   if (!scenario.moving_obstacles.empty())
     file.notes.push_back(geometry::counted(scenario.moving_obstacles.size(), "moving obstacle") + " left out");
+}
+
+/// A recorded robot with its axle's centre in place of the reference point, and its heading.
+void put_at_axle(const formation::Robot& robot, const formation::RobotStep& state, std::size_t agent, double time,
+                 std::uint64_t number, TrajectorySink& out) {
+  if (!state.wheels)
+    out.refuse(DataCode::key_missing, number, "no heading of robot '" + robot.id + "'", "that of a robot on wheels");
+  constexpr double kUnit = 1e-6;
+  const geometry::Vec2 heading = state.wheels->heading;
+  if (!(std::fabs(norm(heading) - 1.0) <= kUnit))
+    out.refuse(DataCode::out_of_range, number, "the heading of robot '" + robot.id + "'", "a vector of length 1");
+  out.row(agent, time, state.position - robot.drive->reference * heading, number, std::atan2(heading.y, heading.x));
 }
 
 /// Recordings have ellipses that `scene_of` makes polygons round: too large to say that a body overlaps one.
@@ -258,8 +273,13 @@ void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySin
         out.file().notes.emplace_back(
             "robots of this formation moved on curves between rows, which exactvo audit judges; here they go straight");
     }
-    for (std::size_t i = 0; i < row.robots.size(); ++i)
-      out.row(i, row.time, row.robots[i].position, number, TrajectoryRow().heading, row.robots[i].velocity);
+    for (std::size_t i = 0; i < row.robots.size(); ++i) {
+      const formation::Robot& robot = so_far.scenario.robots[i];
+      if (out.options().at_axles && robot.drive)
+        put_at_axle(robot, row.robots[i], i, row.time, number, out);
+      else
+        out.row(i, row.time, row.robots[i].position, number, TrajectoryRow().heading, row.robots[i].velocity);
+    }
   });
 }
 

@@ -152,7 +152,7 @@ Answer answer_of(TrajectoryReader& reader, const TrajectorySurvey& survey, const
 // --- Answers as Python objects ---
 
 py::tuple as_tuple(const Bounds& b) {
-  return py::make_tuple(b.low, b.high);
+  return py::make_tuple(b.low + 0.0, b.high + 0.0);  // -0.0 becomes 0.0
 }
 
 py::tuple as_tuple(const datasets::Extreme& e) {
@@ -208,6 +208,8 @@ py::dict check_trajectories(const py::object& source, const py::object& format, 
   options.scale = positive(scale, "scale");
   Question question;
   question.between = word<Between>(between, "between", between_names(), &parse_between);
+  options.at_axles = !radius.is_none() || footprint.has_value();
+  options.one_velocity = question.between == Between::cubic;
   question.longest_gap = max_gap.is_none() ? std::numeric_limits<double>::infinity() : positive(max_gap, "max_gap");
   const auto made_reader = [&] {
     if (py::isinstance<py::tuple>(source))

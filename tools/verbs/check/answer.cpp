@@ -69,7 +69,7 @@ std::string assumption_of(const CheckedFile& asked) {
 
 /// Infinite bounds are left out.
 OrderedJson number_or_null(double value) {
-  return std::isfinite(value) ? OrderedJson(value) : OrderedJson();
+  return std::isfinite(value) ? OrderedJson(value + 0.0) : OrderedJson();  // -0.0 becomes 0.0
 }
 
 OrderedJson bounds_json(const Bounds& b) {
@@ -163,9 +163,12 @@ void CheckAnswer::add(const MotionEvent& e) {
       first == last ? fmt::format("at {} s", first) : fmt::format("from {} s to {} s", first, last);
   std::string text =
       fmt::format("{}: {} and {}, {}", word_of(e), name_of(e.body), other_of(e.with_obstacle, e.other), when);
-  if (e.encounter == Encounter::overlap)
+  const bool has_depth = asked_.has_rims || (e.with_obstacle && asked_.obstacles[e.other].disc);
+  if (e.encounter == Encounter::overlap && has_depth)
     text += fmt::format(", {} deep at {} s", between_text(0.0 - e.clearance.high, 0.0 - e.clearance.low),
                         seconds(e.nearest_time));
+  else if (e.encounter == Encounter::overlap)
+    text += fmt::format(", for example at {} s", seconds(e.nearest_time));
   if (e.is_open) text += fmt::format(", nearer than {:.3g} m; whether they touch is open", e.clearance.high);
   put(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
 }

@@ -33,6 +33,7 @@ struct CheckedFile {
   double jump_speed = 0.0;   ///< m/s, may be infinite
   double longest_gap = 0.0;  ///< s, may be infinite
   std::size_t samples = 0;   ///< of each move; 0: not asked
+  bool has_rims = true;      ///< bodies have a radius, from whose rim depth counts; false: polygons without one
 };
 
 /// Which overlaps a check would miss that looks at each move at so many moments, evenly spaced from its row on.

@@ -92,7 +92,13 @@ struct Bodies {
   std::vector<RigidBody> of_agent;
   double reach = 0.0;  ///< m, of the largest
   std::string words;
+  bool has_rims = true;  ///< they have a radius
 };
+
+/// Whether the caller says what the bodies are; otherwise they are the discs of a recording.
+bool gives_bodies(const CheckFlags& flags) {
+  return flags.radius || !flags.footprint.empty();
+}
 
 Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const TrajectorySurvey& survey) {
   Bodies bodies;
@@ -104,13 +110,18 @@ Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const Trajecto
     bodies.reach = std::max(bodies.reach, radius);
   }
   bodies.words = flags.radius ? fmt::format("discs of radius {:.6g} m", *flags.radius) : "discs of the file's radii";
-  if (survey.has_headings()) bodies.words += ", which have no heading";
+  if (file.on_wheels > 0)
+    bodies.words +=
+        fmt::format(", of robots on wheels round the {}", flags.radius ? "axle's centre" : "reference point");
+  else if (survey.has_headings())
+    bodies.words += ", which have no heading";
   return bodies;
 }
 
 Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const TrajectorySurvey& survey) {
   const RigidBody footprint = footprint_body(footprint_shape(flags.footprint), flags.radius.value_or(0.0));
   Bodies bodies{{}, reach_of(footprint), "the footprint at its heading"};
+  bodies.has_rims = flags.radius.value_or(0.0) > 0.0;
   bool some_turn = false;
   for (std::size_t k = 0; k < survey.agents().size(); ++k) {
     const datasets::AgentSurvey& agent = survey.agents()[k];
@@ -128,6 +139,11 @@ Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const
   else
     bodies.words += some_turn ? " (corners rounded)" : ", which no agent changes (corners rounded)";
   if (flags.radius) bodies.words += fmt::format(", grown by {:.6g} m", *flags.radius);
+  if (reader.file().on_wheels > 0) bodies.words += ", of robots on wheels at the axle's centre";
+  const bool some_lack_one = std::any_of(survey.agents().begin(), survey.agents().end(),
+                                         [](const datasets::AgentSurvey& a) { return std::isnan(a.heading); });
+  if (survey.has_headings() && some_lack_one) bodies.words += ", as given for agents without a heading";
+  if (!bodies.has_rims) bodies.words += "; the depth of polygons is not measured";
   return bodies;
 }
 
@@ -276,8 +292,9 @@ TrajectorySurvey survey_of(TrajectoryReader& reader) {
 void say_what_was_read(const TrajectoryFile& file, const TrajectorySurvey& survey) {
   for (const std::string& note : file.notes) message(file.file + ": " + note);
   if (file.repeated > 0)
-    message(fmt::format("{}: {} that repeat the one before were left out", file.file,
-                        geometry::counted(file.repeated, "row")));
+    message(fmt::format("{}: {} left out", file.file,
+                        geometry::counted(file.repeated, "row that repeats the one before was",
+                                          "rows that repeat the one before were")));
   if (!survey.is_in_order())
     message(file.file + ": rows are not in the order of time, so all of them are kept in memory");
 }
@@ -302,7 +319,8 @@ CheckedFile asked_of(const CheckFlags& flags, const TrajectoryFile& file, const 
           flags.near.value_or(bodies.reach),
           flags.max_speed.value_or(survey.jump_speed()),
           flags.max_gap.value_or(std::numeric_limits<double>::infinity()),
-          flags.samples};
+          flags.samples,
+          bodies.has_rims};
 }
 
 /// What is made of a check beside its answer: proofs, a figure, a page, and what samples miss.
@@ -353,7 +371,8 @@ class Byproducts {
 
 /// One file, or several files of polynomials together.
 ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
-  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale});
+  TrajectoryReader reader(files,
+                          {flags.format, flags.frame_rate, flags.scale, gives_bodies(flags), flags.between == "cubic"});
   TrajectorySurvey survey = survey_of(reader);
   const TrajectoryFile file = reader.file();
   say_what_was_read(file, survey);
@@ -469,11 +488,14 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
   app.add_option("--format", flags.format,
                  fmt::format("Format of the trajectories: {}; by default detected from content",
                              fmt::join(datasets::trajectory_formats(), " ")));
-  app.add_option("--radius", flags.radius, "Radius of every body, m; by default that of a recording");
+  app.add_option("--radius", flags.radius,
+                 "Radius of every body, m; by default that of a recording. Of recorded robots on wheels that of a disc "
+                 "round the axle's centre");
   app.add_option(
       "--footprint", flags.footprint,
       "WKT or FILE: a polygon round the agent's place, or with --radius a line with that half width. --radius "
-      "grows a polygon. It turns with the agent's heading (theta)");
+      "grows a polygon. It turns with the agent's heading (theta). Of recorded robots on wheels the place is the "
+      "axle's centre");
   app.add_option("--map", flags.map, "Obstacle file of any readable format; by default the obstacles of a recording");
   declare_reading_flags(app, flags.reading, "--map-format");
   app.add_option("--between", flags.between,

@@ -53,16 +53,17 @@ void CheckPage::put(std::size_t agent, const Knot& knot) {
 }
 
 void CheckPage::add(std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
-  has_headings_ |= (turned.from != 0.0 || turned.by != 0.0) && !is_plain_disc(bodies_[agent]);
+  const bool is_disc = is_plain_disc(bodies_[agent]), turns = turned.by != 0.0 && !is_disc;
+  has_headings_ |= (turned.from != 0.0 || turned.by != 0.0) && !is_disc;
   const double start = start_of(piece), end = end_of(piece);
   const bool goes_on = has_last_[agent] && (last_[agent].time == start || asked_.between == geometry::Between::none);
   const Vec2 from = position_at(piece, start);
   const bool is_moved = last_[agent].at != from || last_[agent].heading != turned.from;
   if (!goes_on || is_moved || last_[agent].time != start) put(agent, {start, from, !goes_on, turned.from});
-  const bool is_chord = turned.by == 0.0 && std::holds_alternative<geometry::StraightMotion>(piece);
+  const bool is_chord = !turns && std::holds_alternative<geometry::StraightMotion>(piece);
   const int chords = is_chord ? 1 : kChords;
   std::optional<geometry::TurningMotion> arc;
-  if (turned.by != 0.0) arc = turning_motion(std::get<geometry::StraightMotion>(piece), turned);
+  if (turns) arc = turning_motion(std::get<geometry::StraightMotion>(piece), turned);
   for (int k = 1; k <= chords && start < end; ++k) {
     const double time = k == chords ? end : start + (end - start) * k / chords;
     const Vec2 at = arc ? arc->at + displacement_after(arc->twist, time - start).by : position_at(piece, time);
@@ -154,7 +155,7 @@ datasets::RecordingFile CheckPage::about(const geometry::MotionCheck& check, boo
     c.from = e.first.low;
     c.until = e.last.high;
     c.deepest_at = e.nearest_time;
-    c.depth = -e.clearance.low;
+    c.depth = 0.0 - e.clearance.low;
     c.place = e.place;
     about.collisions.push_back(std::move(c));
   }

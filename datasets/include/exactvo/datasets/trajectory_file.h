@@ -8,7 +8,8 @@
 /// the whole way of an agent; so are the tags of sumo-fcd, 64 KiB. A file of mapf-yaml is kept whole while it is read.
 ///
 /// Of one agent times rise in the order of the file. A row that repeats the one before it is left out and counted. A
-/// time that goes back, a second place at one time, and a number that is not finite are refused with file and line.
+/// time that goes back, a second place or heading at one time, and a number that is not finite are refused with file
+/// and line.
 ///
 /// Files of polynomials say how an agent moves at all times: their rows are samples, and `TrajectoryFile::curves` has
 /// the motion itself.
@@ -45,6 +46,11 @@ struct TrajectoryOptions {
   std::string format;       ///< a name of `trajectory_formats()`; empty: chosen by content
   double frame_rate = 0.0;  ///< frames a second, of files that count frames; 0: as the file says, else 1
   double scale = 1.0;       ///< m, > 0: of the file's unit of length
+  /// Recorded robots on wheels: rows have the axle's centre and the heading, without a velocity, and robots with a
+  /// footprint are read too. Otherwise rows have the reference point, about which the disc of `TrajectoryFile::radii`
+  /// is, and robots with a footprint are refused, since their disc is larger than their body.
+  bool at_axles = false;
+  bool one_velocity = false;  ///< a second velocity at one time and place is refused
 };
 
 /// What a file says besides its rows.
@@ -54,6 +60,7 @@ struct TrajectoryFile {
   std::string row_word = "line";                            ///< what `TrajectoryRow::line` counts
   std::vector<std::string> agents;                          ///< their ids, by number
   std::vector<double> radii;                                ///< m, of the agents; empty where the file has none
+  std::size_t on_wheels = 0;                                ///< how many agents are on wheels; of recordings only
   std::vector<formation::SceneObstacle> obstacles;          ///< that stand in the file; of recordings only
   std::vector<std::vector<geometry::CurvedMotion>> curves;  ///< of each agent, in time; only of files of polynomials
   bool in_cells = false;           ///< x counts columns and y rows of a grid, from the top; `scale` is a cell's side
