@@ -297,6 +297,8 @@ TEST(TrajectoryFile, RefusalsNameTheLine) {
       {"t,id,x,y\n1,A,1,2\n0.5,A,1,2\n", DataCode::out_of_range, "no time before that of line 2"},
       {"t,id,x,y\n1,A,1,2\n1,A,1,3\n", DataCode::out_of_range, "line 2 has another"},
       {"t,id,x,y,theta\n1,A,1,2,0\n1,A,1,2,0.5\n", DataCode::out_of_range, "a second heading at 1 s of agent A"},
+      {"t,id,x,y,theta\n0,A,1,2,0\n1e-155,A,1,2,0.5\n", DataCode::out_of_range,
+       "another heading within 1e-155 s of agent A"},
       {"t,id,x,y,theta\n1,A,1,2,\n1,A,1,2,0.5\n", DataCode::out_of_range, "line 2 has another, or none"},
       {"t,id,x,y,theta\n1,A,1,2,north\n", DataCode::number, "line 2"},
       {"t,id,x,y\n1,A,1e40,2\n", DataCode::out_of_range, "2^100"},

@@ -110,6 +110,10 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
     ++file_.repeated;
     return;
   }
+  constexpr double kLeastTurn = 1e-100;  // s: the arc of a shorter turn leaves the doubles
+  if (time - last.time < kLeastTurn && heading != last.heading && !std::isnan(heading) && !std::isnan(last.heading))
+    refuse(DataCode::out_of_range, line, "another heading within " + words(time - last.time),
+           "at least 1e-100 s for a turn; " + place_of_last() + " has the heading before");
   last = {time, metres, line, heading, metres_a_second};
   if (!std::isnan(heading)) {
     ++headings_;
