@@ -168,14 +168,30 @@ LONG = [(-1, -0.1), (0.5, -0.1), (0.5, 0.1), (-1, 0.1)]
 
 
 def test_bodies_of_robots_on_wheels_are_about_the_axle(tmp_path):
-    exactvo.simulate(BURGER).write(tmp_path / "recording.jsonl")
+    run = exactvo.simulate(BURGER)
+    run.write(tmp_path / "recording.jsonl")
     behind, beside = [exactvo.Wall([(-0.05, -0.95), (0.05, -0.95)])], [exactvo.Wall([(-0.9, -0.5), (-0.9, 1.5)])]
-    answer = exactvo.check(tmp_path, map=behind, footprint=LONG)
-    assert answer.overlaps == 1 and answer.events[0].first[0] == 0 and "places of robots on wheels are the axle's centre" in answer.notes
-    assert exactvo.check(tmp_path, map=beside, footprint=LONG).clear
     close, ahead = [exactvo.Wall([(-0.05, -0.1), (0.05, -0.1)])], [exactvo.Wall([(-0.05, 1.06), (0.05, 1.06)])]
-    assert exactvo.check(tmp_path, map=close, radius=0.105).overlaps == 1 and exactvo.check(tmp_path, map=ahead, radius=0.105).clear
-    assert exactvo.check(tmp_path, map=ahead).overlaps == 1  # the disc about the reference point
+    for given in (tmp_path, run):
+        answer = exactvo.check(given, map=behind, footprint=LONG)
+        assert answer.overlaps == 1 and answer.events[0].first[0] == 0 and "places of robots on wheels are the axle's centre" in answer.notes
+        assert exactvo.check(given, map=beside, footprint=LONG).clear
+        assert exactvo.check(given, map=close, radius=0.105).overlaps == 1
+        assert exactvo.check(given, map=ahead, radius=0.105).clear and exactvo.check(given, map=ahead, radius={"R1": 0.105}).clear
+        assert exactvo.check(given, map=ahead).overlaps == 1  # the disc about the reference point
+
+
+def test_runs_with_a_footprint_are_refused_without_one(tmp_path):
+    body = {**BURGER["robots"][0], "footprint": {"polygon": [[-0.2, -0.1], [0.05, -0.1], [0.05, 0.1], [-0.2, 0.1]]}}
+    del body["radius"]
+    run = exactvo.simulate({**BURGER, "robots": [body]})
+    run.write(tmp_path / "recording.jsonl")
+    for given in (tmp_path, run):
+        with pytest.raises(exactvo.DataError, match="which has a footprint") as caught:
+            exactvo.check(given)
+        assert caught.value.code == "E_SCENARIO"
+        assert exactvo.check(given, footprint=body["footprint"]["polygon"]).clear
+    assert caught.value.file == "trajectories" and str(caught.value).startswith("trajectories: ")
 
 
 def test_moving_obstacles_of_a_run_are_left_out_and_the_answer_says_so(tmp_path):

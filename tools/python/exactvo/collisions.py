@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -22,7 +23,7 @@ import numpy.typing as npt
 
 from . import _exactvo, datasets
 from ._calls import explain_calls
-from .errors import ArgumentError
+from .errors import ArgumentError, DataError
 from .shapes import Obstacles, ShapeLike, obstacles
 from .simulation import Recording
 
@@ -192,7 +193,9 @@ def check(
     unknown       what unknown cells of a ROS map are, "free" (the default, which `notes` says) or "blocked"
     radius        m: of all, or of each: by id, or in the order of the robots of an array. Grows a footprint. Of a run by
                   default its own
-    footprint     a polygon round the place, or a wall of half width `radius`; turned by theta, evenly from row to row
+    footprint     a polygon round the place, or a wall of half width `radius`; turned by theta, evenly from row to row. Of
+                  recorded robots on wheels the place is the axle's centre, also for `radius`; without both their discs are
+                  about the reference points, and a run whose scenario gives footprints is refused
     time          s, for an array of positions: one time a step
     between       what lies between rows: "straight", "hold", "cubic" (with the rows' velocities, else Catmull-Rom), "none"
     near          m: list pairs that come nearer; by default the radius, or the reach of the footprint
@@ -204,6 +207,10 @@ def check(
 
     Raises `ArgumentError`, `DataError` with the line or row, `MissingFileError`.
     """
+    if isinstance(trajectories, Recording) and _is_on_wheels(trajectories):
+        _no_time(time)
+        options = {"between": between, "near": near, "max_speed": max_speed, "max_gap": max_gap, "scale": scale}
+        return _check_on_wheels(trajectories, radius, map=map, unknown=unknown, footprint=footprint, **options)
     source, ids = _source(trajectories, time)
     notes: list[str] = []
     if isinstance(trajectories, Recording):
@@ -245,6 +252,24 @@ def check(
         bodies=tuple(BodySummary(b[0], b[1], b[2], b[3], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
         notes=(*native["notes"], *notes),
     )
+
+
+def _is_on_wheels(run: Recording) -> bool:
+    return any(robot.get("kinematics", {}).get("type") == "differential" for robot in json.loads(run.scenario.to_json())["robots"])
+
+
+def _check_on_wheels(run: Recording, radius: Any, **options: Any) -> CheckResult:
+    """As a file, which has the headings."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "recording.jsonl")
+        run.write(path)
+        try:
+            answer = check(path, radius=_radius(radius, [robot.id for robot in run.scenario.robots]), **options)
+        except DataError as error:
+            if error.file == path:
+                error.args, error.file = (str(error).replace(path, "trajectories"),), "trajectories"
+            raise
+    return replace(answer, file="trajectories")
 
 
 def trajectory_formats() -> list[str]:
