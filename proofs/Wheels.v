@@ -58,7 +58,7 @@ Proof.
     replace ((f t - ((1 - t / T) * f 0 + t / T * f T)) * T) with (f t * T - (f 0 * (T - t) + f T * t)) by (field; lra). rewrite !Rminus_0_r in k. lra.
 Qed.
 
-(* Of an axle that looks along h. *)
+(* The axle looks along h. *)
 Lemma chord_ahead o h speed w d T : dot h h = 1 -> w <> 0 -> let s := sin (w * T / 2) in let c := cos (w * T / 2) in
   let way := sub (carried o (scale speed h) w T (scale d h)) (carried o (scale speed h) w 0 (scale d h)) in
   w * w * dot way way = 4 * (s * s) * (speed * speed + w * w * (d * d)) /\ dot (left_of h) way * c = s * (dot h way + 2 * d) /\

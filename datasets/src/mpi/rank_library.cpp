@@ -120,7 +120,7 @@ class MpiRanks final : public formation::Ranks {
     return values[1];
   }
 
-  /// Of the bytes on the way each rank has filled its own; then all have all.
+  /// Each rank has filled its own part of the bytes; afterwards every rank has all of them.
   void share_bytes(const Ends& ends) {
     if (ends.back() > INT_MAX) {
       for (std::size_t r = 0; r < ends.size(); ++r) broadcast_from(r, on_the_way_.data(), begin_of(r, ends), ends[r]);

@@ -32,7 +32,7 @@ struct Link {
   Point at, way;
   Rational behind, reach;
 
-  /// Of a turn from `a` to `b`, by a right angle at most, to the left (`side` 1) or right (-1).
+  /// Judges a turn from `a` to `b`, by a right angle at most, to the left (`side` 1) or right (-1).
   Verdict over(Vec2 a, Vec2 b, int side) const {
     const Vec2 middle = geometry::normalized(a + b);
     const double half = (1.0 + 1e-12) * std::max(norm(a - middle), norm(b - middle));

@@ -31,7 +31,7 @@ void members(Codec& json, For<Codec, formation::DifferentialDrive>& drive) {
   json.member_if(drive.reference > 0.0, "reference", drive.reference);
 }
 
-/// Of a robot that moves in any direction: what stands in `radius`, without the tracking error.
+/// What a scenario writes as `radius` of a robot that moves in any direction: it leaves out the tracking error.
 inline double body_radius_of(const formation::Robot& robot) {
   return robot.body_radius > 0.0 ? robot.body_radius : robot.radius;
 }

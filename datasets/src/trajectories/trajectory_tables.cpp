@@ -96,7 +96,7 @@ Columns columns_in(const std::vector<std::string_view>& header) {
   return columns;
 }
 
-/// Of rows without a header: frames, ids and places alone.
+/// The columns of rows without a header: frames, ids and places alone.
 Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y) {
   Columns columns;
   columns.fill(kNoColumn);

@@ -48,7 +48,7 @@ const MotionRow* violated(const std::vector<MotionRow>& rows, Motion m) {
   return nullptr;
 }
 
-/// Of the square of the disc: inside, whatever is rounded.
+/// A share of the squared speed: a velocity within it is inside the disc, whatever is rounded.
 constexpr double kWithinDisc = 1.0 - 0x1p-40;
 
 /// Lattice steps.

@@ -40,7 +40,7 @@ HWY_INLINE F way_of(W wish_x, W wish_y) {
   return hn::ConvertTo(Floats(), hn::Add(bound, hn::Set(Words(), 1 + kRoundingRoom)));
 }
 
-/// Of pairs, a bit a lane.
+/// What is known of a row of pairs: bit `lane` of each word.
 struct Judged {
   std::uint32_t near = 0, clear = 0, doubtful = 0;
 };
@@ -135,7 +135,7 @@ void judge_all(const Robots& robots, const std::vector<StepsOfKind>& kinds, Near
                    : judge_lists<false>(robots, kinds, lists, clear, doubtful);
 }
 
-/// Of each pack the lanes whose safe motion is not what they wish.
+/// Finds the lanes of each pack whose safe motion is not what they wish.
 void find_asked(const Robots& robots, const std::vector<NearLists::Lanes>& packs, std::uint16_t* asked) {
   const Words d;
   for (const NearLists::Lanes& pack : packs) {

@@ -126,7 +126,7 @@ struct Rows {
 template <bool kAtRest>
 class PairLanes {
  public:
-  /// Of the robots at places a and b.
+  /// The pairs of the robots at places a and b.
   HWY_INLINE PairLanes(const MotionColumns& of, hn::Vec<Whole> a, hn::Vec<Whole> b, N radius)
       : d_{difference(of.x, a, b), difference(of.y, a, b)},
         wish_a_{gathered(of.wish_x, a), gathered(of.wish_y, a)},

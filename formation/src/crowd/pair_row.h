@@ -59,7 +59,7 @@ class PairTable {
  public:
   std::size_t size() const { return size_; }
   void clear() { size_ = 0; }
-  /// Of the robots at two places of the columns; its number. R is left to the caller.
+  /// Adds the row of the robots at two places of the columns and returns its number. The caller sets R.
   std::size_t add(std::size_t robot_a, std::size_t robot_b) {
     if (size_ + 2 * kPack > a.size()) make_room();
     a[size_] = static_cast<std::int32_t>(robot_a);

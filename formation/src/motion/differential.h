@@ -40,7 +40,7 @@ Vec2 velocity_before(const DifferentialDrive& drive, double time_step, const OnW
 /// points already or else to the left, until the heading has come round.
 Vec2 turned_aside(Vec2 heading, Vec2 preferred);
 
-/// Of `velocities_aside`.
+/// How many `velocities_aside` returns.
 inline constexpr std::size_t kVelocitiesAside = 14;
 /// Slower, and nearer to the heading, for a body that has no room to turn as fast as the wish asks; in the order of
 /// their progress along it.

@@ -17,7 +17,7 @@ using IntegerPolynomial = std::vector<mpz_class>;
 /// A positive multiple of the polynomial with these coefficients that has integers without a common divisor.
 IntegerPolynomial primitive(const std::vector<mpq_class>& coefficients);
 
-/// Of two whose coefficients have no common divisor; nor has what is returned.
+/// REQUIRES: coefficients of each without a common divisor. Those of the result have none either.
 IntegerPolynomial gcd(const IntegerPolynomial& a, const IntegerPolynomial& b);
 
 /// The same roots, each once; the last coefficient is positive. REQUIRES: not zero.

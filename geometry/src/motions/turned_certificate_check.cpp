@@ -100,8 +100,8 @@ class TurnCheck {
     return inside;
   }
 
-  /// Of each corner of a part, no more than its place along n at a time, and how far it strays from the chord of its
-  /// way in `span` s at most.
+  /// For each corner of a part a lower bound of its place along n at a time, and an upper bound of how far it strays
+  /// from the chord of its way in `span` s.
   struct Seen {
     Number lowest, stray;
   };

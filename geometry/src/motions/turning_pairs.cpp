@@ -338,7 +338,7 @@ class Examination {
     for (const Pair& pair : pairs_) least = std::min(least, distance_of(pair, time));
     return least;
   }
-  /// Of the rims. The distance of sets that overlap counts as 0, however deep they do.
+  /// The distance of the rims. That of sets that overlap counts as 0, however deep they do.
   double distance_of(const Pair& pair, double time) { return std::max(span_.gap(pair, time), -pair.reach); }
 
   /// `guess` comes first. The distance of parts that overlap counts as 0.
@@ -423,7 +423,7 @@ TurningVerdict examine(const TurningMotion& a, const RigidBody& body_a, const Tu
       if (!is_at_rest(other)) return std::nullopt;
       const Encounter found = encounter(TurningMotion{m.start, window.to, m.at, m.twist}, RigidBody{body[part]},
                                         RigidBody{other_body[other_part]}, other.at);
-      // Of more time than both have, `clear` alone holds of less.
+      // The question was about more time than both have: `clear` holds for less time too, other answers need not.
       if (m.start != window.from && found != Encounter::clear) return std::nullopt;
       return found;
     };

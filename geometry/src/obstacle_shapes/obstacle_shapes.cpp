@@ -149,7 +149,7 @@ T excess_of_slenderness(const Ellipse& e) {
 /// The ratio of the axes that frees every goal, a little less so that rounding leaves it below sqrt(2).
 constexpr double kFreeRatio = 1.41421356237309504880 * (1.0 - 0x1p-40);
 
-/// Of all ellipses with axes in that ratio along the smallest ellipse's axes, the smallest: the smallest circle round
+/// The smallest ellipse with axes in that ratio along the smallest ellipse's axes: the smallest circle round
 /// the points squeezed along the major axis.
 Ellipse smallest_free_ellipse(const std::vector<Vec2>& hull, double angle) {
   std::vector<Vec2> squeezed;

@@ -84,7 +84,7 @@ bool cross_properly(const Segment& s, const Segment& t) {
   return !lies_on(s, t.a) && !lies_on(s, t.b) && !lies_on(t, s.a) && !lies_on(t, s.b);
 }
 
-// Of two edges that are known to meet: whether their rings cross or overlap there, rather than touch in a point.
+// REQUIRES: edges that meet. Whether their rings cross or overlap there, rather than touch in a point.
 bool is_crossing(const Ring& a, std::size_t edge_a, const Ring& b, std::size_t edge_b) {
   const Segment s = {a[edge_a], a[(edge_a + 1) % a.size()]};
   const Segment t = {b[edge_b], b[(edge_b + 1) % b.size()]};

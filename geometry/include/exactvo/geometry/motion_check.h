@@ -84,8 +84,8 @@ struct MotionEvent {
   Vec2 other_at;                             ///< m, rounded: the other body's; (0, 0) for an obstacle
   double turned = 0.0;                       ///< rad, rounded: how the body is turned at that moment
   double other_turned = 0.0;                 ///< rad, rounded: how the other body is
-  /// Of two bodies of which one turns: they come nearer than clearance.high, and whether they touch or overlap is not
-  /// known. The encounter is `contact`.
+  /// Two bodies of which one turns come nearer than clearance.high, and whether they touch or overlap is not known.
+  /// The encounter is `contact`.
   bool is_open = false;
 };
 
