@@ -64,7 +64,8 @@ std::string assumption_of(const CheckedFile& asked) {
     case geometry::Between::none:
       return "only the rows count, and nothing between them";
   }
-  return "straight and uniform from each row to the next";
+  return asked.on_arcs ? "straight and uniform between rows of one heading"
+                       : "straight and uniform from each row to the next";
 }
 
 /// Infinite bounds are left out.

@@ -34,6 +34,7 @@ struct CheckedFile {
   double longest_gap = 0.0;  ///< s, may be infinite
   std::size_t samples = 0;   ///< of each move; 0: not asked
   bool has_rims = true;      ///< bodies have a radius, from whose rim depth counts; false: polygons without one
+  bool on_arcs = false;      ///< where the heading changes between rows, bodies go on the arc of a constant twist
 };
 
 /// Which overlaps a check would miss that looks at each move at so many moments, evenly spaced from its row on.

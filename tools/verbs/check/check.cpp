@@ -93,6 +93,7 @@ struct Bodies {
   double reach = 0.0;  ///< m, of the largest
   std::string words;
   bool has_rims = true;  ///< they have a radius
+  bool on_arcs = false;  ///< some turn between rows
 };
 
 /// Whether the caller says what the bodies are; otherwise they are the discs of a recording.
@@ -132,9 +133,10 @@ Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const
                     "one heading of an agent: on cubics, a footprint that turns is not decided");
     bodies.of_agent.push_back(footprint);
   }
+  bodies.on_arcs = survey.has_headings() && some_turn && flags.between == "straight";
   if (!survey.has_headings())
     bodies.words += " as given, since the file has no headings";
-  else if (some_turn && flags.between == "straight")
+  else if (bodies.on_arcs)
     bodies.words += ", which turns evenly from row to row, on the arc of a constant twist (corners rounded)";
   else
     bodies.words += some_turn ? " (corners rounded)" : ", which no agent changes (corners rounded)";
@@ -320,7 +322,8 @@ CheckedFile asked_of(const CheckFlags& flags, const TrajectoryFile& file, const 
           flags.max_speed.value_or(survey.jump_speed()),
           flags.max_gap.value_or(std::numeric_limits<double>::infinity()),
           flags.samples,
-          bodies.has_rims};
+          bodies.has_rims,
+          bodies.on_arcs};
 }
 
 /// What is made of a check beside its answer: proofs, a figure, a page, and what samples miss.
