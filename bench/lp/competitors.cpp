@@ -95,8 +95,11 @@ class Single : public Competitor {
 template <class Solve>
 class OneByOne : public Competitor {
  public:
-  OneByOne(const std::vector<lp::Problem>& problems, Solve solve)
-      : problems_(problems), answers_(problems.size()), solve_(solve) {}
+  OneByOne(const std::vector<lp::Problem>& problems, Solve solve) : answers_(problems.size()), solve_(solve) {
+    // The first copy fills the gaps of the heap: the second lies in memory in order, as arrays do.
+    const std::vector<lp::Problem> in_gaps(problems);
+    problems_ = in_gaps;
+  }
   std::size_t count() const override { return answers_.size(); }
   Answer answer(std::size_t i) const override { return answers_[i]; }
   void run() override {

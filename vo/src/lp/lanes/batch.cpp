@@ -36,7 +36,7 @@ BatchCounts run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, st
   if (!in.hard && out.active) return run(std::false_type(), std::true_type());
   if (!in.hard) return run(std::false_type(), std::false_type());
 #endif
-  return run(std::true_type(), std::true_type());
+  return run(std::true_type(), std::false_type());
 }
 
 BatchCounts run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,

@@ -21,11 +21,13 @@ namespace exactvo::lp::HWY_NAMESPACE {
 template <class T>
 using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
 
-/// kHard: some lines may be hard; kIndex: numbers of lines are asked for, or hard lines need them. Two flags and no
-/// more: every flag doubles what is compiled for every target, so what is asked once a pack is asked at run time.
+/// kHard: some lines may be hard; kIndex: numbers of lines are asked for. Hard lines are known by their numbers too,
+/// but few packs of the feasibility phase need them, and those look them up. Two flags and no more: every flag doubles
+/// what is compiled for every target, so what is asked once a pack is asked at run time.
 template <class D, bool kHard, bool kIndex>
 class Lockstep {
-  static_assert(kIndex || !kHard, "hard lines are known by their numbers");
+  static_assert(!kIndex || !kHard, "with hard lines numbers are looked up");
+  static constexpr bool kNumbers = kIndex || kHard;  ///< on the relaxation phase
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
@@ -110,8 +112,9 @@ class Lockstep {
 
   /// Two rounds, with no line and with one in the working set, then as many as it takes.
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
-    for_all(states, packs, [](PackState& w) {
+    for_all(states, packs, [this](PackState& w) {
       w.pack.derive();
+      if (kHard && out_.active) w.pack.numbered = in_.lines;
       w.pack.start();
     });
     for_all(states, packs, [this](PackState& w) { turn_away(w); });
@@ -170,7 +173,8 @@ class Lockstep {
     if (hn::AllFalse(D(), contradict)) return;
     state.searching = hn::AndNot(contradict, state.searching);
     state.pack.third = pick<kIndex>(contradict, state.pack.entering, state.pack.third);
-    start_relaxing<kHard, kIndex>(state.pack, contradict);
+    if (kHard) number_basis(state.rows, state.pack.numbered, contradict, state.pack);
+    start_relaxing<kHard, kNumbers>(state.pack, contradict);
     const M ready = hn::And(contradict, surround_zero<kHard>(state.pack));
     state.relaxing = hn::Or(state.relaxing, ready);
     state.pack.relaxing = hn::Or(state.pack.relaxing, ready);
@@ -180,7 +184,7 @@ class Lockstep {
   /// A round of the relaxation phase.
   HWY_INLINE void relax(PackState& state) {
     if (hn::AllFalse(D(), state.relaxing)) return;
-    const M other = pivot<kHard, kIndex>(state.pack, state.relaxing);
+    const M other = pivot<kHard, kNumbers>(state.pack, state.relaxing);
     state.relaxing = hn::AndNot(other, state.relaxing);
     set_aside(state, other);
   }
@@ -268,6 +272,8 @@ class Lockstep {
     states[0].begin(hn::FirstN(d, count));
     std::fill_n(states[0].ahead, 3, Ahead<T>{stage_, stage_});
     solve(states, 1);
+    leave(states[0], doubtful(states[0].pack, hn::AndNot(states[0].gone, states[0].lanes)));
+    number_optima(states[0]);
     finish_some(p, hn::AndNot(states[0].gone, states[0].lanes));
     flush_deferred();
   }
@@ -281,14 +287,24 @@ class Lockstep {
       const M lanes = hn::FirstN(d, std::min(kLanes, size - from));
       Pack<D> p;
       rare_.load(from, p);
+      if (kHard && out_.active) p.numbered = in_.lines;
       Descent<D> descent(p);
-      descent.template run<kHard, kIndex>(rare_.rows(from), lanes);
-      finish_some(p, hn::AndNot(descent.unsettled, lanes));
-      leave(p, hn::And(descent.unsettled, lanes));
+      descent.template run<kHard, kNumbers>(rare_.rows(from), lanes);
+      const M left = hn::And(lanes, hn::Or(descent.unsettled, doubtful(p, lanes)));
+      finish_some(p, hn::AndNot(left, lanes));
+      leave(p, left);
     }
   }
 
+  /// Lanes that relax and violate nothing: within the slack they contradict, but perhaps not at all. In float that is
+  /// no less true of the lines, which were rounded.
+  static HWY_INLINE M doubtful(const Pack<D>& p, M which) {
+    if (sizeof(T) < 8) return p.none();
+    return hn::And(hn::And(which, p.relaxing), hn::Le(p.level, hn::Zero(D())));
+  }
+
   void leave(PackState& state, M which) {
+    if (hn::AllFalse(D(), which)) return;
     state.gone = hn::Or(state.gone, which);
     state.answered = hn::Or(state.answered, which);
     leave(state.pack, which);
@@ -309,6 +325,8 @@ class Lockstep {
   HWY_INLINE void finish(PackState& state, std::size_t at) {
     const D d;
     const Pack<D>& p = state.pack;
+    leave(state, doubtful(p, hn::AndNot(state.gone, state.lanes)));
+    number_optima(state);
     const M done = hn::AndNot(state.gone, state.lanes);
     if (!hn::AllFalse(d, state.answered)) return finish_some(p, done);
     hn::StoreU(p.vx, d, out_.velocity_x + at);
@@ -319,10 +337,15 @@ class Lockstep {
       std::memset(out_.status + at, 0, kLanes);
     else
       for (std::size_t lane = 0; lane < kLanes; ++lane) out_.status[at + lane] = relaxed >> lane & 1U;
-    if (kIndex && out_.active) put_active(p, done);
+    if (kNumbers && out_.active) put_active(p, done);
     if (!proves()) return;
     std::memset(out_.proven + at, 1, kLanes);
     leave_unproven(p, done);
+  }
+
+  /// Lanes that did not relax have no numbers yet.
+  HWY_INLINE void number_optima(PackState& state) const {
+    if (kHard && out_.active) number_basis(state.rows, in_.lines, hn::Not(state.pack.relaxing), state.pack);
   }
 
   static HWY_INLINE V violation(const Pack<D>& p) {
@@ -346,7 +369,7 @@ class Lockstep {
       out_.status[i] = relaxed >> lane & 1U;
       if (proves()) out_.proven[i] = 1;
     }
-    if (kIndex && out_.active) put_active(p, done);
+    if (kNumbers && out_.active) put_active(p, done);
     if (proves()) leave_unproven(p, done);
   }
 

@@ -86,6 +86,7 @@ struct Pack {
   LineV<D> entering;              ///< the line violated most
   M violated;                     ///< lanes that have one
   M relaxing;                     ///< lanes on the relaxation phase
+  std::size_t numbered;  ///< among hard lines: while a lane relaxes, so many lines have numbers, the hard ones first
 
   HWY_INLINE void derive() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
@@ -93,6 +94,7 @@ struct Pack {
     noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
     disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
     disc_squared = hn::Mul(disc, disc);
+    numbered = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, hard_count)));
   }
 
   HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
@@ -148,20 +150,28 @@ struct Ahead {
 /// Which of these.
 enum class Ask { nothing, next, both };
 
-/// The line violated most a lane: by how much, and which. Three masked moves a line cost less than its number and a
-/// look at the line afterwards: they are one operation each with AVX-512, and with AVX2 on AMD's processors. Where no
-/// lane relaxes nothing is added (kExtra false).
+/// The line violated most a lane, and by how much.
+template <class D>
+struct Most {
+  hn::Vec<D> by;
+  LineV<D> line;
+};
+
+/// The same among lines from `first` to `last` too. Three masked moves a line cost less than its number and a look at
+/// the line afterwards: they are one operation each with AVX-512, and with AVX2 on AMD's processors. Where no lane
+/// relaxes nothing is added (kExtra false).
 template <bool kHard, bool kExtra, bool kNumber, Ask kAsk, class D, class T>
-HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const Ahead<T>& ahead,
-                          hn::Vec<D>& most_of_all, LineV<D>& line) {
+HWY_INLINE void find_most(const Rows<T>& rows, std::size_t first, std::size_t last, const Pack<D>& p,
+                          const Asked<D>& asked, const Ahead<T>& ahead, Most<D>& found) {
   const D d;
   using V = hn::Vec<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
-  V most = asked.allowed, ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
+  const V one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
+  V most = found.by, ex = found.line.x, ey = found.line.y, ec = found.line.c, index = found.line.index,
+    number = hn::Set(d, static_cast<T>(first));
   const T *nx = rows.x, *ny = rows.y, *c = rows.c, *beyond = ahead.beyond;
-  const std::size_t stride = rows.stride, end = rows.count * stride;
+  const std::size_t stride = rows.stride, end = last * stride;
 #pragma GCC unroll 2
-  for (std::size_t at = 0; at < end; at += stride) {  // one index for all arrays
+  for (std::size_t at = first * stride; at < end; at += stride) {  // one index for all arrays
     if (kAsk != Ask::nothing) hwy::Prefetch(ahead.next + at);
     if (kAsk == Ask::both) for_second_cache(beyond), beyond += hn::MaxLanes(D());
     const V x = hn::LoadU(d, nx + at), y = hn::LoadU(d, ny + at), offset = hn::LoadU(d, c + at);
@@ -177,34 +187,69 @@ HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>&
       number = hn::Add(number, one);
     }
   }
-  most_of_all = most;
-  line = {ex, ey, ec, index};
+  if (kExtra && !kNumber) index = pick(hn::Gt(most, found.by), hn::Set(d, T(kNoLine)), index);
+  found = {most, {ex, ey, ec, index}};
 }
 
 /// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
 /// second only the hard ones do, and soft ones count from `level` on. The level is taken off the soft ones rather than
-/// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. Without kIndex
-/// the number of the line stays what it was, which saves its cost.
+/// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. The number of
+/// the line costs a sixth of the time: it is kept with kIndex and, where hard lines are told by it, while a lane
+/// relaxes.
+///
+/// While something is asked for ahead, in the first three rounds, no lane relaxes yet: that takes three lines.
 template <bool kHard, bool kIndex, Ask kAsk, class D, class T>
 HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const Ahead<T>& ahead = {}) {
   const D d;
   using V = hn::Vec<D>;
+  const V zero = hn::Zero(d), in_search = hn::Sub(p.noise, p.slack);
+  const LineV<D> none = {zero, zero, zero, hn::Set(d, T(kNoLine))};
+  if (kAsk != Ask::nothing) {
+    Most<D> most = {in_search, none};
+    find_most<kHard, false, kIndex, kAsk>(rows, 0, rows.count, p, {in_search, zero, zero}, ahead, most);
+    p.violated = hn::Gt(most.by, in_search);
+    p.entering = {most.line.x, most.line.y, hn::Add(most.line.c, p.slack), kIndex ? most.line.index : p.entering.index};
+    return;
+  }
   const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
-  const Asked<D> asked = {pick(p.relaxing, enough, hn::Sub(p.noise, p.slack)), hn::IfThenElseZero(p.relaxing, p.slack),
+  const Asked<D> asked = {pick(p.relaxing, enough, in_search), hn::IfThenElseZero(p.relaxing, p.slack),
                           hn::IfThenElseZero(p.relaxing, hn::Neg(p.level))};
-  V most;
-  LineV<D> line;
-  if (kHard && !hn::AllFalse(d, p.relaxing))
-    find_most<kHard, true, kIndex, kAsk>(rows, p, asked, ahead, most, line);
-  else
-    find_most<kHard, false, kIndex, kAsk>(rows, p, asked, ahead, most, line);
-  p.violated = hn::Gt(most, asked.allowed);
+  Most<D> most = {asked.allowed, none};
+  if (kHard && !hn::AllFalse(d, p.relaxing)) {
+    find_most<kHard, true, true, kAsk>(rows, 0, p.numbered, p, asked, ahead, most);
+    find_most<false, true, false, kAsk>(rows, p.numbered, rows.count, p, asked, ahead, most);
+  } else {
+    find_most<kHard, false, kIndex, kAsk>(rows, 0, rows.count, p, asked, ahead, most);
+  }
+  p.violated = hn::Gt(most.by, asked.allowed);
   auto with_slack = hn::Not(p.relaxing);
-  if (kHard) with_slack = hn::Or(with_slack, hn::Lt(line.index, p.hard_count));
-  p.entering.x = line.x;
-  p.entering.y = line.y;
-  p.entering.c = hn::Add(line.c, hn::IfThenElseZero(with_slack, p.slack));
-  if (kIndex) p.entering.index = line.index;
+  if (kHard) {
+    const auto is_hard = hn::And(hn::Ge(most.line.index, zero), hn::Lt(most.line.index, p.hard_count));
+    with_slack = hn::Or(with_slack, is_hard);
+  }
+  p.entering.x = most.line.x;
+  p.entering.y = most.line.y;
+  p.entering.c = hn::Add(most.line.c, hn::IfThenElseZero(with_slack, p.slack));
+  if (kIndex || kHard) p.entering.index = most.line.index;
+}
+
+/// The numbers of the lines of the basis, in the lanes of `which`, where they were not kept: the first of the first
+/// `count` lines that is the same, or none. REQUIRES: lanes whose basis carries the slack.
+template <class D, class T>
+HWY_INLINE void number_basis(const Rows<T>& rows, std::size_t count, hn::Mask<D> which, Pack<D>& p) {
+  using V = hn::Vec<D>;
+  const D d;
+  LineV<D>* const basis[] = {&p.first, &p.second, &p.third};
+  for (LineV<D>* line : basis) line->index = pick(which, hn::Set(d, T(kNoLine)), line->index);
+  for (std::size_t k = count; k-- > 0;) {
+    const std::size_t at = k * rows.stride;
+    const V x = hn::LoadU(d, rows.x + at), y = hn::LoadU(d, rows.y + at);
+    const V c = hn::Add(hn::LoadU(d, rows.c + at), p.slack), number = hn::Set(d, static_cast<T>(k));
+    for (LineV<D>* line : basis) {
+      const auto same = hn::And(hn::Eq(line->x, x), hn::And(hn::Eq(line->y, y), hn::Eq(line->c, c)));
+      line->index = pick(hn::And(which, same), number, line->index);
+    }
+  }
 }
 
 /// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a

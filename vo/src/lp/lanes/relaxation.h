@@ -32,24 +32,24 @@ HWY_INLINE void start_relaxing(Pack<D>& p, hn::Mask<D> which) {
   p.entering = pick<kIndex>(which, p.first, p.entering);
 }
 
-/// Whether 0 lies strictly inside the triangle of the normals, which are in counter-clockwise order, and all are soft.
+/// Whether 0 lies strictly inside the triangle of the normals, which are in counter-clockwise order, and one is soft.
 template <bool kHard, class D>
 HWY_INLINE hn::Mask<D> surround_zero(const Pack<D>& p) {
   const hn::Vec<D> zero = hn::Zero(p.d);
   const auto around = hn::And(hn::Gt(cross(p.first, p.second), zero),
                               hn::And(hn::Gt(cross(p.second, p.third), zero), hn::Gt(cross(p.third, p.first), zero)));
   if (!kHard) return around;
-  return hn::And(around, hn::And(p.is_soft(p.first), hn::And(p.is_soft(p.second), p.is_soft(p.third))));
+  return hn::And(around, hn::Or(p.is_soft(p.first), hn::Or(p.is_soft(p.second), p.is_soft(p.third))));
 }
 
-/// Three soft planes whose normals surround 0 (first, second, third counter-clockwise) are lowest where they meet.
+/// Three planes or walls whose normals surround 0 (first, second, third counter-clockwise) are lowest where they meet.
 ///
-///        second .           The plane that enters takes the place of one of them: -n lies between the normals of two,
+///        second .           The one that enters takes the place of one of them: -n lies between the normals of two,
 ///              / \  n       and these two and n surround 0 again. (Where `first` enters, nothing changes.)
 ///     third . /_0_\ . first
 ///
-/// Lanes where a hard line enters, where no two lie clearly on either side, or where they meet outside the disc are
-/// given back untouched: they go on with Descent.
+/// Lanes where three walls would remain, where no two lie clearly on either side, or where they meet outside the disc
+/// are given back untouched: they go on with Descent.
 template <bool kHard, bool kIndex, class D>
 HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   using T = hn::TFromD<D>;
@@ -67,17 +67,32 @@ HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   const V by_b = pick(from_first, by_first, pick(from_second, by_second, by_third));
   const V by_c = pick(from_first, by_second, pick(from_second, by_third, by_first));
 
-  const V bx = hn::Sub(a.x, b.x), by = hn::Sub(a.y, b.y), bc = hn::Sub(a.c, b.c);
-  const V cx = hn::Sub(a.x, c.x), cy = hn::Sub(a.y, c.y), cc = hn::Sub(a.c, c.c);
-  const V inverse = hn::Div(hn::Set(d, T(1)), cross(bx, by, cx, cy));
-  const V x = hn::Mul(cross(bc, by, cc, cy), inverse);
-  const V y = hn::Mul(cross(bx, bc, cx, cc), inverse);
+  // A plane is as high as `top` on the line of their difference, a wall is its own line: two lines and where they meet.
+  LineV<D> top = a, one = {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.c, b.c), b.index},
+           two = {hn::Sub(a.x, c.x), hn::Sub(a.y, c.y), hn::Sub(a.c, c.c), c.index};
+  M good = moving;
+  if (kHard) {
+    const M soft_a = p.is_soft(a), soft_b = p.is_soft(b), soft_c = p.is_soft(c);
+    if (!hn::AllTrue(d, hn::Or(hn::And(soft_a, hn::And(soft_b, soft_c)), hn::Not(moving)))) {
+      const M b_is_top = hn::AndNot(soft_a, soft_b);
+      top = pick<false>(soft_a, a, pick<false>(b_is_top, b, c));
+      const auto against_top = [&](M soft, const LineV<D>& line) {
+        return LineV<D>{pick(soft, hn::Sub(top.x, line.x), line.x), pick(soft, hn::Sub(top.y, line.y), line.y),
+                        pick(soft, hn::Sub(top.c, line.c), line.c), line.index};
+      };
+      one = pick<false>(b_is_top, a, against_top(soft_b, b));
+      two = pick<false>(hn::Or(soft_a, b_is_top), against_top(soft_c, c), a);
+      good = hn::And(good, hn::Or(soft_a, hn::Or(soft_b, soft_c)));
+    }
+  }
+  const V inverse = hn::Div(hn::Set(d, T(1)), cross(one, two));
+  const V x = hn::Mul(cross(one.c, one.y, two.c, two.y), inverse);
+  const V y = hn::Mul(cross(one.x, one.c, two.x, two.c), inverse);
   const M between = hn::And(hn::Gt(by_b, zero), hn::Lt(by_c, zero));
-  M good = hn::And(moving, hn::And(between, hn::Le(dot(x, y, x, y), p.disc_squared)));
-  if (kHard) good = hn::And(good, p.is_soft(a));
+  good = hn::And(good, hn::And(between, hn::Le(dot(x, y, x, y), p.disc_squared)));
   p.vx = pick(good, x, p.vx);
   p.vy = pick(good, y, p.vy);
-  p.level = pick(good, excess(a, x, y), p.level);
+  p.level = pick(good, excess(top, x, y), p.level);
   p.first = pick<kIndex>(good, a, p.first);
   p.second = pick<kIndex>(good, b, p.second);
   p.third = pick<kIndex>(good, c, p.third);

@@ -153,6 +153,7 @@ HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
   pack.speed = hn::Set(d, problem.disc);
   pack.hard_count = hn::Set(d, static_cast<double>(problem.hard));
   pack.derive();
+  pack.numbered = problem.count;
 }
 
 /// The search of pack.h and relaxation.h for one problem: a register of one lane. Its lines are priced a register
@@ -191,13 +192,16 @@ class LoneSearch {
     return run(s);
   }
 
-  /// From a basis of three soft planes that surround 0, where `enters` takes the place of none.
+  /// From a basis of three soft planes that surround 0, where a hard line enters, or one that meets none of them in the
+  /// disc.
   bool relax_from(const Line& a, const Line& b, const Line& c, const Line& enters, Solution& s) {
     pack_.first = in_lane(a);
     pack_.second = in_lane(b);
     pack_.third = in_lane(c);
     pack_.entering = in_lane(enters);
-    return relax_any_basis(s);
+    relaxing_ = true;
+    pack_.relaxing = every_;
+    return pivot_on() ? run(s) : relax_any_basis(s);
   }
 
  private:
@@ -252,12 +256,14 @@ class LoneSearch {
     return !any(descent.unsettled) && answer(s);
   }
 
-  /// The search does not keep the disc in its basis; it may bind wherever a slot is free.
+  /// The search does not keep the disc in its basis; it may bind wherever a slot is free. False where nothing is
+  /// violated: within the slack lines contradict, but perhaps not at all.
   HWY_INLINE bool answer(Solution& s) const {
+    if (relaxing_ && !(hn::GetLane(pack_.level) > 0.0)) return false;
     const double x = hn::GetLane(pack_.vx), y = hn::GetLane(pack_.vy);
     s.velocity = {x, y};
     s.status = relaxing_ ? Status::relaxed : Status::optimal;
-    s.violation = relaxing_ ? std::max(hn::GetLane(pack_.level), 0.0) : 0.0;
+    s.violation = relaxing_ ? hn::GetLane(pack_.level) : 0.0;
     s.active = {};
     s.active_count = 0;
     Normals normals{};
@@ -307,9 +313,11 @@ HWY_INLINE Worst worst_of(const SingleProblem& p, double x, double y) {
 }
 
 /// Whether the multipliers of a solution prove it. Sets its violation.
-template <class D>
+template <class D, class Count = AnyCount>
 HWY_NOINLINE bool prove_in(const SingleProblem& p, Solution& s) {
-  const Worst worst = worst_of<D, AnyCount, true>(p, s.velocity.x, s.velocity.y);
+  if (s.status == Status::optimal)
+    return SingleProof(p, s.velocity, worst_of<D, Count, false>(p, s.velocity.x, s.velocity.y)).of(s);
+  const Worst worst = worst_of<D, Count, true>(p, s.velocity.x, s.velocity.y);
   if (s.status == Status::relaxed) s.violation = std::max(worst.soft, 0.0);
   return SingleProof(p, s.velocity, worst).of(s);
 }
@@ -504,8 +512,9 @@ class Slide : private Allowance {
       set_level(allowed, level + noise);
       const std::ptrdiff_t line = most_violated(D(), Count(), p_, x, y, allowed);
       if (line < 0) {
+        if (!(level > 0.0)) return false;
         const double of_a = cross(b, c), of_b = cross(c, a), of_c = cross(a, b);
-        put(s, x, y, Status::relaxed, 3, std::max(level, 0.0));
+        put(s, x, y, Status::relaxed, 3, level);
         set(s.active[0], a.index, of_a);
         set(s.active[1], b.index, of_b);
         set(s.active[2], c.index, of_c);
@@ -610,10 +619,12 @@ bool copy_lines(const Constraint* from, std::size_t count, CopiedLines to, std::
   };
   std::size_t k = 0;
   for (; k + kLanes <= count; k += kLanes) copy(from + k, k);
-  if (k < count) {
+  if (k < count && count > kLanes) {  // once more the lines before: what was just written would have to be waited for
+    copy(from + count - kLanes, count - kLanes);
+  } else if (k < count) {
     Constraint last[kLanes];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) last[lane] = from[std::min(k + lane, count - 1)];
-    copy(last, k);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) last[lane] = from[std::min(lane, count - 1)];
+    copy(last, 0);
   }
   if (!hn::AllFalse(d, bad)) return false;
   const std::uint64_t all = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
@@ -623,7 +634,8 @@ bool copy_lines(const Constraint* from, std::size_t count, CopiedLines to, std::
 }
 
 bool prove_single(const SingleProblem& p, Solution& s) {
-  return p.count <= kFewLines ? prove_in<FewLines>(p, s) : prove_in<ManyLines>(p, s);
+  if (p.count == 0 || p.count > kFewLines) return prove_in<ManyLines>(p, s);
+  return p.count > 8 ? prove_in<FewLines, UpTo12>(p, s) : prove_in<FewLines, UpTo8>(p, s);
 }
 
 }  // namespace exactvo::lp::HWY_NAMESPACE
