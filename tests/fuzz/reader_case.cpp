@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reader_case.h"
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <fstream>
+#include <limits>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "exactvo/geometry/validity.h"
 
 namespace exactvo::datasets::test {
@@ -73,8 +79,55 @@ std::string judged(const ObstacleFile& file) {
   return {};
 }
 
+/// Reads the file twice: rows of known agents, finite, in time, and the same again.
+std::string read_trajectories(const fs::path& path) {
+  TrajectoryReader reader(path.string());
+  std::vector<double> last;
+  std::string wrong;
+  std::size_t rows = 0;
+  const auto take = [&](const TrajectoryRow& row) {
+    last.resize(std::max(last.size(), reader.file().agents.size()), -std::numeric_limits<double>::infinity());
+    if (row.agent >= reader.file().agents.size()) return void(wrong = "a row of an agent that has no name");
+    if (!std::isfinite(row.time) || !is_finite(row.at)) wrong = "a row that is not finite";
+    if (row.time <= last[row.agent]) wrong = "a time that does not rise";
+    last[row.agent] = row.time;
+    ++rows;
+  };
+  const TrajectoryFile first = reader.read(take);
+  const std::size_t count = rows;
+  last.clear();
+  rows = 0;
+  if (reader.read(take).agents != first.agents || rows != count) return "another content when it is read again";
+  if (!first.radii.empty() && first.radii.size() != first.agents.size()) return "agents without a radius";
+  return wrong;
+}
+
+std::string read_crowd(const fs::path& path) {
+  CrowdRecordingReader reader(path);
+  CrowdRow row;
+  std::uint32_t step = 0;
+  for (bool is_first = true; reader.next(row); is_first = false) {
+    if (row.x.size() != reader.head().kind_of.size() || row.y.size() != row.x.size()) return "a row without all robots";
+    if (!is_first && row.step <= step) return "a step that does not rise";
+    step = row.step;
+  }
+  return {};
+}
+
+std::string read_run(const fs::path& path) {
+  std::size_t wrong = 0;
+  read_recording(path, [&](const RecordingFile& so_far, const formation::Step& row, const formation::LyapunovRow*) {
+    wrong += row.robots.size() != so_far.scenario.robots.size();
+  });
+  return wrong == 0 ? "" : "a row without all robots";
+}
+
 std::string read(const FuzzedFormat& format, const fs::path& path, bool with_repair) {
-  if (std::string(format.name) == "scenario") {
+  const std::string name = format.name;
+  if (name == "trajectories") return read_trajectories(path);
+  if (name == "crowd-recording") return read_crowd(path);
+  if (name == "recording") return read_run(path);
+  if (name == "scenario") {
     load_scenario(path);
     return {};
   }
@@ -122,6 +175,9 @@ const std::vector<FuzzedFormat>& fuzzed_formats() {
       {"scenario", ".json"},
       {"geojson-sequence", ".geojsonl", "gdal"},
       {"gdal-csv", ".csv", "gdal"},
+      {"trajectories", ".txt"},
+      {"recording", ".jsonl"},
+      {"crowd-recording", ".evr"},
   };
   return kFormats;
 }

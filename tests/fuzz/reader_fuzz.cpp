@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as an obstacle file of one format (EXACTVO_FUZZ_FORMAT): obstacles or a DataError, nothing else; the books
-// balance, and every obstacle is valid. Every other input is read with repairs.
+// Any bytes as a file of one format (EXACTVO_FUZZ_FORMAT): what reader_case.h says or a DataError, nothing else. Every
+// other input of obstacles is read with repairs.
 #include <unistd.h>
 
 #include <cstdint>
