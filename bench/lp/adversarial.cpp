@@ -2,7 +2,9 @@
 #include "adversarial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "competitor.h"
 #include "exactvo/vo/lp/certificate.h"
@@ -25,7 +27,8 @@ struct Tally {
     ++problems;
     false_infeasible += feasible && !answer.feasible;
     false_feasible += !feasible && answer.feasible;
-    excess = std::max(excess, norm(answer.velocity) / problem.bound.disc - 1.0);
+    const double speed = norm(answer.velocity);
+    excess = std::max(excess, std::isfinite(speed) ? speed / problem.bound.disc - 1.0 : HUGE_VAL);
     if (!feasible || !answer.feasible) return;
     violation = std::max(violation, worst_violation(problem.constraints, answer.velocity));
   }
@@ -73,7 +76,7 @@ nlohmann::json json_of(const std::string& family, const std::string& perturbatio
           {"false_infeasible", t.false_infeasible},
           {"false_feasible", t.false_feasible},
           {"violation", t.violation},
-          {"excess_speed", t.excess}};
+          {"excess_speed", std::min(t.excess, std::numeric_limits<double>::max())}};
 }
 
 }  // namespace

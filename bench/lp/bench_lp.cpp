@@ -166,23 +166,36 @@ std::vector<Set> sets_of(const Flags& flags) {
 /// One competitor on one set.
 struct Run {
   Entry entry;
+  std::vector<std::size_t> problems;  ///< that it is given, by their numbers in the set
   std::unique_ptr<Competitor> competitor;
   std::vector<double> times;     ///< ns a solve, one a round
   std::size_t wrong = 0;         ///< verdicts
-  double worst_violation = 0.0;  ///< m/s, in exact arithmetic, of answers rightly called feasible
+  double worst_violation = 0.0;  ///< m/s, in exact arithmetic, of answers rightly called feasible, the disc's too
   std::size_t inaccurate = 0;
 };
 
+/// What a solver throws, by its name.
+void solve(Run& run) {
+  try {
+    run.competitor->run();
+  } catch (const std::exception& error) {
+    throw std::runtime_error("the solver " + run.entry.name + " threw: " + error.what());
+  } catch (...) {
+    throw std::runtime_error("the solver " + run.entry.name + " threw what is no std::exception");
+  }
+}
+
 void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& run) {
   limit_target(run.entry);
-  run.competitor->run();
-  for (std::size_t i = 0; i < run.competitor->count(); ++i) {
-    const Answer answer = run.competitor->answer(i);
+  solve(run);
+  for (std::size_t k = 0; k < run.problems.size(); ++k) {
+    const std::size_t i = run.problems[k];
+    const Answer answer = run.competitor->answer(k);
     const bool feasible = is_feasible(truth.solutions[i]);
     run.wrong += answer.feasible != feasible;
-    if (!feasible || !answer.feasible || run.entry.rules.feasible_only) continue;
-    run.inaccurate += norm(answer.velocity - truth.solutions[i].velocity) > kInaccurate;
-    run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i].constraints, answer.velocity));
+    if (!feasible || !answer.feasible || run.entry.rules.has_box) continue;
+    run.inaccurate += !(norm(answer.velocity - truth.solutions[i].velocity) <= kInaccurate);
+    run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i], answer.velocity));
   }
 }
 
@@ -190,9 +203,9 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
 /// compared is solving, not the machine's memory.
 void time_once(Run& run, int untimed) {
   limit_target(run.entry);
-  for (int k = 0; k < untimed; ++k) run.competitor->run();
+  for (int k = 0; k < untimed; ++k) solve(run);
   const double before = thread_nanoseconds();
-  run.competitor->run();
+  solve(run);
   run.times.push_back((thread_nanoseconds() - before) / static_cast<double>(run.competitor->count()));
 }
 
@@ -214,9 +227,15 @@ std::vector<Run> enter(const Set& set, const Truth& truth) {
       std::all_of(truth.solutions.begin(), truth.solutions.end(), [](const auto& s) { return is_feasible(s); });
   for (Entry& entry : entries()) {
     if ((entry.rules.feasible_only && !all_feasible) || !limit_target(entry)) continue;
-    std::vector<lp::Problem> given = set.problems;
-    if (given.size() > entry.rules.most) given.resize(entry.rules.most);
-    Run run{entry, entry.build(given), {}, 0, 0.0, 0};
+    Run run;
+    run.entry = entry;
+    std::vector<lp::Problem> given;
+    const std::size_t all = set.problems.size(), count = std::min(all, entry.rules.most);
+    for (std::size_t k = 0; k < count; ++k) {
+      run.problems.push_back(k * all / count);
+      given.push_back(set.problems[run.problems.back()]);
+    }
+    run.competitor = entry.build(given);
     runs.push_back(std::move(run));
   }
   return runs;
@@ -226,14 +245,18 @@ void print(const Set& set, const Truth& truth, const std::vector<Run>& runs) {
   const auto feasible = std::count_if(truth.solutions.begin(), truth.solutions.end(), is_feasible);
   std::printf("\n%s: %zu problems, %td feasible, %zu by the exact stage\n", set.name.c_str(), set.problems.size(),
               feasible, truth.exact_stage);
-  std::printf("  %-20s %10s %16s %9s %13s %7s %10s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "95 %",
-              "wrong", "inaccurate", "violation");
+  std::printf("  %-20s %10s %16s %9s %13s %8s %7s %10s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "95 %",
+              "problems", "wrong", "inaccurate", "violation");
   for (const Run& run : runs) {
     const std::vector<double> ratios = ratios_of(run, runs.front());
     const Interval interval = interval_of_median(ratios);
-    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %6.2f-%6.2f %7zu %10zu %11.2g\n", run.entry.name.c_str(),
+    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %6.2f-%6.2f %8zu %7zu ", run.entry.name.c_str(),
                 quantile(run.times, 0.5), quantile(run.times, 0.1), quantile(run.times, 0.9), quantile(ratios, 0.5),
-                interval.low, interval.high, run.wrong, run.inaccurate, run.worst_violation);
+                interval.low, interval.high, run.problems.size(), run.wrong);
+    if (run.entry.rules.has_box)
+      std::printf("%10s %11s\n", "-", "-");
+    else
+      std::printf("%10zu %11.2g\n", run.inaccurate, run.worst_violation);
   }
   std::fflush(stdout);
 }
@@ -256,8 +279,9 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"p90", quantile(run.times, 0.9)},
                                  {"ratio_to_textbook", quantile(ratios, 0.5)},
                                  {"ratios", ratios},
-                                 {"problems", run.competitor->count()},
+                                 {"problems", run.problems.size()},
                                  {"wrong_verdicts", run.wrong},
+                                 {"only_verdicts", run.entry.rules.has_box},
                                  {"inaccurate", run.inaccurate},
                                  {"worst_violation", run.worst_violation}});
   }
@@ -300,6 +324,7 @@ nlohmann::json context(const Flags& flags) {
           {"compiler", __VERSION__},
           {"simd_target", lp::batch_target()},
           {"commit", EXACTVO_COMMIT},
+          {"instances", flags.instances},
           {"seed", flags.seed},
           {"rounds", flags.rounds},
           {"clock", "thread CPU time, median of the rounds, solvers interleaved"}};
@@ -314,22 +339,52 @@ void add_results(const Set& set, const Truth& truth, const std::vector<Run>& run
   results.exact_share[set.name] = static_cast<double>(truth.exact_stage) / static_cast<double>(set.problems.size());
 }
 
+/// The file of --json, opened before minutes are spent on what it is to hold. Throws std::runtime_error.
+class JsonFile {
+ public:
+  explicit JsonFile(std::string path) : path_(std::move(path)) {
+    if (path_.empty()) return;
+    out_.open(path_);
+    require_good();
+  }
+  void write(const nlohmann::json& results) {
+    if (path_.empty()) return;
+    out_ << results.dump(2) << '\n' << std::flush;
+    require_good();
+  }
+
+ private:
+  void require_good() const {
+    if (!out_) throw std::runtime_error(path_ + ": found no file that can be written, expected one");
+  }
+
+  std::string path_;
+  std::ofstream out_;
+};
+
 int adversarial(const Flags& flags) {
+  JsonFile file(flags.json);
   bool wrong = false;
-  const nlohmann::json out = {{"context", context(flags)},
-                              {"adversarial", run_adversarial(flags.adversarial, flags.seed, wrong)}};
-  if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
+  file.write({{"context", context(flags)}, {"adversarial", run_adversarial(flags.adversarial, flags.seed, wrong)}});
   return wrong ? 1 : 0;
 }
 
 int arena(const Flags& flags) {
   forced_target = flags.target;
   if (flags.adversarial > 0) return adversarial(flags);
+  JsonFile file(flags.json);
   Results results;
   nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
   std::printf("%s\n", out["context"].dump().c_str());
   bool sound = true;
-  for (const Set& set : sets_of(flags)) {
+  const std::vector<Set> sets = sets_of(flags);
+  if (std::all_of(sets.begin(), sets.end(), [](const Set& set) { return set.problems.empty(); }))
+    throw std::runtime_error("found no problem in " + flags.sets + ", expected one or more");
+  for (const Set& set : sets) {
+    if (set.problems.empty()) {
+      std::printf("\n%s: no problems\n", set.name.c_str());
+      continue;
+    }
     const Truth truth = certified(set.problems);
     std::vector<Run> runs = enter(set, truth);
     for (Run& run : runs) compare(set.problems, truth, run);
@@ -345,7 +400,7 @@ int arena(const Flags& flags) {
     print_figures(rows);
     add_json(rows, out);
   }
-  if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
+  file.write(out);
   return sound ? 0 : 1;
 }
 
@@ -356,13 +411,14 @@ void use_table(Flags& flags) {
 }
 
 constexpr const char* kFooter =
-    "FILE holds lines of JSON or binary instances, as `exactvo lp` reads them, of problems with a disc. It is the "
-    "sets\n"
-    "file, filef, filei: whole, and its feasible and infeasible part; all three are run unless --sets names some. "
-    "With\n"
-    "--table it takes the place of C10.\n"
+    "FILE holds lines of JSON, CSV or binary instances, as `exactvo lp` reads them, of problems with a disc. It is "
+    "the\n"
+    "sets file, filef, filei: whole, and its feasible and infeasible part; these three alone are run unless --sets\n"
+    "names some. With --table it takes the place of C10.\n"
     "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `inaccurate` velocities more than\n"
-    "1e-4 m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic.\n"
+    "1e-4 m/s from the exact one, `violation` is the worst of a line or the disc by a feasible answer, in exact\n"
+    "arithmetic; `-` where a solver takes the box round the disc. The status is 1 if a solver that says that it is\n"
+    "exact has a wrong verdict, whatever others have.\n"
     "docs/guide/linear-program.md says what the sets and solvers are.";
 
 /// Of the names that Highway has, those that this build and this machine have.

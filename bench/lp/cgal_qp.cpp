@@ -39,7 +39,7 @@ Answer cgal_qp(const lp::Problem& problem) {
   return {{x, CGAL::to_double(*value)}, true};
 }
 
-const Join joins("cgal-qp-Gmpzf", cgal_qp, {true, false, 256});
+const Join joins("cgal-qp-Gmpzf", cgal_qp, {true, false, 256, true});
 
 }  // namespace
 }  // namespace exactvo::bench

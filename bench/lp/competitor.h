@@ -14,6 +14,7 @@
 /// docs/guide/linear-program.md has a whole example.
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,7 +42,9 @@ class Competitor {
 struct Rules {
   bool feasible_only = false;  ///< knows no relaxation: it enters sets whose problems are all feasible
   bool exact = false;          ///< a verdict that is not the exact one ends the arena with status 1
-  std::size_t most = 4096;     ///< problems it is given at most: slow ones get fewer
+  /// Problems that it is given at most, evenly spread over the set: slow solvers take fewer.
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+  bool has_box = false;  ///< bounds the speed by the box around the disc: of its answers only verdicts are judged
 };
 
 struct Entry {
@@ -57,7 +60,8 @@ class Join {
   Join(std::string name, Answer (*solve)(const lp::Problem&), Rules rules = {});
 };
 
-/// `textbook`, this project's solvers, then those that joined, by name.
+/// `textbook`, this project's solvers, then those that joined, by name. Throws std::runtime_error where two have one
+/// name, one has none or one with a slash, or one takes no problem.
 std::vector<Entry> entries();
 
 }  // namespace exactvo::bench

@@ -2,6 +2,8 @@
 #include "competitor.h"
 
 #include <algorithm>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "exactvo/vo/lp/certificate.h"
@@ -124,17 +126,30 @@ Entry own_entry(std::string name, Rules rules) {
   return {std::move(name), rules, "", [](const std::vector<lp::Problem>& p) { return std::make_unique<Kind>(p); }};
 }
 
-constexpr std::size_t kAll = static_cast<std::size_t>(-1);
+/// Solvers that take microseconds a problem get so many at most.
+constexpr std::size_t kSlow = 4096;
 
 template <class T>
 Entry batch_entry(std::string name, std::string target, bool prove = false) {
-  return {std::move(name), {false, prove, kAll}, std::move(target), [prove](const std::vector<lp::Problem>& p) {
+  return {std::move(name), {false, prove}, std::move(target), [prove](const std::vector<lp::Problem>& p) {
             return std::make_unique<Batch<T>>(p, prove);
           }};
 }
 
 Answer answer_of(const lp::Solution& s) {
   return {s.velocity, feasible(s)};
+}
+
+void require_sound(const std::vector<Entry>& all) {
+  std::set<std::string> names;
+  for (const Entry& entry : all) {
+    if (entry.name.empty() || entry.name.find('/') != std::string::npos)
+      throw std::runtime_error("the solver \"" + entry.name + "\": expected a name, without a slash");
+    if (!names.insert(entry.name).second)
+      throw std::runtime_error("the solver \"" + entry.name + "\": found twice, expected a name of its own");
+    if (entry.rules.most == 0)
+      throw std::runtime_error("the solver \"" + entry.name + "\": takes 0 problems at most, expected 1 or more");
+  }
 }
 
 std::vector<Entry>& joined() {
@@ -150,22 +165,23 @@ Join::Join(std::string name, Answer (*solve)(const lp::Problem&), Rules rules) {
 
 std::vector<Entry> entries() {
   std::vector<Entry> all;
-  all.push_back(own_entry<Textbook>("textbook", {false, false, kAll}));
+  all.push_back(own_entry<Textbook>("textbook", {}));
   all.push_back(batch_entry<double>("batch-double", ""));
   all.push_back(batch_entry<double>("batch-certified", "", true));
   all.push_back(batch_entry<float>("batch-float", ""));
   all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
   all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));
-  all.push_back(own_entry<Single<false>>("single", {false, false, kAll}));
-  all.push_back(own_entry<Single<true>>("single-certified", {false, true, kAll}));
-  all.push_back(one_by_one("solve", {false, true, kAll}, [](const lp::Problem& p) { return answer_of(lp::solve(p)); }));
-  all.push_back(one_by_one("certified", {false, true},
+  all.push_back(own_entry<Single<false>>("single", {}));
+  all.push_back(own_entry<Single<true>>("single-certified", {false, true}));
+  all.push_back(one_by_one("solve", {false, true}, [](const lp::Problem& p) { return answer_of(lp::solve(p)); }));
+  all.push_back(one_by_one("certified", {false, true, kSlow},
                            [](const lp::Problem& p) { return answer_of(lp::solve_certified(p).solution); }));
-  all.push_back(
-      one_by_one("exact", {false, true}, [](const lp::Problem& p) { return answer_of(lp::solve_exact(p).solution); }));
+  all.push_back(one_by_one("exact", {false, true, kSlow},
+                           [](const lp::Problem& p) { return answer_of(lp::solve_exact(p).solution); }));
   std::vector<Entry> others = joined();
   std::sort(others.begin(), others.end(), [](const Entry& a, const Entry& b) { return a.name < b.name; });
   all.insert(all.end(), others.begin(), others.end());
+  require_sound(all);
   return all;
 }
 

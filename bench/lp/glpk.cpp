@@ -34,7 +34,7 @@ Answer glpk(const lp::Problem& problem) {
   return answer;
 }
 
-const Join joins("glpk", glpk, {true});
+const Join joins("glpk", glpk, {true, false, 4096, true});
 
 }  // namespace
 }  // namespace exactvo::bench

@@ -28,7 +28,16 @@ using Times = std::map<std::string, std::map<std::string, double>>;
 
 /// One solver on one set: what the page says beside its time.
 struct Accuracy {
-  double wrong = 0.0, inaccurate = 0.0, violation = 0.0;
+  double problems = 0.0, wrong = 0.0, inaccurate = 0.0, violation = 0.0;
+  bool only_verdicts = false;
+
+  void add(const json& row) {
+    problems += row.at("problems").get<double>();
+    wrong += row.at("wrong_verdicts").get<double>();
+    inaccurate += row.at("inaccurate").get<double>();
+    violation = std::max(violation, row.at("worst_violation").get<double>());
+    only_verdicts = row.at("only_verdicts");
+  }
 };
 using Accuracies = std::map<std::string, std::map<std::string, Accuracy>>;
 
@@ -75,8 +84,7 @@ Accuracies accuracies_of(const json& arena) {
   for (const json& row : arena.at("benchmarks")) {
     const std::string name = row.at("name");
     const std::size_t slash = name.find('/');
-    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.at("inaccurate"),
-                                                          row.at("worst_violation")};
+    all[name.substr(0, slash)][name.substr(slash + 1)].add(row);
   }
   return all;
 }
@@ -234,7 +242,8 @@ void write_context(std::ostream& page, const json& context) {
 struct Standing {
   std::string solver;
   std::size_t sets = 0;
-  double wrong = 0.0, ratio = 0.0;
+  Accuracy accuracy;
+  double ratio = 0.0;
   Interval interval;  ///< of `ratio`
 };
 
@@ -254,20 +263,20 @@ std::vector<double> mean_ratios(const std::vector<std::vector<double>>& of_sets)
 /// Those that took part in most sets first, the fastest first among them.
 std::vector<Standing> standings_of(const json& arena) {
   std::map<std::string, std::vector<std::vector<double>>> ratios;
-  std::map<std::string, double> wrong;
+  std::map<std::string, Accuracy> accuracies;
   for (const json& row : arena.at("benchmarks")) {
     const std::string name = row.at("name"), solver = name.substr(name.find('/') + 1);
     const auto of_rounds = row.at("ratios").get<std::vector<double>>();
     if (of_rounds.empty()) throw std::runtime_error("\"ratios\" of " + name + ": found none, expected one a round");
     ratios[solver].push_back(of_rounds);
-    wrong[solver] += row.at("wrong_verdicts").get<double>();
+    accuracies[solver].add(row);
   }
   std::vector<Standing> standings;
   for (const auto& [solver, of_sets] : ratios) {
     std::vector<double> means = mean_ratios(of_sets);
     const Interval interval = interval_of_median(means);
     std::sort(means.begin(), means.end());
-    standings.push_back({solver, of_sets.size(), wrong[solver], means[means.size() / 2], interval});
+    standings.push_back({solver, of_sets.size(), accuracies[solver], means[means.size() / 2], interval});
   }
   std::sort(standings.begin(), standings.end(), [](const Standing& a, const Standing& b) {
     return a.sets != b.sets ? a.sets > b.sets : a.ratio > b.ratio;
@@ -281,6 +290,16 @@ std::string of_context(const json& context, const char* key) {
   return escaped(found->is_string() ? found->get<std::string>() : found->dump());
 }
 
+/// Its numbers as one cell, or as three.
+void write_accuracy(std::ostream& page, const Accuracy& a, const char* between) {
+  page << "<td class=\"" << (a.wrong + a.inaccurate > 0.0 ? "bad" : "good") << "\">" << number("%.0f", a.wrong)
+       << between;
+  if (a.only_verdicts)
+    page << "-" << between << "-</td>";
+  else
+    page << number("%.0f", a.inaccurate) << between << number("%.1g", a.violation) << "</td>";
+}
+
 /// An entry shares the rank of its first entry where their intervals overlap.
 void write_ranking(std::ostream& page, const json& arena) {
   const json& context = arena.at("context");
@@ -290,9 +309,10 @@ void write_ranking(std::ostream& page, const json& arena) {
           "and "
           "the interval that holds that median with 95 % certainty. Entries share the rank of the first of them whose "
           "interval theirs overlaps; those "
-          "that took part in fewer sets follow, and are ranked among themselves.</p>\n"
+          "that took part in fewer sets follow, and are ranked among themselves. The rank says nothing of wrong "
+          "answers, which the last columns count.</p>\n"
        << "<table><tr><th>rank</th><th class=\"words\">solver</th><th>sets</th><th>times as fast</th><th>95 %</th>"
-          "<th>wrong verdicts</th></tr>\n";
+          "<th>problems</th><th>wrong verdicts</th><th>inaccurate</th><th>worst violation</th></tr>\n";
   const std::vector<Standing> standings = standings_of(arena);
   std::size_t rank = 0, place = 0;
   double leader = 0.0;  // the low end of the first of the rank
@@ -306,8 +326,9 @@ void write_ranking(std::ostream& page, const json& arena) {
     }
     page << "<tr><td>" << rank << "</td><td class=\"words\">" << escaped(s.solver) << "</td><td>" << s.sets
          << "</td><td>" << number("%.3g", s.ratio) << "</td><td>" << number("%.3g", s.interval.low)
-         << number(" to %.3g", s.interval.high) << "</td><td class=\"" << (s.wrong > 0.0 ? "bad" : "good") << "\">"
-         << number("%.0f", s.wrong) << "</td></tr>\n";
+         << number(" to %.3g", s.interval.high) << "</td><td>" << number("%.0f", s.accuracy.problems) << "</td>";
+    write_accuracy(page, s.accuracy, "</td><td>");
+    page << "</tr>\n";
   }
   page << "</table>\n";
 }
@@ -362,8 +383,10 @@ void write_accuracies(std::ostream& page, const Accuracies& all, const std::vect
           "one. "
           "<b>Inaccurate</b>: velocities, of problems rightly called feasible, more than 10<sup>-4</sup> m/s from the "
           "exact "
-          "optimum. <b>Violation</b>: the worst of a half-plane by such a velocity, m/s, in exact arithmetic; 0 where "
-          "none is broken at all. Slow solvers see a part of each set.</p>\n<table>"
+          "optimum. <b>Violation</b>: the worst of a half-plane or the disc by such a velocity, m/s, in exact "
+          "arithmetic; 0 "
+          "where none is broken at all. Solvers with a dash take the box round the disc. Slow solvers see a part of "
+          "each set, evenly spread.</p>\n<table>"
        << header_of(solvers);
   for (const auto& [set, row] : all) {
     page << "<tr><th>" << escaped(set) << "</th>";
@@ -373,9 +396,7 @@ void write_accuracies(std::ostream& page, const Accuracies& all, const std::vect
         page << "<td></td>";
         continue;
       }
-      const Accuracy& a = found->second;
-      page << "<td class=\"" << (a.wrong > 0.0 ? "bad" : "good") << "\">" << number("%.0f", a.wrong)
-           << number(" / %.0f", a.inaccurate) << number(" / %.1g", a.violation) << "</td>";
+      write_accuracy(page, found->second, " / ");
     }
     page << "</tr>\n";
   }

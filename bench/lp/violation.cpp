@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace exactvo::bench {
 namespace {
@@ -20,6 +21,7 @@ double exactly(const lp::HalfPlane& h, lp::Vec2 v) {
 }  // namespace
 
 double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 velocity) {
+  if (!is_finite(velocity)) return std::numeric_limits<double>::max();
   double worst = 0.0;
   for (const lp::Constraint& c : constraints) {
     const lp::HalfPlane& h = c.half_plane;
@@ -29,6 +31,17 @@ double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 
     worst = std::max(worst, is_decided ? rounded : exactly(h, velocity));
   }
   return worst;
+}
+
+double worst_violation(const lp::Problem& problem, lp::Vec2 velocity) {
+  const double of_lines = worst_violation(problem.constraints, velocity), disc = problem.bound.disc;
+  if (!is_finite(velocity)) return of_lines;
+  const mpq_class x = velocity.x, y = velocity.y, limit = disc;
+  const mpq_class beyond = x * x + y * y - limit * limit;
+  if (sgn(beyond) <= 0) return of_lines;
+  const double speed = std::hypot(velocity.x, velocity.y);
+  return std::max(of_lines,
+                  std::isfinite(speed) ? beyond.get_d() / (speed + disc) : std::numeric_limits<double>::max());
 }
 
 }  // namespace exactvo::bench

@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// By how much a velocity breaks half-planes, in exact arithmetic: what doubles say of an answer that lies on a line is
-/// their own rounding (5.6e-17 m/s and the like), and would hide whether a solver keeps what it says it keeps.
+/// By how much a velocity breaks half-planes and the disc, in exact arithmetic: what doubles say of an answer that lies
+/// on a line is their own rounding (5.6e-17 m/s and the like), and would hide whether a solver keeps what it says it
+/// keeps.
 
 #include <vector>
 
@@ -11,7 +12,11 @@
 
 namespace exactvo::bench {
 
-/// The largest c - n.v of the constraints, 0 where all hold, m/s times |n|. Exact in sign, truncated to double.
+/// The largest c - n.v of the constraints, 0 where all hold, m/s times |n|. Exact in sign, truncated to double; the
+/// largest double for a velocity that is not finite.
 double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 velocity);
+
+/// The same of the constraints and of the disc, |v| - disc, m/s. REQUIRES: a finite disc.
+double worst_violation(const lp::Problem& problem, lp::Vec2 velocity);
 
 }  // namespace exactvo::bench
