@@ -195,7 +195,7 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
     run.wrong += answer.feasible != feasible;
     if (!feasible || !answer.feasible || run.entry.rules.has_box) continue;
     run.inaccurate += !(norm(answer.velocity - truth.solutions[i].velocity) <= kInaccurate);
-    run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i], answer.velocity));
+    run.worst_violation = std::max(run.worst_violation, worst_breach(problems[i], answer.velocity));
   }
 }
 

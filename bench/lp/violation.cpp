@@ -30,10 +30,10 @@ double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 
     const bool is_decided = std::abs(rounded) > kUndecided * terms;
     worst = std::max(worst, is_decided ? rounded : exactly(h, velocity));
   }
-  return worst;
+  return std::min(worst, std::numeric_limits<double>::max());
 }
 
-double worst_violation(const lp::Problem& problem, lp::Vec2 velocity) {
+double worst_breach(const lp::Problem& problem, lp::Vec2 velocity) {
   const double of_lines = worst_violation(problem.constraints, velocity), disc = problem.bound.disc;
   if (!is_finite(velocity)) return of_lines;
   const mpq_class x = velocity.x, y = velocity.y, limit = disc;

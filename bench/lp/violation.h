@@ -17,6 +17,6 @@ namespace exactvo::bench {
 double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 velocity);
 
 /// The same of the constraints and of the disc, |v| - disc, m/s. REQUIRES: a finite disc.
-double worst_violation(const lp::Problem& problem, lp::Vec2 velocity);
+double worst_breach(const lp::Problem& problem, lp::Vec2 velocity);
 
 }  // namespace exactvo::bench

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <algorithm>
 
 #include "exactvo/vo/lp/certificate.h"
@@ -34,6 +36,19 @@ TEST(WorstViolation, SeesABreachOfTheLastBit) {
   EXPECT_GT(worst_violation(above_a_third, {1.0 / 3.0, 0.0}), 0.0) << "a third rounds down, 3 times that to 1";
   EXPECT_EQ(worst_violation({{{{1.0, 0.0}, 0.5}}}, {0.25, 0.0}), 0.25);
   EXPECT_EQ(worst_violation({}, {1.0, 1.0}), 0.0);
+}
+
+TEST(WorstBreach, KnowsTheDiscAndVelocitiesThatAreNoNumbers) {
+  lp::Problem problem;
+  problem.bound.disc = 1.0;
+  EXPECT_EQ(worst_breach(problem, {1.0, 0.0}), 0.0);
+  EXPECT_GT(worst_breach(problem, {1.0, 1e-9}), 0.0) << "its rounded length is 1";
+  EXPECT_EQ(worst_breach(problem, {3.0, 4.0}), 4.0);
+  const double most = std::numeric_limits<double>::max();
+  problem.constraints.push_back({{{1.0, 0.0}, 0.5}});
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(worst_breach(problem, {bad, 0.0}), most);
+  EXPECT_EQ(worst_breach(problem, {-most, -most}), most);
 }
 
 }  // namespace
