@@ -26,5 +26,5 @@ Extract Inlined Constant fst => "fst".
 Extract Inlined Constant snd => "snd".
 Extraction Inline negb.
 
-Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
+Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.hold Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
   Checked.route Checked.chain Checked.blocked Checked.starts Checked.step Checked.brakes Checked.sweep Checked.sweep_past Checked.turn_past Checked.wheels_fit edges_of.
