@@ -6,6 +6,15 @@ exception Bad
 
 let deepest = 100
 
+(* Up to 15 digits are a whole number that doubles have, and so are these powers, so that their quotient is rounded once. *)
+let powers = Array.init 16 (fun k -> float_of_string (Printf.sprintf "1e%d" k))
+let short_number s first stop =
+  let rec go m behind has_point k =
+    if k = stop then float_of_int m /. powers.(behind)
+    else if s.[k] = '.' then go m 0 true (k + 1)
+    else go (10 * m + Char.code s.[k] - Char.code '0') (if has_point then behind + 1 else 0) has_point (k + 1) in
+  if s.[first] = '-' then -. (go 0 0 false (first + 1)) else go 0 0 false first
+
 (* Names that were read before, so that most are no new strings. *)
 let names = Array.make 256 ""
 let name_at s first n =
@@ -50,8 +59,9 @@ let parse_part s (first, n) =
     if peek () = '-' then incr i;
     if peek () = '0' then incr i else digits ();
     if !i < n && s.[!i] = '.' then (incr i; digits ());
+    let is_short = !i - k <= 15 and stop = !i in
     if !i < n && (s.[!i] = 'e' || s.[!i] = 'E') then (incr i; if peek () = '-' || peek () = '+' then incr i; digits ());
-    let x = float_of_string (String.sub s k (!i - k)) in
+    let x = if is_short && !i = stop then short_number s k stop else float_of_string (String.sub s k (!i - k)) in
     if Float.is_finite x then Num x else raise Bad in
   let rec value depth =
     if depth > deepest then raise Bad;

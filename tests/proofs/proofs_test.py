@@ -17,6 +17,7 @@ differential  COUNT / 4 certificates of each of seven kinds, half of them forged
               ones of each kind are `--count 800000 --seed S`
 """
 import argparse
+import atexit
 import json
 import math
 import random
@@ -48,6 +49,7 @@ class Tools:
         build, self.source = Path(flags.build).resolve(), Path(flags.source)
         self.theories, self.verify = build / "proofs", build / "bin" / "exactvo-verify"
         self.folder = Path(tempfile.mkdtemp(prefix="exactvo-proofs-"))
+        atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
         if not self.verify.exists():
             print("skipped: no exactvo-verify; Coq, OCaml or zarith is missing, or the target exactvo_verify is not built")
             sys.exit(SKIPPED)
