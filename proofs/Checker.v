@@ -1,6 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The checkers keep their promises: the kernel holds this module against Theorems.v. *)
-From ExactVO Require Theorems HalfPlane Program Route Step Braking Sweep Turn Wheels.
+From ExactVO Require Theorems HalfPlane Bodies Program Route Step Braking Sweep Turn Wheels.
 
 Module Checked <: Theorems.Verifier.
   Definition half_plane_holds := HalfPlane.half_plane_holds.
@@ -9,6 +9,8 @@ Module Checked <: Theorems.Verifier.
   Definition pair_sound := HalfPlane.pair_sound.
   Definition contains := HalfPlane.contains.
   Definition contains_sound := HalfPlane.contains_sound.
+  Definition hold := Bodies.hold.
+  Definition hold_sound := Bodies.hold_sound.
   Definition nearest := Program.nearest.
   Definition farthest := Program.farthest.
   Definition least := Program.least.

@@ -49,6 +49,19 @@ Proof. vm_compute. reflexivity. Qed.
 Example a_corner_moved_outward : contains round_the_box [(d 8962163258467287 52, d (-1) 0); (d 4 0, d (-1) 0); (d 4 0, d 1 0); (d 2 0, d 1 0)] 0 = false.
 Proof. vm_compute. reflexivity. Qed.
 
+(* --- Bodies that stand for an obstacle: two convex pieces of an L, and a wall in a disc --- *)
+Definition corner_of_walls : obstacle := Solid [[(d 0 0, d 0 0); (d 4 0, d 0 0); (d 4 0, d 1 0); (d 1 0, d 1 0); (d 1 0, d 4 0); (d 0 0, d 4 0)]].
+Definition lying : shape := Polygon [(d 0 0, d 0 0); (d 4 0, d 0 0); (d 4 0, d 1 0); (d 0 0, d 1 0)].
+Definition standing (top : Q) : shape := Polygon [(d 0 0, d 0 0); (d 1 0, d 0 0); (d 1 0, top); (d 0 0, top)].
+Example the_pieces_hold_it : hold [lying; standing (d 4 0)] corner_of_walls = true.
+Proof. vm_compute. reflexivity. Qed.
+Example a_piece_is_too_short : hold [lying; standing (d 17592186044415 42)] corner_of_walls = false.
+Proof. vm_compute. reflexivity. Qed.
+Example the_disc_holds_the_wall : hold [Disc (d 0 0, d 0 0) (d 5 0)] (Wall [(d 3 0, d 4 0); (d (-5) 0, d 0 0)]) = true.
+Proof. vm_compute. reflexivity. Qed.
+Example a_disc_too_small : hold [Disc (d 0 0, d 0 0) (d 5497558138879 40)] (Wall [(d 3 0, d 4 0); (d (-5) 0, d 0 0)]) = false.
+Proof. vm_compute. reflexivity. Qed.
+
 (* --- A choice: the velocity nearest the preferred one --- *)
 Definition program_nearest : program :=
   {| rows := [{| row_normal := (d (-1) 0, d 0 0); row_offset := d (-7) 2; soft := false |}];

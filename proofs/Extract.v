@@ -19,10 +19,12 @@ Extract Constant Z.eqb => "Whole.equal".
 Extract Constant Z.leb => "Whole.leq".
 Extract Constant Z.shiftr => "(fun z n -> Whole.shift_right z (Whole.to_int n))".
 Extract Constant Z.sqrt => "Whole.sqrt".  (* what it returns is squared and compared *)
+Extract Constant Z.double => "(fun z -> Whole.shift_left z 1)".
+Extract Constant Z.pred => "Whole.pred".
 Extract Constant Z.div2 => "(fun z -> Whole.shift_right z 1)".
 Extract Inlined Constant fst => "fst".
 Extract Inlined Constant snd => "snd".
 Extraction Inline negb.
 
-Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
+Extraction "checker.ml" Checked.half_plane_holds Checked.pair_holds Checked.contains Checked.hold Checked.nearest Checked.farthest Checked.least Checked.pinned Checked.contradicted
   Checked.route Checked.chain Checked.blocked Checked.starts Checked.step Checked.brakes Checked.sweep Checked.sweep_past Checked.turn_past Checked.wheels_fit edges_of.

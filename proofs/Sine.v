@@ -81,15 +81,16 @@ Qed.
 
 Lemma within x e : Rabs x <= e -> - e <= x <= e.
 Proof. intro h. unfold Rabs in h. destruct (Rcase_abs x); lra. Qed.
-(* In whole numbers of 1/g, for x up to 1/4. *)
+(* In whole numbers of 1/g, for x up to 1/4. What has a name is computed once. *)
+Definition two : Z := 2.
 Fixpoint series (g : positive) (x j : Z) (m : nat) : Z :=
-  match m with O => Zpos g | S m => Zpos g - over g (x * series g x (j + 2) m) / ((j + 1) * (j + 2)) end.
+  match m with O => Zpos g | S m => let k := Z.add j two in Zpos g - over g (x * series g x k m) / (Z.pred k * k) end.
 Lemma series_ok g X x : 8 <= IZR (Zpos g) -> 0 <= x <= / 4 -> Rabs (x * IZR (Zpos g) - IZR X) <= 2 -> forall m j, (0 <= j)%Z ->
   0 <= tail x j m <= 1 /\ Rabs (tail x j m * IZR (Zpos g) - IZR (series g X j m)) <= 4.
 Proof.
   intros g8 hx hX. induction m as [|m ih]; intros j j0.
   - cbn [tail series]. rewrite Rmult_1_l, Rminus_diag_eq, Rabs_R0 by reflexivity. lra.
-  - specialize (ih (j + 2)%Z ltac:(lia)). cbn [tail series]. rewrite over_ok, Z.div_div by nia.
+  - specialize (ih (j + 2)%Z ltac:(lia)). cbn [tail series]. unfold two. cbv zeta. replace (Z.pred (j + 2)) with (j + 1)%Z by lia. rewrite over_ok, Z.div_div by nia.
     set (V := series g X (j + 2) m) in *. set (t := tail x (j + 2) m) in *. set (k := ((j + 1) * (j + 2))%Z).
     assert (k2 : (2 <= k)%Z) by (unfold k; nia). assert (q0 : (0 < Zpos g * k)%Z) by lia.
     pose proof (div_low (X * V) _ q0) as lo. pose proof (div_high (X * V) _ q0) as hi. set (u := (X * V / (Zpos g * k))%Z) in *. clearbody u k V t.
@@ -190,7 +191,7 @@ Proof.
 Qed.
 
 Definition doubled (g : positive) (x : near_circle) : near_circle := let '(s, c, e) := x in
-  (over g (2 * (s * c)), over g (2 * (c * c)) - Zpos g, 5 * e + 1)%Z.
+  (over g (Z.double s * c), over g (Z.double c * c) - Zpos g, 5 * e + 1)%Z.
 
 Lemma product_near G a b u v e : 0 < G -> 0 <= e -> 2 * e <= G -> Rabs u <= G -> Rabs v <= G -> Rabs (u - a) <= e -> Rabs (v - b) <= e ->
   Rabs (2 * (u * v) - 2 * (a * b)) <= 5 * e * G.
@@ -208,7 +209,8 @@ Proof.
 Qed.
 Lemma doubled_ok g x a : encloses g x (sin a) (cos a) -> (2 * snd x <= Zpos g)%Z -> encloses g (doubled g x) (sin (2 * a)) (cos (2 * a)).
 Proof.
-  destruct x as [[s c] e]. unfold encloses, doubled. cbn [snd]. rewrite !over_ok. intros [hs hc] he. apply IZR_le in he. rewrite mult_IZR in he.
+  destruct x as [[s c] e]. unfold encloses, doubled. cbn [snd]. rewrite !over_ok.
+  assert (twice : forall u v, (Z.double u * v = 2 * (u * v))%Z) by (intros u v; rewrite Z.double_spec; lia). rewrite !twice. clear twice. intros [hs hc] he. apply IZR_le in he. rewrite mult_IZR in he.
   assert (gp : (0 < Zpos g)%Z) by reflexivity. assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity).
   pose proof (div_low (2 * (s * c)) (Zpos g) gp) as q1. pose proof (div_high (2 * (s * c)) (Zpos g) gp) as q2.
   pose proof (div_low (2 * (c * c)) (Zpos g) gp) as q3. pose proof (div_high (2 * (c * c)) (Zpos g) gp) as q4.
@@ -227,11 +229,12 @@ Proof.
 Qed.
 
 (* Angles >= 0 that k halvings make small. *)
+Definition is_small (a : Q) : bool := Z.leb (Z.double (Qnum a)) (Zpos (Qden a)).   (* up to 1/2 *)
 Fixpoint halved (g : positive) (k : nat) (a : Q) : option near_circle :=
-  if qle a (1 # 2) then Some (of_small g a)
+  if is_small a then Some (of_small g a)
   else match k with
     | O => None
-    | S k => match halved g k (Qmake (Qnum a) (2 * Qden a)) with
+    | S k => match halved g k (Qmake (Qnum a) (xO (Qden a))) with
         | Some x => if Z.leb (2 * snd x) (Zpos g) then Some (doubled g x) else None
         | None => None
         end
@@ -242,15 +245,17 @@ Definition circle (g : positive) (a : Q) : option near_circle :=
 
 Lemma halved_ok g k : apt g (terms g) -> forall a x, 0 <= Q2R a -> halved g k a = Some x -> encloses g x (sin (Q2R a)) (cos (Q2R a)).
 Proof.
-  intro ap. assert (small : forall a, qle a (1 # 2) = true -> 0 <= Q2R a -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a))).
-  { intros a h a0. apply qle_R in h. apply of_small_ok; [assumption|]. unfold Q2R at 2 in h; simpl in h. lra. }
-  induction k as [|k ih]; intros a x a0 h; cbn [halved] in h; destruct (qle a (1 # 2)) eqn:e.
+  intro ap. assert (small : forall a, is_small a = true -> 0 <= Q2R a -> encloses g (of_small g a) (sin (Q2R a)) (cos (Q2R a))).
+  { intros a h a0. apply of_small_ok; [assumption|]. split; [assumption|]. unfold is_small in h. rewrite Z.double_spec in h. apply Z.leb_le, IZR_le in h. rewrite mult_IZR in h.
+    assert (0 < IZR (Zpos (Qden a))) by (apply IZR_lt; reflexivity). unfold Q2R. apply Rmult_le_reg_r with (IZR (Zpos (Qden a))); [assumption|].
+    replace (IZR (Qnum a) * / IZR (Zpos (Qden a)) * IZR (Zpos (Qden a))) with (IZR (Qnum a)) by (field; lra). lra. }
+  induction k as [|k ih]; intros a x a0 h; cbn [halved] in h; destruct (is_small a) eqn:e.
   - injection h as h. subst. now apply small.
   - discriminate.
   - injection h as h. subst. now apply small.
-  - destruct (halved g k (Qmake (Qnum a) (2 * Qden a))) as [y|] eqn:f; [|discriminate].
-    assert (half : Q2R a = 2 * Q2R (Qmake (Qnum a) (2 * Qden a))).
-    { rewrite <- Q2R_2, <- Q2R_mul. apply Qeq_eqR. unfold Qeq, qmul; cbn [Qnum Qden]. rewrite !Pos2Z.inj_mul. ring. }
+  - destruct (halved g k (Qmake (Qnum a) (xO (Qden a)))) as [y|] eqn:f; [|discriminate].
+    assert (half : Q2R a = 2 * Q2R (Qmake (Qnum a) (xO (Qden a)))).
+    { rewrite <- Q2R_2, <- Q2R_mul. apply Qeq_eqR. unfold Qeq, qmul; cbn [Qnum Qden]. rewrite Pos2Z.inj_mul, (Pos2Z.inj_xO (Qden a)). ring. }
     destruct (Z.leb_spec (2 * snd y) (Zpos g)) as [l|]; [|discriminate]. injection h as h. subst. rewrite half.
     apply doubled_ok; [|assumption]. apply ih; [lra|assumption].
 Qed.

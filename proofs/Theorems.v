@@ -84,6 +84,8 @@ Definition crosses (x a b : vec) : bool := xorb (le (fst a) (fst x)) (le (fst b)
 Definition odd (es : list edge) (x : vec) : bool :=     (* is the number of crossings odd? *)
   fold_right (fun e sum => xorb (crosses x (real (fst e)) (real (snd e))) sum) false es.
 
+(* Bodies stand for an obstacle: every point of its edges lies in one of them. *)
+Definition held_by (bs : list shape) (o : obstacle) := forall e x, In e (edges_of o) -> on e x -> exists b, In b bs /\ inside b x.
 (* The disc has room at x: x is in no polygon, and no edge is nearer than r. *)
 Definition outside (os : list obstacle) (x : vec) := forall o, In o os -> match o with Wall _ => True | Solid _ => odd (edges_of o) x = false end.
 Definition room (os : list obstacle) (r : R) (x : vec) := outside os x /\ forall o e y, In o os -> In e (edges_of o) -> on e y -> apart r x y.
@@ -185,6 +187,8 @@ Module Type Verifier.
   Parameter contains : shape -> list point -> Q -> bool.
   Parameter contains_sound : forall c l11 l21 l22 ps m, contains (Ellipse c l11 l21 l22) ps m = true ->
     forall x, hull ps x -> in_ellipse (1 - Q2R m) c l11 l21 l22 x.
+  Parameter hold : list shape -> obstacle -> bool.
+  Parameter hold_sound : forall bs o, hold bs o = true -> held_by bs o.
   Parameter nearest farthest least : program -> choice -> bool.
   Parameter nearest_sound : forall p c, nearest p c = true -> is_nearest p c.
   Parameter farthest_sound : forall p c, farthest p c = true -> is_farthest p c.

@@ -124,18 +124,21 @@ Proof.
   unfold driven, carried. rewrite !Rmult_0_r, sin_0, cos_0. destruct y, (Req_EM_T (Q2R (turns d)) 0); unfold add, scale, left_of; simpl; f_equal; field; assumption.
 Qed.
 
-(* --- Places in fractions, times the turn rate, which is no divisor then; a body that does not turn is at `times` = 1 --- *)
+(* --- Places in fractions, times the turn rate, which is no divisor then; a body that does not turn is at `times` = 1. What
+   depends on the drive alone is computed once, before a corner or a moment is given --- *)
 Definition qabs (a : Q) : Q := if qle 0 a then a else qopp a.
 Definition unity (a : Q) : Q := Qmake (Zpos (Qden a)) (Qden a).   (* 1, over the denominator of a *)
-Definition pscale (k : Q) (a : point) : point := (qmul k (fst a), qmul k (snd a)).
+Definition pscale (k : Q) (a : point) : point :=
+  let x := qmul k (fst a) in (x, Qmake (Qnum k * Qnum (snd a)) (if Pos.eqb (Qden (fst a)) (Qden (snd a)) then Qden x else Qden k * Qden (snd a))).
 Definition straight (d : drive) : bool := qeq (turns d) 0.
 Definition times (d : drive) : Q := if straight d then unity (turns d) else qabs (turns d).
 Definition aside (d : drive) : point := pscale (if qle 0 (turns d) then unity (turns d) else qopp (unity (turns d))) (pturn (heads d)).
-Definition hub (d : drive) : point := padd (pscale (times d) (place_then d)) (aside d).
-Definition arm (d : drive) (q : point) : point := if straight d then pscale (times d) q else psub (pscale (times d) q) (aside d).
-Definition pose (g : positive) (d : drive) (passed : Q) : option (point * near_circle) :=
-  if straight d then Some (padd (pscale (times d) (place_then d)) (pscale passed (heads d)), (0, Zpos g, 0)%Z)
-  else match circle g (qmul (turns d) passed) with Some c => Some (hub d, c) | None => None end.
+Definition arm (d : drive) : point -> point :=
+  let along := straight d in let k := times d in let a := aside d in fun q => let p := pscale k q in if along then p else psub p a.
+Definition pose (g : positive) (d : drive) : Q -> option (point * near_circle) :=
+  let along := straight d in let start := pscale (times d) (place_then d) in let hub := padd start (aside d) in fun passed =>
+    if along then Some (padd start (pscale passed (heads d)), (0, Zpos g, 0)%Z)
+    else match circle g (qmul (turns d) passed) with Some c => Some (hub, c) | None => None end.
 
 Lemma Q2R_abs a : Q2R (qabs a) = Rabs (Q2R a).
 Proof.
@@ -146,7 +149,10 @@ Qed.
 Lemma Q2R_unity a : Q2R (unity a) = 1.
 Proof. unfold unity, Q2R; simpl. field. apply IZR_neq. discriminate. Qed.
 Lemma real_scale k a : real (pscale k a) = scale (Q2R k) (real a).
-Proof. unfold real, pscale, scale; simpl. now rewrite !Q2R_mul. Qed.
+Proof.
+  assert (e : pscale k a = (qmul k (fst a), qmul k (snd a))); [|rewrite e; unfold real, scale; cbn [fst snd]; now rewrite !Q2R_mul].
+  unfold pscale, qmul; cbn [Qnum Qden]. destruct (Pos.eqb_spec (Qden (fst a)) (Qden (snd a))) as [e|_]; [rewrite e|]; reflexivity.
+Qed.
 Lemma real_add a b : real (padd a b) = add (real a) (real b).
 Proof. unfold real, padd, add; simpl. now rewrite !Q2R_add. Qed.
 Lemma real_turn a : real (pturn a) = left_of (real a).
@@ -170,7 +176,7 @@ Qed.
 Lemma pose_ok g d passed z c : apt g (terms g) -> pose g d passed = Some (z, c) -> exists si co, encloses g c si co /\ forall q,
   scale (Q2R (times d)) (driven d (Q2R passed) (real q)) = add (real z) (add (scale co (real (arm d q))) (scale si (left_of (real (arm d q))))).
 Proof.
-  intro ap. unfold pose, arm. destruct (straight d) eqn:h; intro e.
+  intro ap. unfold pose, arm. cbv zeta. destruct (straight d) eqn:h; intro e.
   - injection e as e1 e2. subst. exists 0, 1. split.
     + unfold encloses. rewrite Rmult_0_l, Rmult_1_l, !Rminus_diag_eq by reflexivity. rewrite Rabs_R0. lra.
     + intro q. unfold times. rewrite h. apply straight_ok in h. rewrite !real_add, !real_scale, Q2R_unity. unfold driven, carried.
@@ -178,7 +184,7 @@ Proof.
   - destruct (circle g (qmul (turns d) passed)) as [k|] eqn:f; [|discriminate]. injection e as e1 e2. subst. apply (circle_ok _ _ _ ap) in f. rewrite Q2R_mul in f.
     assert (n : Q2R (turns d) <> 0) by (intro n; apply straight_ok in n; congruence). destruct (times_ok d) as [_ t]. specialize (t n).
     exists (sin (Q2R (turns d) * Q2R passed)), (cos (Q2R (turns d) * Q2R passed)). split; [assumption|]. intro q.
-    destruct (aside_ok d) as [sign [es ea]]. unfold hub. rewrite real_sub, !real_add, !real_scale, ea, t, <- es. unfold driven, carried.
+    destruct (aside_ok d) as [sign [es ea]]. rewrite real_sub, !real_add, !real_scale, ea, t, <- es. unfold driven, carried.
     destruct (Req_EM_T (Q2R (turns d)) 0); [contradiction|]. unfold add, sub, scale, left_of; simpl. f_equal; field; assumption.
 Qed.
 
@@ -204,47 +210,50 @@ Qed.
 
 (* --- Its speed, from above, and how far it strays from a straight way --- *)
 Definition fine : positive := Pos.pow 2 128.
-Definition speed2 (d : drive) (q : point) : Q := let u := padd (pscale (unity (turns d)) (heads d)) (pscale (turns d) (pturn q)) in pdot u u.
-Definition speed (d : drive) (q : point) : Q := Qmake (Z.sqrt (up (fine * fine) (speed2 d q)) + 1) fine.
-Definition speed_known (d : drive) (q : point) : bool := let s := speed d q in qle 0 s && qle (speed2 d q) (qmul s s).
-Definition bend (d : drive) (q : point) : Q := qmul (qmul (qmul (times d) (qabs (turns d))) (speed d q)) (1 # 8).
-Lemma speed_ok d q : speed_known d q = true -> 0 <= Q2R (speed d q) /\
-  let u := moved (real (heads d)) (Q2R (turns d)) (real q) in dot u u <= Q2R (speed d q) * Q2R (speed d q).
+Definition speed2 (d : drive) : point -> Q :=
+  let v := pscale (unity (turns d)) (heads d) in fun q => let u := padd v (pscale (turns d) (pturn q)) in pdot u u.
+Definition root_above (square : Q) : Q := Qmake (Z.sqrt (up (fine * fine) square) + 1) fine.
+Definition is_above (root square : Q) : bool := qle 0 root && qle square (qmul root root).
+Definition bend (d : drive) (speed : Q) : Q := qmul (qmul (qmul (times d) (qabs (turns d))) speed) (1 # 8).
+(* No corner q is faster than v. *)
+Definition no_faster (d : drive) (q : point) (v : Q) := 0 <= Q2R v /\
+  let u := moved (real (heads d)) (Q2R (turns d)) (real q) in dot u u <= Q2R v * Q2R v.
+Lemma speed_ok d q square v : is_above v square = true -> Q2R (speed2 d q) <= Q2R square -> no_faster d q v.
 Proof.
-  unfold speed_known. cbv zeta. set (s := speed d q). unfold speed2. intro h. apply andb_true_iff in h. destruct h as [h k]. apply qle_R in h, k. rewrite Q2R_0 in h.
-  rewrite Q2R_mul, Q2R_dot, real_add, !real_scale, real_turn, Q2R_unity in k. split; [assumption|].
+  unfold is_above, no_faster. cbv zeta. unfold speed2. intros h l. apply andb_true_iff in h. destruct h as [h k]. apply qle_R in h, k. rewrite Q2R_0 in h. rewrite Q2R_mul in k.
+  apply (Rle_trans _ _ _ l) in k. rewrite Q2R_dot, real_add, !real_scale, real_turn, Q2R_unity in k. split; [assumption|].
   replace (moved (real (heads d)) (Q2R (turns d)) (real q)) with (add (scale 1 (real (heads d))) (scale (Q2R (turns d)) (left_of (real q)))); [assumption|].
   unfold moved, add, scale; simpl. f_equal; ring.
 Qed.
 
-Lemma bend_positive d q : speed_known d q = true -> 0 <= Q2R (bend d q).
+Lemma bend_positive d v : 0 <= Q2R v -> 0 <= Q2R (bend d v).
 Proof.
-  intro h. destruct (speed_ok d q h) as [v0 _]. unfold bend. rewrite !Q2R_mul, Q2R_abs. destruct (times_ok d) as [t0 _]. pose proof (Rabs_pos (Q2R (turns d))).
+  intro v0. unfold bend. rewrite !Q2R_mul, Q2R_abs. destruct (times_ok d) as [t0 _]. pose proof (Rabs_pos (Q2R (turns d))).
   apply Rmult_le_pos; [apply Rmult_le_pos; [apply Rmult_le_pos|]; lra|]. unfold Q2R; simpl. lra.
 Qed.
 
 (* --- Between two moments: what is enough at both, for a corner and an edge that reaches no farther than `far` --- *)
-Lemma enough d q n a b t far reach : speed_known d q = true -> a <= t <= b ->
-  (forall c, c = a \/ c = b -> (Q2R (times d) * reach + Q2R (bend d q) * ((b - a) * (b - a))) * sqrt (dot n n) < Q2R (times d) * dot n (driven d c (real q)) - far) ->
+Lemma enough d q v n a b t far reach : no_faster d q v -> a <= t <= b ->
+  (forall c, c = a \/ c = b -> (Q2R (times d) * reach + Q2R (bend d v) * ((b - a) * (b - a))) * sqrt (dot n n) < Q2R (times d) * dot n (driven d c (real q)) - far) ->
   forall x, Q2R (times d) * dot n x <= far -> reach * sqrt (dot n n) < dot n (driven d t (real q)) - dot n x.
 Proof.
-  intros known ht h x edge_low. destruct (times_ok d) as [t0 _]. destruct (speed_ok d q known) as [v0 v]. cbv zeta in v.
+  intros known ht h x edge_low. destruct (times_ok d) as [t0 _]. destruct known as [v0 hv]. cbv zeta in hv.
   assert (fa := h a (or_introl eq_refl)). assert (fb := h b (or_intror eq_refl)). clear h.
-  assert (eb : Q2R (bend d q) = Q2R (times d) * Rabs (Q2R (turns d)) * Q2R (speed d q) / 8).
+  assert (eb : Q2R (bend d v) = Q2R (times d) * Rabs (Q2R (turns d)) * Q2R v / 8).
   { unfold bend. rewrite !Q2R_mul, Q2R_abs. unfold Q2R at 4; simpl. field. }
   set (N := sqrt (dot n n)) in *. assert (N0 : 0 <= N) by apply sqrt_pos. assert (NN : N * N = dot n n) by (apply sqrt_sqrt, dot_self).
-  pose proof (driven_dips d n (real q) (N * (Rabs (Q2R (turns d)) * Q2R (speed d q))) a b t) as dip. cbv zeta in dip.
-  assert (dip' : Rmin (dot n (driven d a (real q))) (dot n (driven d b (real q))) - N * (Rabs (Q2R (turns d)) * Q2R (speed d q)) * ((b - a) * (b - a)) / 8
+  pose proof (driven_dips d n (real q) (N * (Rabs (Q2R (turns d)) * Q2R v)) a b t) as dip. cbv zeta in dip.
+  assert (dip' : Rmin (dot n (driven d a (real q))) (dot n (driven d b (real q))) - N * (Rabs (Q2R (turns d)) * Q2R v) * ((b - a) * (b - a)) / 8
     <= dot n (driven d t (real q))).
   { apply dip; [| |assumption].
     - apply Rmult_le_pos; [assumption|]. apply Rmult_le_pos; [apply Rabs_pos|assumption].
-    - set (W := Q2R (turns d)) in *. set (V := Q2R (speed d q)) in *. assert (WW : Rabs W * Rabs W = W * W) by (rewrite <- Rabs_mult; apply Rabs_right; nra).
+    - set (W := Q2R (turns d)) in *. set (V := Q2R v) in *. assert (WW : Rabs W * Rabs W = W * W) by (rewrite <- Rabs_mult; apply Rabs_right; nra).
       replace (N * (Rabs W * V) * (N * (Rabs W * V))) with ((Rabs W * Rabs W) * ((N * N) * (V * V))) by ring. rewrite WW, NN.
       apply Rmult_le_compat_l; [nra|]. apply Rmult_le_compat_l; [apply dot_self|assumption]. }
-  clear dip. set (T := Q2R (times d)) in *. set (L := Q2R (bend d q)) in *. set (S := b - a) in *.
+  clear dip. set (T := Q2R (times d)) in *. set (L := Q2R (bend d v)) in *. set (S := b - a) in *.
   set (F := dot n (driven d t (real q))) in *. set (fA := dot n (driven d a (real q))) in *. set (fB := dot n (driven d b (real q))) in *.
   assert (both : (T * reach + L * (S * S)) * N < T * Rmin fA fB - far) by (unfold Rmin; destruct (Rle_dec fA fB); assumption).
-  assert (curved : T * (N * (Rabs (Q2R (turns d)) * Q2R (speed d q)) * (S * S) / 8) = L * (S * S) * N) by (rewrite eb; field).
+  assert (curved : T * (N * (Rabs (Q2R (turns d)) * Q2R v) * (S * S) / 8) = L * (S * S) * N) by (rewrite eb; field).
   apply Rmult_lt_reg_l with T; [assumption|]. apply Rmult_le_compat_l with (r := T) in dip'; [|lra].
   rewrite Rmult_minus_distr_l in dip'. rewrite curved in dip'. lra.
 Qed.
@@ -255,9 +264,9 @@ Proof.
   { apply hull_below with (2 := hx). intros y [ey|[ey|[]]]; subst; [apply Rmax_l|apply Rmax_r]. }
   rewrite (RmaxRmult _ _ T (Rlt_le _ _ t0)). apply Rmult_le_compat_l; lra.
 Qed.
-Definition clear_between (d : drive) (p : part) (e : edge) (s : separation) :=
+Definition clear_between (d : drive) (p : part) (e : edge) (s : separation) := exists n,
   forall t, Q2R (since s) - Q2R (sets_out d) <= t <= Q2R (until s) - Q2R (sets_out d) -> forall q x, In q (corners p) -> on e x ->
-  Q2R (reach p) * sqrt (dot (real (direction s)) (real (direction s))) < dot (real (direction s)) (driven d t (real q)) - dot (real (direction s)) x.
+  Q2R (reach p) * sqrt (dot n n) < dot n (driven d t (real q)) - dot n x.
 
 (* --- One separation, as exactly as sines go --- *)
 Definition times_edge (d : drive) (e : edge) : edge := (pscale (times d) (fst e), pscale (times d) (snd e)).
@@ -269,29 +278,29 @@ Definition clears (g : positive) (d : drive) (p : part) (e : edge) (s : separati
       let span := qsub (until s) (since s) in let span2 := qmul span span in let whole := Qmake (Zpos g) 1 in
       let its_reach := qmul (times d) (reach p) in let w := qmul (times d) (width s) in
       forallb (fun q =>
-        let a := arm d q in let b := qmul (bend d q) span2 in let r := qmul whole (qadd (lift (Qden b) its_reach) b) in let w := qmul whole (lift (Qden b) w) in
-        wide n r w (Some (gap_of g n far z0 c0 a)) && wide n r w (Some (gap_of g n far z1 c1 a))) (corners p)
+        let a := arm d q in let square := speed2 d q in let v := root_above square in let b := qmul (bend d v) span2 in let r := qmul whole (qadd (lift (Qden b) its_reach) b) in let w := qmul whole (lift (Qden b) w) in
+        is_above v square && wide n r w (Some (gap_of g n far z0 c0 a)) && wide n r w (Some (gap_of g n far z1 c1 a))) (corners p)
   | _, _ => false
   end.
 
-Lemma clears_ok g d p e s : apt g (terms g) -> clears g d p (times_edge d e) s = true -> 0 <= Q2R (reach p) -> (forall q, In q (corners p) -> speed_known d q = true) ->
-  clear_between d p e s.
+Lemma clears_ok g d p e s : apt g (terms g) -> clears g d p (times_edge d e) s = true -> 0 <= Q2R (reach p) -> clear_between d p e s.
 Proof.
-  unfold clears. intros ap h r0 known t ht q x hq hx. apply andb_true_iff in h. destruct h as [w0 h]. apply qle_R in w0. rewrite Q2R_0 in w0.
+  unfold clears. intros ap h r0. exists (real (direction s)). intros t ht q x hq hx. apply andb_true_iff in h. destruct h as [w0 h]. apply qle_R in w0. rewrite Q2R_0 in w0.
   destruct (pose g d (qsub (since s) (sets_out d))) as [[z0 c0]|] eqn:e0; [|discriminate].
   destruct (pose g d (qsub (until s) (sets_out d))) as [[z1 c1]|] eqn:e1; [|discriminate].
   cbv zeta in h. rewrite forallb_forall in h. specialize (h q hq). unfold times_edge in h; cbn [fst snd] in h.
   set (n := direction s) in *. set (far := qmax _ _) in h. set (span := qsub (until s) (since s)) in *. set (whole := Qmake (Zpos g) 1) in *.
-  set (b := qmul (bend d q) (qmul span span)) in *. set (r := qmul whole (qadd _ b)) in *. set (w := qmul whole (lift _ _)) in *.
-  apply andb_true_iff in h. destruct h as [h0 h1].
+  set (v := root_above (speed2 d q)) in *. set (b := qmul (bend d v) (qmul span span)) in *. set (r := qmul whole (qadd _ b)) in *. set (w := qmul whole (lift _ _)) in *.
+  apply andb_true_iff in h. destruct h as [h h1]. apply andb_true_iff in h. destruct h as [known h0].
+  apply (speed_ok d q (speed2 d q)) in known; [|apply Rle_refl]. assert (v0 := proj1 known).
   apply (pose_ok _ _ _ _ _ ap) in e0, e1. destruct e0 as [s0 [k0 [n0 p0]]], e1 as [s1 [k1 [n1 p1]]]. specialize (p0 q). specialize (p1 q). rewrite Q2R_sub in p0, p1.
-  destruct (times_ok d) as [t0 _]. destruct (speed_ok d q (known q hq)) as [v0 _].
+  destruct (times_ok d) as [t0 _].
   assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity).
-  pose proof (bend_positive d q (known q hq)) as b0.
+  pose proof (bend_positive d v v0) as b0.
   assert (sp : Q2R span = Q2R (until s) - Q2R (since s)) by (unfold span; apply Q2R_sub).
-  assert (er : Q2R r = IZR (Zpos g) * (Q2R (times d) * Q2R (reach p) + Q2R (bend d q) * (Q2R span * Q2R span))).
+  assert (er : Q2R r = IZR (Zpos g) * (Q2R (times d) * Q2R (reach p) + Q2R (bend d v) * (Q2R span * Q2R span))).
   { unfold r, whole, b. now rewrite Q2R_mul, Q2R_whole, Q2R_add, Q2R_lift, !Q2R_mul. }
-  assert (r0' : 0 <= Q2R (times d) * Q2R (reach p) + Q2R (bend d q) * (Q2R span * Q2R span)).
+  assert (r0' : 0 <= Q2R (times d) * Q2R (reach p) + Q2R (bend d v) * (Q2R span * Q2R span)).
   { apply Rplus_le_le_0_compat; [apply Rmult_le_pos; lra|apply Rmult_le_pos; [assumption|nra]]. }
   assert (rr : 0 <= Q2R r) by (rewrite er; apply Rmult_le_pos; lra).
   assert (ww : 0 <= Q2R w) by (unfold w, whole; rewrite Q2R_mul, Q2R_whole, Q2R_lift, Q2R_mul; apply Rmult_le_pos; [lra|apply Rmult_le_pos; lra]).
@@ -299,7 +308,7 @@ Proof.
   injection f0 as f0. injection f1 as f1. pose proof (gap_of_ok g n far z0 c0 (arm d q) s0 k0 n0) as a0. pose proof (gap_of_ok g n far z1 c1 (arm d q) s1 k1 n1) as a1.
   rewrite f0, <- p0 in a0. rewrite f1, <- p1 in a1. rewrite dot_scale in a0, a1.
   apply root_times in m0; [|assumption|assumption]. apply root_times in m1; [|assumption|assumption]. rewrite er in m0, m1.
-  apply (enough d q (real n) _ _ t (Q2R far) (Q2R (reach p)) (known q hq) ht); [|now apply edge_far].
+  apply (enough d q v (real n) _ _ t (Q2R far) (Q2R (reach p)) known ht); [|now apply edge_far].
   replace (Q2R (until s) - Q2R (sets_out d) - (Q2R (since s) - Q2R (sets_out d))) with (Q2R span) by (rewrite sp; ring).
   intros c [ec|ec]; subst c; apply Rmult_lt_reg_l with (IZR (Zpos g)); try assumption.
   - apply Rlt_le_trans with (2 := a0). lra.
@@ -316,13 +325,13 @@ Fixpoint pairs_in (d : positive) (l : list point) : option (list (Z * Z)) :=
   | [] => Some []
   | p :: r => match pair_in d p, pairs_in d r with Some a, Some m => Some (a :: m) | _, _ => None end
   end.
-(* Corners; the reach and the largest bend, over (coarse d d) and over coarse; the largest sum of coordinates. *)
+(* Corners; the reach and the bend of the fastest one, over (coarse d d) and over coarse; the largest sum of coordinates. *)
 Record quick := { arms : list (Z * Z); quick_reach : Z; quick_bend : Z; size_of_arms : Z }.
 Definition quickly (dd : positive) (d : drive) (p : part) : option quick :=
+  let square := fold_right (fun a m => qmax a m) 0%Q (map (speed2 d) (corners p)) in let v := root_above square in
   match pairs_in dd (map (arm d) (corners p)), number_in dd (qmul (times d) (reach p)) with
-  | Some l, Some r => Some {| arms := l; quick_reach := Zpos coarse * r;
-      quick_bend := fold_right (fun q m => zmax (up coarse (bend d q)) m) 0%Z (corners p);
-      size_of_arms := fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l |}
+  | Some l, Some r => if is_above v square then Some {| arms := l; quick_reach := Zpos coarse * r; quick_bend := up coarse (bend d v);
+      size_of_arms := fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l |} else None
   | _, _ => None
   end.
 Definition place_at := option (point * near_circle).
@@ -335,7 +344,7 @@ Definition beyond (dd : positive) (nx ny far needed size : Z) (l : list (Z * Z))
        forallb (fun a => negb (Z.leb (x * fst a + y * snd a) most)) l)%Z
   end.
 Definition clears_quickly (one dd : positive) (turn : Z) (q : quick) (ends : (Z * Z) * (Z * Z)) (s : separation) (here there : place_at) : bool :=
-  match pair_in one (direction s), number_in one (since s), number_in one (until s), number_in one (width s) with
+  match pair_in (Qden (fst (direction s))) (direction s), number_in one (since s), number_in one (until s), number_in one (width s) with
   | Some (nx, ny), Some t0, Some t1, Some w =>
       let far := zmax (nx * fst (fst ends) + ny * snd (fst ends)) (nx * fst (snd ends) + ny * snd (snd ends)) in
       let nn := nx * nx + ny * ny in let length := Z.sqrt nn + 1 in let span := t1 - t0 in
@@ -364,6 +373,11 @@ Proof.
   induction l as [|y l ih]; intro h; [destruct h|]. simpl. destruct (zmax_le (f y) (fold_right (fun x m => zmax (f x) m) 0%Z l)) as [a b].
   destruct h as [h|h]; [now subst|]. apply Rle_trans with (2 := b). now apply ih.
 Qed.
+Lemma largest_square l a : In a l -> Q2R a <= Q2R (fold_right (fun a m => qmax a m) 0%Q l).
+Proof.
+  induction l as [|b l ih]; intro h; [destruct h|]. cbn [fold_right]. rewrite Q2R_max.
+  destruct h as [h|h]; [subst; apply Rmax_l|]. apply Rle_trans with (2 := Rmax_r _ _). now apply ih.
+Qed.
 Lemma zabs_ok a : IZR (zabs a) = Rabs (IZR a).
 Proof.
   unfold zabs. destruct (Z.leb_spec 0 a) as [h|h].
@@ -374,14 +388,14 @@ Qed.
 Definition placed (g : positive) (d : drive) (t : R) (p : place_at) := forall z c, p = Some (z, c) -> exists si co, encloses g c si co /\ forall q,
   scale (Q2R (times d)) (driven d t (real q)) = add (real z) (add (scale co (real (arm d q))) (scale si (left_of (real (arm d q))))).
 
-Lemma beyond_ok dd d nx ny far needed size l t p q a (D : R) : 0 < D -> beyond dd nx ny far needed size l p = true -> placed coarse d t p ->
+Lemma beyond_ok dd d nx ny far needed size l t p q a : beyond dd nx ny far needed size l p = true -> placed coarse d t p ->
   In a l -> real (arm d q) = (IZR (fst a) / IZR (Zpos dd), IZR (snd a) / IZR (Zpos dd)) ->
   (Rabs (IZR nx) + Rabs (IZR ny)) * (Rabs (IZR (fst a)) + Rabs (IZR (snd a))) <= IZR size ->
-  IZR needed < IZR (Zpos coarse) * (IZR (Zpos dd) * (D * (Q2R (times d) * dot (IZR nx / D, IZR ny / D) (driven d t (real q)))) - IZR far).
+  IZR needed < IZR (Zpos coarse) * (IZR (Zpos dd) * (Q2R (times d) * dot (IZR nx, IZR ny) (driven d t (real q))) - IZR far).
 Proof.
-  intros D0 h hp ha ea hs. unfold beyond in h. destruct p as [[z [[s k] e]]|]; [|discriminate]. apply andb_true_iff in h. destruct h as [hz h].
+  intros h hp ha ea hs. unfold beyond in h. destruct p as [[z [[s k] e]]|]; [|discriminate]. apply andb_true_iff in h. destruct h as [hz h].
   rewrite forallb_forall in h. specialize (h a ha). rewrite negb_true_iff in h. apply Z.leb_gt in h. apply IZR_lt in h.
-  destruct (hp z (s, k, e) eq_refl) as [si [co [[hsi hco] there]]]. specialize (there q). apply (f_equal (dot (IZR nx / D, IZR ny / D))) in there.
+  destruct (hp z (s, k, e) eq_refl) as [si [co [[hsi hco] there]]]. specialize (there q). apply (f_equal (dot (IZR nx, IZR ny))) in there.
   rewrite dot_scale in there. rewrite there. clear there hp. rewrite !dot_add, !dot_scale, ea.
   assert (ez : real z = (IZR (Qnum (fst z)) / IZR (Zpos dd), IZR (Qnum (snd z)) / IZR (Zpos dd))) by (apply (pair_in_ok dd z (Qnum (fst z), Qnum (snd z))); unfold pair_in; now rewrite hz).
   rewrite ez. clear ez ea hz. rewrite !minus_IZR, !plus_IZR, !mult_IZR, !minus_IZR, !plus_IZR, !mult_IZR in h.
@@ -394,7 +408,7 @@ Proof.
   assert (e0 : 0 <= IZR e) by (apply Rle_trans with (2 := hsi), Rabs_pos).
   assert (off : IZR e * (Rabs (x * u + y * v) + Rabs (y * u - x * v)) <= IZR e * IZR size) by (apply Rmult_le_compat_l; lra).
   unfold dot, left_of; cbn [fst snd].
-  replace (E * (D * (x / D * (IZR (Qnum (fst z)) / E) + y / D * (IZR (Qnum (snd z)) / E) + (co * (x / D * (u / E) + y / D * (v / E)) + si * (x / D * (- (v / E)) + y / D * (u / E))))))
+  replace (E * (x * (IZR (Qnum (fst z)) / E) + y * (IZR (Qnum (snd z)) / E) + (co * (x * (u / E) + y * (v / E)) + si * (x * (- (v / E)) + y * (u / E)))))
     with (x * IZR (Qnum (fst z)) + y * IZR (Qnum (snd z)) + (co * (x * u + y * v) + si * (y * u - x * v))) by (field; lra).
   set (A := x * u + y * v) in *. set (B := y * u - x * v) in *.
   assert (same : (IZR k * x + IZR s * y) * u + (IZR k * y - IZR s * x) * v = IZR k * A + IZR s * B) by (unfold A, B; ring).
@@ -405,10 +419,11 @@ Lemma clears_quickly_ok one d p q e ends s here there : quickly (one * one) d p 
   pair_in (one * one) (pscale (times d) (fst e)) = Some (fst ends) -> pair_in (one * one) (pscale (times d) (snd e)) = Some (snd ends) ->
   clears_quickly one (one * one) (Qnum (times d)) q ends s here there = true ->
   placed coarse d (Q2R (since s) - Q2R (sets_out d)) here -> placed coarse d (Q2R (until s) - Q2R (sets_out d)) there ->
-  0 <= Q2R (reach p) -> (forall c, In c (corners p) -> speed_known d c = true) -> clear_between d p e s.
+  0 <= Q2R (reach p) -> clear_between d p e s.
 Proof.
-  intros hq ht he0 he1 h hh tt r0 known t htt c x hc hx. unfold clears_quickly in h.
-  destruct (pair_in one (direction s)) as [[nx ny]|] eqn:en; [|discriminate]. destruct (number_in one (since s)) as [t0|] eqn:e0; [|discriminate].
+  intros hq ht he0 he1 h hh tt r0. unfold clears_quickly in h.
+  destruct (pair_in (Qden (fst (direction s))) (direction s)) as [[nx ny]|]; [|discriminate].
+  set (n := (IZR nx, IZR ny)). exists n. intros t htt c x hc hx. destruct (number_in one (since s)) as [t0|] eqn:e0; [|discriminate].
   destruct (number_in one (until s)) as [t1|] eqn:e1; [|discriminate]. destruct (number_in one (width s)) as [w|] eqn:ew; [|discriminate]. cbv zeta in h.
   destruct (number_in one (times d)) as [tn|] eqn:et; [|congruence]. clear ht.
   assert (etn : Qnum (times d) = tn) by (unfold number_in in et; destruct (Pos.eqb (Qden (times d)) one); [now injection et|discriminate]). rewrite etn in h.
@@ -417,103 +432,108 @@ Proof.
   apply andb_true_iff in h; destruct h as [h b1]. apply andb_true_iff in h; destruct h as [h b0]. apply andb_true_iff in h; destruct h as [h nl].
   apply andb_true_iff in h; destruct h as [w0 l0]. apply Z.leb_le, IZR_le in w0, l0, nl. rewrite plus_IZR, !mult_IZR in nl.
   unfold quickly in hq. destruct (pairs_in (one * one) (map (arm d) (corners p))) as [l|] eqn:el; [|discriminate].
-  destruct (number_in (one * one) (qmul (times d) (reach p))) as [r|] eqn:er; [|discriminate]. apply (f_equal (fun o => match o with Some q => q | None => q end)) in hq.
+  destruct (number_in (one * one) (qmul (times d) (reach p))) as [r|] eqn:er; [|discriminate]. set (square := fold_right _ _ (map _ _)) in hq.
+  set (v := root_above square) in hq. destruct (is_above v square) eqn:known; [|discriminate].
+  apply (speed_ok d c square) in known; [|now apply largest_square, in_map]. assert (v0 := proj1 known). apply (f_equal (fun o => match o with Some q => q | None => q end)) in hq.
     cbv beta iota in hq. subst q.
   cbn [arms quick_reach quick_bend size_of_arms] in *.
   destruct (pairs_in_ok _ _ _ el (arm d c) (in_map _ _ _ hc)) as [a [ha ea]].
   assert (big : IZR (zabs (fst a) + zabs (snd a)) <= IZR (fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l)) by (apply (largest (fun a => zabs (fst a) + zabs
     (snd a))%Z); assumption).
-  assert (bent : IZR (up coarse (bend d c)) <= IZR (fold_right (fun q m => zmax (up coarse (bend d q)) m) 0%Z (corners p))) by (apply (largest (fun q => up coarse (bend d q))); assumption).
-  set (S := fold_right _ _ l) in *. set (B := fold_right _ _ (corners p)) in *. clearbody S B.
-  rewrite plus_IZR, !zabs_ok in big. pose proof (up_ok coarse (bend d c)) as bent'. 
+  pose proof (up_ok coarse (bend d v)) as bent. set (S := fold_right _ _ l) in *. set (B := up coarse (bend d v)) in *. clearbody S B.
+  rewrite plus_IZR, !zabs_ok in big.
   assert (hsize : (Rabs (IZR nx) + Rabs (IZR ny)) * (Rabs (IZR (fst a)) + Rabs (IZR (snd a))) <= IZR size).
   { unfold size. rewrite mult_IZR, plus_IZR, !zabs_ok. apply Rmult_le_compat_l; [|assumption]. pose proof (Rabs_pos (IZR nx)). pose proof (Rabs_pos (IZR ny)). lra. }
   assert (one0 : 0 < IZR (Zpos one)) by (apply IZR_lt; reflexivity). assert (G0 : 0 < IZR (Zpos coarse)) by (apply IZR_lt; reflexivity).
   assert (edd : IZR (Zpos (one * one)) = IZR (Zpos one) * IZR (Zpos one)) by (rewrite Pos2Z.inj_mul; apply mult_IZR).
-  pose proof (beyond_ok (one * one) d nx ny far needed size l _ here c a (IZR (Zpos one)) one0 b0 hh ha ea hsize) as k0.
-  pose proof (beyond_ok (one * one) d nx ny far needed size l _ there c a (IZR (Zpos one)) one0 b1 tt ha ea hsize) as k1.
-  apply pair_in_ok in en, he0, he1. cbn [fst snd] in en. rewrite <- en in k0, k1.
+  pose proof (beyond_ok (one * one) d nx ny far needed size l _ here c a b0 hh ha ea hsize) as k0.
+  pose proof (beyond_ok (one * one) d nx ny far needed size l _ there c a b1 tt ha ea hsize) as k1.
+  apply pair_in_ok in he0, he1. fold n in k0, k1.
   apply number_in_ok in e0, e1, ew, et, er. rewrite Q2R_mul in er.
-  assert (edge_low : Q2R (times d) * dot (real (direction s)) x <= IZR far / (IZR (Zpos one) * IZR (Zpos (one * one)))).
-  { apply Rle_trans with (1 := edge_far d (direction s) e x hx). rewrite Q2R_max, !Q2R_dot, he0, he1, en. unfold far.
+  assert (edge_low : Q2R (times d) * dot n x <= IZR far / IZR (Zpos (one * one))).
+  { assert (en : n = real (Qmake nx 1, Qmake ny 1)) by (unfold n, real; cbn [fst snd]; now rewrite !Q2R_whole). rewrite en.
+    apply Rle_trans with (1 := edge_far d (Qmake nx 1, Qmake ny 1) e x hx). rewrite Q2R_max, !Q2R_dot, he0, he1, <- en. unfold far.
     destruct (zmax_le (nx * fst (fst ends) + ny * snd (fst ends)) (nx * fst (snd ends) + ny * snd (snd ends))) as [m0 m1].
     set (f := zmax _ _) in *. clearbody f. rewrite plus_IZR, !mult_IZR in m0, m1. set (E := IZR (Zpos (one * one))) in *. assert (E0 : 0 < E) by (apply IZR_lt; reflexivity).
-    unfold dot; cbn [fst snd]. apply Rmax_lub; apply Rmult_le_reg_r with (IZR (Zpos one) * E); try nra.
-    - replace ((IZR nx / IZR (Zpos one) * (IZR (fst (fst ends)) / E) + IZR ny / IZR (Zpos one) * (IZR (snd (fst ends)) / E)) * (IZR (Zpos one) * E))
+    unfold n, dot; cbn [fst snd]. apply Rmax_lub; apply Rmult_le_reg_r with E; try assumption.
+    - replace ((IZR nx * (IZR (fst (fst ends)) / E) + IZR ny * (IZR (snd (fst ends)) / E)) * E)
         with (IZR nx * IZR (fst (fst ends)) + IZR ny * IZR (snd (fst ends))) by (field; lra).
-      replace (IZR f / (IZR (Zpos one) * E) * (IZR (Zpos one) * E)) with (IZR f) by (field; lra). assumption.
-    - replace ((IZR nx / IZR (Zpos one) * (IZR (fst (snd ends)) / E) + IZR ny / IZR (Zpos one) * (IZR (snd (snd ends)) / E)) * (IZR (Zpos one) * E))
+      replace (IZR f / E * E) with (IZR f) by (field; lra). assumption.
+    - replace ((IZR nx * (IZR (fst (snd ends)) / E) + IZR ny * (IZR (snd (snd ends)) / E)) * E)
         with (IZR nx * IZR (fst (snd ends)) + IZR ny * IZR (snd (snd ends))) by (field; lra).
-      replace (IZR f / (IZR (Zpos one) * E) * (IZR (Zpos one) * E)) with (IZR f) by (field; lra). assumption. }
-  apply (enough d c (real (direction s)) _ _ t _ (Q2R (reach p)) (known c hc) htt) with (2 := edge_low). clear edge_low.
+      replace (IZR f / E * E) with (IZR f) by (field; lra). assumption. }
+  apply (enough d c v n _ _ t _ (Q2R (reach p)) known htt) with (2 := edge_low). clear edge_low.
   destruct (times_ok d) as [T0 _]. set (T := Q2R (times d)) in *. set (D := IZR (Zpos one)) in *. set (E := IZR (Zpos (one * one))) in *. set (G := IZR (Zpos coarse)) in *.
-  set (N := sqrt (dot (real (direction s)) (real (direction s)))) in *. assert (N0 : 0 <= N) by apply sqrt_pos.
-  assert (NN : N * N = dot (real (direction s)) (real (direction s))) by (apply sqrt_sqrt, dot_self).
-  assert (NL : D * N <= IZR len).
-  { apply square_le; [assumption|]. apply Rle_trans with (2 := nl). replace (D * N * (D * N)) with (D * D * (N * N)) by ring. rewrite NN, en. unfold dot; cbn [fst snd].
-    right. field. lra. }
+  set (N := sqrt (dot n n)) in *. assert (N0 : 0 <= N) by apply sqrt_pos.
+  assert (NN : N * N = dot n n) by (apply sqrt_sqrt, dot_self).
+  assert (NL : N <= IZR len).
+  { apply square_le; [assumption|]. apply Rle_trans with (2 := nl). rewrite NN. unfold n, dot; cbn [fst snd]. right. ring. }
   replace (Q2R (until s) - Q2R (sets_out d) - (Q2R (since s) - Q2R (sets_out d))) with (IZR (t1 - t0) / D) by (rewrite e0, e1, minus_IZR; field; lra).
   set (span := IZR (t1 - t0)) in *.
   assert (hneeded : IZR needed = (G * IZR r + G * (IZR tn * IZR w) + IZR B * (span * span)) * IZR len).
   { unfold needed. rewrite mult_IZR, !plus_IZR, !mult_IZR. reflexivity. }
-  assert (E0 : 0 < E) by (apply IZR_lt; reflexivity). pose proof (bend_positive d c (known c hc)) as bp.
+  assert (E0 : 0 < E) by (apply IZR_lt; reflexivity). pose proof (bend_positive d v v0) as bp.
   assert (tn0 : 0 <= IZR tn * IZR w).
   { apply Rmult_le_pos; [|assumption]. rewrite et in T0. apply Rmult_lt_compat_r with (r := D) in T0; [|assumption].
     replace (IZR tn / D * D) with (IZR tn) in T0 by (field; lra). lra. }
   assert (rn : IZR r = T * Q2R (reach p) * E) by (rewrite er; field; lra). rewrite hneeded, rn in k0, k1.
-  assert (low : G * E * ((T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))) * (D * N)) <=
+  assert (low : G * E * ((T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))) * N) <=
     (G * (T * Q2R (reach p) * E) + G * (IZR tn * IZR w) + IZR B * (span * span)) * IZR len).
-  { assert (left : G * E * (T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))) <= G * (T * Q2R (reach p) * E) + G * (IZR tn * IZR w) + IZR B * (span * span)).
-    { assert (s2 : 0 <= span * span) by nra. replace (G * E * (T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))))
-        with (G * (T * Q2R (reach p) * E) + G * Q2R (bend d c) * (span * span)) by (rewrite edd; field; lra).
-      assert (G * Q2R (bend d c) * (span * span) <= IZR B * (span * span)) by (apply Rmult_le_compat_r; lra).
+  { assert (left : G * E * (T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))) <= G * (T * Q2R (reach p) * E) + G * (IZR tn * IZR w) + IZR B * (span * span)).
+    { assert (s2 : 0 <= span * span) by nra. replace (G * E * (T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))))
+        with (G * (T * Q2R (reach p) * E) + G * Q2R (bend d v) * (span * span)) by (rewrite edd; field; lra).
+      assert (G * Q2R (bend d v) * (span * span) <= IZR B * (span * span)) by (apply Rmult_le_compat_r; lra).
       assert (0 <= G * (IZR tn * IZR w)) by (apply Rmult_le_pos; lra). lra. }
-    assert (pos : 0 <= G * E * (T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D)))).
+    assert (pos : 0 <= G * E * (T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D)))).
     { apply Rmult_le_pos; [nra|]. apply Rplus_le_le_0_compat; [apply Rmult_le_pos; lra|]. apply Rmult_le_pos; [assumption|]. apply Rle_0_sqr. }
-    replace (G * E * ((T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))) * (D * N))) with
-      (G * E * (T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))) * (D * N)) by ring.
-    apply Rmult_le_compat; [assumption|apply Rmult_le_pos; lra|assumption|assumption]. }
-  assert (scaled : forall f, (G * (T * Q2R (reach p) * E) + G * (IZR tn * IZR w) + IZR B * (span * span)) * IZR len < G * (E * (D * (T * f)) - IZR far) ->
-    (T * Q2R (reach p) + Q2R (bend d c) * (span / D * (span / D))) * N < T * f - IZR far / (D * E)).
-  { intros f hf. assert (GED : 0 < G * E * D) by (apply Rmult_lt_0_compat; [apply Rmult_lt_0_compat|]; assumption). apply Rmult_lt_reg_l with (G * E * D); [assumption|].
-    replace (G * E * D * (T * f - IZR far / (D * E))) with (G * (E * (D * (T * f)) - IZR far)) by (field; lra).
+    replace (G * E * ((T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))) * N)) with
+      (G * E * (T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))) * N) by ring.
+    apply Rmult_le_compat; assumption. }
+  assert (scaled : forall f, (G * (T * Q2R (reach p) * E) + G * (IZR tn * IZR w) + IZR B * (span * span)) * IZR len < G * (E * (T * f) - IZR far) ->
+    (T * Q2R (reach p) + Q2R (bend d v) * (span / D * (span / D))) * N < T * f - IZR far / E).
+  { intros f hf. assert (GE : 0 < G * E) by now apply Rmult_lt_0_compat. apply Rmult_lt_reg_l with (G * E); [assumption|].
+    replace (G * E * (T * f - IZR far / E)) with (G * (E * (T * f) - IZR far)) by (field; lra).
     apply Rle_lt_trans with (2 := hf). apply Rle_trans with (2 := low). right. ring. }
   intros m [em|em]; subst m; apply scaled; assumption.
 Qed.
 
 (* --- The places at all moments, of which most are those of a moment before --- *)
 Record sided := { its : separation; here : place_at; there : place_at }.
-Fixpoint recall (g : positive) (d : drive) (known : list (Q * place_at)) (t : Q) : place_at :=
+Fixpoint recall (at_ : Q -> place_at) (known : list (Q * place_at)) (t : Q) : place_at :=
   match known with
-  | [] => pose g d (qsub t (sets_out d))
-  | (u, p) :: r => if qeq u t then p else recall g d r t
+  | [] => at_ t
+  | (u, p) :: r => if qeq u t then p else recall at_ r t
   end.
-Fixpoint places (g : positive) (d : drive) (first last before : Q * place_at) (l : list separation) : list sided :=
+Fixpoint places (at_ : Q -> place_at) (first last before : Q * place_at) (l : list separation) : list sided :=
   match l with
   | [] => []
-  | s :: r => let a := recall g d [before; first] (since s) in let b := recall g d [last; (since s, a)] (until s) in
-      {| its := s; here := a; there := b |} :: places g d first last (until s, b) r
+  | s :: r => let a := recall at_ [before; first] (since s) in let b := recall at_ [last; (since s, a)] (until s) in
+      {| its := s; here := a; there := b |} :: places at_ first last (until s, b) r
   end.
 Definition all_places (g : positive) (d : drive) (l : list separation) : list sided :=
-  let at_ t := (t, recall g d [] t) in let first := at_ (sets_out d) in places g d first (at_ (halts d)) first l.
+  let after := pose g d in let at_ t := after (qsub t (sets_out d)) in
+  let first := (sets_out d, at_ (sets_out d)) in places at_ first (halts d, at_ (halts d)) first l.
 
 Definition known_place (g : positive) (d : drive) (k : Q * place_at) := placed g d (Q2R (fst k) - Q2R (sets_out d)) (snd k).
-Lemma recall_ok g d known t : apt g (terms g) -> Forall (known_place g d) known -> known_place g d (t, recall g d known t).
+Lemma recall_ok g d at_ known t : (forall t, known_place g d (t, at_ t)) -> Forall (known_place g d) known -> known_place g d (t, recall at_ known t).
 Proof.
-  intros ap h. induction h as [|[u p] r hu hr ih]; unfold known_place; cbn [recall fst snd].
-  - intros z c e. apply (pose_ok _ _ _ _ _ ap) in e. now rewrite Q2R_sub in e.
-  - destruct (qeq u t) eqn:e; [|exact ih]. apply qeq_R in e. rewrite <- e. exact hu.
+  intros ha h. induction h as [|[u p] r hu hr ih]; cbn [recall]; [apply ha|].
+  destruct (qeq u t) eqn:e; [|exact ih]. apply qeq_R in e. unfold known_place in *; cbn [fst snd] in *. rewrite <- e. exact hu.
 Qed.
-Lemma places_ok g d first last l : apt g (terms g) -> known_place g d first -> known_place g d last -> forall before, known_place g d before ->
-  forall x, In x (places g d first last before l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
+Lemma places_ok g d at_ first last l : (forall t, known_place g d (t, at_ t)) -> known_place g d first -> known_place g d last -> forall before, known_place g d before ->
+  forall x, In x (places at_ first last before l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
 Proof.
-  intros ap hf hl. induction l as [|s r ih]; intros before hb x hx; [destruct hx|]. cbn [places] in hx.
-  set (a := recall g d [before; first] (since s)) in *. assert (ha : known_place g d (since s, a)) by (apply recall_ok; auto).
-  set (b := recall g d [last; (since s, a)] (until s)) in *. assert (hb' : known_place g d (until s, b)) by (apply recall_ok; auto).
+  intros ha hf hl. induction l as [|s r ih]; intros before hb x hx; [destruct hx|]. cbn [places] in hx.
+  set (a := recall at_ [before; first] (since s)) in *. assert (k : known_place g d (since s, a)) by (apply recall_ok; auto).
+  set (b := recall at_ [last; (since s, a)] (until s)) in *. assert (hb' : known_place g d (until s, b)) by (apply recall_ok; auto).
   destruct hx as [hx|hx]; [subst x; now split|]. now apply (ih (until s, b)).
 Qed.
 Lemma all_places_ok g d l : apt g (terms g) -> forall x, In x (all_places g d l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
-Proof. intros ap. unfold all_places. apply places_ok; try assumption; apply recall_ok; auto. Qed.
+Proof.
+  intros ap. assert (ha : forall t, known_place g d (t, pose g d (qsub t (sets_out d)))).
+  { intros t z c e. apply (pose_ok _ _ _ _ _ ap) in e. now rewrite Q2R_sub in e. }
+  unfold all_places. cbv zeta. apply places_ok; auto.
+Qed.
 
 (* --- A part and an edge, prepared for many separations --- *)
 Definition prepare (d : drive) (p : part) : part * option quick := (p, quickly (Qden (turns d) * Qden (turns d)) d p).
@@ -529,9 +549,9 @@ Definition fits (d : drive) : part * option quick -> edge * option ((Z * Z) * (Z
     end || clears grain d (fst p) (fst e) (its s).
 Lemma fits_ok d p e s : fits d (prepare d p) (prepare_edge d e) s = true ->
   known_place coarse d (since (its s), here s) -> known_place coarse d (until (its s), there s) ->
-  0 <= Q2R (reach p) -> (forall q, In q (corners p) -> speed_known d q = true) -> clear_between d p e (its s).
+  0 <= Q2R (reach p) -> clear_between d p e (its s).
 Proof.
-  unfold fits, prepare, prepare_edge. cbv zeta. cbn [fst snd]. intros h hh tt r0 known. apply orb_true_iff in h. destruct h as [h|h].
+  unfold fits, prepare, prepare_edge. cbv zeta. cbn [fst snd]. intros h hh tt r0. apply orb_true_iff in h. destruct h as [h|h].
   - destruct (number_in (Qden (turns d)) (times d)) as [t|] eqn:et; [|discriminate].
     destruct (quickly _ d p) as [q|] eqn:eq; [|discriminate].
     destruct (pair_in _ (fst (times_edge d e))) as [a|] eqn:ea; [|discriminate]. destruct (pair_in _ (snd (times_edge d e))) as [b|] eqn:eb; [|discriminate].
@@ -544,7 +564,7 @@ Qed.
 Definition turn_past (d : drive) (o : obstacle) (l : list separation) : bool :=
   let es := edges_of o in
   qle (qmul (qabs (turns d)) (qsub (halts d) (sets_out d))) 64
-  && forallb (fun p => qle 0 (reach p) && forallb (speed_known d) (corners p)) (body_parts d)
+  && forallb (fun p => qle 0 (reach p)) (body_parts d)
   && all_taken its (fits d) (sets_out d) (halts d) (pairs (map (prepare d) (body_parts d)) (map (prepare_edge d) es)) (all_places coarse d l)
   && begins_outside (place_then d) (body_parts d) o es.
 
@@ -561,12 +581,12 @@ Proof.
   rewrite forallb_forall in parts.
   assert (edges : forall t p y x e, 0 <= t <= Q2R (halts d) - Q2R (sets_out d) -> In p (body_parts d) -> hull (corners p) y ->
     dot (sub x (driven d t y)) (sub x (driven d t y)) <= Q2R (reach p) * Q2R (reach p) -> In e es -> ~ on e x).
-  { intros t p y x e ht hp hy hx he ox. assert (good := parts p hp). apply andb_true_iff in good. destruct good as [r0 known].
-    apply qle_R in r0. rewrite Q2R_0 in r0. rewrite forallb_forall in known.
+  { intros t p y x e ht hp hy hx he ox. assert (r0 := parts p hp).
+    apply qle_R in r0. rewrite Q2R_0 in r0.
     destruct (all_taken_fits _ _ _ _ _ _ _ taken (prepare d p) (prepare_edge d e) (Q2R (sets_out d) + t)) as [a [ia [hs [s1 [s2 s3]]]]];
       [now apply in_map|now apply in_map|lra|].
     destruct (all_places_ok coarse d l (known_apt coarse (or_introl eq_refl)) a ia) as [hh tt]. set (s := its a) in *.
-    assert (k := fits_ok _ _ _ _ hs hh tt r0 known t ltac:(fold s; lra)). fold s in k. set (n := real (direction s)) in *.
+    destruct (fits_ok _ _ _ _ hs hh tt r0) as [n k]. fold s in k. specialize (k t ltac:(lra)).
     assert (over : Q2R (reach p) * sqrt (dot n n) < dot n (driven d t y) - dot n x).
     { apply (hull_over (fun y => dot n (driven d t y) - dot n x) _ (corners p)); [|intros q hq; now apply k|assumption].
       intros b c u. rewrite driven_affine, dot_mix. ring. }

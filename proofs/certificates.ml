@@ -89,7 +89,7 @@ let rec floats acc = function
   | Json.Num x -> x :: acc | Json.Arr l -> List.fold_left floats acc l | Json.Obj m -> List.fold_left (fun a (_, v) -> floats a v) acc m
   | _ -> acc
 let rec bits_needed_or most = function
-  | Json.Num x -> let b = bits_of x in if b > most then b else most
+  | Json.Num x -> bits_at_least most x
   | Json.Arr l -> List.fold_left bits_needed_or most l
   | Json.Obj m -> List.fold_left (fun most (_, v) -> bits_needed_or most v) most m
   | _ -> most
@@ -208,12 +208,19 @@ let drive q m =
   if halts < sets_out then raise Json.Bad;
   { sets_out = q sets_out; halts = q halts; place_then; heads = plain q (Json.get "velocity" m); turns = q Json.(num (get "turn" m)); body_parts = parts_of q m }
 
+(* Directions have denominators of their own: a tiny component of one would lengthen all numbers. They have 56 bits at least, as
+   lengths of directions are rounded up to whole units. *)
+let rec bits_but_directions most = function
+  | Json.Obj m -> List.fold_left (fun most (k, v) -> if String.equal k "direction" then most else bits_but_directions most v) most m
+  | Json.Arr l -> List.fold_left bits_but_directions most l
+  | v -> bits_needed_or most v
 let clear c =
   try
-    let q = over (bits_needed c) in
-    let number k s = q Json.(num (get k s)) in
-    let separation s = { part_no = Json.(count (get "part" s)); other_no = Json.(count (get "other" s));
-      since = number "from" s; until = number "to" s; direction = plain q (Json.get "direction" s); width = number "margin" s } in
+    let q = over (bits_but_directions 0 c) in
+    let separation s =
+      let number k = q Json.(num (get k s)) and n = Json.get "direction" s in
+      { part_no = Json.(count (get "part" s)); other_no = Json.(count (get "other" s)); since = number "from"; until = number "to";
+        direction = plain (over (bits_needed_or 56 n)) n; width = number "margin" } in
     let a = Json.get "a" c and separations = List.map separation Json.(arr (get "separations" c)) in
     let proven = match Json.find "turn" a, Json.find "b" c, Json.find "obstacle" c with
       | None, Some b, None -> Checked.sweep (trip q a) (trip q b) separations

@@ -5,9 +5,10 @@ open Checker
 open Exact
 
 type count = { mutable asked : int; mutable proven : int }
-type t = { bodies : (int, Json.t) Hashtbl.t; half_planes : count; pairs : count; choices : count; mutable moving : int; mutable inexact : int }
+type t = { bodies : (int, Json.t) Hashtbl.t; mutable named : Json.t list; held : count; mutable not_asked : int; half_planes : count; pairs : count; choices : count; mutable moving : int;
+  mutable inexact : int }
 
-let start () = { bodies = Hashtbl.create 64; half_planes = { asked = 0; proven = 0 }; pairs = { asked = 0; proven = 0 }; choices = { asked = 0; proven = 0 }; moving = 0; inexact = 0 }
+let start () = { bodies = Hashtbl.create 64; named = []; held = { asked = 0; proven = 0 }; not_asked = 0; half_planes = { asked = 0; proven = 0 }; pairs = { asked = 0; proven = 0 }; choices = { asked = 0; proven = 0 }; moving = 0; inexact = 0 }
 let ask count holds = count.asked <- count.asked + 1; if holds then count.proven <- count.proven + 1
 
 let pair v = match Json.arr v with [x; y] -> (Json.num x, Json.num y) | _ -> raise Json.Bad
@@ -28,6 +29,28 @@ let shape at q s =
   | Json.Obj ["ellipse", c] -> Ellipse (at (Json.get "center" c), q (number "l11" c), q (number "l21" c), q (number "l22" c))
   | Json.Obj [(("segment" | "polygon"), ps)] -> Polygon (List.map at (Json.arr ps))
   | _ -> raise Json.Bad
+
+(* The bodies that a robot sees on the way to a goal: those of an obstacle hold it. A run among edges names those alone that
+   it met, so that nothing is asked of it; nor is it of discs. *)
+let goal_bodies d g = ignore (Json.arr (Json.get "bodies" g)); d.named <- g :: d.named
+let stands_for k b = Json.find "kind" b = Some (Json.Str "enclosure") && List.exists (fun o -> Json.count o = k) Json.(arr (get "owners" b))
+let holds k obstacle bodies =
+  let shapes = List.filter_map (fun b -> if stands_for k b then Json.find "shape" b else None) bodies in
+  let q = over (List.fold_left Certificates.bits_needed_or (Certificates.bits_needed obstacle) shapes) in
+  let at v = let x, y = pair v in (q x, q y) in
+  Checked.hold (List.map (shape at q) shapes) (Certificates.obstacle q obstacle)
+let check_bodies d scenario =
+  let some kind = Hashtbl.fold (fun _ b found -> found || (Json.find "kind" b = Some (Json.Str kind) && Json.find "owners" b <> Some (Json.Arr []))) d.bodies false in
+  let edges = some "obstacle_edge" and seen = List.exists (fun g -> Json.get "bodies" g <> Json.Arr []) d.named in
+  let before = ref (Json.Null, []) and obstacles = Json.(arr (get "obstacles" scenario)) in  (* robots mostly see the same *)
+  if edges || not (some "enclosure" || seen) then d.not_asked <- List.length d.named * List.length obstacles
+  else List.iter (fun g ->
+    let names = Json.get "bodies" g in
+    if fst !before <> names then begin
+      let bodies = List.map (fun b -> match Hashtbl.find_opt d.bodies (Json.count b) with Some b -> b | None -> raise Json.Bad) (Json.arr names) in
+      before := (names, List.mapi (fun k o -> if Json.find "disc" o = None then Some (holds k o bodies) else None) obstacles)
+    end;
+    List.iter (function Some holds -> ask d.held holds | None -> d.not_asked <- d.not_asked + 1) (snd !before)) (List.rev d.named)
 
 (* The claim of a half-plane c of a robot; `judge` is given it with what turns doubles into fractions. *)
 let claim robot radius c others judge =
@@ -122,8 +145,10 @@ let row d scenario robots =
 
 let report d =
   let other n = if n = 0 then "" else Printf.sprintf "; %d others" n in
+  Printf.printf "obstacles, on the way of each robot to each goal: %d asked, %d proven to lie in the bodies that stand for them%s\n" d.held.asked d.held.proven
+    (other d.not_asked);
   Printf.printf "half-planes that are certified against bodies at rest: %d asked, %d proven%s\n" d.half_planes.asked d.half_planes.proven
     (other (d.moving - 2 * d.pairs.asked));
   Printf.printf "pairs of robots with opposite half-planes: %d asked, %d proven not to collide until the horizon\n" d.pairs.asked d.pairs.proven;
   Printf.printf "choices with multipliers: %d asked, %d proven to be the best%s\n" d.choices.asked d.choices.proven (other d.inexact);
-  d.half_planes.proven = d.half_planes.asked && d.pairs.proven = d.pairs.asked && d.choices.proven = d.choices.asked
+  d.held.proven = d.held.asked && d.half_planes.proven = d.half_planes.asked && d.pairs.proven = d.pairs.asked && d.choices.proven = d.choices.asked

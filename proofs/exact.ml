@@ -5,26 +5,33 @@ open Checker
 
 exception Malformed
 
-(* x = whole * 2^-bits, whole odd or 0 *)
-let split x =
-  let b = Int64.bits_of_float x in
-  let exponent = Int64.to_int (Int64.shift_right_logical b 52) land 0x7FF and fraction = Int64.to_int b land 0xFFFFFFFFFFFFF in
-  if exponent = 0x7FF then raise Malformed;
-  if exponent lor fraction = 0 then (0, 0) else begin
-    let w = ref (if exponent = 0 then fraction else fraction lor (1 lsl 52)) and b = ref (1075 - max 1 exponent) in
-    while !w land 0xFF = 0 do w := !w lsr 8; b := !b - 8 done;
-    while !w land 1 = 0 do w := !w lsr 1; decr b done;
-    ((if x < 0. then - !w else !w), !b)
-  end
+(* |x| = whole_of x * 2^-(scale_of x) *)
+let exponent x = Int64.to_int (Int64.shift_right_logical (Int64.bits_of_float x) 52) land 0x7FF
+let scale_of x = let e = exponent x in if e = 0x7FF then raise Malformed else if e = 0 then 1074 else 1075 - e
+let whole_of x = let fraction = Int64.to_int (Int64.bits_of_float x) land 0xFFFFFFFFFFFFF in if exponent x = 0 then fraction else fraction lor (1 lsl 52)
 
-let bits_of x = snd (split x)
+(* The larger of a number and of the bits behind the point that x needs. *)
+let bits_at_least most (x : float) =
+  let b = scale_of x in
+  if b <= most || x = 0. then most else begin
+    let w = ref (whole_of x) and b = ref b in
+    while !b > most && !w land 1 = 0 do w := !w lsr 1; decr b done;
+    !b
+  end
+let bits_of = bits_at_least 0
 
 (* The fractions of doubles that need at most so many bits behind the point. *)
 let over bits =
   let qden = Whole.shift_left Whole.one bits in
-  fun x -> let w, b = split x in { qnum = Whole.shift_left (Whole.of_int w) (bits - b); qden }
+  fun x ->
+    let w = whole_of x and more = bits - scale_of x in
+    let w = if x < 0. then - w else w in
+    let qnum = if more >= 0 then Whole.shift_left (Whole.of_int w) more
+      else if w = 0 then Whole.zero
+      else if more > -53 && w land ((1 lsl - more) - 1) = 0 then Whole.of_int (w asr - more) else raise Malformed in
+    { qnum; qden }
 
-let fractions xs = over (List.fold_left (fun m x -> let b = bits_of x in if b > m then b else m) 0 xs)
+let fractions xs = over (List.fold_left bits_at_least 0 xs)
 let rational x = fractions [x] x
 let to_q a = Q.make a.qnum a.qden
 let of_q a = { qnum = Q.num a; qden = Q.den a }

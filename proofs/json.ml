@@ -6,11 +6,28 @@ exception Bad
 
 let deepest = 100
 
+(* Up to 15 digits are a whole number that doubles have, and so are these powers, so that their quotient is rounded once. *)
+let powers = Array.init 16 (fun k -> float_of_string (Printf.sprintf "1e%d" k))
+let short_number s first stop =
+  let rec go m behind has_point k =
+    if k = stop then float_of_int m /. powers.(behind)
+    else if s.[k] = '.' then go m 0 true (k + 1)
+    else go (10 * m + Char.code s.[k] - Char.code '0') (if has_point then behind + 1 else 0) has_point (k + 1) in
+  if s.[first] = '-' then -. (go 0 0 false (first + 1)) else go 0 0 false first
+
+(* Names that were read before, so that most are no new strings. *)
+let names = Array.make 256 ""
+let name_at s first n =
+  let k = (n + 7 * Char.code s.[first]) land 255 in
+  let known = names.(k) in
+  let rec same i = i = n || (String.unsafe_get known i = String.unsafe_get s (first + i) && same (i + 1)) in
+  if String.length known = n && same 0 then known else (let t = String.sub s first n in names.(k) <- t; t)
+
 (* What stands in s between two places. *)
 let parse_part s (first, n) =
   let i = ref first in
   let peek () = if !i < n then s.[!i] else raise Bad in
-  let rec blanks () = if !i < n && (match s.[!i] with ' ' | '\t' | '\r' | '\n' -> true | _ -> false) then (incr i; blanks ()) in
+  let rec blanks () = if !i < n && s.[!i] <= ' ' && (match s.[!i] with ' ' | '\t' | '\r' | '\n' -> true | _ -> false) then (incr i; blanks ()) in
   let expect c = if peek () = c then incr i else raise Bad in
   let word w v = String.iter expect w; v in
   let hex () = if !i + 4 > n then raise Bad; let v = int_of_string ("0x" ^ String.sub s !i 4) in i := !i + 4; v in
@@ -18,8 +35,7 @@ let parse_part s (first, n) =
     expect '"';
     let rec plain k = if k >= n || s.[k] < ' ' then raise Bad else if s.[k] = '"' || s.[k] = '\\' then k else plain (k + 1) in
     let k = plain !i in
-    let b = Buffer.create 16 in
-    let rec go () =
+    let rec go b =
       let k = plain !i in
       Buffer.add_substring b s !i (k - !i); i := k + 1;
       if s.[k] = '\\' then begin
@@ -32,18 +48,20 @@ let parse_part s (first, n) =
            let u = if u land 0xFC00 = 0xD800 then (expect '\\'; expect 'u'; 0x10000 + ((u land 0x3FF) lsl 10) + (hex () land 0x3FF)) else u in
            Buffer.add_utf_8_uchar b (Uchar.of_int u)
          | _ -> raise Bad);
-        go ()
+        go b
       end in
-    if s.[k] = '"' then (let t = String.sub s !i (k - !i) in i := k + 1; t) else (go (); Buffer.contents b) in
+    if k > !i && s.[k] = '"' then (let t = name_at s !i (k - !i) in i := k + 1; t)
+    else (let b = Buffer.create 16 in go b; Buffer.contents b) in
   let number () =
     let k = !i in
-    let rec beyond a = if a < n && s.[a] >= '0' && s.[a] <= '9' then beyond (a + 1) else a in
+    let rec beyond a = if a < n && (let c = s.[a] in c >= '0' && c <= '9') then beyond (a + 1) else a in
     let digits () = let a = beyond !i in if !i = a then raise Bad else i := a in
     if peek () = '-' then incr i;
     if peek () = '0' then incr i else digits ();
     if !i < n && s.[!i] = '.' then (incr i; digits ());
+    let is_short = !i - k <= 15 and stop = !i in
     if !i < n && (s.[!i] = 'e' || s.[!i] = 'E') then (incr i; if peek () = '-' || peek () = '+' then incr i; digits ());
-    let x = float_of_string (String.sub s k (!i - k)) in
+    let x = if is_short && !i = stop then short_number s k stop else float_of_string (String.sub s k (!i - k)) in
     if Float.is_finite x then Num x else raise Bad in
   let rec value depth =
     if depth > deepest then raise Bad;
@@ -60,9 +78,10 @@ let parse_part s (first, n) =
       let rec more acc = let acc = item () :: acc in blanks (); if peek () = ',' then (incr i; more acc) else (expect close; List.rev acc) in
       more []
   and once members =
-    let names = List.sort String.compare (List.map fst members) in
-    let rec twice = function a :: (b :: _ as t) -> String.equal a b || twice t | _ -> false in
-    if twice names then raise Bad else members in
+    let rec next_twice = function a :: (b :: _ as t) -> String.equal a b || next_twice t | _ -> false in
+    let rec some_twice = function (a, _) :: t -> List.exists (fun (b, _) -> String.equal a b) t || some_twice t | [] -> false in
+    let twice = if List.compare_length_with members 16 <= 0 then some_twice members else next_twice (List.sort String.compare (List.map fst members)) in
+    if twice then raise Bad else members in
   match value 0 with
   | v -> if !i = n then v else raise Bad
   | exception (Invalid_argument _ | Failure _) -> raise Bad

@@ -206,7 +206,7 @@ let recording file text =
     if List.exists Wheels.has_footprint Json.(arr (get "robots" !scenario)) then not_covered := !not_covered @ ["that robots keep clear of obstacles: some have footprints, which turn; audit checks this"];
     if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points; audit checks that bodies and wheels follow"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
-    not_covered := !not_covered @ ["that the bodies of half-planes hold their obstacles: audit asks it"; "plans, half-planes that are not counted above, and that none is missing";
+    not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
       "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices and from one another in time, and that the scenario is the one that was meant"];
     brakes := Braking.start !scenario;
     prepare (Certificates.bits_needed !scenario) in
@@ -230,8 +230,11 @@ let recording file text =
     | Json.Obj [("row", r)] -> (try row r with Json.Bad | Malformed -> bad ())
     | Json.Obj [("end", e)] -> ended := true; if Json.find "rows" e <> Some (Json.Num (float_of_int !rows)) then bad ()
     | Json.Obj [("body", b)] -> (try Decisions.body decisions b with Json.Bad -> bad ())
-    | Json.Obj [((("goal_bodies" | "plan"), _))] -> ()
+    | Json.Obj [("goal_bodies", g)] -> (try Decisions.goal_bodies decisions g with Json.Bad -> bad ())
+    | Json.Obj [("plan", _)] -> ()
     | _ | exception Json.Bad -> bad ()) (lines text);
+  (try Decisions.check_bodies decisions !scenario
+   with Json.Bad | Malformed -> refuse file "" "bodies that are not of a recording" "a recording.jsonl, as simulate --out writes it" "E_FORMAT_SYNTAX");
   let decided = Decisions.report decisions in
   let stop = Option.fold ~none:true ~some:Braking.report !brakes in
   let ok = report t "the first row and each motion to the next" !rows !robots
