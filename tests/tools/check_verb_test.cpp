@@ -50,6 +50,15 @@ TEST(CheckVerb, RowsThatAreLongerThanTheHeaderAreRefused) {
   EXPECT_EQ(checked("t,id,x,y\n0,A,0,5,\n1,A,0,6,\n", "--radius 0.2").status, 0) << "a comma at the end of each row";
 }
 
+TEST(CheckVerb, ColumnsMayBeQuoted) {
+  const Outcome outcome = checked("\"t\",\"id\",\"x\",\"y\"\n0,\"A, b\",0,0\n1,\"A, b\",1,0\n", "--radius 0.1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("greatest speed: 1 m/s, A, b at 0 s"));
+  // A row of units, as some programs write it.
+  EXPECT_THAT(checked("\"t\",\"id\",\"x\",\"y\"\n\"s\",\"\",\"m\",\"m\"\n0,A,0,0\n", "--radius 0.1").err,
+              HasSubstr("line 2: found \"s\", expected a number as a time"));
+}
+
 TEST(CheckVerb, DiscsOfAScenarioAreExact) {
   const Workplace here;
   here.write("sc.json", R"({"name": "s", "robots": [{"id": "r", "position": [9, 9], "goal": [9, 8]}],
@@ -653,6 +662,7 @@ TEST(CheckVerb, BadInputIsNamed) {
       {"t,id,x,y,vx,vy\n0,A,1,2,1e308,0\n", "--radius 1", "velocities in m/s up to 2^100"},
       {"t,id,x,y\n", "--radius 1", "no row"},
       {"t,id,x,y\n0,A,1,2\n1,A,+-1,2\n", "--radius 1", "E_NUMBER"},
+      {"t,id,x,y\n0,\"A\nB\",1,2\n", "--radius 1", "CSV whose fields end on their line"},
   };
   std::size_t judged = 0;
   for (const Bad& bad : all) {

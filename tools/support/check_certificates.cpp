@@ -28,7 +28,8 @@ CheckCertificates::CheckCertificates(const std::string& path, const CheckedFile&
                                      const std::vector<RigidBody>& bodies)
     : out_(path, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
       asked_(asked),
-      bodies_(bodies) {}
+      bodies_(bodies),
+      obstacles_(asked.obstacles.size()) {}
 
 void CheckCertificates::add(const MetPair& pair) {
   const RigidBody body = turned_body(bodies_[pair.body], pair.turned.from);
@@ -41,14 +42,16 @@ void CheckCertificates::add(const MetPair& pair) {
 
 void CheckCertificates::add_to_obstacle(const MetPair& pair, const RigidBody& body,
                                         const formation::SceneObstacle& obstacle) {
+  std::string& name = obstacles_[pair.other];
+  if (name.empty()) name = obstacle_text(obstacle);
   if (pair.turned.by != 0.0) {
     const geometry::TurningMotion arc = arc_of(pair.motion, pair.turned);
     if (const auto proof = geometry::certify(arc, body, obstacle.shape))
-      return write(certificate_json(*proof, arc, body, obstacle));
+      return write(certificate_text(*proof, arc, body, name));
     return write_none(pair, encounter(arc, body, obstacle.shape) != Encounter::clear);
   }
   if (const auto proof = geometry::certify(pair.motion, body, obstacle.shape))
-    return write(certificate_json(*proof, {pair.motion, &body}, obstacle));
+    return write(certificate_text(*proof, {pair.motion, &body}, name));
   write_none(pair, encounter(pair.motion, body, obstacle.shape) != Encounter::clear);
 }
 
@@ -57,12 +60,12 @@ void CheckCertificates::add_to_body(const MetPair& pair, const RigidBody& body, 
     const geometry::TurningMotion a = arc_of(pair.motion, pair.turned),
                                   b = arc_of(pair.other_motion, pair.other_turned);
     if (const auto proof = geometry::certify(a, body, b, other))
-      return write(certificate_json(*proof, a, body, b, other));
+      return write(certificate_text(*proof, a, body, b, other));
     const geometry::TurningVerdict found = examine(a, body, b, other);
     return write_none(pair, found.verdict.encounter != Encounter::clear && !found.is_open);
   }
   if (const auto proof = geometry::certify(pair.motion, body, pair.other_motion, other))
-    return write(certificate_json(*proof, {pair.motion, &body}, {pair.other_motion, &other}));
+    return write(certificate_text(*proof, {pair.motion, &body}, {pair.other_motion, &other}));
   write_none(pair, encounter(pair.motion, body, pair.other_motion, other) != Encounter::clear);
 }
 
@@ -76,9 +79,9 @@ std::string CheckCertificates::finish() {
   return words;
 }
 
-void CheckCertificates::write(OrderedJson certificate) {
+void CheckCertificates::write(const std::string& certificate) {
   ++count_;
-  put({{"certificate", std::move(certificate)}});
+  out_.write("{\"certificate\":" + certificate + "}\n");
 }
 
 void CheckCertificates::write_none(const MetPair& pair, bool touches) {

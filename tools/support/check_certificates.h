@@ -26,13 +26,14 @@ class CheckCertificates {
   void add_to_obstacle(const geometry::MetPair& pair, const geometry::RigidBody& body,
                        const formation::SceneObstacle& obstacle);
   void add_to_body(const geometry::MetPair& pair, const geometry::RigidBody& body, const geometry::RigidBody& other);
-  void write(OrderedJson certificate);
+  void write(const std::string& certificate);
   void write_none(const geometry::MetPair& pair, bool touches);
   void put(const OrderedJson& json);
 
   datasets::AtomicFile out_;
   const CheckedFile& asked_;
   const std::vector<geometry::RigidBody>& bodies_;
+  std::vector<std::string> obstacles_;  ///< as proofs name them; empty: not yet named
   std::size_t count_ = 0, touching_ = 0, unproven_ = 0;
 };
 

@@ -166,8 +166,10 @@ function drawCharts(ctx, run, series, events, colours, width, height) {
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, width, height);
   drawMarks(ctx, run, events, series.robot, colours, width, 3, 10);
-  const top = 18, bottom = 16, each = (height - top - bottom - GAP * (STRIPS.length - 1)) / STRIPS.length;
-  STRIPS.forEach((strip, k) => drawStrip(ctx, run, series, strip, colours, width, top + k * (each + GAP), each));
+  // Clearances of outlines are not measured: no axes without a line.
+  const strips = STRIPS.filter((strip) => strip.lines.some(([name]) => series[name].some(Number.isFinite)));
+  const top = 18, bottom = 16, each = (height - top - bottom - GAP * (strips.length - 1)) / strips.length;
+  strips.forEach((strip, k) => drawStrip(ctx, run, series, strip, colours, width, top + k * (each + GAP), each));
   const span = Math.max(1e-9, run.end - run.time[0]), step = tickStep((width - LEFT - RIGHT) / span, 60);
   ctx.font = '10px system-ui, sans-serif';
   ctx.textAlign = 'center';
