@@ -33,6 +33,8 @@ constexpr int kGoldenSteps = 55;
 /// How often the least gap is sought again, at a moment at which a clearance is not kept; in vain it is no more than a
 /// few times.
 constexpr int kMostDescents = 64, kDescentsOfOneInVain = 16;
+/// A share of the time: so near to the moment of the least gap there is no other one to be sought.
+constexpr double kSameDip = 0x1p-10;
 
 struct Part {
   std::vector<Vec2> corners;  ///< once round, counter-clockwise
@@ -388,7 +390,8 @@ class Examination {
         break;
       }
       const double before = least_;
-      if (!is_open && ++descents <= kMostDescents) descend_from(lost);
+      const bool is_elsewhere = std::fabs(lost - nearest_time_) > kSameDip * span_.duration();
+      if (!is_open && is_elsewhere && ++descents <= kMostDescents) descend_from(lost);
       if (least_ < before) continue;
       descents += kDescentsOfOneInVain;
       by *= 8.0;
