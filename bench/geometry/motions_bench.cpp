@@ -181,8 +181,9 @@ BoxGrid grid_of(const std::vector<Segment>& edges) {
   return BoxGrid(std::move(boxes));
 }
 
-/// Boxes of motions once a step; ten samples of each pair whose boxes meet.
-Verdicts sampled_with_same_boxes(const Scene& scene) {
+/// Boxes of motions once a step; so many samples of each pair whose boxes meet. None: what any check has to do that
+/// looks for pairs in this way.
+Verdicts sampled_with_same_boxes(const Scene& scene, int samples) {
   Verdicts found;
   const BoxGrid edges = grid_of(scene.edges);
   Cells cells(1.5);
@@ -194,14 +195,14 @@ Verdicts sampled_with_same_boxes(const Scene& scene) {
       boxes[a] = grown_box(from[a], to[a]);
       const auto place = [&](std::size_t i, int s) { return from[i] + (s / double(kSamples)) * (to[i] - from[i]); };
       edges.for_each_meeting(boxes[a], [&](std::size_t e) {
-        for (int s = 0; s < kSamples; ++s)
+        for (int s = 0; s < samples; ++s)
           if (squared_distance(place(a, s), scene.edges[e]) < kRadius * kRadius) {
             found.insert({a, true, scene.owner[e]});
             break;
           }
       });
       cells.meet_and_add(a, boxes, [&](std::size_t b) {
-        for (int s = 0; s < kSamples; ++s)
+        for (int s = 0; s < samples; ++s)
           if (squared_norm(place(a, s) - place(b, s)) < 4.0 * kRadius * kRadius) {
             found.insert({std::min(a, b), false, std::max(a, b)});
             break;
@@ -244,7 +245,7 @@ bool holds_all(const Verdicts& all, const Verdicts& some) {
 int run(int agents, int steps, int rounds) {
   const Scene scene = scene_of(agents, steps);
   geometry::MotionCheck counts;
-  const Verdicts exact = check(scene, counts), boxes = sampled_with_same_boxes(scene),
+  const Verdicts exact = check(scene, counts), boxes = sampled_with_same_boxes(scene, kSamples),
                  grids = sampled_with_a_grid_a_sample(scene);
   std::printf("%zu motions of %d agents, %zu edges; %zu pairs of boxes, %zu of boxes and edges, %zu examined\n",
               counts.pieces, agents, scene.edges.size(), counts.pairs, counts.edge_pairs, counts.examined);
@@ -254,7 +255,7 @@ int run(int agents, int steps, int rounds) {
     std::printf("a sample found an overlap that the check did not\n");
     return 1;
   }
-  std::vector<double> ours, same, each;
+  std::vector<double> ours, same, each, alone;
   for (int round = 0; round < rounds; ++round) {
     const auto timed = [](const auto& work) {
       const double start = thread_seconds();
@@ -262,7 +263,8 @@ int run(int agents, int steps, int rounds) {
       return thread_seconds() - start;
     };
     ours.push_back(timed([&] { return check(scene, counts).size(); }));
-    same.push_back(timed([&] { return sampled_with_same_boxes(scene).size(); }));
+    same.push_back(timed([&] { return sampled_with_same_boxes(scene, kSamples).size(); }));
+    alone.push_back(timed([&] { return sampled_with_same_boxes(scene, 0).size(); }));
     each.push_back(timed([&] { return sampled_with_a_grid_a_sample(scene).size(); }));
   }
   const double own = median(ours), boxed = median(same), gridded = median(each);
@@ -270,6 +272,9 @@ int run(int agents, int steps, int rounds) {
       "check: %.3f s; ten samples: %.3f s with the same boxes (%.2f times), %.3f s with a grid per sample (%.2f "
       "times)\n",
       own, boxed, boxed / own, gridded, gridded / own);
+  const double boxes_alone = median(alone);
+  std::printf("boxes alone: %.3f s; the loops take %.2f and %.2f times as long\n", boxes_alone, boxed / boxes_alone,
+              gridded / boxes_alone);
   return 0;
 }
 

@@ -167,6 +167,16 @@ TEST(TrajectoryFile, ReadsSumo) {
   EXPECT_NEAR(c.rows[2].heading, 1.5707963267948966, 1e-15);
 }
 
+TEST(TrajectoryFile, PlacesOfSumoInDegreesAreRefused) {
+  const std::string file = R"(<fcd-export>
+<timestep time="0"><vehicle id="car" x="120.991732" y="14.569786" angle="154" speed="14"/></timestep>
+<timestep time="1"><vehicle id="car" x="120.991790" y="14.569671" angle="154" speed="14"/></timestep>
+</fcd-export>
+)";
+  EXPECT_EQ(refusal_of(file, {"sumo-fcd", 0.0, 1.0}).code(), DataCode::projection);
+  EXPECT_EQ(content_of(file, {"sumo-fcd", 0.0, 1e5}).rows.size(), 2u) << "with a scale, as the caller says";
+}
+
 TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   const Content c = content_of(
       "statistics:\n  cost: 3\nschedule:\n  agent0:\n    - x: 0\n      y: 1\n      t: 0\n    - x: 0\n      y: 2\n      "

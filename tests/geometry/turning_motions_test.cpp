@@ -155,6 +155,16 @@ TEST(TurningMotions, CertificatesAgainstPolygonsSayThatTheBodyIsOutside) {
   EXPECT_FALSE(proves_clear({}, in_hole, square, block));
 }
 
+TEST(TurningMotions, AWallOfManyEdgesHasACertificate) {
+  Polyline wall;
+  for (int k = 0; k <= 70000; ++k) wall.points.push_back({0.001 * k, k % 2 == 0 ? 1.5 : 1.6});
+  const RigidBody square{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 0.0}};
+  const TurningMotion m{0.0, 1.0, {35, 0}, {{0, 0}, 0.1}};
+  const auto certificate = certify(m, square, wall);
+  ASSERT_TRUE(certificate);
+  EXPECT_GE(certificate->separations.size(), 70000u);
+}
+
 TEST(TurningMotions, BodiesThatTurnTooFarForTheCheckHaveNoCertificate) {
   const Obstacle wall = Polyline{{{-3, 2}, {3, 2}}};
   const RigidBody square{{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 0.0}};

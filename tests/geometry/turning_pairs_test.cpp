@@ -172,6 +172,34 @@ TEST(TurningPairs, TwoThatTurnAreAsPosesThatAreLookedAtDenselySay) {
   EXPECT_GE(clear, 60u);
 }
 
+// A wheel with one spike, which passes by the other body in a tenth of a radian, between two looks; the corners of the
+// wheel have shallower dips of their own.
+TEST(TurningPairs, TheMomentOfTheLeastClearanceIsTheLeastOfAllDips) {
+  SeededRandom random(seed_of_run(304));
+  std::size_t judged = 0;
+  for (int i = 0; i < 30; ++i) {
+    RigidBody wheel{{{}, 0.0}};
+    for (int k = 0; k < 24; ++k) wheel[0].corners.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kPi * k / 24));
+    const double spike = random.uniform(0.0, 2.0 * kPi);
+    wheel.push_back({{geometry::rotated({0.9, 0.02}, spike), geometry::rotated({1.05, 0.0}, spike),
+                      geometry::rotated({0.9, -0.02}, spike)},
+                     0.0});
+    const TurningMotion turns{0.0, 1.0, {0, 0}, {{0, 0}, (i % 2 == 0 ? 1.0 : -1.0) * 2.0 * kPi}};
+    const RigidBody other = box(0.5, 0.5, 0.5);
+    const TurningMotion beside{0.0, 1.0, {1.8, 0}, {{0, 0}, random.uniform(0.1, 0.3)}};
+    const geometry::MotionVerdict v = examine(turns, wheel, beside, other).verdict;
+    ASSERT_EQ(v.encounter, Encounter::clear) << i;
+    double least = kInfinity;
+    for (int k = 0; k <= 4000; ++k) least = std::min(least, gap_at(turns, wheel, beside, other, k / 4000.0));
+    EXPECT_LE(v.clearance.low, least) << i;
+    EXPECT_LE(v.clearance.high, least + 1e-9) << i << ": a dip that is not the least";
+    EXPECT_LE(v.clearance.high - v.clearance.low, 1e-9) << i;
+    EXPECT_NEAR(gap_at(turns, wheel, beside, other, v.nearest_time), v.clearance.high, 1e-9) << i;
+    ++judged;
+  }
+  EXPECT_EQ(judged, 30u);
+}
+
 // Two squares turn like cogs whose teeth meet tip to tip.
 TEST(TurningPairs, TipsThatMeetExactlyStayOpenAndSayHowNear) {
   const RigidBody square{{{{-3, 0}, {0, -3}, {3, 0}, {0, 3}}, 0.0}};

@@ -104,7 +104,7 @@ def good_calls(folder):
         ("routes.Route.check", plan.route(**ends).check, {}),
         ("routes.Certificate.check", plan.route(**ends).certificate.check, {}),
         ("routes.Unreachable.check", exactvo.RouteMap(RING).plan(0.2).route((0, 0), (5, 0)).check, {}),
-        ("collisions.check", collisions.check, dict(trajectories={"A": [(0, 0, 0), (1, 4, 0)]}, map=DOOR, radius=0.2, footprint=[(-1, -1), (1, -1), (0, 1)], time=None, between="straight", near=0.5, max_speed=9.0, max_gap=9.0, format=None, frame_rate=None, scale=1.0)),
+        ("collisions.check", collisions.check, dict(trajectories={"A": [(0, 0, 0), (1, 4, 0)]}, map=DOOR, radius=0.2, footprint=[(-1, -1), (1, -1), (0, 1)], time=None, between="straight", near=0.5, max_speed=9.0, max_gap=9.0, format=None, frame_rate=None, scale=1.0, page=None, certificates=None)),
         ("collisions.trajectory_formats", collisions.trajectory_formats, {}),
         ("crowd.Crowd", exactvo.Crowd, dict(time_step=0.25, precision="float", position_step=2.0**-18, certified=True, threads=1)),
         ("crowd.RobotKind", exactvo.RobotKind, numbers),

@@ -91,6 +91,39 @@ def test_the_map_of_a_file(tmp_path):
     assert exactvo.check({"A": EAST}, map=tmp_path / "map.wkt", radius=0.1).overlaps == 1
 
 
+def test_pages_and_certificates_are_written(tmp_path, program):
+    page, proofs = tmp_path / "check.html", tmp_path / "proofs.jsonl"
+    near = {"A": EAST, "B": [(0, 0, 0.6), (1, 10, 0.6)]}
+    answer = exactvo.check(near, map=[exactvo.Wall([(5, -1), (5, 1)])], radius=0.25, near=0.5, page=page, certificates=str(proofs))
+    assert answer.overlaps == 2 and "1 certificate for motions that come near and stay clear, none for 2 that touch" in answer.notes[-1]
+    assert page.read_text().startswith("<!DOCTYPE html>")
+    assert "1 certificate, 1 valid, 2 none" in program("audit", "--certificate", proofs)
+    # The program's proofs of the same are the same.
+    path = tmp_path / "t.csv"
+    path.write_text("t,id,x,y\n0,A,0,0\n0,B,0,0.6\n1,A,10,0\n1,B,10,0.6\n")
+    (tmp_path / "map.wkt").write_text("LINESTRING (5 -1, 5 1)\n")
+    program("check", path, "--map", tmp_path / "map.wkt", "--radius", 0.25, "--near", 0.5, "--certificates", tmp_path / "others.jsonl")
+    assert (tmp_path / "others.jsonl").read_text() == proofs.read_text()
+
+
+def test_files_that_would_be_overwritten_are_refused(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("t,id,x,y\n0,A,0,0\n")
+    for more in ({"certificates": path}, {"page": tmp_path / "x.html", "certificates": tmp_path / "x.html"}, {"page": tmp_path / "x.txt"}):
+        with pytest.raises(exactvo.ArgumentError):
+            exactvo.check(path, radius=0.25, **more)
+    assert path.read_text().startswith("t,id")
+    with pytest.raises(exactvo.DataError):
+        exactvo.check(path, radius=0.25, certificates=tmp_path)
+
+
+def test_cubics_have_the_speeds_of_the_program(tmp_path, program):
+    path = tmp_path / "t.csv"
+    path.write_text("t,id,x,y,vx,vy\n0,A,0,0,0,4\n1,A,1,0,0,4\n")
+    assert exactvo.check(path, radius=0.1, between="cubic").speeds == {"A": 4.0}
+    assert "greatest speed: 4 m/s" in program("check", path, "--radius", 0.1, "--between", "cubic")
+
+
 def test_databases_of_jupedsim(tmp_path):
     path = tmp_path / "what? 50%.sqlite"
     with sqlite3.connect(path) as database:

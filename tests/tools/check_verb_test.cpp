@@ -50,6 +50,15 @@ TEST(CheckVerb, RowsThatAreLongerThanTheHeaderAreRefused) {
   EXPECT_EQ(checked("t,id,x,y\n0,A,0,5,\n1,A,0,6,\n", "--radius 0.2").status, 0) << "a comma at the end of each row";
 }
 
+TEST(CheckVerb, ColumnsMayBeQuoted) {
+  const Outcome outcome = checked("\"t\",\"id\",\"x\",\"y\"\n0,\"A, b\",0,0\n1,\"A, b\",1,0\n", "--radius 0.1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("greatest speed: 1 m/s, A, b at 0 s"));
+  // A row of units, as some programs write it.
+  EXPECT_THAT(checked("\"t\",\"id\",\"x\",\"y\"\n\"s\",\"\",\"m\",\"m\"\n0,A,0,0\n", "--radius 0.1").err,
+              HasSubstr("line 2: found \"s\", expected a number as a time"));
+}
+
 TEST(CheckVerb, DiscsOfAScenarioAreExact) {
   const Workplace here;
   here.write("sc.json", R"({"name": "s", "robots": [{"id": "r", "position": [9, 9], "goal": [9, 8]}],
@@ -340,6 +349,31 @@ TEST(CheckVerb, TipsThatMeetExactlyWhileBothTurnAreLeftOpen) {
                                  HasSubstr("whether they touch is open"), HasSubstr("0 overlaps, 0 contacts, 1 open")));
 }
 
+// The tips touch exactly until both turn; then it is open whether they overlap.
+TEST(CheckVerb, AContactThatGoesOnIntoWhatIsOpenIsLeftOpen) {
+  const Outcome outcome =
+      checked("t,id,x,y,theta\n0,A,0,0,0\n0,B,6,0,0\n1,A,0,0,0\n1,B,6,0,0\n2,A,0,0,0.5\n2,B,6,0,0.5\n",
+              "--footprint 'POLYGON ((-3 0, 0 -3, 3 0, 0 3))' --near 0");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("close: A and B, from 0 s to 1"),
+                                 HasSubstr("; they touch, and whether they overlap is open, at (3, 0)\n"),
+                                 HasSubstr("0 overlaps, 0 contacts, 1 open")));
+}
+
+TEST(CheckVerb, PairsWithoutAProofSayWhetherTheyTouch) {
+  const Workplace here;
+  here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,-0.5\n0,B,6,0,-0.5\n1,A,0,0,0.5\n1,B,6,0,0.5\n");
+  here.write("straight.csv", "t,id,x,y,theta\n0,A,0,0,0\n0,B,6,0,0\n1,A,0,0,0\n1,B,6,0,0\n");
+  const std::string diamond = " --footprint 'POLYGON ((-3 0, 0 -3, 3 0, 0 3))' --certificates proofs.jsonl";
+  EXPECT_THAT(here.run("check t.csv" + diamond).err,
+              HasSubstr("none for 0 that touch, none for 1 too near for a proof"));
+  const json open = json_lines(here.read("proofs.jsonl")).front();
+  EXPECT_TRUE(open["certificate"].is_null());
+  EXPECT_EQ(open["why"], "too near");
+  EXPECT_THAT(here.run("check straight.csv" + diamond).err, HasSubstr("none for 1 that touches\n"));
+  EXPECT_EQ(json_lines(here.read("proofs.jsonl")).front()["why"], "touches");
+}
+
 TEST(CheckVerb, PlansOfCellsLieOnTheirMap) {
   const Workplace here;
   here.write("grid.map", "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n");
@@ -556,6 +590,9 @@ TEST(CheckVerb, TheFigureShowsTheOverlaps) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_TRUE(here.has("out/check.png"));
   EXPECT_THAT(here.read("out/check.gp"), AllOf(HasSubstr("t.csv: 1 overlap"), HasSubstr("A and B, t = 0.5 s")));
+  here.write("map.wkt", "LINESTRING (2 -1, 2 1)\n");
+  here.run("check t.csv --radius 0.25 --map map.wkt --figure out/wall.svg");
+  EXPECT_THAT(here.read("out/wall.gp"), HasSubstr("A and wall 1, t = 0.2 s")) << "as the answer names it";
   EXPECT_EQ(here.run("check t.csv --radius 0.25 --figure t.csv").status, 2);
 }
 
@@ -624,6 +661,8 @@ TEST(CheckVerb, BadInputIsNamed) {
       {"t,id,x,y,vx,vy\n0,A,1,2,0,0\n1,A,1,2,1e308,0\n", "--radius 1 --between cubic", "line 3"},
       {"t,id,x,y,vx,vy\n0,A,1,2,1e308,0\n", "--radius 1", "velocities in m/s up to 2^100"},
       {"t,id,x,y\n", "--radius 1", "no row"},
+      {"t,id,x,y\n0,A,1,2\n1,A,+-1,2\n", "--radius 1", "E_NUMBER"},
+      {"t,id,x,y\n0,\"A\nB\",1,2\n", "--radius 1", "CSV whose fields end on their line"},
   };
   std::size_t judged = 0;
   for (const Bad& bad : all) {

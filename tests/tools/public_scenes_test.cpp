@@ -68,6 +68,28 @@ TEST(PublicScenes, Navigation2_4355_WhatIsInThePolygonAtTimeZeroCounts) {
   EXPECT_EQ(back["share"], 1.0);
 }
 
+// ros-navigation/navigation2 6346: a projection of 3 s at the present velocity brakes for a wall that the robot means
+// to stop in front of; a shorter one would see people too late. A trajectory says where the robot stops.
+TEST(PublicScenes, Navigation2_6346_ATrajectoryThatStopsAtAWallIsClearAndAPersonOnItIsNot) {
+  // At 0.5 m/s towards a wall 1 m ahead of the nose, slower on the last half metre, at rest 0.1 m before it.
+  const std::string wall = "LINESTRING (1.5 -2, 1.5 2)\n";
+  const std::string limits = std::string(kLongBox) + " --max-deceleration 0.5 --latency 0.1";
+  const json projected = monitored(R"({"pose": [0, 0, 0], "velocity": [0.5, 0]})", limits + " --period 3", wall);
+  EXPECT_LT(projected["share"], 1.0) << "as the reported projection says";
+  const std::string way = R"("trajectory": [[0, 0, 0, 0], [1, 0.5, 0, 0], [3, 0.9, 0, 0], [4, 0.9, 0, 0]])";
+  const json planned = monitored("{" + way + "}", limits, wall);
+  EXPECT_TRUE(planned["proven"]);
+  EXPECT_EQ(planned["share"], 1.0);
+  // A person stands on the way, or may step onto it.
+  for (const char* person : {R"("position": [1.2, 0], "radius": 0.2, "max_speed": 0)",
+                             R"("position": [1.5, 1.5], "radius": 0.2, "max_speed": 0.4)"}) {
+    const json braked = monitored("{" + way + R"(, "movers": [{"id": "person", )" + person + "}]}", limits, wall);
+    EXPECT_TRUE(braked["proven"]) << person;
+    EXPECT_LT(braked["share"], 1.0) << person;
+    EXPECT_EQ(braked["witness"]["mover"], "person") << person;
+  }
+}
+
 // flexible-collision-library/fcl 120: conservative advancement reports no contact for two boxes of which one is moved
 // through the other.
 TEST(PublicScenes, Fcl_120_ABoxThatIsMovedThroughABoxMeetsIt) {

@@ -98,7 +98,7 @@ constexpr std::size_t kNameLength = 40;
 constexpr std::size_t kMostArrows = 28;
 /// A share of the strongest flow: where less passes, there is no arrow.
 constexpr double kLeastArrow = 0.03;
-constexpr double kLeastRange = 1e-9;  // of values: gnuplot draws no empty range
+constexpr double kLeastValueRange = 1e-9;  // of values: gnuplot draws no empty range
 
 using Value = std::function<double(const CellCourse&)>;
 
@@ -152,7 +152,7 @@ void add_cells(const CrowdCourse& course, const Value& value, Panel& panel) {
 }
 
 double largest(const CrowdCourse& course, const Value& value) {
-  double most = kLeastRange;
+  double most = kLeastValueRange;
   for (const CellCourse& cell : course.cells)
     if (cell.time > 0.0) most = std::max(most, value(cell));
   return most;
@@ -216,7 +216,7 @@ Figure speeds_figure(const CrowdCourse& course) {
   constexpr Canvas kCanvas{960, 480};
   DataFile data;
   PlotCommand plot;
-  double most = kLeastRange;
+  double most = kLeastValueRange;
   const int index = data.begin("speeds", "t [s], a tenth is slower than, median, a tenth is faster than [m/s]");
   for (const SpeedsThen& then : course.speeds) {
     data.row({then.time, then.slow, then.median, then.fast});
@@ -283,7 +283,7 @@ CrowdCourse course_of(const std::filesystem::path& recording) {
 }
 
 std::vector<Figure> crowd_figures(const CrowdCourse& course) {
-  const double cell_time = course.grid.cell * course.grid.cell * std::max(course.duration, kLeastRange);
+  const double cell_time = course.grid.cell * course.grid.cell * std::max(course.duration, kLeastValueRange);
   const Value density = [=](const CellCourse& c) { return c.time / cell_time; };
   const Value flow = [=](const CellCourse& c) { return norm(c.moved) / cell_time; };
   const Value speed = [](const CellCourse& c) { return c.way / c.time; };

@@ -52,7 +52,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 }
 
 std::optional<double> number_in(std::string_view field) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  if (field.substr(0, 1) == "+" && field.substr(1, 1) != "-") field.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/footprint.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -36,13 +35,6 @@ geometry::RigidBody footprint_body(const geometry::Obstacle& shape, double radiu
   geometry::RigidBody body = geometry::polygon_body(polygon);
   for (geometry::RoundedPolygon& part : body) part.radius = radius;
   return body;
-}
-
-double reach_of(const geometry::RigidBody& body) {
-  double reach = 0.0;
-  for (const geometry::RoundedPolygon& part : body)
-    for (const geometry::Vec2 c : part.corners) reach = std::max(reach, norm(c) + part.radius);
-  return reach;
 }
 
 }  // namespace exactvo::tools

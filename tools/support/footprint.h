@@ -4,6 +4,7 @@
 /// \file
 /// The option --footprint: what a body looks like.
 
+#include <algorithm>
 #include <string>
 
 #include "exactvo/geometry/motions.h"
@@ -19,6 +20,11 @@ geometry::Obstacle footprint_shape(const std::string& text);
 geometry::RigidBody footprint_body(const geometry::Obstacle& shape, double radius);
 
 /// m, rounded: the radius of the least disc round the reference point that holds the body.
-double reach_of(const geometry::RigidBody& body);
+inline double reach_of(const geometry::RigidBody& body) {
+  double reach = 0.0;
+  for (const geometry::RoundedPolygon& part : body)
+    for (const geometry::Vec2 c : part.corners) reach = std::max(reach, norm(c) + part.radius);
+  return reach;
+}
 
 }  // namespace exactvo::tools

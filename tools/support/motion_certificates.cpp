@@ -7,10 +7,12 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "json/json_text.h"
 #include "support/certificate_json.h"
 
 namespace exactvo::tools {
 
+using datasets::JsonWriter;
 using geometry::CurvedMotion;
 using geometry::Motion;
 using geometry::MotionCertificate;
@@ -27,46 +29,61 @@ constexpr const char* kKind = "clear";
 /// In the order of geometry::CurveBasis.
 constexpr const char* kBases[] = {"powers", "bezier", "b-spline"};
 
-OrderedJson timed_json(const TimedPoint& p) {
-  return OrderedJson::array({p.time, p.at.x, p.at.y});
+void append(JsonWriter& out, const char* key, const TimedPoint& p) {
+  out.key(key).begin_array().value(p.time).value(p.at.x).value(p.at.y).end_array();
 }
 
-OrderedJson parts_json(const RigidBody& body) {
-  OrderedJson parts = OrderedJson::array();
-  for (const RoundedPolygon& part : body)
-    parts.push_back({{"corners", points_json(part.corners)}, {"radius", part.radius}});
-  return parts;
+void append_body(JsonWriter& out, const RigidBody& body) {
+  out.list("body", body, [&](const RoundedPolygon& part) {
+    out.begin_object().member("corners", part.corners).member("radius", part.radius).end_object();
+  });
 }
 
-OrderedJson moving_json(const BodyInMotion& moving) {
-  if (const auto* straight = std::get_if<StraightMotion>(&moving.motion))
-    return {{"from", timed_json(straight->from)}, {"to", timed_json(straight->to)}, {"body", parts_json(*moving.body)}};
-  const auto& curve = std::get<CurvedMotion>(moving.motion);
-  return {{"basis", kBases[static_cast<std::size_t>(curve.basis)]},
-          {"start", curve.start},
-          {"end", curve.end},
-          {"points", points_json(curve.points)},
-          {"body", parts_json(*moving.body)}};
+/// A body in motion.
+void append(JsonWriter& out, const BodyInMotion& moving) {
+  if (const auto* straight = std::get_if<StraightMotion>(&moving.motion)) {
+    append(out, "from", straight->from);
+    append(out, "to", straight->to);
+  } else {
+    const auto& curve = std::get<CurvedMotion>(moving.motion);
+    out.member("basis", kBases[static_cast<std::size_t>(curve.basis)]);
+    out.member("start", curve.start).member("end", curve.end).member("points", curve.points);
+  }
+  append_body(out, *moving.body);
 }
 
-OrderedJson turning_json(const TurningMotion& motion, const RigidBody& body) {
-  return {{"from", timed_json({motion.start, motion.at})},
-          {"until", motion.end},
-          {"velocity", json_point(motion.twist.velocity)},
-          {"turn", motion.twist.turn},
-          {"body", parts_json(body)}};
+/// A body that drives and turns.
+struct BodyOnTwist {
+  const TurningMotion& motion;
+  const RigidBody& body;
+};
+
+void append(JsonWriter& out, const BodyOnTwist& turning) {
+  const TurningMotion& m = turning.motion;
+  append(out, "from", {m.start, m.at});
+  out.member("until", m.end).member("velocity", m.twist.velocity).member("turn", m.twist.turn);
+  append_body(out, turning.body);
 }
 
-OrderedJson json_with(const MotionCertificate& certificate, OrderedJson a, const char* key, OrderedJson other) {
-  OrderedJson separations = OrderedJson::array();
-  for (const Separation& s : certificate.separations)
-    separations.push_back({{"part", s.part},
-                           {"other", s.other},
-                           {"from", s.from},
-                           {"to", s.to},
-                           {"direction", json_point(s.direction)},
-                           {"margin", s.margin}});
-  return {{"kind", kKind}, {"a", std::move(a)}, {key, std::move(other)}, {"separations", separations}};
+template <class Moving>
+std::string text_with(const MotionCertificate& certificate, const Moving& a, const char* key, std::string_view other) {
+  JsonWriter out(JsonWriter::Layout::compact);
+  out.begin_object().member("kind", kKind);
+  out.object("a", [&](JsonWriter& json) { append(json, a); });
+  out.key(key).raw(other);
+  out.list("separations", certificate.separations, [&](const Separation& s) {
+    out.begin_object().member("part", s.part).member("other", s.other).member("from", s.from).member("to", s.to);
+    out.member("direction", s.direction).member("margin", s.margin).end_object();
+  });
+  return out.end_object().take();
+}
+
+template <class Moving>
+std::string text_of(const Moving& b) {
+  JsonWriter out(JsonWriter::Layout::compact);
+  out.begin_object();
+  append(out, b);
+  return out.end_object().take();
 }
 
 // --- Reading (certificate_json.h) ---
@@ -171,23 +188,26 @@ bool proves(const Read& read) {
 
 }  // namespace
 
-OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a, const BodyInMotion& b) {
-  return json_with(certificate, moving_json(a), "b", moving_json(b));
+std::string obstacle_text(const formation::SceneObstacle& obstacle) {
+  return obstacle_json(obstacle).dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-OrderedJson certificate_json(const MotionCertificate& certificate, const BodyInMotion& a,
-                             const formation::SceneObstacle& obstacle) {
-  return json_with(certificate, moving_json(a), "obstacle", obstacle_json(obstacle));
+std::string certificate_text(const MotionCertificate& certificate, const BodyInMotion& a, const BodyInMotion& b) {
+  return text_with(certificate, a, "b", text_of(b));
 }
 
-OrderedJson certificate_json(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
-                             const formation::SceneObstacle& obstacle) {
-  return json_with(certificate, turning_json(motion, body), "obstacle", obstacle_json(obstacle));
+std::string certificate_text(const MotionCertificate& certificate, const BodyInMotion& a, std::string_view obstacle) {
+  return text_with(certificate, a, "obstacle", obstacle);
 }
 
-OrderedJson certificate_json(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
+std::string certificate_text(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
+                             std::string_view obstacle) {
+  return text_with(certificate, BodyOnTwist{motion, body}, "obstacle", obstacle);
+}
+
+std::string certificate_text(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
                              const TurningMotion& b, const RigidBody& body_b) {
-  return json_with(certificate, turning_json(a, body_a), "b", turning_json(b, body_b));
+  return text_with(certificate, BodyOnTwist{a, body_a}, "b", text_of(BodyOnTwist{b, body_b}));
 }
 
 bool is_motion_certificate(const OrderedJson& certificate) {

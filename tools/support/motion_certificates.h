@@ -9,7 +9,8 @@
 ///
 /// See also: certificates.h checks whole files.
 
-#include <optional>
+#include <string>
+#include <string_view>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/motion_certificate.h"
@@ -25,15 +26,19 @@ struct BodyInMotion {
   const geometry::RigidBody* body = nullptr;
 };
 
-OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
+/// An obstacle as a certificate names it.
+std::string obstacle_text(const formation::SceneObstacle& obstacle);
+
+/// The certificate as JSON on one line. `obstacle`: of obstacle_text.
+std::string certificate_text(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
                              const BodyInMotion& b);
-OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
-                             const formation::SceneObstacle& obstacle);
+std::string certificate_text(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
+                             std::string_view obstacle);
 
 /// Of a body that drives and turns.
-OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
-                             const geometry::RigidBody& body, const formation::SceneObstacle& obstacle);
-OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& a,
+std::string certificate_text(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
+                             const geometry::RigidBody& body, std::string_view obstacle);
+std::string certificate_text(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& a,
                              const geometry::RigidBody& body_a, const geometry::TurningMotion& b,
                              const geometry::RigidBody& body_b);
 

@@ -67,10 +67,10 @@ class CsvTable : public LineReader {
   std::vector<std::string> fields_;
 };
 
-/// Whether the whole field is a number; it may have a plus sign.
+/// Whether the whole field is a number, with at most one sign.
 template <class T>
 bool parse_whole(std::string_view field, T& value) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  if (field.substr(0, 1) == "+" && field.substr(1, 1) != "-") field.remove_prefix(1);
   const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), value);
   return result.ec == std::errc() && result.ptr == field.data() + field.size();
 }

@@ -76,7 +76,7 @@ class WktScanner {
   /// Any C number; "nan" and "inf" are let through for the ring to be validated.
   double number() {
     skip_space();
-    const std::size_t sign = at_ < text_.size() && text_[at_] == '+' ? 1 : 0;
+    const std::size_t sign = text_.substr(at_, 1) == "+" && text_.substr(at_ + 1, 1) != "-" ? 1 : 0;
     const char* first = text_.data() + at_ + sign;
     const char* last = text_.data() + text_.size();
     double value = 0.0;

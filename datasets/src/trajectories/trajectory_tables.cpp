@@ -190,13 +190,25 @@ void read_numbers(const std::filesystem::path& path, const Columns& columns, std
   }
 }
 
+/// The fields of a line of CSV; the quoted ones are kept in `quoted`. False where a quotation mark is not closed.
+bool split_csv(std::string_view line, char separator, std::vector<std::string_view>& fields,
+               std::optional<std::vector<std::string>>& quoted) {
+  if (separator != ',' || line.find('"') == std::string_view::npos) {
+    split(line, separator, fields);
+    return true;
+  }
+  quoted = csv_fields_of(line);
+  if (quoted) fields.assign(quoted->begin(), quoted->end());
+  return quoted.has_value();
+}
+
 }  // namespace
 
 bool looks_like_trajectory_csv(std::string_view beginning) {
   const std::string_view header = first_line(beginning, '#');
   std::vector<std::string_view> fields;
-  split(header, separator_of(header), fields);
-  return has_place_and_time(columns_in(fields));
+  std::optional<std::vector<std::string>> quoted;
+  return split_csv(header, separator_of(header), fields, quoted) && has_place_and_time(columns_in(fields));
 }
 
 void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out) {
@@ -209,13 +221,9 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
     line = trimmed(lines.number() == 1 ? without_mark(line) : line);
     if (line.empty() || line.front() == '#') continue;
     if (!rows) separator = separator_of(line);
-    if (separator == ',' && line.find('"') != std::string_view::npos) {
-      quoted = csv_fields_of(line);
-      if (!quoted) out.refuse(DataCode::format_syntax, lines.number(), "a quotation mark that is not closed", "CSV");
-      fields.assign(quoted->begin(), quoted->end());
-    } else {
-      split(line, separator, fields);
-    }
+    if (!split_csv(line, separator, fields, quoted))
+      out.refuse(DataCode::format_syntax, lines.number(), "a quotation mark that is not closed",
+                 "CSV whose fields end on their line");
     if (rows) {
       rows->add(fields, lines.number());
       continue;

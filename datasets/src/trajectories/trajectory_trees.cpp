@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 #include <variant>
@@ -237,8 +238,29 @@ bool looks_like_sumo_fcd(std::string_view beginning) {
   return first_element_is(std::string(beginning), "fcd-export");
 }
 
+/// What vehicles have gone, by the speeds that a file gives and by its places.
+class GoneWays {
+ public:
+  void add(std::size_t agent, double time, geometry::Vec2 at, double speed) {
+    if (agent >= last_.size()) last_.resize(agent + 1);
+    auto& last = last_[agent];
+    if (last) {
+      by_speed_ += speed * (time - last->time);
+      by_place_ += norm(at - last->at);
+    }
+    last = geometry::TimedPoint{time, at};
+  }
+  /// A degree of latitude is 111 km long, one of longitude seldom less than 1 km; ways in metres agree to a few parts.
+  bool are_in_degrees() const { return by_speed_ > 10.0 && by_speed_ > 500.0 * by_place_; }
+
+ private:
+  std::vector<std::optional<geometry::TimedPoint>> last_;
+  double by_speed_ = 0.0, by_place_ = 0.0;  ///< m, and units of length
+};
+
 void read_sumo_fcd(const std::filesystem::path& path, TrajectorySink& out) {
   XmlTags tags(path, out);
+  GoneWays gone;
   double time = 0.0;
   bool has_headings = false;
   while (tags.next()) {
@@ -254,8 +276,14 @@ void read_sumo_fcd(const std::filesystem::path& path, TrajectorySink& out) {
       heading = (90.0 - vehicle.number("angle")) * kDegree;
       has_headings = true;
     }
-    out.row(out.agent(vehicle.text("id")), time, {vehicle.number("x"), vehicle.number("y")}, tags.line(), heading);
+    const std::size_t agent = out.agent(vehicle.text("id"));
+    const geometry::Vec2 at{vehicle.number("x"), vehicle.number("y")};
+    if (vehicle.has("speed")) gone.add(agent, time, at, vehicle.number("speed"));
+    out.row(agent, time, at, tags.line(), heading);
   }
+  if (gone.are_in_degrees() && out.options().scale == 1.0)
+    out.refuse(DataCode::projection, tags.line(), "places that agree with the speeds only if they are degrees",
+               "places in metres, as SUMO writes them without --fcd-output.geo");
   if (has_headings)
     out.file().notes.emplace_back("places of vehicles are the middle of the front bumper, as SUMO has it");
 }

@@ -499,9 +499,9 @@ class Events {
     }
     open.clearance = {std::min(open.clearance.low, next.clearance.low),
                       std::min(open.clearance.high, next.clearance.high)};
-    // A contact for certain, or an overlap, is one whatever else is open.
-    open.is_open = open.is_open && next.is_open;
     open.encounter = std::max(open.encounter, next.encounter);
+    // An overlap is one whatever else is open. A contact may be one where another piece is open.
+    open.is_open = open.encounter != Encounter::overlap && (open.is_open || next.is_open);
   }
   std::function<void(const MotionEvent&)> report_;
   MotionCheck& check_;

@@ -12,7 +12,7 @@ namespace {
 
 /// How often a piece of time is halved before the proof is given up.
 constexpr int kMostHalvingsOfTurn = 40;
-/// Two that touch have no proof, however long it is.
+/// For each pair of parts. Two that touch have no proof, however long it is.
 constexpr std::size_t kMostSeparations = std::size_t{1} << 16;
 /// rad: `proves_clear` takes no more.
 constexpr double kMostTurned = 64.0;
@@ -64,8 +64,14 @@ class TurnProver {
  public:
   explicit TurnProver(std::vector<Separation>& separations) : separations_(separations) {}
 
+  bool prove(std::size_t part, std::size_t other, const Drive& a, const Drive& b, double from, double to) {
+    most_ = separations_.size() + kMostSeparations;
+    return prove(part, other, a, b, from, to, 0);
+  }
+
+ private:
   bool prove(std::size_t part, std::size_t other, const Drive& a, const Drive& b, double from, double to,
-             int halvings = 0) {
+             int halvings) {
     const double middle = from + 0.5 * (to - from);
     const Vec2 n = direction_between(b.corners_at(middle), a.corners_at(middle));
     const double margin = n == Vec2{} ? -1.0 : margin_along(n, a, b, from, to);
@@ -73,8 +79,7 @@ class TurnProver {
       separations_.push_back({part, other, from, to, n, margin});
       return true;
     }
-    if (halvings == kMostHalvingsOfTurn || separations_.size() > kMostSeparations || !(from < middle && middle < to))
-      return false;
+    if (halvings == kMostHalvingsOfTurn || separations_.size() > most_ || !(from < middle && middle < to)) return false;
     return prove(part, other, a, b, from, middle, halvings + 1) && prove(part, other, a, b, middle, to, halvings + 1);
   }
 
@@ -99,6 +104,7 @@ class TurnProver {
   }
 
   std::vector<Separation>& separations_;
+  std::size_t most_ = 0;
 };
 
 /// Just below, since the product is rounded.

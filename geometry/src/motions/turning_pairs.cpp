@@ -26,7 +26,15 @@ constexpr int kMostHalvings = 200;
 constexpr int kMostStarts = 64;
 /// A clearance is enclosed to this share of the lengths first; if that fails, to eight times as much, and so on.
 constexpr double kClearanceShare = 0x1p-40;
-constexpr int kSamples = 12, kGoldenSteps = 55;
+/// Moments at which the least gap is sought first: at least so many, and so many for each radian turned.
+constexpr int kLeastSamples = 12, kMostSamples = 512;
+constexpr double kSamplesARadian = 4.0;
+constexpr int kGoldenSteps = 55;
+/// How often the least gap is sought again, at a moment at which a clearance is not kept; in vain it is no more than a
+/// few times.
+constexpr int kMostDescents = 64, kDescentsOfOneInVain = 16;
+/// A share of the time: so near to the moment of the least gap there is no other one to be sought.
+constexpr double kSameDip = 0x1p-10;
 
 struct Part {
   std::vector<Vec2> corners;  ///< once round, counter-clockwise
@@ -103,16 +111,18 @@ class Span {
     double extent = 0.0;
     for (const Mover* m : {&a_, &b_})
       for (const Part& part : m->parts) extent = std::max(extent, extent_of(part) + part.radius);
-    const double angle = (std::fabs(a_.twist.turn) + std::fabs(b_.twist.turn)) * duration;
-    way_ = (norm(a_.twist.velocity) + norm(b_.twist.velocity)) * duration + angle * extent;
+    angle_ = (std::fabs(a_.twist.turn) + std::fabs(b_.twist.turn)) * duration;
+    way_ = (norm(a_.twist.velocity) + norm(b_.twist.velocity)) * duration + angle_ * extent;
     size_ = norm(b_.at - a_.at) + way_ + 4.0 * extent;
-    slack_ = kPoseRounding * (1.0 + angle) * size_;
+    slack_ = kPoseRounding * (1.0 + angle_) * size_;
     EXACTVO_REQUIRE(std::isfinite(slack_), hex_text(duration));
   }
 
   double duration() const { return duration_; }
   double size() const { return size_; }
   double slack() const { return slack_; }
+  /// rad: both turn by this much.
+  double angle() const { return angle_; }
   /// m: no gap changes by more.
   double way() const { return way_; }
 
@@ -125,8 +135,8 @@ class Span {
     const GapToKeep q = question(pair, time, 0.0, 0.0);
     return keeper_.lose(q, {false, 0.0}).place;
   }
-  /// Whether no gap is less than this one. Certified.
-  bool keeps(const Pair& pair, double gap) { return kept_until(pair, 0.0, duration_, gap) >= duration_; }
+  /// Until then no gap is less than this one. Certified.
+  double keeps_until(const Pair& pair, double gap) { return kept_until(pair, 0.0, duration_, gap); }
   Found search(const Pair& pair) {
     Found found;
     search(pair, 0.0, duration_, found);
@@ -190,7 +200,7 @@ class Span {
   }
 
   Mover a_, b_;
-  double duration_, way_ = 0.0, size_ = 0.0, slack_ = 0.0;
+  double duration_, angle_ = 0.0, way_ = 0.0, size_ = 0.0, slack_ = 0.0;
   std::vector<Vec2> corners_a_, corners_b_;
   GapKeeper keeper_;
 };
@@ -224,9 +234,9 @@ class Examination {
     MotionVerdict& v = answer.verdict;
     v.encounter = answer.is_open ? Encounter::contact : worst_;
     find_nearest();
-    v.nearest_time = window_.at(nearest_time_);
-    v.place = place_;
     v.clearance = clearance(v.encounter, answer.is_open, within_at_start || within_at_end);
+    v.nearest_time = window_.at(nearest_time_);
+    if (!pairs_.empty()) v.place = span_.nearest_place(nearest_, nearest_time_);
     if (v.encounter == Encounter::clear) return answer;
     v.first = within_at_start ? Bounds{window_.from, window_.from} : first_;
     v.last = within_at_end ? Bounds{window_.to, window_.to} : last_moment();
@@ -304,15 +314,21 @@ class Examination {
     }
   }
 
-  /// A guess, which exact questions confirm.
+  /// A guess; `clearance` goes on from it.
   void find_nearest() {
     const double duration = span_.duration();
-    for (int k = 0; k <= kSamples; ++k) try_moment(duration * k / kSamples);
+    const int samples = static_cast<int>(
+        std::clamp(std::ceil(kSamplesARadian * span_.angle()), double{kLeastSamples}, double{kMostSamples}));
+    for (int k = 0; k <= samples; ++k) try_moment(duration * k / samples);
     for (const double time : {witness_, first_.low - window_.from})
       if (time >= 0.0 && time <= duration) try_moment(time);
+    descend(nearest_time_ - duration / samples, nearest_time_ + duration / samples);
+  }
+  /// To a least gap between two moments, by golden sections.
+  void descend(double low, double high) {
     constexpr double kGolden = 0.6180339887498949;
-    double low = std::max(0.0, nearest_time_ - duration / kSamples);
-    double high = std::min(duration, nearest_time_ + duration / kSamples);
+    low = std::max(0.0, low);
+    high = std::min(span_.duration(), high);
     double x = high - kGolden * (high - low), y = low + kGolden * (high - low);
     double at_x = least_gap(x), at_y = least_gap(y);
     for (int k = 0; k < kGoldenSteps; ++k) {
@@ -331,7 +347,19 @@ class Examination {
       }
     }
     try_moment(0.5 * (low + high));
-    if (!pairs_.empty()) place_ = span_.nearest_place(nearest_, nearest_time_);
+  }
+  /// From a moment at which a gap below the least one may begin.
+  void descend_from(double time) {
+    for (double share = 0x1p-3; share > 0x1p-16; share *= 0x1p-4) descend(time, time + share * span_.duration());
+  }
+  /// The first moment at which a gap may be less than `low`; infinite: none is. Certified.
+  double first_below(double low) {
+    double first = kInfinity;
+    for (const Pair& pair : pairs_) {
+      const double kept = span_.keeps_until(pair, low);
+      if (kept < span_.duration()) first = std::min(first, kept);
+    }
+    return first;
   }
   double least_gap(double time) {
     double least = kInfinity;
@@ -341,7 +369,8 @@ class Examination {
   /// The distance of the rims. That of sets that overlap counts as 0, however deep they do.
   double distance_of(const Pair& pair, double time) { return std::max(span_.gap(pair, time), -pair.reach); }
 
-  /// `guess` comes first. The distance of parts that overlap counts as 0.
+  /// The distance of parts that overlap counts as 0. Where a gap below the least known one cannot be ruled out, the
+  /// search goes on there, so that the moment of the least one is as good as the bounds.
   Bounds clearance(Encounter encounter, bool is_open, bool is_within) {
     if (encounter == Encounter::contact && !is_open) return {0.0, 0.0};
     double deepest = 0.0, shallow = kInfinity;
@@ -349,21 +378,29 @@ class Examination {
     for (const Part& part : a_.parts) shallow = std::min(shallow, part.radius);
     if (is_within)
       for (const Part& part : a_.parts) deepest = std::max(deepest, part.radius);
+    const double lowest = encounter == Encounter::clear ? 0.0 : -deepest;
+    double certain = lowest;
+    int descents = 0;
+    for (double by = kClearanceShare * span_.size(); !is_within && std::isfinite(by);) {
+      const double low = (is_open ? 0.0 : least_) - by;
+      if (low <= lowest) break;
+      const double lost = first_below(low);
+      if (lost == kInfinity) {
+        certain = low;
+        break;
+      }
+      const double before = least_;
+      const bool is_elsewhere = std::fabs(lost - nearest_time_) > kSameDip * span_.duration();
+      if (!is_open && is_elsewhere && ++descents <= kMostDescents) descend_from(lost);
+      if (least_ < before) continue;
+      descents += kDescentsOfOneInVain;
+      by *= 8.0;
+    }
     Bounds bounds{-deepest, kInfinity};
     if (!pairs_.empty()) bounds.high = std::max(least_, -nearest_.reach) + 4.0 * span_.slack();
     if (is_within) bounds.high = std::min(bounds.high, -shallow);
     if (encounter == Encounter::overlap) bounds.high = std::min(bounds.high, 0.0);
-    const double lowest = encounter == Encounter::clear ? 0.0 : -deepest;
-    bounds.low = std::min(lowest, bounds.high);
-    if (is_within) return bounds;
-    for (double by = kClearanceShare * span_.size(); std::isfinite(by); by *= 8.0) {
-      const double low = (is_open ? 0.0 : least_) - by;
-      if (low <= lowest) break;
-      if (std::all_of(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return span_.keeps(p, low); })) {
-        bounds.low = low;
-        break;
-      }
-    }
+    bounds.low = is_within ? std::min(lowest, bounds.high) : std::min(certain, bounds.high);
     return bounds;
   }
 
@@ -378,7 +415,6 @@ class Examination {
   Bounds first_;
   double least_ = kInfinity, nearest_time_ = 0.0;
   Pair nearest_;
-  Vec2 place_;
 };
 
 bool is_at_rest(const TurningMotion& m) {

@@ -124,7 +124,8 @@ function drawStrip(ctx, run, series, strip, colours, width, top, height) {
 const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5};
 
 function collisionWords(c) {
-  return `collision with ${c.kind} ${c.with}, ${c.depth.toPrecision(2)} m deep at ${c.at.toFixed(2)} s`;
+  const depth = c.depth === null ? '' : `${c.depth.toPrecision(2)} m deep `;
+  return `collision with ${c.kind} ${c.with}, ${depth}at ${c.at.toFixed(2)} s`;
 }
 
 // Events of the run as {time, robot, kind, text}; collisions among them.
@@ -165,8 +166,10 @@ function drawCharts(ctx, run, series, events, colours, width, height) {
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, width, height);
   drawMarks(ctx, run, events, series.robot, colours, width, 3, 10);
-  const top = 18, bottom = 16, each = (height - top - bottom - GAP * (STRIPS.length - 1)) / STRIPS.length;
-  STRIPS.forEach((strip, k) => drawStrip(ctx, run, series, strip, colours, width, top + k * (each + GAP), each));
+  // Clearances of outlines are not measured: no axes without a line.
+  const strips = STRIPS.filter((strip) => strip.lines.some(([name]) => series[name].some(Number.isFinite)));
+  const top = 18, bottom = 16, each = (height - top - bottom - GAP * (strips.length - 1)) / strips.length;
+  strips.forEach((strip, k) => drawStrip(ctx, run, series, strip, colours, width, top + k * (each + GAP), each));
   const span = Math.max(1e-9, run.end - run.time[0]), step = tickStep((width - LEFT - RIGHT) / span, 60);
   ctx.font = '10px system-ui, sans-serif';
   ctx.textAlign = 'center';

@@ -12,11 +12,15 @@ import {endEdit, live, runFromHere} from './changing.js';
 import {changeSpeed, setPlaying, stepBy, toEvent} from './playing.js';
 import {film, saveAnimation, saveMoment} from './saving.js';
 
+function fillLegends() {
+  worldLegend($('world-legend'), ui.colours, live.server !== null, page.run?.about.method === 'check');
+  spaceLegend($('space-legend'), ui.colours);
+}
+
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
   ui.colours = PALETTES[theme];
-  worldLegend($('world-legend'), ui.colours, live.server !== null);
-  spaceLegend($('space-legend'), ui.colours);
+  fillLegends();
   page.chartsDirty = page.dirty = true;
 }
 
@@ -32,6 +36,7 @@ const KEYS = {
 };
 
 function showLegend(on) {
+  fillLegends();
   for (const id of ['world-legend', 'space-legend']) $(id).hidden = !on;
   $('legend').setAttribute('aria-pressed', String(on));
   resize();

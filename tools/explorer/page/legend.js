@@ -89,8 +89,9 @@ function plussed(ctx, colours) {
   line(ctx, 13, 1, 13, 13);
 }
 
-function worldLegend(element, colours, isServed) {
-  const entries = [['goal', crossed(false)], ['goal out of reach', crossed(true)], ['route', stroked('text', 1.4, [8, 3, 2, 3])], ['path of a joint plan', stroked('text', 2.4, [2, 3])],
+// `isCheck`: of trajectories that were checked, which have neither goals nor decisions.
+function worldLegend(element, colours, isServed, isCheck) {
+  const entries = isCheck ? [['collision', plussed]] : [['goal', crossed(false)], ['goal out of reach', crossed(true)], ['route', stroked('text', 1.4, [8, 3, 2, 3])], ['path of a joint plan', stroked('text', 2.4, [2, 3])],
     ['enclosure that the robot sees', stroked('enclosure', 1.4, [5, 4])], ['facade, piece', stroked('enclosure', 1.4, [])],
     ['presses on the robot', stroked('active', 4, [])], ['on whom a robot presses', arrowed('active', 1.4, [3, 3])], ['waits for', arrowed('bad', 3, [])],
     ['collision', plussed]];

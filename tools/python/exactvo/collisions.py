@@ -24,6 +24,7 @@ import numpy.typing as npt
 from . import _exactvo, datasets
 from ._calls import explain_calls
 from .errors import ArgumentError, DataError
+from .explorer import ExplorerPage
 from .shapes import Obstacles, ShapeLike, obstacles
 from .simulation import Recording
 
@@ -51,7 +52,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
 class MotionEvent:
     """Two bodies, or a body and an obstacle, that touch or overlap for a while. Bounds are certified."""
 
-    kind: str  #: "overlap", "contact", or "close": footprints that turn, and it is open whether they touch
+    kind: str  #: "overlap", "contact", or "close": footprints that turn, and it is open whether they overlap
     body: str
     with_obstacle: bool
     other: Union[str, int]  #: id of the other body, or number of the obstacle
@@ -122,7 +123,7 @@ class CheckResult:
     between: str  #: what was assumed between rows
     overlaps: int
     contacts: int
-    open: int  #: of footprints that turn: pairs so near to touching that it is not known whether they do
+    open: int  #: of footprints that turn: pairs so near to touching that it is not known whether they overlap
     rows: int
     repeated_rows: int  #: left out, since they repeat the row before
     pieces: int  #: of motion that were looked at
@@ -181,6 +182,8 @@ def check(
     format: str | None = None,
     frame_rate: float | None = None,
     scale: float = 1.0,
+    page: PathLike | None = None,
+    certificates: PathLike | None = None,
 ) -> CheckResult:
     """Whether bodies on trajectories touch each other or a map at any time. Exact; of footprints that turn certified.
 
@@ -204,12 +207,16 @@ def check(
     format        of the file; by default found by content
     frame_rate    frames a second, of files that count frames
     scale         m: of the trajectories' unit of length
+    page          a file to write, .html: a page for a browser that plays the trajectories and leads to each overlap
+    certificates  a file to write: a proof for each pair of motions that come near and stay clear, for
+                  `exactvo audit --certificate`; `notes` says how many there are
 
     Raises `ArgumentError`, `DataError` with the line or row, `MissingFileError`.
     """
+    written = _written(trajectories, page=page, certificates=certificates)
     if isinstance(trajectories, Recording) and _is_on_wheels(trajectories):
         _no_time(time)
-        options = {"between": between, "near": near, "max_speed": max_speed, "max_gap": max_gap, "scale": scale}
+        options = {"between": between, "near": near, "max_speed": max_speed, "max_gap": max_gap, "scale": scale, **written}
         return _check_on_wheels(trajectories, radius, map=map, unknown=unknown, footprint=footprint, **options)
     source, ids = _source(trajectories, time)
     notes: list[str] = []
@@ -243,7 +250,13 @@ def check(
         near,
         max_speed,
         max_gap,
+        page is not None,
+        written["certificates"] or "",
     )
+    if written["page"]:
+        ExplorerPage(native["page"]).write(written["page"])
+    if native["proofs"]:
+        notes.append(f"{written['certificates']}: {native['proofs']}")
     return CheckResult(
         **{k: native[k] for k in ("file", "format", "between", "overlaps", "contacts", "open", "rows", "repeated_rows", "pieces", "pairs", "near", "jump_speed")},
         events=tuple(MotionEvent(*e) for e in native["events"]),
@@ -252,6 +265,22 @@ def check(
         bodies=tuple(BodySummary(b[0], b[1], b[2], b[3], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
         notes=(*native["notes"], *notes),
     )
+
+
+def _written(trajectories: Any, **files: PathLike | None) -> dict[str, str | None]:
+    """What is written, none of it over another or over what is read."""
+    written = {name: None if file is None else os.fspath(file) for name, file in files.items()}
+    read = trajectories if isinstance(trajectories, (list, tuple)) else [trajectories]
+    taken = {os.path.abspath(file) for file in read if isinstance(file, (str, os.PathLike))}
+    for name, file in written.items():
+        if file is None:
+            continue
+        if not file or (name == "page" and not file.endswith(".html")):
+            raise ArgumentError(name, repr(file), "a name for a file" + (" that ends in .html" if name == "page" else ""))
+        if os.path.abspath(file) in taken:
+            raise ArgumentError(name, repr(file), "another file than those that are read or written besides")
+        taken.add(os.path.abspath(file))
+    return written
 
 
 def _is_on_wheels(run: Recording) -> bool:

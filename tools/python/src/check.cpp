@@ -8,6 +8,9 @@
 #include "exactvo/datasets/trajectory_pieces.h"
 #include "module.h"
 #include "shapes.h"
+#include "support/check_certificates.h"
+#include "support/check_page.h"
+#include "support/footprint.h"
 
 namespace exactvo::python {
 
@@ -24,11 +27,7 @@ using geometry::Between;
 using geometry::Bounds;
 using geometry::MotionEvent;
 using geometry::RigidBody;
-
-const std::vector<std::string>& between_names() {
-  static const std::vector<std::string> kNames{"straight", "hold", "cubic", "none"};
-  return kNames;
-}
+using tools::between_names;
 
 bool parse_between(const std::string& text, Between& between) {
   for (std::size_t k = 0; k < between_names().size(); ++k) {
@@ -63,7 +62,9 @@ TrajectoryColumns columns_of(const py::tuple& source) {
 
 struct Question {
   std::vector<RigidBody> bodies;
-  double reach = 0.0;  ///< m, of the largest
+  std::string words;                      ///< what they are
+  double reach = 0.0;                     ///< m, of the largest
+  bool has_rims = true, on_arcs = false;  ///< as in tools::CheckedFile
   std::vector<geometry::Obstacle> map;
   std::vector<std::optional<geometry::Disc>> discs;
   Between between = Between::straight;
@@ -74,6 +75,13 @@ struct Answer {
   std::vector<MotionEvent> events;
   std::vector<Move> jumps, gaps;
   geometry::MotionCheck check;
+  std::optional<std::string> page, proofs;  ///< the page; how many proofs there are, in words
+};
+
+/// What is made beside the answer.
+struct Wanted {
+  bool page = false;
+  std::string certificates;  ///< a file; empty: none
 };
 
 double radius_of(py::handle radius, const TrajectoryFile& file, std::size_t agent) {
@@ -121,17 +129,27 @@ void set_bodies(const TrajectoryReader& reader, const TrajectorySurvey& survey, 
       reader.refuse(datasets::DataCode::out_of_range, agent.turns_at,
                     "agent " + file.agents[k] + " at another heading than before",
                     "one heading of an agent: on cubics, a footprint that turns is not decided");
-    const RigidBody body = footprint_of(*footprint, grown);
-    for (const geometry::RoundedPolygon& part : body)
-      for (const Vec2 c : part.corners) question.reach = std::max(question.reach, norm(c) + part.radius);
-    question.bodies.push_back(body);
+    question.has_rims = question.has_rims && grown > 0.0;
+    question.on_arcs |= agent.turns_at > 0 && question.between == Between::straight;
+    question.bodies.push_back(footprint_of(*footprint, grown));
+    question.reach = std::max(question.reach, tools::reach_of(question.bodies.back()));
   }
+  question.words = footprint ? "the footprint at its heading" : "discs";
 }
 
-Answer answer_of(TrajectoryReader& reader, const TrajectorySurvey& survey, const Question& question) {
+Answer answer_of(TrajectoryReader& reader, TrajectorySurvey& survey, const tools::CheckedFile& asked,
+                 const Question& question, const Wanted& wanted) {
   Answer answer;
+  std::optional<tools::CheckPage> page;
+  std::optional<tools::CheckCertificates> proofs;
+  if (wanted.page) page.emplace(asked, question.bodies);
+  if (!wanted.certificates.empty()) proofs.emplace(wanted.certificates, asked, question.bodies);
   geometry::MotionCheckOptions options{question.between, question.near, {}, question.discs};
-  geometry::MotionStream stream(question.map, options, [&](const MotionEvent& e) { answer.events.push_back(e); });
+  if (proofs) options.met = [&](const geometry::MetPair& pair) { proofs->add(pair); };
+  geometry::MotionStream stream(question.map, options, [&](const MotionEvent& e) {
+    answer.events.push_back(e);
+    if (page) page->add(e);
+  });
   for (const RigidBody& body : question.bodies) stream.add_body(body);
   datasets::Moves moves;
   for_each_piece(
@@ -143,9 +161,13 @@ Answer answer_of(TrajectoryReader& reader, const TrajectorySurvey& survey, const
         if (move.interval() > survey.gap_of(move.agent)) answer.gaps.push_back(move);
       },
       [&](std::size_t agent, const geometry::Motion& piece, const geometry::Turned& turned) {
+        survey.add(agent, piece);
+        if (page) page->add(agent, piece, turned);
         stream.add(agent, piece, turned);
       });
   answer.check = stream.finish();
+  if (page) answer.page = page->page(answer.check);
+  if (proofs) answer.proofs = proofs->finish();
   return answer;
 }
 
@@ -191,14 +213,15 @@ py::dict as_dict(const TrajectoryFile& file, const TrajectorySurvey& survey, con
                   "between"_a = file.curves.empty() ? between_names()[static_cast<std::size_t>(question.between)]
                                                     : std::string("polynomials"),
                   "events"_a = events, "approaches"_a = approaches, "findings"_a = findings, "bodies"_a = bodies,
-                  "notes"_a = file.notes);
+                  "notes"_a = file.notes, "page"_a = answer.page, "proofs"_a = answer.proofs);
 }
 
 /// `source`: paths, or columns as `columns_of` takes them.
 py::dict check_trajectories(const py::object& source, const py::object& format, const py::object& frame_rate,
                             const py::object& scale, const std::optional<Obstacles>& map, const py::object& radius,
                             const std::optional<Obstacles>& footprint, const std::string& between,
-                            const py::object& near, const py::object& max_speed, const py::object& max_gap) {
+                            const py::object& near, const py::object& max_speed, const py::object& max_gap, bool page,
+                            const std::string& certificates) {
   datasets::TrajectoryOptions options;
   if (!format.is_none()) {
     options.format = py::str(format);
@@ -238,7 +261,22 @@ py::dict check_trajectories(const py::object& source, const py::object& format, 
     question.map.push_back(o.shape);
     question.discs.push_back(o.disc);
   }
-  const Answer answer = without_gil([&] { return answer_of(*reader, survey, question); });
+  const tools::CheckedFile asked{file,
+                                 survey,
+                                 map                      ? "the map"
+                                 : file.obstacles.empty() ? ""
+                                                          : file.file,
+                                 obstacles,
+                                 question.between,
+                                 !file.curves.empty(),
+                                 question.words,
+                                 question.near,
+                                 question.jump_speed,
+                                 question.longest_gap,
+                                 0,
+                                 question.has_rims,
+                                 question.on_arcs};
+  const Answer answer = without_gil([&] { return answer_of(*reader, survey, asked, question, {page, certificates}); });
   return as_dict(file, survey, question, answer);
 }
 

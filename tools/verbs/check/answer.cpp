@@ -9,6 +9,7 @@
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/json_layout.h"
+#include "support/obstacle_name.h"
 
 namespace exactvo::tools {
 
@@ -44,7 +45,7 @@ std::string between_text(double low, double high) {
   return a == b ? a + " m" : fmt::format("{} to {} m", a, b);
 }
 
-/// `close`: it is open whether two bodies that turn touch.
+/// `close`: it is open whether two bodies that turn touch, or overlap.
 const char* word_of(const MotionEvent& e) {
   return e.is_open ? "close" : e.encounter == Encounter::overlap ? "overlap" : "contact";
 }
@@ -87,11 +88,6 @@ std::string line_of(const OrderedJson& json) {
 
 }  // namespace
 
-const std::vector<std::string>& between_names() {
-  static const std::vector<std::string> kNames{"straight", "hold", "cubic", "none"};
-  return kNames;
-}
-
 void SampledMoves::add(std::size_t agent, const geometry::Motion& piece) {
   last_[agent] = {Span{start_of(piece), end_of(piece)}, last_[agent][0]};
 }
@@ -111,14 +107,8 @@ std::string CheckAnswer::name_of(std::size_t agent) const {
   return asked_.file.agents[agent];
 }
 
-std::string CheckAnswer::obstacle_name(std::size_t obstacle) const {
-  const formation::SceneObstacle& o = asked_.obstacles[obstacle];
-  const bool is_number = o.id.find_first_not_of("0123456789-") == std::string::npos;
-  return is_number ? (geometry::has_interior(o.shape) ? "polygon " : "wall ") + o.id : o.id;
-}
-
 std::string CheckAnswer::other_of(bool with_obstacle, std::size_t other) const {
-  return with_obstacle ? obstacle_name(other) : name_of(other);
+  return with_obstacle ? obstacle_name(asked_.obstacles[other]) : name_of(other);
 }
 
 void CheckAnswer::put(const std::string& text) {
@@ -164,13 +154,15 @@ void CheckAnswer::add(const MotionEvent& e) {
       first == last ? fmt::format("at {} s", first) : fmt::format("from {} s to {} s", first, last);
   std::string text =
       fmt::format("{}: {} and {}, {}", word_of(e), name_of(e.body), other_of(e.with_obstacle, e.other), when);
-  const bool has_depth = asked_.has_rims || (e.with_obstacle && asked_.obstacles[e.other].disc);
-  if (e.encounter == Encounter::overlap && has_depth)
+  if (e.encounter == Encounter::overlap && asked_.has_depth(e))
     text += fmt::format(", {} deep at {} s", between_text(0.0 - e.clearance.high, 0.0 - e.clearance.low),
                         seconds(e.nearest_time));
   else if (e.encounter == Encounter::overlap)
     text += fmt::format(", for example at {} s", seconds(e.nearest_time));
-  if (e.is_open) text += fmt::format(", nearer than {:.3g} m; whether they touch is open", e.clearance.high);
+  if (e.is_open && e.clearance.high > 0.0)
+    text += fmt::format(", nearer than {:.3g} m; whether they touch is open", e.clearance.high);
+  else if (e.is_open)
+    text += "; they touch, and whether they overlap is open";
   put(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
 }
 

@@ -9,33 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/datasets/trajectory_survey.h"
-#include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/motion_check.h"
+#include "support/checked_file.h"
 #include "support/json_layout.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
-
-/// What --between takes, in the order of geometry::Between.
-const std::vector<std::string>& between_names();
-
-/// What was asked, for the words of the answer.
-struct CheckedFile {
-  const datasets::TrajectoryFile& file;
-  const datasets::TrajectorySurvey& survey;
-  std::string map;                                         ///< its file; empty without one
-  const std::vector<formation::SceneObstacle>& obstacles;  ///< of the map
-  geometry::Between between = geometry::Between::straight;
-  bool has_curves = false;   ///< the file says how agents move between rows
-  std::string bodies;        ///< in words: "discs of radius 0.3 m"
-  double near = 0.0;         ///< m
-  double jump_speed = 0.0;   ///< m/s, may be infinite
-  double longest_gap = 0.0;  ///< s, may be infinite
-  std::size_t samples = 0;   ///< of each move; 0: not asked
-  bool has_rims = true;      ///< bodies have a radius, from whose rim depth counts; false: polygons without one
-  bool on_arcs = false;      ///< where the heading changes between rows, bodies go on the arc of a constant twist
-};
 
 /// Which overlaps a check would miss that looks at each move at so many moments, evenly spaced from its row on.
 class SampledMoves {
@@ -75,7 +53,6 @@ class CheckAnswer {
 
  private:
   std::string name_of(std::size_t agent) const;
-  std::string obstacle_name(std::size_t obstacle) const;
   std::string other_of(bool with_obstacle, std::size_t other) const;
   /// Prints in chunks.
   void put(const std::string& text);

@@ -9,15 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/trajectory_pieces.h"
 #include "exactvo/geometry/counted.h"
-#include "exactvo/geometry/motion_certificate.h"
 #include "figures/figure.h"
+#include "support/check_certificates.h"
+#include "support/check_page.h"
 #include "support/footprint.h"
-#include "support/motion_certificates.h"
 #include "support/parse_errors.h"
 #include "support/run.h"
 #include "support/stop.h"
@@ -26,7 +25,6 @@
 #include "verb.h"
 #include "verbs/check/answer.h"
 #include "verbs/check/figure.h"
-#include "verbs/check/page.h"
 #include "verbs/obstacles/obstacle_files.h"
 #include "verbs/runs/view.h"
 
@@ -203,79 +201,6 @@ class Placing {
   std::optional<double> top_;  ///< m, of the map
 };
 
-// --- Certificates ---
-
-class CertificateFile {
- public:
-  CertificateFile(const std::string& path, const TrajectoryFile& file, const Bodies& bodies, const CheckMap& map)
-      : out_(path, datasets::MissingFolder::is_made, datasets::Unfinished::goes, datasets::Pipe::is_written),
-        file_(file),
-        bodies_(bodies),
-        map_(map) {}
-
-  void add(const MetPair& pair) {
-    const RigidBody body = turned_body(bodies_.of_agent[pair.body], pair.turned.from);
-    const formation::SceneObstacle* obstacle =
-        pair.with_obstacle && !map_.discs[pair.other] ? &map_.obstacles[pair.other] : nullptr;
-    const bool turns = pair.turned.by != 0.0 || pair.other_turned.by != 0.0;
-    if (obstacle)
-      return turns ? add(arc_of(pair.motion, pair.turned), body, *obstacle, pair)
-                   : add({pair.motion, &body}, *obstacle, pair);
-    // An obstacle that is a disc is a body at rest.
-    const RigidBody other = pair.with_obstacle ? geometry::disc_body(map_.discs[pair.other]->radius)
-                                               : turned_body(bodies_.of_agent[pair.other], pair.other_turned.from);
-    if (turns) {
-      const geometry::TurningMotion a = arc_of(pair.motion, pair.turned),
-                                    b = arc_of(pair.other_motion, pair.other_turned);
-      const auto proof = geometry::certify(a, body, b, other);
-      return proof ? write(certificate_json(*proof, a, body, b, other)) : write_none(pair);
-    }
-    const auto proof = geometry::certify(pair.motion, body, pair.other_motion, other);
-    proof ? write(certificate_json(*proof, {pair.motion, &body}, {pair.other_motion, &other})) : write_none(pair);
-  }
-  void finish() {
-    put({{"summary", {{"certificates", count_}, {"without", without_}}}});
-    out_.commit();
-    message(fmt::format("{} for motions that come near and stay clear, none for {} that {}",
-                        geometry::counted(count_, "certificate"), without_, without_ == 1 ? "touches" : "touch"));
-  }
-
- private:
-  static geometry::TurningMotion arc_of(const geometry::Motion& piece, const geometry::Turned& turned) {
-    return geometry::turning_motion(std::get<geometry::StraightMotion>(piece), turned);
-  }
-  void add(const BodyInMotion& a, const formation::SceneObstacle& obstacle, const MetPair& pair) {
-    const auto proof = geometry::certify(a.motion, *a.body, obstacle.shape);
-    proof ? write(certificate_json(*proof, a, obstacle)) : write_none(pair);
-  }
-  void add(const geometry::TurningMotion& a, const RigidBody& body, const formation::SceneObstacle& obstacle,
-           const MetPair& pair) {
-    const auto proof = geometry::certify(a, body, obstacle.shape);
-    proof ? write(certificate_json(*proof, a, body, obstacle)) : write_none(pair);
-  }
-  void write(OrderedJson certificate) {
-    ++count_;
-    put({{"certificate", std::move(certificate)}});
-  }
-  void write_none(const MetPair& pair) {
-    ++without_;
-    put({{"certificate", nullptr},
-         {"from",
-          pair.with_obstacle ? start_of(pair.motion) : std::max(start_of(pair.motion), start_of(pair.other_motion))},
-         {"body", file_.agents[pair.body]},
-         {pair.with_obstacle ? "obstacle" : "other",
-          pair.with_obstacle ? map_.obstacles[pair.other].id : file_.agents[pair.other]}});
-  }
-  void put(const OrderedJson& json) {
-    out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
-  }
-  datasets::AtomicFile out_;
-  const TrajectoryFile& file_;
-  const Bodies& bodies_;
-  const CheckMap& map_;
-  std::size_t count_ = 0, without_ = 0;
-};
-
 // --- The check ---
 
 TrajectorySurvey survey_of(TrajectoryReader& reader) {
@@ -329,9 +254,9 @@ CheckedFile asked_of(const CheckFlags& flags, const TrajectoryFile& file, const 
 /// What is made of a check beside its answer: proofs, a figure, a page, and what samples miss.
 class Byproducts {
  public:
-  Byproducts(const CheckFlags& flags, const CheckedFile& asked, const Bodies& bodies, const CheckMap& map)
+  Byproducts(const CheckFlags& flags, const CheckedFile& asked, const Bodies& bodies)
       : flags_(flags), sampled_(flags.samples, bodies.of_agent.size()) {
-    if (!flags.certificates.empty()) certificates_.emplace(flags.certificates, asked.file, bodies, map);
+    if (!flags.certificates.empty()) certificates_.emplace(flags.certificates, asked, bodies.of_agent);
     if (!flags.figure.empty()) picture_.emplace(asked, bodies.of_agent);
     if (!flags.page.empty()) page_.emplace(asked, bodies.of_agent);
   }
@@ -357,7 +282,7 @@ class Byproducts {
   std::uint64_t missed() const { return missed_; }
 
   void write(const geometry::MotionCheck& result) {
-    if (certificates_) certificates_->finish();
+    if (certificates_) message(certificates_->finish());
     if (picture_) write_figure(picture_->figure(result), flags_.figure);
     if (!page_) return;
     publish_page(flags_.page, page_->page(result));
@@ -365,7 +290,7 @@ class Byproducts {
 
  private:
   const CheckFlags& flags_;
-  std::optional<CertificateFile> certificates_;
+  std::optional<CheckCertificates> certificates_;
   std::optional<CheckPicture> picture_;
   std::optional<CheckPage> page_;
   SampledMoves sampled_;
@@ -386,7 +311,7 @@ ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>&
   CheckAnswer answer(asked, flags.json);
   answer.begin();
 
-  Byproducts byproducts(flags, asked, bodies, map);
+  Byproducts byproducts(flags, asked, bodies);
   const geometry::MotionCheckOptions options{asked.between, asked.near, byproducts.met(), map.discs};
   geometry::MotionStream stream(map.shapes, options, [&](const geometry::MotionEvent& event) {
     answer.add(event);

@@ -9,6 +9,7 @@
 
 #include "exactvo/geometry/counted.h"
 #include "figures/plane.h"
+#include "support/obstacle_name.h"
 
 namespace exactvo::tools {
 
@@ -92,9 +93,9 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
   for (std::size_t k = 0; k < close_.size(); ++k) {
     const Close& c = close_[k];
     const std::vector<Points> body = outlines_of(bodies_[c.event.body], c.event.at, c.event.turned);
-    const std::vector<Points> other =
-        c.event.with_obstacle ? std::vector<Points>{}
-                              : outlines_of(bodies_[c.event.other], c.event.other_at, c.event.other_turned);
+    const std::vector<Points> other = c.event.with_obstacle
+                                          ? std::vector<Points>{}
+                                          : outlines_of(bodies_[c.event.other], c.event.other_at, c.event.other_turned);
     Box near;
     for (const auto* rings : {&body, &other})
       for (const Points& ring : *rings)
@@ -107,9 +108,9 @@ Figure CheckPicture::figure(const geometry::MotionCheck& check) const {
     draw_way("way of the first", c.way, kFirstColour, panel);
     draw_way("way of the other", c.other_way, kOtherColour, panel);
     panel.points("deepest", {c.event.place}, kPlaceStyle);
-    const std::string names = c.event.with_obstacle
-                                  ? asked_.file.agents[c.event.body] + " and " + asked_.obstacles[c.event.other].id
-                                  : asked_.file.agents[c.event.body] + " and " + asked_.file.agents[c.event.other];
+    const std::string names =
+        asked_.file.agents[c.event.body] + " and " +
+        (c.event.with_obstacle ? obstacle_name(asked_.obstacles[c.event.other]) : asked_.file.agents[c.event.other]);
     sheet.panels.push_back(on_sheet(
         panel, fmt::format("{} {}, t = {:.6g} s", letter_of(k + 1), shortened(names, 24), c.event.nearest_time)));
   }

@@ -11,7 +11,7 @@
 
 #include "figures/figure.h"
 #include "figures/outlines.h"
-#include "verbs/check/answer.h"
+#include "support/checked_file.h"
 
 namespace exactvo::tools {
 

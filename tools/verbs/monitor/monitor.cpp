@@ -185,13 +185,13 @@ class ProofFile {
         if (geometry::distance_below(boxes_[k], arc.motion.at) > reach * (1.0 + 0x1p-40)) continue;
         const formation::SceneObstacle& obstacle = setup_.obstacles[k];
         const auto proof = certify(arc.motion, body, obstacle.shape);
-        OrderedJson json{{"line", line}};
-        if (proof)
-          json["certificate"] = tools::certificate_json(*proof, arc.motion, body, obstacle);
-        else
-          json.update({{"certificate", nullptr}, {"obstacle", obstacle.id}});
         ++(proof ? count_ : without_);
-        put(json);
+        if (!proof) {
+          put({{"line", line}, {"certificate", nullptr}, {"obstacle", obstacle.id}});
+          continue;
+        }
+        const std::string text = certificate_text(*proof, arc.motion, body, obstacle_text(obstacle));
+        out_.write(fmt::format("{{\"line\":{},\"certificate\":{}}}\n", line, text));
       }
     }
   }

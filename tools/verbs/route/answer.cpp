@@ -14,6 +14,7 @@
 #include "exactvo/geometry/told_apart.h"
 #include "figures/plane.h"
 #include "support/escape.h"
+#include "support/obstacle_name.h"
 #include "support/robot_numbers.h"
 #include "support/route_certificates.h"
 #include "support/terminal.h"
@@ -99,10 +100,6 @@ formation::SceneObstacle border_of(const CellPlaces& cells) {
   const double x = static_cast<double>(cells.size.columns) * cells.side;
   const double y = static_cast<double>(cells.size.rows) * cells.side;
   return {"the border of the map", geometry::Polyline{{{0.0, 0.0}, {x, 0.0}, {x, y}, {0.0, y}, {0.0, 0.0}}}};
-}
-
-bool is_a_number(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos;
 }
 
 /// Listed in words; further ones are counted.
@@ -263,9 +260,7 @@ std::string AskedMap::accepted_points() const {
 }
 
 std::string AskedMap::name_of(std::size_t obstacle) const {
-  const formation::SceneObstacle& o = obstacles[obstacle];
-  if (!is_a_number(o.id)) return o.id;
-  return (geometry::has_interior(o.shape) ? "polygon " : "wall ") + o.id;
+  return obstacle_name(obstacles[obstacle]);
 }
 
 AskedMap read_asked_map(const std::string& file, const datasets::ReadOptions& reading, const std::string& cell_point) {

@@ -84,8 +84,8 @@ struct MotionEvent {
   Vec2 other_at;                             ///< m, rounded: the other body's; (0, 0) for an obstacle
   double turned = 0.0;                       ///< rad, rounded: how the body is turned at that moment
   double other_turned = 0.0;                 ///< rad, rounded: how the other body is
-  /// Two bodies of which one turns come nearer than clearance.high, and whether they touch or overlap is not known.
-  /// The encounter is `contact`.
+  /// Two bodies of which one turns come nearer than clearance.high, and whether they overlap is not known. They touch
+  /// for certain where clearance.high is 0. The encounter is `contact`.
   bool is_open = false;
 };
 
@@ -107,7 +107,7 @@ struct MotionCheck {
   std::size_t examined = 0;          ///< pairs of both kinds that the quick filter could not clear
   std::size_t overlaps = 0;          ///< events
   std::size_t contacts = 0;          ///< events
-  std::size_t open = 0;              ///< events of bodies that turn: neither a contact nor an overlap for certain
+  std::size_t open = 0;              ///< events of bodies that turn: whether they overlap is not known
   std::size_t most_held = 0;         ///< pieces in memory at a time
   std::vector<Approach> approaches;  ///< by body, bodies before obstacles, then by other; empty for `near` 0
 };

@@ -19,7 +19,9 @@ namespace exactvo::geometry {
 
 /// Whether two bodies of which one turns meet: certified.
 struct TurningVerdict {
-  MotionVerdict verdict;  ///< encounter, moments and clearance
+  /// Encounter, moments and clearance. At `nearest_time` the clearance is within its bounds, up to rounding: no other
+  /// moment is nearer by more than these are apart.
+  MotionVerdict verdict;
   /// The two come nearer than verdict.clearance.high, and whether they touch or overlap is not known; the encounter is
   /// `contact`.
   bool is_open = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verbs/check/page.h"
+#include "support/check_page.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include "explorer/page.h"
 #include "figures/outlines.h"
 #include "support/footprint.h"
+#include "support/obstacle_name.h"
 
 namespace exactvo::tools {
 
@@ -140,6 +141,7 @@ datasets::RecordingFile CheckPage::about(const geometry::MotionCheck& check, boo
   about.info.decisions = "none";
   about.info.provenance = datasets::make_provenance({}, 0);
   about.scenario.obstacles = asked_.obstacles;
+  for (formation::SceneObstacle& o : about.scenario.obstacles) o.id = obstacle_name(o);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     formation::Robot robot;
     robot.id = asked_.file.agents[k];
@@ -151,11 +153,11 @@ datasets::RecordingFile CheckPage::about(const geometry::MotionCheck& check, boo
     formation::Collision c;
     c.robot = asked_.file.agents[e.body];
     c.kind = e.with_obstacle ? formation::CollisionKind::obstacle : formation::CollisionKind::robot;
-    c.with = e.with_obstacle ? asked_.obstacles[e.other].id : asked_.file.agents[e.other];
+    c.with = e.with_obstacle ? about.scenario.obstacles[e.other].id : asked_.file.agents[e.other];
     c.from = e.first.low;
     c.until = e.last.high;
     c.deepest_at = e.nearest_time;
-    c.depth = 0.0 - e.clearance.low;
+    c.depth = asked_.has_depth(e) ? 0.0 - e.clearance.low : std::nan("");
     c.place = e.place;
     about.collisions.push_back(std::move(c));
   }

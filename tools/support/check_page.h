@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "explorer/packed_run.h"
-#include "verbs/check/answer.h"
+#include "support/checked_file.h"
 
 namespace exactvo::tools {
 
