@@ -10,7 +10,8 @@
 // same without certification (medians of the rounds); `of_wishes` time of a whole step over that of its first level, in
 // the same step (median, tenth and ninetieth percentile); `sort` ... `finish` shares of the time; `relaxed`,
 // `cut_short` % of robots; `bytes` a robot, and the textbook's; `edges`, `neighbours`: half-planes a robot; `apart_99`
-// m/s, 99 % of velocities are nearer to the textbook's.
+// m/s, 99 % of velocities are nearer to the textbook's. In wheels/...: `of_free` time over that of the same robots
+// without wheels (median, tenth and ninetieth percentile of the rounds).
 #include <benchmark/benchmark.h>
 
 #include <ctime>
@@ -192,16 +193,49 @@ void step(benchmark::State& state, const std::string& kind, std::size_t count, C
   state.counters["of_wishes_90"] = quantile(of_wishes, 0.9);
 }
 
+/// What wheels cost: the same robots with and without them, one step of each after the other.
+void wheels(benchmark::State& state, std::size_t count, CrowdPrecision precision) {
+  CrowdScene scene = formation::crowd_scene("wheels", count), free = scene;
+  for (CrowdKind& kind : free.kinds) kind.wheels.reset();
+  scene.options.precision = free.options.precision = precision;
+  Told driven(scene), others(free);
+  for (int k = 0; k < kWarmUp; ++k)
+    for (Told* crowd : {&driven, &others}) crowd->tell(), crowd->crowd.step();
+  std::vector<double> ns, of_free;
+  formation::StepReport report;
+  for (auto _ : state) {
+    driven.tell();
+    others.tell();
+    const double on_wheels = seconds_of([&] { report = driven.crowd.step(); });
+    const double without = seconds_of([&] { others.crowd.step(); });
+    state.SetIterationTime(on_wheels);
+    ns.push_back(1e9 * on_wheels / static_cast<double>(count));
+    of_free.push_back(on_wheels / without);
+  }
+  state.counters["ns"] = median(ns);
+  state.counters["of_free"] = median(of_free);
+  state.counters["of_free_10"] = quantile(of_free, 0.1);
+  state.counters["of_free_90"] = quantile(of_free, 0.9);
+  state.counters["cut_short"] = 100.0 * static_cast<double>(report.cut_short) / static_cast<double>(count);
+  state.counters["relaxed"] = 100.0 * static_cast<double>(report.relaxed) / static_cast<double>(count);
+}
+
+template <class Run>
+void add(const std::string& label, const Run& run) {
+  benchmark::RegisterBenchmark(label.c_str(), run)->Iterations(kRounds)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+
 void register_all() {
+  for (const std::size_t count : {1000, 10000, 100000})
+    for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines})
+      add("wheels/" + std::to_string(count) + "/" + name(precision),
+          [=](benchmark::State& s) { wheels(s, count, precision); });
   for (const char* kind : {"crowd", "dense", "ring", "streams", "groups", "mixture", "jam", "blocks", "pillars"})
     for (const std::size_t count : {250, 1000, 10000, 50000, 200000, 1000000})
       for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
         if (kind == std::string("ring") && count > 200000) continue;  // wider than a lattice of fine steps
-        const std::string label = std::string(kind) + "/" + std::to_string(count) + "/" + name(precision);
-        benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& s) { step(s, kind, count, precision); })
-            ->Iterations(kRounds)
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond);
+        add(std::string(kind) + "/" + std::to_string(count) + "/" + name(precision),
+            [=](benchmark::State& s) { step(s, kind, count, precision); });
       }
 }
 

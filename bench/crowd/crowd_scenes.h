@@ -184,6 +184,12 @@ inline void mixture(CrowdScene& s, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) s.robots[i].kind = static_cast<KindId>(i % 7 % 3);
 }
 
+/// The dense crowd on wheels: at full speed a wheel stops within a step.
+inline void wheels(CrowdScene& s, std::size_t count) {
+  crowd(s, count);
+  s.kinds[0].wheels = CrowdWheels{0.4, 0.6, 8.0};
+}
+
 /// All to one point: a jam.
 inline void jam(CrowdScene& s, std::size_t count) {
   crowd(s, count);
@@ -206,14 +212,14 @@ inline void clumps(CrowdScene& s, std::size_t count) {
 
 }  // namespace scenes
 
-/// "crowd", "dense", "ring", "streams", "groups", "blocks", "pillars", "bodies", "mixture", "jam", "clumps".
+/// "crowd", "dense", "ring", "streams", "groups", "blocks", "pillars", "bodies", "mixture", "jam", "clumps", "wheels".
 inline CrowdScene crowd_scene(const std::string& kind, std::size_t count) {
   using Make = void (*)(CrowdScene&, std::size_t);
   static const std::vector<std::pair<std::string, Make>> kScenes = {
       {"crowd", scenes::crowd},     {"dense", scenes::dense},     {"ring", scenes::ring},
       {"streams", scenes::streams}, {"groups", scenes::groups},   {"blocks", scenes::blocks},
       {"pillars", scenes::pillars}, {"mixture", scenes::mixture}, {"jam", scenes::jam},
-      {"clumps", scenes::clumps},   {"bodies", scenes::bodies}};
+      {"clumps", scenes::clumps},   {"bodies", scenes::bodies},   {"wheels", scenes::wheels}};
   CrowdScene s;
   s.kinds.emplace_back();
   for (const auto& [name, make] : kScenes) {

@@ -588,7 +588,7 @@ TEST(Wheels, WhatAFileSaysWrongIsRefusedByACode) {
 
 TEST(Wheels, OtherRunsAreRefused) {
   Scenario s = datasets::parse_scenario(kText, "pair.json", {});
-  EXPECT_EQ(crowd_problems(s).at(0).pointer, "/robots/0/kinematics");
+  EXPECT_EQ(crowd_problems(s).at(0).pointer, "/robots/0/kinematics/max_wheel_acceleration");
   SimulationOptions options;
   options.method = Method::rvo;
   EXPECT_THROW(simulate(s, options), std::logic_error);

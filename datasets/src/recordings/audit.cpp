@@ -325,7 +325,8 @@ AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) 
   AuditedRun run(file, tally);
   run.has_places_only = true;
   run.one_of = one_of;
-  const std::unique_ptr<RowAudit> sequence = audit_sequence(run), motions = audit_motions(run);
+  const std::unique_ptr<RowAudit> sequence = audit_sequence(run), motions = audit_motions(run),
+                                  wheels = audit_wheels(run, reader.head());
   RowStates before;
   for (CrowdRow row; reader.next(row); ++tally.report.rows) {
     call_wait_hook();
@@ -340,6 +341,7 @@ AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) 
     } else {
       sequence->check_states(tally.report.rows - 1, before, now);
       motions->check_states(tally.report.rows - 1, before, now);
+      wheels->check_states(tally.report.rows - 1, before, now);
     }
     before = std::move(now);
   }
@@ -437,7 +439,8 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (report.has_places) {
     words.emplace_back("decisions and goals of recordings without them, and whether their runs are whole");
     words.emplace_back(
-        "that radii, speed limits, edges and bodies in a recording of a crowd are those of its scenario, and its marks "
+        "that radii, speed limits, wheels, edges and bodies in a recording of a crowd are those of its scenario, and "
+        "its marks "
         "of half-planes that were kept");
   }
   if (report.ends_only > 0)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/geometry/box.h"
 #include "recordings/audit_rows.h"
 #include "recordings/exact_motion.h"
@@ -178,6 +179,9 @@ std::unique_ptr<RowAudit> audit_sequence(const AuditedRun& run);
 std::unique_ptr<RowAudit> audit_motions(const AuditedRun& run);
 /// (10): robots on wheels drive what they chose.
 std::unique_ptr<RowAudit> audit_kinematics(const AuditedRun& run);
+/// (10), of a recording of places: where every step is a row, robots on wheels drive arcs from place to place within
+/// the limits of their wheels; else that is left open. `head` outlives it.
+std::unique_ptr<RowAudit> audit_wheels(const AuditedRun& run, const CrowdRecordingHead& head);
 /// (9): robots with an acceleration could have braked in every row.
 std::unique_ptr<RowAudit> audit_braking(const AuditedRun& run);
 

@@ -112,6 +112,18 @@ std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
     append(out, static_cast<std::uint32_t>(numbers.size()));
     for (const double v : numbers) append(out, v);
   }
+  if (head.half_headings.empty()) return out += ids;
+  for (const CrowdKindRecord& kind : head.kinds) {
+    append(out, static_cast<std::uint8_t>(kind.wheels.has_value()));
+    if (!kind.wheels) continue;
+    const formation::CrowdWheels& w = *kind.wheels;
+    for (const double v :
+         {w.reference, w.wheel_separation, w.max_wheel_acceleration, w.max_angular_speed, w.max_backward_speed})
+      append(out, v);
+  }
+  for (std::size_t i = 0; i < head.half_headings.size(); ++i)
+    if (head.kinds[head.kind_of[i]].wheels) append(out, head.half_headings[i].x), append(out, head.half_headings[i].y);
+  append(out, static_cast<std::uint8_t>(!ids.empty()));
   return out += ids;
 }
 
@@ -130,6 +142,36 @@ void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
     in.require(id.size() <= kLongest, "an id of more than 2^16 bytes");
     head.ids.push_back(id);
     in.require(seen.insert(head.ids.back()).second, "an id that another robot has");
+  }
+}
+
+/// A limit that may be infinite.
+double limit_of(CrowdBytes& in) {
+  const auto value = in.get<double>();
+  in.require(value >= 0.0, "a limit of wheels that is no number");
+  if (std::isfinite(value)) in.require_in_range(value, 1.0, "a limit of wheels");
+  return value;
+}
+
+void get_wheels(CrowdBytes& in, CrowdRecordingHead& head) {
+  for (CrowdKindRecord& kind : head.kinds) {
+    const auto has_wheels = in.get<std::uint8_t>();
+    in.require(has_wheels <= 1, "a kind that neither has wheels nor has none");
+    if (has_wheels == 0) continue;
+    formation::CrowdWheels& w = kind.wheels.emplace();
+    w.reference = in.number("a reference");
+    w.wheel_separation = in.number("a wheel separation");
+    in.require(w.reference > 0.0 && w.wheel_separation > 0.0 && 16.0 * w.reference >= w.wheel_separation,
+               "wheels that no crowd has");
+    for (double* limit : {&w.max_wheel_acceleration, &w.max_angular_speed, &w.max_backward_speed})
+      *limit = limit_of(in);
+  }
+  for (const std::uint16_t kind : head.kind_of) {
+    geometry::Vec2& half = head.half_headings.emplace_back(geometry::Vec2{1.0, 0.0});
+    if (!head.kinds[kind].wheels) continue;
+    half = {in.number("a heading"), in.number("a heading")};
+    const double size = geometry::squared_norm(half);
+    in.require(size > 0.5 && size < 4.0, "a heading of no direction");
   }
 }
 
@@ -170,7 +212,9 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
     in.require(bodies <= kMostEdges, "more than 2^24 bodies");
     for (std::uint32_t k = 0; k < bodies; ++k) head.bodies.push_back(get_body(in));
   }
-  if (version >= 3) get_ids(in, head);
+  if (version >= 4) get_wheels(in, head);
+  const bool has_ids = version == 3 || (version >= 4 && in.get<std::uint8_t>() != 0);
+  if (has_ids) get_ids(in, head);
   in.require_end();
   return head;
 }
@@ -237,7 +281,7 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   const unsigned version = whole ? crowd_version({mark, sizeof mark}) : 0;
   if (version == 0)
     throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
-                    "\"EXACTVR1\", \"EXACTVR2\" or \"EXACTVR3\", of a recording of a crowd");
+                    "\"EXACTVR1\" to \"EXACTVR4\", of a recording of a crowd");
   if (!p.read_block()) p.bytes().refuse("its end within the head");
   p.head = to_head(p.bytes(), version);
   p.sum = checksum(p.block);

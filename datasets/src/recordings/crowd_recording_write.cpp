@@ -23,6 +23,12 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
     const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
   }
+  const bool has_wheels = std::any_of(scenario.robots.begin(), scenario.robots.end(),
+                                      [](const formation::Robot& robot) { return robot.drive.has_value(); });
+  for (std::size_t i = 0; has_wheels && i < robots_; ++i) {
+    const formation::Robot& robot = scenario.robots[i];
+    head_.half_headings.push_back(formation::half_heading_of(robot.drive ? robot.drive->heading : 0.0));
+  }
   std::string_view before;
   std::unordered_set<std::string_view> seen;
   for (const formation::Robot& robot : scenario.robots) {
@@ -42,6 +48,7 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   head_.time_step = crowd.options().time_step;
   head_.position_step = crowd.options().position_step;
   const std::size_t robots = crowd.id_end();
+  EXACTVO_REQUIRE(head_.half_headings.empty() || robots == robots_, "a crowd of other robots on wheels");
   std::size_t kinds = 0;
   for (std::size_t i = 0; i < robots; ++i) {
     head_.kind_of.push_back(crowd.kind_of(static_cast<formation::RobotId>(i)));
@@ -49,7 +56,7 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   }
   for (std::size_t k = 0; k < kinds; ++k) {
     const formation::CrowdKind& kind = crowd.kind(static_cast<formation::KindId>(k));
-    head_.kinds.push_back({kind.radius, kind.max_speed});
+    head_.kinds.push_back({kind.radius, kind.max_speed, kind.wheels});
   }
   for (const formation::CrowdBodyState& body : crowd.bodies()) {
     head_.bodies.push_back({body.shape, body.moves});
@@ -64,7 +71,8 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   row_.kept.assign(robots, 1);
   const bool has_ids = robots == robots_ && ids_differ_;  // of another number the crowd is not the scenario's
   const std::string head = to_bytes(head_, has_ids ? ids_ : std::string());
-  std::string out(kCrowdMarks[has_ids ? 2 : 1]);
+  const std::size_t version = !head_.half_headings.empty() ? 4 : has_ids ? 3 : 2;
+  std::string out(kCrowdMarks[version - 1]);
   append(out, static_cast<std::uint64_t>(head.size()));
   head_sum_ = sum_ = checksum(head);
   append(out, sum_);

@@ -38,6 +38,9 @@ class CrowdBody {
   KindId add_kind(const CrowdKind& kind);
   RobotId add_robot(Vec2 position, KindId kind, Vec2 velocity = {});
   void remove_robot(RobotId robot);
+  void set_heading(RobotId robot, double degrees);
+  /// Throws where it has none.
+  const WheelState& wheels_of(RobotId robot);
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
   ObstacleId add_body(const geometry::ConvexShape& shape, bool moves, Vec2 velocity);
   void set_body_velocity(ObstacleId body, Vec2 velocity);
@@ -78,13 +81,11 @@ class CrowdBody {
   bool unchecked = true;  ///< robots are new
 
  private:
-  struct Motion {
-    std::int32_t x, y;
-  };
   Motion motion_of(Vec2 velocity, const CrowdKind& kind) const;
   std::size_t obstacle_size() const;
   std::pair<std::int32_t, std::int32_t> body_motion(Vec2 velocity) const;
   void lay_out_edges();
+  void drive_wheels();
   void guess_hints();
   void follow_density();
   void require_apart() const;

@@ -27,6 +27,9 @@ constexpr double kFirstGuess = 1.1;
 /// At least the corners of a polygon round an ellipse.
 constexpr std::size_t kMostCornersRound = 32;
 
+/// Robots on wheels, of a task.
+constexpr std::size_t kDrivenTogether = 4096;
+
 std::string number(double x) {
   return detail::number_text(x, 17);
 }
@@ -89,6 +92,20 @@ void require_valid(const CrowdOptions& o) {
   require_in_range("threads", o.threads, o.threads >= 0 && o.threads <= 1024, "0 to 1024");
 }
 
+static void require_valid(const CrowdWheels& w, const CrowdKind& k, double time_step) {
+  const double way = k.max_speed * time_step, b = w.wheel_separation, a = w.max_wheel_acceleration;
+  require_in_range("wheel_separation", b, b > 0.0, "above 0 m");
+  require_in_range("reference", w.reference, w.reference >= way && 16.0 * w.reference >= b,
+                   "at least " + number(std::max(way, b / 16.0)) +
+                       " m: max_speed times the time step, and a sixteenth of wheel_separation");
+  if (!(a * time_step >= k.max_speed))
+    require_in_range("max_wheel_acceleration", a, false,
+                     "at least " + number(k.max_speed / time_step) + " m/s^2: a wheel stops within a time step");
+  if (!(w.max_angular_speed > 0.0)) require_in_range("max_angular_speed", w.max_angular_speed, false, "above 0 rad/s");
+  if (!(w.max_backward_speed >= 0.0))
+    require_in_range("max_backward_speed", w.max_backward_speed, false, "at least 0 m/s");
+}
+
 void require_valid(const CrowdKind& k, const CrowdOptions& o) {
   const double step = o.position_step / o.time_step, far = kLatticeEnd * o.position_step;
   require_in_range("radius", k.radius, k.radius > 0.0 && k.radius < far, "above 0 and below " + number(far) + " m");
@@ -102,6 +119,7 @@ void require_valid(const CrowdKind& k, const CrowdOptions& o) {
                    k.edge_horizon == 0.0 || (k.edge_horizon >= o.time_step && k.edge_horizon <= 0x1p20),
                    "0 or the time step, " + number(o.time_step) + ", to 2^20 s");
   require_in_range("neighbours", k.neighbours, k.neighbours >= 1 && k.neighbours <= kMostNeighbours, "1 to 15");
+  if (k.wheels) require_valid(*k.wheels, k, o.time_step);
 }
 
 CrowdBody::CrowdBody(const CrowdOptions& options) {
@@ -134,6 +152,9 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
                      words("position", std::fabs(x) < kLatticeEnd ? position.y : position.x,
                            "less than " + number(kLatticeEnd * core->options.position_step) + " m from 0"));
   const Motion motion = motion_of(velocity, core->kinds[kind]);
+  if (core->kinds[kind].wheels && motion != Motion{})
+    throw CrowdError(CrowdProblem::out_of_range,
+                     words("velocity", geometry::norm(velocity), "0 m/s: robots on wheels start at rest"));
   if (free_ids.empty() && id_end == kMostRobots)
     throw CrowdError(CrowdProblem::too_many, "robots: found one more than 2^30, expected 2^30 at most");
   RobotId id = id_end;
@@ -142,6 +163,7 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
   else
     id = free_ids.back(), free_ids.pop_back();
   core->robots.append(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(id), kind);
+  if (core->kinds[kind].wheels) core->wheels.put(static_cast<std::int32_t>(id), half_heading_of(0.0));
   core->robots.mx[core->robots.size() - 1] = motion.x;
   core->robots.my[core->robots.size() - 1] = motion.y;
   if (!places.empty()) {
@@ -155,7 +177,7 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
 }
 
 /// The motion of the lattice nearest to the velocity, within the speed limit.
-CrowdBody::Motion CrowdBody::motion_of(Vec2 velocity, const CrowdKind& kind) const {
+Motion CrowdBody::motion_of(Vec2 velocity, const CrowdKind& kind) const {
   const double per_speed = core->options.time_step / core->options.position_step, speed = geometry::norm(velocity);
   require_in_range("velocity", speed, speed <= kind.max_speed, "at most " + number(kind.max_speed) + " m/s, max_speed");
   double x = std::nearbyint(per_speed * velocity.x), y = std::nearbyint(per_speed * velocity.y);
@@ -175,6 +197,35 @@ std::size_t CrowdBody::place_of(RobotId robot) {
   if (robot >= places.size() || places[robot] == kNowhere)
     throw CrowdError(CrowdProblem::unknown_robot, "robot " + std::to_string(robot) + ": found no robot of this id");
   return places[robot];
+}
+
+const WheelState& CrowdBody::wheels_of(RobotId robot) {
+  const std::size_t at = place_of(robot);
+  if (!core->kinds[core->robots.kind(at)].wheels)
+    throw CrowdError(CrowdProblem::out_of_range,
+                     "robot " + std::to_string(robot) + ": found a kind without wheels, expected one that has some");
+  return core->wheels.state(static_cast<std::int32_t>(robot));
+}
+
+void CrowdBody::set_heading(RobotId robot, double degrees) {
+  wheels_of(robot);
+  require_in_range("heading", degrees, std::fabs(degrees) <= 0x1p20, "degrees, at most 2^20");
+  const std::size_t at = place_of(robot);
+  if (core->robots.mx[at] != 0 || core->robots.my[at] != 0)
+    throw CrowdError(CrowdProblem::out_of_range,
+                     "heading of robot " + std::to_string(robot) + ": found a robot that moves, expected one at rest");
+  core->changed();
+  core->wheels.put(static_cast<std::int32_t>(robot), half_heading_of(degrees));
+}
+
+/// As robots are about to move.
+void CrowdBody::drive_wheels() {
+  Robots& r = core->robots;
+  if (core->wheels.empty()) return;
+  core->tasks.for_ranges(r.size(), kDrivenTogether, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i)
+      if (core->wheels.has(r.kind(i))) core->wheels.drive(r.kind(i), r.id[i], {r.next_mx[i], r.next_my[i]});
+  });
 }
 
 void CrowdBody::remove_robot(RobotId robot) {
@@ -361,6 +412,7 @@ StepReport CrowdBody::step() {
       throw CrowdError(CrowdProblem::beyond_lattice, "body " + std::to_string(b.id) +
                                                          ": found 2^50 steps of the lattice "
                                                          "from where it was added, expected fewer");
+  drive_wheels();
   core->robots.move(core->tasks);
   core->bodies.move();
   core->changed();
@@ -383,6 +435,9 @@ std::uint64_t CrowdBody::digest() const {
     }
     const std::int32_t kept = (r.tag[i] & Robots::kKept) != 0;
     for (const std::int32_t value : {r.x[i], r.y[i], r.mx[i], r.my[i], r.tag[i] & Robots::kKind, kept}) add(value);
+    if (!core->kinds[r.kind(i)].wheels) continue;
+    const WheelState& wheels = core->wheels.state(r.id[i]);
+    for (const double half : {wheels.a, wheels.b}) add(std::llround(half * 0x1p52));
   }
   for (const Body& b : core->bodies.all())
     if (b.moves)
@@ -407,6 +462,9 @@ RobotId Crowd::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
 }
 void Crowd::reserve(std::size_t robots) {
   body_->core->robots.reserve(robots);
+}
+void Crowd::set_heading(RobotId robot, double degrees) {
+  body_->set_heading(robot, degrees);
 }
 void Crowd::remove_robot(RobotId robot) {
   body_->remove_robot(robot);
@@ -513,6 +571,16 @@ Vec2 Crowd::position(RobotId robot) const {
 
 Vec2 Crowd::velocity(RobotId robot) const {
   return body_->velocity(body_->place_of(robot));
+}
+
+Vec2 Crowd::heading(RobotId robot) const {
+  body_->wheels_of(robot);
+  return body_->core->wheels.heading(static_cast<std::int32_t>(robot));
+}
+
+Vec2 Crowd::wheel_speeds(RobotId robot) const {
+  const WheelState& wheels = body_->wheels_of(robot);
+  return options().position_step / options().time_step * Vec2{wheels.left, wheels.right};
 }
 
 KindId Crowd::kind_of(RobotId robot) const {

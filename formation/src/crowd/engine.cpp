@@ -36,9 +36,11 @@ void add(CrowdPhases& sum, const CrowdPhases& more) {
 
 }  // namespace
 
-/// Rows of half-planes of a group: those of edges and bodies at rest, those of robots, those of bodies that move.
-constexpr std::size_t kRows = kMostEdges + kMostNeighbours + kMostMoving;
-constexpr std::size_t kRobotRows = kMostEdges * kSlots;
+/// Rows of half-planes of a group: those of edges and bodies at rest and of wheels, those of robots, those of bodies
+/// that move.
+constexpr std::size_t kMostHard = kMostEdges + kMostWheelRows;
+constexpr std::size_t kRows = kMostHard + kMostNeighbours + kMostMoving;
+constexpr std::size_t kRobotRows = kMostHard * kSlots;
 
 /// Buffers of a thread.
 template <class T>
@@ -66,6 +68,7 @@ class CrowdEngine final : public CrowdCore {
   void take_kinds() override {
     table_ = kind_table<T>(options, kinds);
     hard_.take_kinds();
+    wheels.take_kinds(kinds, options);
   }
 
   void set_preferred(const std::vector<Vec2>& by_id) override {
@@ -122,7 +125,7 @@ class CrowdEngine final : public CrowdCore {
   std::size_t bytes() const override {
     std::size_t lists = 0;
     for (const NearLists& l : near_lists_) lists += l.bytes();
-    return robots.bytes() + preferred_.capacity() * sizeof(T) + lists;
+    return robots.bytes() + wheels.bytes() + preferred_.capacity() * sizeof(T) + lists;
   }
 
  private:
@@ -287,7 +290,7 @@ class CrowdEngine final : public CrowdCore {
         lines_of(packs[count], count * kPack, s);
       }
       put_preferred(packs, count, s);
-      const std::size_t hard = obstacles_of(packs, count, s);
+      const std::size_t hard = hard_of(packs, count, s);
       const std::size_t ranks = level_ranks(packs, count, s);
       const std::size_t lines = hard + ranks + moving_of(count, kRobotRows + ranks * kSlots, s);
       solve(count, hard, lines, s);
@@ -366,10 +369,10 @@ class CrowdEngine final : public CrowdCore {
     }
   }
 
-  /// The half-planes of a group against edges and bodies at rest, in the last rows before those of robots; how many
-  /// rows.
-  std::size_t obstacles_of(Pack* packs, std::size_t count, Scratch& s) {
-    if (edges.empty() && !one_.has_bodies()) return 0;
+  /// The half-planes of a group against edges and bodies at rest and those of wheels, in the last rows before those of
+  /// robots; how many rows.
+  std::size_t hard_of(Pack* packs, std::size_t count, Scratch& s) {
+    if (edges.empty() && !one_.has_bodies() && wheels.empty()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
     std::fill(s.hard, s.hard + count * kPack, 0);
     if (!edges.empty())
@@ -377,9 +380,25 @@ class CrowdEngine final : public CrowdCore {
     if (one_.has_bodies())
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
+    if (!wheels.empty())
+      for (std::size_t p = 0; p < count; ++p)
+        for (std::size_t lane = 0; lane < packs[p].size(); ++lane) wheels_of_lane(packs[p], lane, p * kPack + lane, s);
     const std::size_t rows = most_of(s.hard, count);
     put_rows({s.edge_x, s.edge_y, s.edge_c, kSlots}, s.hard, rows, kRobotRows - rows * kSlots, count, s);
     return rows;
+  }
+
+  /// Behind the lines of edges and bodies at rest in s.edge_x and so on.
+  void wheels_of_lane(const Pack& pack, std::size_t lane, std::size_t slot, Scratch& s) const {
+    if (pack.alone >> lane & 1U) return;
+    const std::size_t robot = pack.begin + lane;
+    geometry::HalfPlane lines[kMostWheelRows];
+    const std::size_t count = wheels.rows(robots.kind(robot), robots.id[robot], lines);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t to = (static_cast<std::size_t>(s.hard[slot]) + k) * kSlots + slot;
+      one_.put(lines[k], robot, s.edge_x[to], s.edge_y[to], s.edge_c[to]);
+    }
+    s.hard[slot] += static_cast<std::int32_t>(count);
   }
 
   /// Into s.edge_x and so on, their number into s.hard.
@@ -498,7 +517,8 @@ class CrowdEngine final : public CrowdCore {
       const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at,        s.y + at, s.c + at,
                           lines,       kSlots,      s.status + slot, allowed};
       const std::uint32_t reserved = reserved_lanes(pack);
-      const std::uint32_t kept = round_to_lattice(table_, in, rounded) & ~pack.alone & ~reserved;
+      const std::uint32_t kept =
+          round_to_lattice(table_, in, rounded) & ~pack.alone & ~reserved & driven(pack, rounded);
       take_all(pack, rounded, kept);
       for (std::uint32_t rest = pack.lanes() & ~kept; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
@@ -523,6 +543,14 @@ class CrowdEngine final : public CrowdCore {
              s);
       }
     }
+  }
+
+  /// Bit `lane`: its wheels allow the motion.
+  std::uint32_t driven(const Pack& pack, const Rounded& motions) const {
+    std::uint32_t lanes = pack.lanes();
+    for (std::size_t lane = 0; !wheels.empty() && lane < pack.size(); ++lane)
+      if (!one_.can_drive(pack.begin + lane, {motions.mx[lane], motions.my[lane]})) lanes &= ~(1U << lane);
+    return lanes;
   }
 
   /// Bit `lane`: drives straight to a reserved place.

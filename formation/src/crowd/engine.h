@@ -20,6 +20,7 @@
 #include "crowd/lines.h"
 #include "crowd/reserved_ways.h"
 #include "crowd/robots.h"
+#include "crowd/wheels.h"
 #include "exactvo/formation/crowd.h"
 
 namespace exactvo::formation {
@@ -57,6 +58,7 @@ class CrowdCore {
   crowd::EdgeGrid edges;              ///< laid out
   crowd::Bodies bodies;               ///< laid out
   crowd::ReservedWays reserved_ways;  ///< laid out
+  crowd::Wheels wheels;               ///< of all kinds, as take_kinds has it
   crowd::Tasks tasks;
   Steering steering;
   CrowdPhases phases;

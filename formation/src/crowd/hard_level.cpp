@@ -240,7 +240,8 @@ auto HardLevel<T>::nearest_of_few(std::size_t robot, const NearPairs& near, Moti
     Way found{};
     if (!rows.solve(disc * disc * kWithinDisc, found)) return Few::not_found;
     m = whole(found.x, found.y);
-    if (!is_slow_enough(robot, m)) return Few::not_allowed;
+    if (!one_.can_drive(robot, m)) return Few::not_found;
+    if (!is_drivable(robot, m)) return Few::not_allowed;
   }
   return allows(robot, near, m) ? Few::allowed : Few::not_allowed;
 }
@@ -254,13 +255,14 @@ bool HardLevel<T>::allows(std::size_t robot, const NearPairs& near, Motion m) co
   return all;
 }
 
-/// Than its kind allows and than longest_way says.
+/// Not longer than its kind allows and than longest_way says, and allowed by wheels.
 template <class T>
-bool HardLevel<T>::is_slow_enough(std::size_t robot, Motion m) const {
+bool HardLevel<T>::is_drivable(std::size_t robot, Motion m) const {
   const Motion wish = wish_of(robot);
   const std::int64_t longest = longest_way(wish.x, wish.y);
   return squared_length(m) <=
-         std::min(kinds_[crowd_.robots.kind(robot)].squared_speed, static_cast<double>(longest * longest));
+             std::min(kinds_[crowd_.robots.kind(robot)].squared_speed, static_cast<double>(longest * longest)) &&
+         one_.can_drive(robot, m);
 }
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
@@ -276,8 +278,8 @@ Motion HardLevel<T>::shortened(std::size_t robot, Motion safe, const HardBuffers
   }
   for (int k = 0; k < kCorrections; ++k, share *= 1.0 - 0x1p-10) {
     const Motion m = between(safe, wish, share);
-    if (squared_length(m) <= kinds_[crowd_.robots.kind(robot)].squared_speed && violated(b.rows, m) == nullptr &&
-        one_.keeps_obstacles(robot, obstacles, one, m.x, m.y))
+    if (squared_length(m) <= kinds_[crowd_.robots.kind(robot)].squared_speed && one_.can_drive(robot, m) &&
+        violated(b.rows, m) == nullptr && one_.keeps_obstacles(robot, obstacles, one, m.x, m.y))
       return m;
     if (share == 0.0) break;
   }
@@ -289,7 +291,10 @@ template <class T>
 std::size_t HardLevel<T>::solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const {
   const double unit = table_.velocity_step, inward = kHalfDiagonal * unit;
   const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
-  const std::size_t obstacles = has_obstacles ? one_.put_obstacles(robot, one) : 0, hard = obstacles + b.rows.size();
+  const std::size_t obstacles = has_obstacles ? one_.put_obstacles(robot, one) : 0, rows = obstacles + b.rows.size();
+  geometry::HalfPlane of_wheels[kMostWheelRows];
+  const std::size_t wheels = crowd_.wheels.rows(crowd_.robots.kind(robot), crowd_.robots.id[robot], of_wheels);
+  const std::size_t hard = rows + wheels;
   const std::size_t moving = has_obstacles ? one.body_lines.size() - one.still : 0, lines = hard + moving;
   const std::size_t room = (lines / lp::kSinglePadding + 1) * lp::kSinglePadding;
   for (auto* column : {&b.x, &b.y, &b.offset})
@@ -305,6 +310,11 @@ std::size_t HardLevel<T>::solve(std::size_t robot, HardBuffers& b, OneRobotBuffe
     b.x[obstacles + k] = x / length;
     b.y[obstacles + k] = y / length;
     b.offset[obstacles + k] = static_cast<double>(row.least) / length * unit + inward;
+  }
+  for (std::size_t k = 0; k < wheels; ++k) {
+    b.x[rows + k] = of_wheels[k].normal.x;
+    b.y[rows + k] = of_wheels[k].normal.y;
+    b.offset[rows + k] = of_wheels[k].offset + inward;
   }
   for (std::size_t k = 0; k < moving; ++k) {
     const BodyLine& line = one.body_lines[one.still + k];
@@ -330,7 +340,7 @@ template <class T>
 Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, Motion first, std::size_t obstacles, const HardBuffers& b,
                              const OneRobotBuffers<T>& one) const {
   const auto holds = [&](Motion m) {
-    return is_slow_enough(robot, m) && violated(b.rows, m) == nullptr &&
+    return is_drivable(robot, m) && violated(b.rows, m) == nullptr &&
            (obstacles == 0 || one_.keeps_obstacles(robot, obstacles, one, m.x, m.y));
   };
   Motion m = first;

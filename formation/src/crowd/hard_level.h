@@ -58,7 +58,7 @@ class HardLevel {
   crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
   Few nearest_of_few(std::size_t robot, const crowd::NearPairs& near, crowd::Motion& m) const;
   bool allows(std::size_t robot, const crowd::NearPairs& near, crowd::Motion m) const;
-  bool is_slow_enough(std::size_t robot, crowd::Motion m) const;
+  bool is_drivable(std::size_t robot, crowd::Motion m) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   std::size_t solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const;
   crowd::Motion rounded(std::size_t robot, crowd::Motion safe, crowd::Motion first, std::size_t obstacles,

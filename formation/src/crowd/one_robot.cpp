@@ -120,9 +120,11 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
   if (has_bodies()) lines_of_bodies(robot, b);
   counts.bodies = b.body_lines.size() - b.capsule_lines.size();
   counts.neighbours = b.near.size();
-  const std::size_t hard = counts.edges + b.still, lines = counts.edges + b.body_lines.size() + counts.neighbours;
-  lay_out_rows(lines, b);
-  put_obstacles(robot, counts.edges, b, words);
+  const std::size_t most = counts.edges + b.body_lines.size() + counts.neighbours + kMostWheelRows;
+  lay_out_rows(most, b);
+  const std::size_t wheels = put_wheels(robot, counts.edges + b.still, b, words);
+  const std::size_t hard = counts.edges + b.still + wheels, lines = most - kMostWheelRows + wheels;
+  put_obstacles(robot, counts.edges, wheels + b.near.size(), b, words);
   bool touches = false;
   for (std::size_t k = 0; k < b.near.size(); k += kPack) touches |= put_neighbours(robot, k, hard + k, b, words);
   counts.touching = touches;
@@ -150,7 +152,7 @@ std::size_t OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b) const {
   b.near.clear();
   lines_of_bodies(robot, b);
   lay_out_rows(edges + b.body_lines.size(), b);
-  put_obstacles(robot, edges, b, nullptr);
+  put_obstacles(robot, edges, 0, b, nullptr);
   return edges + b.still;
 }
 
@@ -172,9 +174,10 @@ CrowdMotion OneRobot<T>::straight(std::size_t robot, Vec2 preferred, Answers<T> 
   for (const double share : kShares) {
     const double x = std::nearbyint(whole * share * preferred.x / unit),
                  y = std::nearbyint(whole * share * preferred.y / unit);
-    if (!keeps(table_, in, x, y, speed)) continue;
-    m.mx = static_cast<std::int32_t>(x);
-    m.my = static_cast<std::int32_t>(y);
+    const Motion tried{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+    if (!keeps(table_, in, x, y, speed) || !can_drive(robot, tried)) continue;
+    m.mx = tried.x;
+    m.my = tried.y;
     return m;
   }
   m.stopped = true;
@@ -237,8 +240,23 @@ geometry::HalfPlane OneRobot<T>::half_plane(std::size_t row, const Buffers& b) c
           static_cast<double>(b.row_c[at]) - table_.spare};
 }
 
+/// Into the rows from `row` on; how many.
 template <class T>
-void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const {
+std::size_t OneRobot<T>::put_wheels(std::size_t robot, std::size_t row, Buffers& b, CrowdExplanation* words) const {
+  geometry::HalfPlane lines[kMostWheelRows];
+  const std::size_t count = crowd_.wheels.rows(crowd_.robots.kind(robot), crowd_.robots.id[robot], lines);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t at = (row + k) * kPack;
+    put(lines[k], robot, b.row_x[at], b.row_y[at], b.row_c[at]);
+    if (words) words->wheels.push_back(half_plane(row + k, b));
+  }
+  return count;
+}
+
+/// Those of bodies that move `between` rows after those at rest.
+template <class T>
+void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, std::size_t between, Buffers& b,
+                                CrowdExplanation* words) const {
   for (std::size_t k = 0; k < edges; ++k) {
     const std::size_t at = k * kPack;
     b.row_x[at] = b.edge_x[at];
@@ -248,7 +266,7 @@ void OneRobot<T>::put_obstacles(std::size_t robot, std::size_t edges, Buffers& b
   }
   for (std::size_t k = 0; k < b.body_lines.size(); ++k) {
     const BodyLine& line = b.body_lines[k];
-    const std::size_t row = edges + k + (k < b.still ? 0 : b.near.size()), at = row * kPack;
+    const std::size_t row = edges + k + (k < b.still ? 0 : between), at = row * kPack;
     put(line, robot, b.row_x[at], b.row_y[at], b.row_c[at]);
     if (words && line.obstacle != ReservedWays::kCapsule)
       words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, half_plane(row, b), line.touching});
@@ -345,15 +363,32 @@ CrowdMotion OneRobot<T>::solve(std::size_t robot, Vec2 preferred, std::size_t li
   Rounded rounded;
   const bool kept = (round_to_lattice(table_, answer, rounded) & 1U) != 0;
   const CrowdMotion m{rounded.mx[0], rounded.my[0], kept};
-  return kept ? m : settled(robot, answer, status[0], hard, m);
+  return kept && can_drive(robot, {m.mx, m.my}) ? m : settled(robot, answer, status[0], hard, m);
 }
 
 template <class T>
 CrowdMotion OneRobot<T>::settled(std::size_t robot, const Answers<T>& in, std::uint8_t status, std::int32_t hard,
                                  CrowdMotion m) const {
-  if (!crowd_.options.certified) return m;
+  const auto first = static_cast<std::size_t>(hard);
+  if (!crowd_.options.certified) return driven(robot, in, first, m);
   if (status == 0) m.kept = m.nudged = nudge(table_, in, kind_of(robot).max_speed, m.mx, m.my);
-  return m.kept ? m : kept_off_edges(robot, in, static_cast<std::size_t>(hard), m);
+  return driven(robot, in, first, m.kept ? m : kept_off_edges(robot, in, first, m));
+}
+
+/// What wheels allow of a motion: the longest of some parts of it that keep the first `hard` lines, or none.
+template <class T>
+CrowdMotion OneRobot<T>::driven(std::size_t robot, Answers<T> in, std::size_t hard, CrowdMotion m) const {
+  if (can_drive(robot, {m.mx, m.my})) return m;
+  constexpr double kShares[] = {0.98, 0.9, 0.75, 0.5, 0.25, 0.1, 0.0};
+  const double speed = kind_of(robot).max_speed;
+  Answers<T> first = in;
+  first.lines = hard;
+  for (const double share : kShares) {
+    const Motion part{static_cast<std::int32_t>(share * m.mx), static_cast<std::int32_t>(share * m.my)};
+    if (part != Motion{} && !(can_drive(robot, part) && keeps(table_, first, part.x, part.y, speed))) continue;
+    return {part.x, part.y, keeps(table_, in, part.x, part.y, speed)};
+  }
+  return {0, 0, false};
 }
 
 /// No velocity may lead onto an edge or a body at rest, also where half-planes against robots had to give: another

@@ -81,22 +81,28 @@ class OneRobot {
 
   /// Into b.body_lines and b.still, those against capsules of reserved ways among them.
   void lines_of_bodies(std::size_t robot, Buffers& b) const;
+  /// On wheels: whether it may drive a motion.
+  bool can_drive(std::size_t robot, crowd::Motion m) const {
+    return crowd_.wheels.allow(crowd_.robots.kind(robot), crowd_.robots.id[robot], m);
+  }
   bool has_bodies() const { return !crowd_.bodies.empty() || !crowd_.reserved_ways.empty(); }
 
   /// The half-planes against edges and bodies at rest, in the first rows of lane 0; how many.
   std::size_t put_obstacles(std::size_t robot, Buffers& b) const;
   /// Whether a motion of (mx, my) lattice steps keeps the first `lines` rows of `put_obstacles`.
   bool keeps_obstacles(std::size_t robot, std::size_t lines, const Buffers& b, double mx, double my) const;
-  /// The longest part of a robot's preferred motion that keeps the first `hard` lines: for one that is never turned.
+  /// The longest part of a robot's preferred motion that keeps the first `hard` lines and that its wheels allow: for
+  /// one that is never turned.
   CrowdMotion straight(std::size_t robot, Vec2 preferred, crowd::Answers<T> in, std::size_t hard) const;
 
-  /// Of a motion that does not keep all half-planes, another one nearby, or none. `hard`: so many of the first lines
-  /// are of edges and bodies at rest.
+  /// Of a motion that does not keep all half-planes, or that wheels do not allow, another one nearby, or none. `hard`:
+  /// so many of the first lines are of edges and bodies at rest and of wheels.
   CrowdMotion settled(std::size_t robot, const crowd::Answers<T>& in, std::uint8_t status, std::int32_t hard,
                       CrowdMotion m) const;
 
-  /// As a row.
-  void put(const crowd::BodyLine& line, std::size_t robot, T& x, T& y, T& c) const {
+  /// As a row: a half-plane, `normal` and `offset`.
+  template <class Line>
+  void put(const Line& line, std::size_t robot, T& x, T& y, T& c) const {
     x = static_cast<T>(line.normal.x);
     y = static_cast<T>(line.normal.y);
     c = std::max(table_.least_offset[crowd_.robots.kind(robot)],
@@ -113,12 +119,15 @@ class OneRobot {
   crowd::BodyQuery query_of(std::size_t robot) const;
   std::size_t lines_of_edges(std::size_t robot, Buffers& b) const;
   void lay_out_rows(std::size_t rows, Buffers& b) const;
-  void put_obstacles(std::size_t robot, std::size_t edges, Buffers& b, CrowdExplanation* words) const;
+  void put_obstacles(std::size_t robot, std::size_t edges, std::size_t between, Buffers& b,
+                     CrowdExplanation* words) const;
   geometry::HalfPlane half_plane(std::size_t row, const Buffers& b) const;
   bool put_neighbours(std::size_t robot, std::size_t first, std::size_t row, Buffers& b, CrowdExplanation* words) const;
   void part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const;
   CrowdMotion solve(std::size_t robot, Vec2 preferred, std::size_t lines, std::int32_t hard, const Buffers& b) const;
   CrowdMotion kept_off_edges(std::size_t robot, crowd::Answers<T> in, std::size_t hard, CrowdMotion m) const;
+  CrowdMotion driven(std::size_t robot, crowd::Answers<T> in, std::size_t hard, CrowdMotion m) const;
+  std::size_t put_wheels(std::size_t robot, std::size_t row, Buffers& b, CrowdExplanation* words) const;
 
   const CrowdCore& crowd_;
   const crowd::KindTable<T>& table_;

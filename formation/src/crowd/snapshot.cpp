@@ -14,9 +14,13 @@
 #include "snapshot_bytes.h"
 
 namespace exactvo::formation::crowd {
+
+template <>
+inline constexpr std::size_t doubles_of<WheelState> = 5;
+
 namespace {
 
-constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '4'};
+constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '5'};
 
 constexpr const char* kExpected = "what Crowd::snapshot has written";
 
@@ -39,6 +43,14 @@ void get_counted(SnapshotReader& from, List& list) {
 template <class Bytes, class Kind>
 void fields_of_kind(Bytes& bytes, Kind& k) {
   bytes.fields(k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.edge_horizon, k.neighbours);
+  CrowdWheels wheels = k.wheels.value_or(CrowdWheels{});
+  std::uint8_t has_wheels = k.wheels.has_value();
+  bytes.fields(has_wheels, wheels.reference, wheels.wheel_separation, wheels.max_wheel_acceleration,
+               wheels.max_angular_speed, wheels.max_backward_speed);
+  if constexpr (!std::is_const_v<Kind>) {
+    require(has_wheels <= 1, "a kind");
+    if (has_wheels) k.wheels = wheels;
+  }
 }
 
 /// The numbers of a robot, field by field.
@@ -103,6 +115,7 @@ void require_robots(const CrowdCore& core) {
     const double speed = core.kinds[kind].max_speed * core.options.time_step / core.options.position_step;
     require(std::hypot(r.mx[i], r.my[i]) <= speed * (1.0 + 0x1p-40), "a motion");
     require(r.hint[i] >= 0 && r.hint[i] <= 1 << 30, "a distance");
+    require(!core.kinds[kind].wheels || static_cast<std::size_t>(r.id[i]) < core.wheels.states().size(), "wheels");
   }
 }
 
@@ -127,6 +140,7 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
   put_counted(out, core.preferred());
   put_counted(out, core.reserved_ways.places());
   put_counted(out, core.reserved_ways.reserved());
+  put_counted(out, core.wheels.states());
   out.fields(body.next_obstacle, static_cast<std::uint32_t>(body.obstacles.size()));
   for (const auto& [id, edges] : body.obstacles) {
     out.put(id);
@@ -179,6 +193,9 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   get_counted(in, preferred);
   get_counted(in, places);
   get_counted(in, reserved);
+  std::vector<WheelState> wheels;
+  get_counted(in, wheels);
+  require(core.wheels.set_states(std::move(wheels)), "wheels");
   require(places.size() == reserved.size(), "a number of reservations");
   for (std::size_t k = 0; k < places.size(); ++k)
     require(reserved[k] == 0 || geometry::is_finite(places[k]), "a place");

@@ -2,6 +2,7 @@
 #include "exactvo/formation/crowd_run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -18,6 +19,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/told_apart.h"
 #include "liveness/reservations.h"
+#include "motion/differential.h"
 #include "motion/leader.h"
 #include "runs/robot_run.h"
 #include "scene/free_space.h"
@@ -93,9 +95,20 @@ CrowdOptions options_of(const Scenario& s, const SimulationOptions& options) {
   return out;
 }
 
-// Robots with a reservation do not evade moving obstacles.
+// Robots with a reservation do not evade moving obstacles, and go straight for their places, backward too.
 bool has_reservations(const Scenario& s, Liveness liveness) {
-  return liveness == Liveness::plan && !s.robots.empty() && s.moving_obstacles.empty();
+  const bool drive_back = std::all_of(s.robots.begin(), s.robots.end(), [](const Robot& r) {
+    return !r.drive || r.drive->max_backward_speed >= r.drive->max_wheel_speed;
+  });
+  return liveness == Liveness::plan && !s.robots.empty() && s.moving_obstacles.empty() && drive_back;
+}
+
+/// Of a robot's drive what wheels of a crowd have.
+std::optional<CrowdWheels> wheels_of(const Robot& r) {
+  if (!r.drive) return {};
+  const DifferentialDrive& d = *r.drive;
+  return CrowdWheels{d.reference, d.wheel_separation, d.max_wheel_acceleration, d.max_angular_speed,
+                     d.max_backward_speed};
 }
 
 /// Crowds keep no margins. Two robots whose goals were a little nearer to each other than reservations keep would push
@@ -323,14 +336,21 @@ class CrowdSteps final : public Stepper {
   }
 
   void add_robots() {
-    std::map<std::tuple<double, double>, KindId> kinds;
+    std::map<std::array<double, 7>, KindId> kinds;
     crowd_.reserve(scenario_.robots.size());
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
       try {
-        auto known = kinds.find({r.radius, r.max_speed});
-        if (known == kinds.end())
-          known = kinds.emplace(std::tuple(r.radius, r.max_speed), crowd_.add_kind(kind_of(r))).first;
+        const CrowdWheels w = wheels_of(r).value_or(CrowdWheels{});
+        const std::array key{r.radius,
+                             r.max_speed,
+                             w.reference,
+                             w.wheel_separation,
+                             w.max_wheel_acceleration,
+                             w.max_angular_speed,
+                             w.max_backward_speed};
+        auto known = kinds.find(key);
+        if (known == kinds.end()) known = kinds.emplace(key, crowd_.add_kind(kind_of(r))).first;
         add_robot(r, known->second);
       } catch (const CrowdError& e) {
         throw CrowdError(e.problem(), "robot " + r.id + ": " + e.what());
@@ -340,7 +360,8 @@ class CrowdSteps final : public Stepper {
 
   void add_robot(const Robot& r, KindId kind) {
     const double speed = norm(r.velocity), share = speed > r.max_speed ? r.max_speed / speed * (1.0 - 0x1p-40) : 1.0;
-    crowd_.add_robot(r.position, kind, share * r.velocity);
+    const RobotId id = crowd_.add_robot(r.position, kind, share * r.velocity);
+    if (r.drive) crowd_.set_heading(id, r.drive->heading);
   }
 
   CrowdKind kind_of(const Robot& r) const {
@@ -350,6 +371,7 @@ class CrowdSteps final : public Stepper {
     kind.time_horizon = scenario_.horizons.orca;
     kind.neighbour_distance = scenario_.neighbour_distance;
     kind.neighbours = kNeighbours;
+    kind.wheels = wheels_of(r);
     return kind;
   }
 
@@ -370,6 +392,11 @@ class CrowdSteps final : public Stepper {
   }
 
   Vec2 preferred_of(std::size_t i) {
+    const Vec2 wish = kept_right(i);
+    return scenario_.robots[i].drive ? turned_aside(crowd_.heading(static_cast<RobotId>(i)), wish) : wish;
+  }
+
+  Vec2 kept_right(std::size_t i) {
     const Vec2 preferred = journeys_.beside_taken(i, journeys_.preferred(i));
     if (liveness_ == Liveness::off || options_.steering) return preferred;
     const double held_up = journeys_[i].keep_right.held_up;
@@ -460,6 +487,26 @@ class CrowdSteps final : public Stepper {
 
 }  // namespace
 
+namespace {
+
+/// What `CrowdWheels` asks for, and that one disc is the whole body.
+template <class Require>
+void require_drive(const Robot& r, const std::string& pointer, double time_step, const Require& require) {
+  const auto number = [](double x) { return number_text(x, 6); };
+  const DifferentialDrive& d = *r.drive;
+  const std::string kinematics = pointer + "/kinematics/";
+  require(d.footprint.empty(), pointer + "/footprint", "a footprint", "a radius, for a crowd");
+  require(d.max_wheel_acceleration * time_step >= d.max_wheel_speed, kinematics + "max_wheel_acceleration",
+          number(d.max_wheel_acceleration) + " m/s^2",
+          "at least " + number(d.max_wheel_speed / time_step) +
+              " m/s^2, for a crowd, whose robots stop within a time step; or a longer one");
+  const double least = std::max(d.max_wheel_speed * time_step, d.wheel_separation / 16.0);
+  require(d.reference >= least, kinematics + "reference", number(d.reference) + " m",
+          "at least " + number(least) + " m, for a crowd: the way of a time step, and wheel_separation / 16");
+}
+
+}  // namespace
+
 std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   std::vector<ScenarioProblem> problems;
   const auto require = [&](bool holds, const std::string& pointer, const std::string& found,
@@ -474,8 +521,7 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   require(!s.acceleration, "/acceleration", "an acceleration", "none, for a crowd, whose velocities jump");
   require(!s.separate, "/separate", "true", "false, for a crowd");
   for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
-    require(!s.robots[i].drive, "/robots/" + std::to_string(i) + "/kinematics", "differential",
-            "omnidirectional, for a crowd, whose velocities jump");
+    if (s.robots[i].drive) require_drive(s.robots[i], "/robots/" + std::to_string(i), s.time_step, require);
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   const double step = position_step_for(s);
   const auto [tolerance, least] = geometry::told_apart(s.arrival_tolerance, step, 6);

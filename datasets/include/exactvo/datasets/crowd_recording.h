@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +30,9 @@ namespace exactvo::datasets {
 
 /// What a recording keeps of a kind of robots.
 struct CrowdKindRecord {
-  double radius = 0.0;     ///< m
-  double max_speed = 0.0;  ///< m/s
+  double radius = 0.0;                                ///< m
+  double max_speed = 0.0;                             ///< m/s
+  std::optional<formation::CrowdWheels> wheels = {};  ///< as the crowd had them
 };
 
 /// A solid body that a recording keeps, as it stood at the start.
@@ -52,6 +54,9 @@ struct CrowdRecordingHead {
   std::vector<geometry::Segment> edges;  ///< of obstacles
   std::vector<CrowdBodyRecord> bodies;   ///< those that the crowd had at the start
   std::vector<std::string> ids;          ///< of each robot; empty in files of earlier versions
+  /// Where each robot on wheels headed at first, as `half_heading_of` has it; (1, 0) of the others. Empty where no kind
+  /// has wheels. Where every step is a row, later headings follow from this and from places (crowd/wheels.h).
+  std::vector<geometry::Vec2> half_headings;
 
   /// A robot's id; "#1" and so on where there are none. REQUIRES: a robot of the recording.
   std::string name_of(std::size_t robot) const;

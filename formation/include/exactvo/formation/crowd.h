@@ -35,6 +35,9 @@
 ///      `CrowdOptions::certified`.
 ///  (9) A kept robot and a moving body that do not touch at the beginning of a step are apart at every moment of it; if
 ///      they touch, they do not overlap at its end. Certified, for `CrowdOptions::certified`.
+///  (10) A robot on wheels drives a constant twist in a step, by which its wheels keep within their speed, their change
+///      from the step before and the other limits of its kind. Exact: the audit proves it from where the robot headed
+///      at first and from its places.
 /// A robot that is not kept violates half-planes against other robots or moving bodies, since these contradict each
 /// other
 /// (`StepReport::relaxed`), since another robot would be met within the step (`StepReport::cut_short`), or since it
@@ -47,12 +50,14 @@
 #include <functional>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/ranks.h"
 #include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/vec2.h"
 
@@ -71,14 +76,34 @@ using KindId = std::uint16_t;
 /// Names an obstacle until it is removed.
 using ObstacleId = std::uint32_t;
 
+/// Two wheels on an axle. What the crowd moves is the reference point of the robot, `reference` ahead of the axle's
+/// centre; it can go in any direction, and the heading follows as a trailer follows its coupling. A robot on wheels
+/// starts at rest and can always stop within a step.
+struct CrowdWheels {
+  double reference = 0.0;         ///< m, at least max_speed times the time step and a sixteenth of the separation
+  double wheel_separation = 0.0;  ///< m, > 0
+  /// m/s^2: in a step a wheel's speed changes by this times the time step, which is at least the kind's max_speed.
+  double max_wheel_acceleration = geometry::kInfinity;
+  double max_angular_speed = geometry::kInfinity;   ///< rad/s, > 0
+  double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre
+};
+
+/// The half of a heading (degrees; 0 along x, 90 along y) as a vector of any length: what a crowd takes for where a
+/// robot on wheels heads is exactly this direction, twice as far from x. Exact for quarter turns, else the nearest
+/// doubles.
+Vec2 half_heading_of(double degrees);
+
 /// What robots of a kind have in common.
 struct CrowdKind {
-  double radius = 0.5;               ///< m, > 0
+  /// m, > 0. On wheels: of a disc about the reference point that holds the body at every heading, and `stray_of`
+  /// (scenario.h), by which the reference point strays from its chord.
+  double radius = 0.5;
   double max_speed = 1.5;            ///< m/s, at least 16 lattice steps and at most 2^22 of them a time step
   double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
   double neighbour_distance = 15.0;  ///< m, > 0; at least the distance within which two robots can meet in a step
   int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
   double edge_horizon = 0.0;         ///< s, of edges and bodies at rest: at least the time step; 0: time_horizon
+  std::optional<CrowdWheels> wheels = {};  ///< none: the velocity may jump. Else max_speed is that of a wheel
 };
 
 /// The arithmetic of half-planes and linear programs.
@@ -235,9 +260,10 @@ struct CrowdExplanation {
   /// It drives straight to a place that it has reserved: half-planes against other robots do not turn it.
   bool reserved = false;
   std::size_t ways = 0;  ///< half-planes, not listed, that keep it out of the ways of others to their reserved places
-  std::vector<Neighbour> neighbours;  ///< nearest first
-  std::vector<Edge> edges;            ///< nearest first, without those that an earlier half-plane excludes
-  std::vector<Body> bodies;           ///< those at rest first, each kind in the order in which they were added
+  std::vector<Neighbour> neighbours;        ///< nearest first
+  std::vector<Edge> edges;                  ///< nearest first, without those that an earlier half-plane excludes
+  std::vector<geometry::HalfPlane> wheels;  ///< of the velocity: what its wheels may be asked for
+  std::vector<Body> bodies;                 ///< those at rest first, each kind in the order in which they were added
 };
 
 /// The robots, the obstacles and the time step. Not to be called from two threads at once. What a caller gets wrong is
@@ -259,6 +285,9 @@ class Crowd {
   RobotId add_robot(Vec2 position, KindId kind = 0, Vec2 velocity = {});
   /// Reserves memory for this many robots, for callers that know their number.
   void reserve(std::size_t robots);
+  /// Where a robot on wheels heads, degrees; after `add_robot` it heads along x. It is at rest then. Throws CrowdError:
+  /// `unknown_robot`, `not_finite`, `out_of_range` where the robot has no wheels or moves.
+  void set_heading(RobotId robot, double degrees);
   /// O(1), but O(n) the first time after a step.
   void remove_robot(RobotId robot);
 
@@ -323,6 +352,10 @@ class Crowd {
   Vec2 position(RobotId robot) const;
   /// m/s, m q / dt.
   Vec2 velocity(RobotId robot) const;
+  /// Where a robot on wheels heads: a unit vector, within 2^-23 of the exact one. REQUIRES: it has wheels.
+  Vec2 heading(RobotId robot) const;
+  /// m/s, of the left and the right wheel in the last step, up to 2^-17 of max_speed. REQUIRES: it has wheels.
+  Vec2 wheel_speeds(RobotId robot) const;
   /// The number that `add_robot` was given.
   KindId kind_of(RobotId robot) const;
 

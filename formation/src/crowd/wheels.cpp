@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/wheels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exactvo/geometry/pi.h"
+
+namespace exactvo::formation {
+
+Vec2 half_heading_of(double degrees) {
+  const double half = std::remainder(0.5 * degrees, 360.0), eighth = half / 45.0;
+  if (eighth == std::floor(eighth)) {  // quarter turns are exact
+    constexpr Vec2 kExact[] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
+    return kExact[static_cast<int>(eighth) + 4];
+  }
+  const double angle = half * (geometry::kPi / 180.0);
+  return {std::cos(angle), std::sin(angle)};
+}
+
+namespace crowd {
+namespace {
+
+/// What a step adds to the unknown angle: rounding K w + m conj(w), for K >= 2 |m|.
+constexpr double kNewDoubt = 0x1p-46;
+/// What (2) leaves out at kMostDoubt, and rounding.
+constexpr double kSecondOrder = 1.0 + 0x1p-21;
+
+/// atan(t) / t for t^2 = s <= 1/3, up to 2^-40 of it: a convergent of Gauss's continued fraction, 1 / (1 + s / (3 + 4 s
+/// / (5 + 9 s / (7 + ...)))). No call of a library: the same bits everywhere.
+double arc_of(double s) {
+  constexpr int kTerms = 9;
+  double above = 1.0, below = 1.0, above_before = 0.0, below_before = 1.0;
+  for (int k = 1; k < kTerms; ++k) {
+    const double times = s * (k * k), plus = 2 * k + 1;
+    above_before = std::exchange(above, plus * above + times * above_before);
+    below_before = std::exchange(below, plus * below + times * below_before);
+  }
+  return above / below;
+}
+
+}  // namespace
+
+struct Wheels::Twist {
+  double left, right;  ///< ways of the wheels, lattice steps
+  double a, b;         ///< the half-heading after it
+  double growth;       ///< of what is unknown of the heading
+};
+
+Wheels::Twist Wheels::twist_of(const Limits& limits, const WheelState& from, Motion m) {
+  const double mx = m.x, my = m.y, a = from.a, b = from.b, whole = a * a + b * b;
+  const double ex = (a * a - b * b) / whole, ey = 2.0 * a * b / whole;
+  const double x = mx * ex + my * ey, y = my * ex - mx * ey, ahead = limits.ahead + x;
+  const double t = y / ahead, arc = arc_of(t * t), middle = x + y * t, across = limits.across * t;
+  const double squared = ahead * ahead + y * y;
+  return {(middle - across) * arc, (middle + across) * arc, (limits.ahead + mx) * a + my * b,
+          (limits.ahead - mx) * b + my * a, (limits.ahead * limits.ahead - (mx * mx + my * my)) / squared};
+}
+
+bool Wheels::is_driven(const Limits& limits, const WheelState& from, Motion m) {
+  const Twist twist = twist_of(limits, from, m);
+  return std::fabs(twist.left) <= limits.most && std::fabs(twist.right) <= limits.most &&
+         std::fabs(twist.left - from.left) <= limits.change && std::fabs(twist.right - from.right) <= limits.change &&
+         std::fabs(twist.right - twist.left) <= limits.turn &&
+         twist.left + twist.right >= limits.open - 2.0 * limits.back &&
+         from.doubt * twist.growth * kSecondOrder + kNewDoubt <= kMostDoubt;
+}
+
+void Wheels::drive(std::size_t kind, std::int32_t id, Motion m) {
+  WheelState& s = states_[static_cast<std::size_t>(id)];
+  if (m == Motion{}) {
+    s.left = s.right = 0.0;  // and it heads exactly where it did
+    return;
+  }
+  const Twist twist = twist_of(limits_[kind], s, m);
+  const double size = std::sqrt(twist.a * twist.a + twist.b * twist.b);
+  s = {twist.a / size, twist.b / size, s.doubt * twist.growth * kSecondOrder + kNewDoubt, twist.left, twist.right};
+}
+
+Vec2 Wheels::heading(std::int32_t id) const {
+  const WheelState& s = state(id);
+  const double whole = s.a * s.a + s.b * s.b;
+  return {(s.a * s.a - s.b * s.b) / whole, 2.0 * s.a * s.b / whole};
+}
+
+std::size_t Wheels::rows(std::size_t kind, std::int32_t id, geometry::HalfPlane* out) const {
+  if (!has(kind)) return 0;
+  const Vec2 e = heading(id), left{-e.y, e.x};
+  std::size_t count = 0;
+  for (const geometry::HalfPlane& h : limits_[kind].polygon)
+    out[count++] = {h.normal.x * e + h.normal.y * left, h.offset};
+  return count;
+}
+
+void Wheels::put(std::int32_t id, Vec2 half_heading) {
+  const auto at = static_cast<std::size_t>(id);
+  if (at >= states_.size()) states_.resize(at + 1);
+  states_[at] = {half_heading.x, half_heading.y, 0.0, 0.0, 0.0};
+}
+
+bool Wheels::set_states(std::vector<WheelState> states) {
+  for (const WheelState& s : states) {
+    const double size = s.a * s.a + s.b * s.b;
+    if (!(size > 0.5 && size < 4.0 && s.doubt >= 0.0 && s.doubt <= kMostDoubt && std::fabs(s.left) <= kLongestMotion &&
+          std::fabs(s.right) <= kLongestMotion))
+      return false;
+  }
+  states_ = std::move(states);
+  return true;
+}
+
+void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions& options) {
+  const double q = options.position_step, per_speed = options.time_step / q;
+  limits_.assign(kinds.size(), {});
+  has_some_ = false;
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (!kinds[k].wheels) continue;
+    const CrowdWheels& wheels = *kinds[k].wheels;
+    const double fastest = kinds[k].max_speed;
+    Limits& limits = limits_[k];
+    has_some_ = true;
+    limits.ahead = 2.0 * wheels.reference / q;
+    limits.across = wheels.wheel_separation / q;
+    limits.most = kSpare * fastest * per_speed;
+    limits.change = kSpare * wheels.max_wheel_acceleration * options.time_step * per_speed;
+    limits.turn = kSpare * wheels.wheel_separation * wheels.max_angular_speed * per_speed;
+    limits.back = wheels.max_backward_speed * per_speed;
+    limits.open = (1.0 - kSpare) * fastest * per_speed;
+    // Theorem 1, for twists: their ways are longer than chords.
+    const double q_most = fastest * options.time_step / (2.0 * wheels.reference);
+    const double longer = std::asin(q_most) / q_most, beta = wheels.wheel_separation / (2.0 * wheels.reference);
+    const double apex = kSpare * fastest / longer;
+    const double side =
+        std::min(fastest / std::sqrt(1.0 + beta * beta), wheels.reference * wheels.max_angular_speed) / longer * kSpare;
+    const double touches = std::acos(std::min(1.0, side / apex)), arc = 2.0 * (geometry::kPi - touches);
+    std::vector<Vec2> corners{{apex, 0.0}};
+    for (std::size_t c = 0; c <= kChordsOfWheels; ++c) {
+      const double angle = touches + arc * static_cast<double>(c) / static_cast<double>(kChordsOfWheels);
+      corners.push_back(side * Vec2{std::cos(angle), std::sin(angle)});
+    }
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Vec2 from = corners[c], along = corners[(c + 1) % corners.size()] - from;
+      if (!(geometry::norm(along) > 0x1p-20 * apex)) continue;
+      const Vec2 inward = geometry::normalized(Vec2{-along.y, along.x});
+      limits.polygon.push_back({inward, geometry::dot(inward, from)});
+    }
+    if (wheels.max_backward_speed < side) limits.polygon.push_back({{1.0, 0.0}, -wheels.max_backward_speed});
+  }
+}
+
+}  // namespace crowd
+}  // namespace exactvo::formation

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenarios of robots on wheels on a crowd: what is recorded of them, and what the audit proves of it.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+
+#include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/crowd_run.h"
+#include "refusal.h"
+#include "support/forged_crowd.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using exactvo::test::fnv1a;
+using exactvo::test::in_bytes;
+using formation::RunReport;
+using formation::Scenario;
+using formation::SimulationOptions;
+
+/// Burgers on a square, each to the place opposite of its own, one that goes straight ahead far from them, and a robot
+/// that moves in any direction.
+constexpr std::size_t kOnWheels = 17;
+Scenario burgers(const std::string& more = "") {
+  std::string robots;
+  const auto add = [&](const std::string& id, double x, double y, double goal_x, double goal_y, int heading) {
+    robots += R"({"id": ")" + id + R"(", "position": [)" + std::to_string(x) + ", " + std::to_string(y) +
+              R"(], "goal": [)" + std::to_string(goal_x) + ", " + std::to_string(goal_y) + R"(], "heading": )" +
+              std::to_string(heading) + R"(, "radius": 0.105, "kinematics": {"type": "differential",
+              "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1)" +
+              more + "}}, ";
+  };
+  for (int k = 0; k < 16; ++k) {
+    const double x = 1.2 * (k % 4), y = 1.2 * (k / 4);
+    add("B" + std::to_string(k), x, y, 3.7 - x, 3.65 - y, 25 * k);
+  }
+  add("L", 0.0, 20.0, 2.9544, 20.5209, 10);
+  return parse_scenario(R"({"name": "burgers", "guidance": "none", "time_step": 0.25, "time_limit": 150,
+      "arrival_tolerance": 0.05, "horizons": {"least": 0.5, "orca": 3}, "robots": [)" +
+                            robots + R"({"id": "O", "position": [-1, 1.7], "goal": [5, 1.7],
+      "radius": 0.15, "max_speed": 0.3}], "obstacles": [{"polyline": [[-1, -0.5], [5, -0.5]]}]})",
+                        "burgers.json", {});
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+template <class T>
+T number_at(const std::string& bytes, std::size_t at) {
+  T value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// The first of these numbers in the bytes becomes the other.
+void replace(std::string& bytes, double was, double is) {
+  const std::size_t at = bytes.find(in_bytes(was));
+  ASSERT_NE(at, std::string::npos) << was;
+  bytes.replace(at, sizeof is, in_bytes(is));
+}
+
+/// With another head, and checksums that fit.
+std::string with_head(const std::string& whole, const std::function<void(std::string&)>& edit) {
+  constexpr std::size_t kMark = 8, kPrefix = 16;
+  std::string head = whole.substr(kMark + kPrefix, number_at<std::uint64_t>(whole, kMark));
+  std::size_t at = kMark + kPrefix + head.size();
+  edit(head);
+  std::string out = whole.substr(0, kMark) + in_bytes<std::uint64_t>(head.size()) + in_bytes(fnv1a(head)) + head;
+  std::uint64_t sum = fnv1a(head);
+  while (whole[at] == 'R') {
+    const auto size = number_at<std::uint64_t>(whole, at + 1);
+    out += whole.substr(at, 1 + kPrefix + size);
+    sum = fnv1a(in_bytes(sum) + in_bytes(number_at<std::uint64_t>(whole, at + 9)));
+    at += 1 + kPrefix + size;
+  }
+  const std::string seal = whole.substr(at + 1 + kPrefix, 8) + in_bytes(sum);
+  return out + "E" + in_bytes<std::uint64_t>(seal.size()) + in_bytes(fnv1a(seal)) + seal;
+}
+
+class CrowdsOnWheels : public TemporaryFolder {
+ protected:
+  RunReport record(const Scenario& scenario, std::uint32_t every = 1) {
+    CrowdRecorder recorder(folder_ / "c.evr", scenario, every);
+    const RunReport report = run_crowd(scenario, {}, &recorder);
+    recorder.finish();
+    return report;
+  }
+  /// Of the recording with another head.
+  AuditReport audit_with(const std::function<void(std::string&)>& edit) {
+    std::ofstream(folder_ / "d.evr", std::ios::binary) << with_head(bytes_of(folder_ / "c.evr"), edit);
+    return audit_recording(folder_ / "d.evr");
+  }
+  static std::size_t found(const AuditReport& audit, const std::string& words) {
+    std::size_t count = 0;
+    for (const std::string& finding : audit.findings) count += finding.find(words) != std::string::npos;
+    return count;
+  }
+};
+
+TEST_F(CrowdsOnWheels, ArriveAndTheAuditProvesWhatTheyDrove) {
+  const Scenario scenario = burgers();
+  ASSERT_TRUE(formation::crowd_problems(scenario).empty());
+  const RunReport report = record(scenario);
+  EXPECT_EQ(report.arrived, kOnWheels + 1) << report.steps << " steps";
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
+  EXPECT_TRUE(audit.clean());
+  EXPECT_EQ(audit[AuditPoint::kinematics].refuted + audit[AuditPoint::kinematics].open, 0U);
+  EXPECT_EQ(audit[AuditPoint::kinematics].proven, 1 + 2 * kOnWheels * report.steps)
+      << "speeds and changes of both wheels";
+  EXPECT_GT(audit.robot_questions, 0U);
+}
+
+TEST_F(CrowdsOnWheels, WhatIsReadIsWhatWasWritten) {
+  const Scenario scenario = burgers(R"(, "max_angular_speed": 2, "max_backward_speed": 0.1, "reference": 0.07)");
+  record(scenario);
+  EXPECT_EQ(bytes_of(folder_ / "c.evr").substr(0, 8), "EXACTVR4");
+  CrowdRecordingReader reader(folder_ / "c.evr");
+  const CrowdRecordingHead& head = reader.head();
+  ASSERT_EQ(head.half_headings.size(), kOnWheels + 1);
+  EXPECT_EQ(head.half_headings[0], (geometry::Vec2{1.0, 0.0}));
+  EXPECT_EQ(head.half_headings[3], formation::half_heading_of(75.0));
+  ASSERT_EQ(head.kinds.size(), 2U);
+  ASSERT_TRUE(head.kinds[0].wheels);
+  EXPECT_FALSE(head.kinds[1].wheels);
+  const formation::CrowdWheels& w = *head.kinds[0].wheels;
+  EXPECT_EQ((std::vector<double>{w.reference, w.wheel_separation, w.max_wheel_acceleration, w.max_angular_speed,
+                                 w.max_backward_speed}),
+            (std::vector<double>{0.07, 0.16, 1.0, 2.0, 0.1}));
+  EXPECT_EQ(head.ids.back(), "O");
+  EXPECT_TRUE(audit_recording(folder_ / "c.evr").clean());
+}
+
+TEST_F(CrowdsOnWheels, TheAuditRefutesOtherHeadingsLimitsAndRadii) {
+  record(burgers());
+  EXPECT_TRUE(audit_with([](std::string&) {}).clean());
+  const geometry::Vec2 ahead = formation::half_heading_of(10.0), aside = formation::half_heading_of(100.0);
+  const AuditReport turned = audit_with([&](std::string& head) {
+    replace(head, ahead.x, aside.x);
+    replace(head, ahead.y, aside.y);
+  });
+  EXPECT_GT(found(turned, "L runs a wheel faster than it may"), 0U);
+  const AuditReport slower = audit_with([](std::string& head) { replace(head, 0.22, 0.2); });
+  EXPECT_GT(found(slower, "runs a wheel faster than it may"), 0U);
+  const AuditReport softer = audit_with([](std::string& head) { replace(head, 1.0 * 0.16, 0.3); });
+  EXPECT_FALSE(softer.clean()) << "wheels farther apart run faster";
+  const double radius = burgers().robots[0].radius;
+  const AuditReport smaller = audit_with([&](std::string& head) { replace(head, radius, 0.004); });
+  EXPECT_EQ(found(smaller, "have no room for the arc of a step"), 1U);
+}
+
+TEST_F(CrowdsOnWheels, TheAuditRefutesWhatRobotsWithoutWheelsDrive) {
+  Scenario scenario = burgers();
+  CrowdRecorder recorder(folder_ / "c.evr", scenario, 1);
+  for (formation::Robot& robot : scenario.robots)
+    if (robot.drive) robot.drive->max_wheel_acceleration = 1e6;
+  run_crowd(scenario, {}, &recorder);
+  recorder.finish();
+  EXPECT_TRUE(audit_recording(folder_ / "c.evr").clean());
+  const AuditReport audit = audit_with([](std::string& head) { replace(head, 1e6, 0.88); });
+  EXPECT_GT(found(audit, "changes the speed of a wheel by more than it may"), 0U);
+}
+
+TEST_F(CrowdsOnWheels, WhereRowsAreSeveralStepsApartWheelsAreLeftOpen) {
+  record(burgers(), 5);
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
+  EXPECT_EQ(audit[AuditPoint::kinematics].open, kOnWheels);
+  EXPECT_EQ(audit[AuditPoint::kinematics].refuted, 0U);
+  EXPECT_EQ(found(audit, "its twists are not known"), kOnWheels);
+}
+
+TEST_F(CrowdsOnWheels, ASampledAuditFollowsSomeRobotsThroughAllTheirSteps) {
+  const RunReport report = record(burgers());
+  const AuditReport audit = audit_recording(folder_ / "c.evr", nullptr, (kOnWheels + 1) * report.steps / 3);
+  const std::size_t asked = audit[AuditPoint::kinematics].proven - 1;
+  EXPECT_TRUE(audit.clean());
+  EXPECT_EQ(asked % (2 * report.steps), 0U);
+  EXPECT_GT(asked, 0U);
+  EXPECT_LT(asked, 2 * kOnWheels * report.steps);
+}
+
+TEST_F(CrowdsOnWheels, GoOnFromASnapshotToTheSameBytes) {
+  const Scenario scenario = burgers();
+  const RunReport whole = record(scenario);
+  struct Killed {};
+  std::string snapshot;
+  SimulationOptions options;
+  options.snapshot_every = 20;
+  options.keep_snapshot = [&](const std::string& bytes) {
+    if (!snapshot.empty()) throw Killed();
+    snapshot = bytes;
+  };
+  {
+    CrowdRecorder recorder(folder_ / "d.evr", scenario, 1, Unfinished::stays);
+    EXPECT_THROW(run_crowd(scenario, options, &recorder), Killed);
+  }
+  options = {};
+  options.resume_from = snapshot;
+  CrowdRecorder recorder(folder_ / "d.evr", scenario, 1, Unfinished::stays);
+  const RunReport report = run_crowd(scenario, options, &recorder);
+  recorder.finish();
+  EXPECT_EQ(report.digest, whole.digest);
+  EXPECT_TRUE(bytes_of(folder_ / "d.evr") == bytes_of(folder_ / "c.evr"));
+}
+
+TEST_F(CrowdsOnWheels, DamagedHeadsAreRefused) {
+  record(burgers());
+  const auto refused = [&](const std::function<void(std::string&)>& edit) {
+    std::ofstream(folder_ / "d.evr", std::ios::binary) << with_head(bytes_of(folder_ / "c.evr"), edit);
+    EXPECT_EQ(refusal_of([&] { CrowdRecordingReader reader(folder_ / "d.evr"); }).code(), DataCode::format_syntax);
+  };
+  refused([](std::string& head) { replace(head, 0.16, -0.16); });
+  refused([](std::string& head) { replace(head, 0.08, 0.001); });
+  refused([](std::string& head) { replace(head, formation::half_heading_of(75.0).x, 7.0); });
+  refused([](std::string& head) { replace(head, 1.0, std::nan("")); });
+  refused([](std::string& head) { head.pop_back(); });
+}
+
+TEST_F(CrowdsOnWheels, ScenariosWhoseRobotsCannotStopInAStepAreRefused) {
+  const auto pointer = [](const Scenario& s) { return formation::crowd_problems(s).at(0).pointer; };
+  Scenario scenario = burgers();
+  scenario.robots[2].drive->max_wheel_acceleration = 0.8;
+  EXPECT_EQ(pointer(scenario), "/robots/2/kinematics/max_wheel_acceleration");
+  scenario = burgers();
+  scenario.robots[1].drive->reference = 0.05;
+  EXPECT_EQ(pointer(scenario), "/robots/1/kinematics/reference");
+  scenario = burgers();
+  scenario.robots[0].drive->footprint = {{0.1, 0.1}, {-0.1, 0.1}, {-0.1, -0.1}};
+  EXPECT_EQ(pointer(scenario), "/robots/0/footprint");
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
