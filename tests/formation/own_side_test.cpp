@@ -323,7 +323,7 @@ constexpr const char* kText = R"({"name": "measured", "acceleration": {"max": 0.
   {"id": "R1", "position": [0, 0], "goal": [4, 0], "radius": 0.2, "max_speed": 0.2},
   {"id": "R2", "position": [4, 0.1], "goal": [0, 0.1], "radius": 0.2, "max_speed": 0.2}]})";
 
-TEST(Measurements, ScenariosAndRecordingsKeepThem) {
+TEST(Measurements, ScenariosKeepThem) {
   const Scenario s = datasets::parse_scenario(kText, "measured.json", {});
   ASSERT_TRUE(measures_others(s));
   EXPECT_EQ(s.uncertainty->measurements->velocity, 0.05);
@@ -331,6 +331,27 @@ TEST(Measurements, ScenariosAndRecordingsKeepThem) {
   const std::string written = datasets::write_scenario(s);
   EXPECT_EQ(datasets::write_scenario(datasets::parse_scenario(written, "again.json", {})), written);
   EXPECT_THAT(assumed_words(s), HasSubstr("0.1 s ago at most, within 0.02 m and 0.05 m/s"));
+}
+
+TEST(Measurements, RecordingsKeepThem) {
+  Scenario s = measured_circle({0.02, 0.05, 0.1}, 4);
+  s.time_limit = 3.0;
+  const datasets::RecordingFile file = recorded(s);
+  const std::string path = testing::TempDir() + "measured.jsonl";
+  datasets::write_recording(path, file);
+  const datasets::RecordingFile again = datasets::read_recording(path);
+  ASSERT_EQ(again.recording.steps.size(), file.recording.steps.size());
+  std::size_t compared = 0;
+  for (std::size_t k = 0; k < file.recording.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      const auto &a = file.recording.steps[k].robots[i].measured, &b = again.recording.steps[k].robots[i].measured;
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t m = 0; m < a.size(); ++m, ++compared)
+        EXPECT_TRUE(a[m].robot == b[m].robot && a[m].position == b[m].position && a[m].velocity == b[m].velocity &&
+                    a[m].age == b[m].age);
+    }
+  EXPECT_GT(compared, 500u);
+  EXPECT_TRUE(datasets::audit(again).clean());
 }
 
 TEST(Measurements, WhatAFileSaysWrongIsRefusedByAPlace) {
