@@ -144,6 +144,11 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   EXPECT_TRUE(!a.acceleration || same_bits(a.acceleration->max, b.acceleration->max));
   EXPECT_EQ(a.braking_time, b.braking_time);
   EXPECT_TRUE(same_bits(tracking_error_of(a), tracking_error_of(b)));
+  ASSERT_EQ(measures_others(a), measures_others(b));
+  if (measures_others(a)) {
+    const formation::Measurements &x = *a.uncertainty->measurements, &y = *b.uncertainty->measurements;
+    EXPECT_TRUE(same_bits(x.position, y.position) && same_bits(x.velocity, y.velocity) && same_bits(x.age, y.age));
+  }
 }
 
 }  // namespace exactvo::datasets::test

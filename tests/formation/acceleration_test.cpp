@@ -194,7 +194,8 @@ TEST(Acceleration, LimitsLieWithinTheDiscAndHoldBraking) {
     const double most = random.uniform(0.1, 5.0), fastest = random.uniform(0.1, 5.0);
     const detail::DecisionRules r = rules(most, (1.0 + 1e-9) * fastest / most + 1e-3 * (k % 3), 0.05);
     const Vec2 v = k % 10 == 0 ? Vec2{} : random.uniform(0.0, 1.0) * fastest * random.direction();
-    detail::acceleration_limits(r, v, limit);
+    limit.clear();
+    detail::add_acceleration_limits(r, v, limit);
     ASSERT_EQ(limit.size(), static_cast<std::size_t>(detail::kSidesOfLimit));
     const Rational reach = Rational(most) * Rational(r.time_step);
     for (std::size_t i = 0; i < limit.size(); ++i) {
@@ -453,7 +454,8 @@ TEST(Acceleration, HalfPlanesMadeAtTheVelocitiesThemselvesAreRefused) {
             detail::braking_half_planes({me.position, me.velocity, 0.5}, {other.position, other.velocity, 0.5}, tau);
         problem.constraints.push_back({pair.a, lp::Priority::soft});
       }
-      detail::acceleration_limits(r, me.velocity, limit);
+      limit.clear();
+      detail::add_acceleration_limits(r, me.velocity, limit);
       for (const geometry::HalfPlane& h : limit) problem.constraints.push_back({h, lp::Priority::hard});
       const lp::Solution solution = lp::solve(problem);
       nothing_left += solution.status != lp::Status::optimal;

@@ -306,6 +306,24 @@ TEST(Chain, TheTrapTestTakesTheRadiusBesideObstacles) {
   EXPECT_EQ(rests, 1);
 }
 
+/// In a dead end, its goal behind it.
+TEST(Chain, ARobotWithoutRoomToTurnIsGivenThatReason) {
+  Scenario s;
+  s.name = "dead end";
+  s.time_step = kStep;
+  s.time_limit = 10.0;
+  s.obstacles = {{"left", box({-2.0, 0.36}, {2.0, 0.5})},
+                 {"right", box({-2.0, -0.5}, {2.0, -0.36})},
+                 {"end", box({2.0, -0.5}, {2.2, 0.5})}};
+  s.robots = {on_wheels(mp500(), {0.5, 0.0}, 0.0, {{-4.0, 0.0}})};
+  const Recording run = simulate(s);
+  constexpr const char* kReason = "has no room between obstacles to turn its footprint";
+  EXPECT_THAT(run.outcome, HasSubstr("the robot did not arrive"));
+  EXPECT_THAT(run.outcome, HasSubstr(kReason));
+  EXPECT_TRUE(std::any_of(run.steps.begin(), run.steps.end(),
+                          [&](const Step& row) { return row.robots[0].note.find(kReason) != std::string::npos; }));
+}
+
 TEST(Chain, ForgeriesAreRefuted) {
   const datasets::RecordingFile file = recorded(door(0.7));
   const auto refuted = [&](AuditPoint point, const auto& forge) {

@@ -157,6 +157,9 @@ TEST(Tube, ScenariosKeepTheRadiusOfTheBody) {
   changed.robots[1].radius = 0.2;
   EXPECT_EQ(validate(changed).front().pointer, "/robots/1/radius");
   changed = s;
+  changed.robots[1].position = changed.robots[1].goals[0] = changed.robots[0].position;
+  EXPECT_THAT(validate(changed).front().found, HasSubstr("with the tracking error of 0.02 m"));
+  changed = s;
   changed.uncertainty->tracking = std::nan("");
   EXPECT_EQ(validate(changed).front().pointer, "/uncertainty/tracking");
 }
@@ -203,8 +206,9 @@ TEST(Footprint, WhatAFileSaysWrongIsRefusedByACode) {
   const auto [beside, words] =
       refusal("[-0.3, -0.2], [0.1, -0.2], [0.1, 0.2], [-0.3, 0.2]", "[0.1, -0.2], [0.4, -0.2], [0.4, 0.2], [0.1, 0.2]");
   EXPECT_EQ(beside, DataCode::scenario);
-  EXPECT_THAT(words, testing::AllOf(HasSubstr("/robots/0/footprint/polygon"), HasSubstr("the centre of the axle")));
-  EXPECT_THAT(refusal("[0.1, 0.2], [-0.3, 0.2]", "[-0.3, 0.2], [0.1, 0.2]").second, HasSubstr("do not cross"));
+  EXPECT_THAT(words, testing::AllOf(HasSubstr("/robots/0/footprint/polygon/3: "), HasSubstr("the centre of the axle")));
+  EXPECT_THAT(refusal("[0.1, 0.2], [-0.3, 0.2]", "[-0.3, 0.2], [0.1, 0.2]").second,
+              testing::AllOf(HasSubstr("/robots/0/footprint/polygon/1: "), HasSubstr("do not cross")));
   EXPECT_EQ(refusal("[0.1, -0.2], [0.1, 0.2], [-0.3, 0.2]", "[0.1, -0.2]").first, DataCode::wrong_count);
   EXPECT_THAT(refusal("\"goal\": [0, 4]", "\"goal\": [0, 4], \"radius\": 0.4").second, HasSubstr("footprint alone"));
   EXPECT_EQ(

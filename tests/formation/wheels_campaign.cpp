@@ -90,6 +90,39 @@ int edit(std::uint64_t count, std::uint64_t seed) {
   return passed == 0 ? 0 : 1;
 }
 
+/// 12 that move in any direction at 1.5 m/s across a circle of 8 m. `most`: m/s^2, 0 for velocities that jump.
+Scenario points_on_circle(double most, double braking_time) {
+  constexpr int kRobots = 12;
+  Scenario s;
+  s.name = "points";
+  s.time_limit = 90.0;
+  s.margins.robot = 0.0;
+  if (most > 0.0) {
+    s.acceleration = Acceleration{most};
+    s.braking_time = braking_time;
+    s.horizons.robots = s.horizons.orca = std::max(s.horizons.robots, braking_time);
+    s.horizons.most = std::max(s.horizons.most, braking_time);
+  }
+  for (int k = 0; k < kRobots; ++k) {
+    const double angle = 2.0 * geometry::kPi * k / kRobots;
+    Robot r;
+    r.id = "P" + std::to_string(k + 1);
+    r.position = polar(8.0, angle);
+    r.goals = {polar(-8.0, angle)};
+    r.max_speed = 1.5;
+    s.robots.push_back(r);
+  }
+  return s;
+}
+
+/// Eight Burgers that measure each other.
+Scenario measured_circle(const Measurements& bounds) {
+  Scenario s = burgers_on_circle(8, 1.5, false);
+  s.acceleration = Acceleration{0.45};
+  s.uncertainty = Uncertainty{0.0, bounds};
+  return s;
+}
+
 int print_table() {
   bool all_hold = true;
   const auto print = [&](const char* what, const Scenario& s, double straight) {
@@ -111,9 +144,16 @@ int print_table() {
   for (const double tracking : {0.0, 0.01, 0.02, 0.05, 0.1})
     print(("8 Burgers, tracking error " + std::to_string(tracking) + " m").c_str(),
           burgers_on_circle(8, 1.5, false, 5, tracking), 13.6);
+  print("8 Burgers that measure each other, exactly", measured_circle({0.0, 0.0, 0.0}), 13.6);
+  print("8 Burgers that measure each other, 2 cm, 5 cm/s, 0.1 s", measured_circle({0.02, 0.05, 0.1}), 13.6);
+  print("8 Burgers that measure each other, 5 cm, 10 cm/s, 0.1 s", measured_circle({0.05, 0.1, 0.1}), 13.6);
   Scenario s = burgers_on_circle(12, 2.2, false);
   add_pillars(s);
   print("12 Burgers, three pillars", s, 20.0);
+  print("12 points without a limit", points_on_circle(0.0, 0.0), 10.7);
+  print("12 points, A 3, tau 0.6", points_on_circle(3.0, 0.6), 10.7);
+  print("12 points, A 1, tau 1.6", points_on_circle(1.0, 1.6), 10.7);
+  print("12 points, A 0.5, tau 3.2", points_on_circle(0.5, 3.2), 10.7);
   test::SeededRandom random(1);
   print("24 Burgers in a crowded room", crowded_room(random), 0.0);
   return all_hold ? 0 : 1;

@@ -156,6 +156,41 @@ def test_robots_on_wheels_change_places_by_poses_and_twists():
     assert all(n.has_arrived for n in navigators) and nearest > 0 and turned > 0.1
 
 
+def test_robots_on_wheels_that_only_measure_each_other_pass():
+    """Places and velocities of reference points, off by as much as the bounds allow."""
+    step, bounds, rng = 0.05, {"position": 0.02, "velocity": 0.05, "age": 0.0}, np.random.default_rng(5)
+    axle, heading, wheels = np.array([[0.0, 0.0], [2.0, 0.1]]), np.array([0.0, np.pi]), np.zeros((2, 2))
+    navigators = [
+        exactvo.Navigator([goal], id=k, radius=0.105, kinematics=BURGER, time_step=step, arrival_tolerance=0.02, acceleration=0.45, braking_time=0.5)
+        for k, goal in enumerate([(2, 0), (0, 0.1)])
+    ]  # fmt: skip
+    time, nearest = 0.0, np.inf
+
+    def error(size):
+        angle = rng.uniform(0, 2 * np.pi)
+        return 0.999 * size * np.array([[np.cos(angle), np.sin(angle)]])
+
+    while time < 60 and not all(n.has_arrived for n in navigators):
+        decisions = []
+        for k, n in enumerate(navigators):
+            seen = exactvo.neighbours_on_wheels(axle[[1 - k]], heading[[1 - k]], wheels[[1 - k]], kinematics=BURGER, radius=0.105, time_step=step)
+            seen["positions"] = seen["positions"] + error(bounds["position"])
+            seen["velocities"] = seen["velocities"] + error(bounds["velocity"])
+            decisions.append(n.decide(time, axle[k], heading=heading[k], wheels=wheels[k], measured=bounds, **seen))
+        for k, decision in enumerate(decisions):
+            assert decision.status == "optimal"
+            linear, angular = decision.twist
+            half = 0.5 * angular * step
+            axle[k] += linear * step * np.sinc(half / np.pi) * np.array([np.cos(heading[k] + half), np.sin(heading[k] + half)])
+            heading[k] += 2 * half
+            wheels[k] = decision.wheels
+        time += step
+        nearest = min(nearest, np.linalg.norm(axle[0] - axle[1]) - 0.21)
+    assert all(n.has_arrived for n in navigators) and nearest > 0
+    with pytest.raises(exactvo.ArgumentError, match="measured"):
+        navigators[0].decide(time, axle[0], positions=[(9, 9)], max_speeds=0.2, measured={"position": -1})
+
+
 def test_wheels_without_a_number_are_refused():
     for change in ({"wheel_separation": 0}, {"wheel_axis": 0.16}, {"max_wheel_speed": 4.0}, {"type": "bicycle"}, {"reference": -1}):
         with pytest.raises(exactvo.ArgumentError):

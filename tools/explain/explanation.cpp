@@ -163,16 +163,17 @@ std::string contact_words(const Decision& d, std::size_t i) {
   return fmt::format("{}, reached in {} at the preferred velocity, horizon {} s", away, in, number(c.time_horizon));
 }
 
-std::string proof_words(const DecisionConstraint& c) {
+std::string proof_words(const Decision& d, const DecisionConstraint& c) {
   if (!c.certified) return "not certified";
   if (formation::is_own_limit(c)) return "a side of the polygon within what its acceleration, or its wheels, allow";
-  return c.source == formation::ConstraintSource::robot ? "proven safe together with the other robot's half"
-                                                        : "proven to exclude the velocity obstacle";
+  if (c.source != formation::ConstraintSource::robot) return "proven to exclude the velocity obstacle";
+  return measures_others(d.scenario) ? "keeps to its own side of a line that may be between the ways of braking"
+                                     : "proven safe together with the other robot's half";
 }
 
-std::string line_words(const DecisionConstraint& c) {
+std::string line_words(const Decision& d, const DecisionConstraint& c) {
   return fmt::format("{:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}", c.half_plane.normal.x, c.half_plane.normal.y,
-                     c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(c));
+                     c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(d, c));
 }
 
 std::string effect_words(const Decision& d, const DecisionConstraint& c) {
@@ -184,7 +185,7 @@ std::string constraint_words(const Decision& d, std::size_t i) {
   const DecisionConstraint& c = d.step.constraints[i];
   return fmt::format("  [{}] {}{}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies),
                      c.fell_back ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, i),
-                     line_words(c));
+                     line_words(d, c));
 }
 
 std::string constraints_words(const Decision& d) {

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 
+#include "exactvo/geometry/pi.h"
 #include "figures/plane.h"
 
 namespace exactvo::tools {
@@ -24,6 +26,8 @@ constexpr const char* kViolatedColour = "#a50026";  // and dashed
 constexpr const char* kSlackColour = "#9a9a9a";
 constexpr const char* kSlackNumber = "#6a6a6a";  // the same, readable as text
 constexpr const char* kAllowedColour = "#cdeccd";
+constexpr const char* kAllowedRim = "#4c9a4c";
+constexpr const char* kWheelsColour = "#7b5ea7";
 constexpr const char* kPreferredColour = "#1030ff";
 constexpr const char* kChosenColour = "#2aa56f";
 constexpr std::size_t kNameLength = 24;  // characters of a name in the title
@@ -45,6 +49,7 @@ class VelocitySpace {
     add_half_planes(Effect::violated, "lw 3 dt (8,4)", kViolatedColour);
     add_hatching_key();
     add_speed_bound();
+    add_wheels();
     // The numbers of the printed explanation, beside the lines and in their colours; what is slack chooses last.
     add_numbers_of(Effect::binding, kBindingColour);
     add_numbers_of(Effect::violated, kViolatedColour);
@@ -98,6 +103,22 @@ class VelocitySpace {
     if (ring.size() < 3) return;
     panel_.rings("allowed velocities", {ring}, solid_fill(kAllowedColour),
                  d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
+    // Where a step changes the velocity by little, the rim is what is seen of it.
+    panel_.rings("rim of the allowed velocities", {ring}, line_style(2.5, kAllowedRim));
+  }
+
+  /// What wheels can hold for ever at their present heading, whatever they do now: the hull of a disc about 0 and a
+  /// point ahead (docs/guide/wheels.md, theorem 1).
+  void add_wheels() {
+    const std::optional<formation::DifferentialDrive>& drive = d_.who().drive;
+    if (!drive || !d_.step.wheels) return;
+    const double alpha = std::atan(drive->wheel_separation / (2.0 * drive->reference));
+    const Vec2 ahead = drive->max_wheel_speed * d_.step.wheels->heading;
+    Points ring{ahead};
+    for (int i = 0; i <= kArcPoints; ++i)
+      ring.push_back(std::cos(alpha) * rotated(ahead, alpha + (2.0 * geometry::kPi - 2.0 * alpha) * i / kArcPoints));
+    panel_.rings("what its wheels can hold, theorem 1", {ring}, line_style(2, kWheelsColour, " dt (2,2)"),
+                 "what its wheels can hold");
   }
 
   /// Those that have a cone: what the robot overlaps has none.
@@ -268,10 +289,13 @@ class VelocitySpace {
 
 Figure velocity_space_figure(const Decision& decision) {
   const VelocitySpace space(decision);
-  const std::string title =
-      fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
-                  shortened(decision.who().id, kNameLength), decision.time, decision.method);
-  std::string titles = quoted(shortened(title, characters_in(kTitleRoom)));
+  const std::string what =
+      fmt::format("{}: velocity space of {} at t = {:.2f} s", shortened(decision.scenario.name, kNameLength),
+                  shortened(decision.who().id, kNameLength), decision.time);
+  const std::string title = what + ", " + decision.method;
+  std::string titles = title.size() <= characters_in(kTitleRoom)
+                           ? quoted(title)
+                           : quoted(what) + ".\"\\n\"." + quoted(shortened(decision.method, characters_in(kTitleRoom)));
   if (!decision.has_all_half_planes) titles += ".\"\\n\"." + quoted(kPartly);
   return {"velocity_space",
           space.data(),

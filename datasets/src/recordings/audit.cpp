@@ -74,6 +74,7 @@ void check_header(const RecordingFile& file, const Step& first, const formation:
   const std::vector<formation::Robot>& robots = file.scenario.robots;
   const Rational tracking(formation::tracking_error_of(file.scenario));
   tally.report.has_tube = sgn(tracking) > 0;
+  tally.report.has_measurements = measures_others(file.scenario);
   for (const formation::Robot& robot : robots)  // of those on wheels `audit_kinematics` asks it
     if (tally.report.has_tube && !robot.drive)
       tally.ask(scenario, Rational(robot.radius) >= Rational(robot.body_radius) + tracking,
@@ -423,8 +424,9 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::ends_only, &AuditReport::left_out, &AuditReport::obstacle_questions,
         &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
-  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
-                                  &AuditReport::has_tube, &AuditReport::without_pairs, &AuditReport::has_places})
+  for (bool AuditReport::*some :
+       {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums, &AuditReport::has_tube,
+        &AuditReport::has_measurements, &AuditReport::without_pairs, &AuditReport::has_places})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -470,6 +472,10 @@ std::vector<std::string> not_audited(const AuditReport& report) {
     words.emplace_back(
         "that bodies are where rows have them, up to the tracking error of the scenario, which is assumed: what is "
         "proven holds in every world in which they are");
+  if (report.has_measurements)
+    words.emplace_back(
+        "that robots of the world measure within the bounds of the scenario, as those of the rows do, which is "
+        "assumed");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "

@@ -4,7 +4,15 @@
 // [x, x + tau v]; two that brake alike are at the same share of their ways. A row is asked for the velocities that were
 // chosen in it. That they could brake in the next row follows: x + T v + [0, tau] (1 - T / tau) v is a part of this
 // way.
+//
+// Where robots measure each other, each keeps to its own side of the line half-way between the ways on which both would
+// have braked instead: of a line across some n that parts these ways, since then they are apart whatever the other
+// chose. And what was measured is within the bounds of the rows.
 #include "recordings/audit_points.h"
+
+#include <deque>
+
+#include "exactvo/geometry/vec2.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -28,17 +36,27 @@ class BrakingAudit : public RowAudit {
   void check_step(const RowInRun& at) override {
     if (sgn(tau_) == 0) return;
     std::vector<Way> ways;
-    for (const RobotStep& robot : at.row.robots) ways.push_back(way_of(robot));
+    for (const RobotStep& robot : at.row.robots) ways.push_back(way_of(robot, exactly(robot.chosen), tau_));
+    const bool measures = measures_others(run_.scenario);
+    if (measures) {
+      brake_ways_.clear();
+      for (const RobotStep& robot : at.row.robots)
+        brake_ways_.push_back(way_of(robot, exactly(robot.velocity), tau_ - run_.duration));
+      look_at_measurements(at);
+    }
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const RobotStep& robot = at.row.robots[i];
       const Point change = exactly(robot.chosen) - exactly(robot.velocity);
-      if (run_.scenario.acceleration && !run_.scenario.robots[i].drive)
+      if (run_.scenario.acceleration && (measures || !run_.scenario.robots[i].drive))
         ask(exact::dot(change, change) <= most_change_ * most_change_, at, i,
             " changes its velocity by more than A dt");
       ask(robot.status == lp::Status::optimal, at, i, " relaxes a half-plane");
       brakes_alone(ways[i], i, at);
       turns_alone(ways[i], i, at);
-      for (std::size_t j = i + 1; j < ways.size(); ++j) brake_together(ways[i], i, ways[j], j, at);
+      for (std::size_t j = i + 1; j < ways.size(); ++j) {
+        brake_together(ways[i], i, ways[j], j, at);
+        if (measures) keep_own_sides(ways[i], i, ways[j], j, at);
+      }
     }
   }
 
@@ -63,10 +81,78 @@ class BrakingAudit : public RowAudit {
     run_.tally.refuted(AuditPoint::braking, at_row(at.number, id(robot) + what));
   }
 
-  Way way_of(const RobotStep& robot) const {
+  static Way way_of(const RobotStep& robot, const Point& velocity, const Rational& time) {
     const Point from = exactly(robot.position);
-    const Straight way{from, from + tau_ * exactly(robot.chosen)};
+    const Straight way{from, from + time * velocity};
     return {way, box_of(exact::Chord{way, Rational(0)})};
+  }
+
+  /// From the nearest point of b to that of a, rounded: of some line between them, if they are apart.
+  static geometry::Vec2 between(const Straight& a, const Straight& b) {
+    const auto rounded = [](const Point& p) { return geometry::Vec2{p.x.get_d(), p.y.get_d()}; };
+    const geometry::Vec2 ends[2][2] = {{rounded(a.from), rounded(a.to)}, {rounded(b.from), rounded(b.to)}};
+    geometry::Vec2 shortest = ends[0][0] - ends[1][0];
+    for (const int side : {0, 1})
+      for (const geometry::Vec2 p : ends[side]) {
+        const geometry::Vec2 from = ends[1 - side][0], along = ends[1 - side][1] - from;
+        const double square = squared_norm(along);
+        const double share = square > 0.0 ? std::clamp(dot(p - from, along) / square, 0.0, 1.0) : 0.0;
+        const geometry::Vec2 way = p - (from + share * along);
+        if (norm(way) < norm(shortest)) shortest = side == 0 ? way : -way;
+      }
+    return shortest;
+  }
+
+  /// Two whose ways of this step could meet. Each is asked whether its way at its choice keeps half of their radii, R /
+  /// 2, from the line half-way between its way of braking and the other's.
+  void keep_own_sides(const Way& a, std::size_t i, const Way& b, std::size_t j, const RowInRun& at) {
+    const Rational radii = Rational(run_.scenario.robots[i].radius) + Rational(run_.scenario.robots[j].radius);
+    const Rational reach = radii + tau_ * (fastest(i) + fastest(j));
+    const Point apart = a.way.from - b.way.from;
+    if (exact::dot(apart, apart) > reach * reach) return run_.tally.proven(AuditPoint::braking);
+    const Straight &mine = brake_ways_[i].way, &theirs = brake_ways_[j].way;
+    const Point n = exactly(between(mine, theirs));
+    const auto least = [&](const Straight& way) { return std::min(exact::dot(n, way.from), exact::dot(n, way.to)); };
+    const auto most = [&](const Straight& way) { return std::max(exact::dot(n, way.from), exact::dot(n, way.to)); };
+    const Rational line = (least(mine) + most(theirs)) / 2, room = radii / 2, square = exact::dot(n, n);
+    const auto keeps = [&](const Rational& off) { return sgn(off) > 0 && off * off >= room * room * square; };
+    ask(keeps(least(a.way) - line), at, i, " does not keep to its own side of " + id(j));
+    ask(keeps(line - most(b.way)), at, j, " does not keep to its own side of " + id(i));
+  }
+
+  Rational fastest(std::size_t robot) const {
+    return Rational(formation::fastest(run_.scenario.speed_bound, run_.scenario.robots[robot].max_speed));
+  }
+
+  /// Each of another robot, in the row that is its age before this one, and within the bounds of it.
+  void look_at_measurements(const RowInRun& at) {
+    const formation::Measurements& bounds = *run_.scenario.uncertainty->measurements;
+    std::vector<State>& now = rows_.emplace_front();
+    for (const RobotStep& robot : at.row.robots) now.push_back({exactly(robot.position), exactly(robot.velocity)});
+    constexpr double kRounding = 1.0 + 1e-9;
+    while (Rational(static_cast<double>(rows_.size() - 1)) * run_.duration > Rational(kRounding * bounds.age))
+      rows_.pop_back();
+    const auto is_within = [](const Point& measured, const Point& place, double bound) {
+      const Point off = measured - place;
+      const Rational most = Rational(bound) + Rational(0x1p-48) * (exact::length_at_most(place) + 1);
+      return exact::dot(off, off) <= most * most;
+    };
+    for (std::size_t i = 0; i < at.row.robots.size(); ++i)
+      for (const formation::MeasuredRobot& m : at.row.robots[i].measured) {
+        const double rows = m.age / run_.scenario.time_step;
+        const bool is_named = m.robot < now.size() && m.robot != i && std::isfinite(rows) && rows >= 0.0 &&
+                              std::round(rows) < static_cast<double>(rows_.size()) &&
+                              std::fabs(rows - std::round(rows)) < 1e-6;
+        const bool has_numbers = geometry::is_finite(m.position) && geometry::is_finite(m.velocity);
+        if (!is_named || !has_numbers) {
+          ask(false, at, i, " measures no robot, or one of another row");
+          continue;
+        }
+        const State& then = rows_[static_cast<std::size_t>(std::round(rows))][m.robot];
+        ask(is_within(exactly(m.position), then.place, bounds.position) &&
+                is_within(exactly(m.velocity), then.velocity, bounds.velocity),
+            at, i, " measures " + id(m.robot) + " beyond the bounds");
+      }
   }
 
   void brakes_alone(const Way& w, std::size_t i, const RowInRun& at) {
@@ -112,6 +198,12 @@ class BrakingAudit : public RowAudit {
   const AuditedRun& run_;
   Rational tau_;          ///< s
   Rational most_change_;  ///< m/s
+
+  struct State {
+    Point place, velocity;
+  };
+  std::deque<std::vector<State>> rows_;  ///< the newest first, as old as measurements may be
+  std::vector<Way> brake_ways_;          ///< of the row, had its robots braked
 };
 
 }  // namespace

@@ -105,6 +105,9 @@ bool is_hard_in(OwnStage stage, const OwnConstraint& c) {
   return stage == OwnStage::held && c.hard;
 }
 
+/// m: lines between robots that measure each other leave this much room beside the way of braking.
+constexpr double kRoomOfLines = 0x1p-43;
+
 constexpr const char* kBesideExact = " has multipliers although it says that no double multipliers prove it";
 
 class DecisionAudit : public RowAudit {
@@ -132,6 +135,7 @@ class DecisionAudit : public RowAudit {
       half_planes_hold(s);
       choice_is_best(s);
     }
+    if (measures_others(run_.scenario)) return;  // on whose side they are is asked of the choices: audit_braking.cpp
     for (std::size_t i = 0; i < all.size() && !cone_; ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j)
         if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot '" + id(all[j]) + "'");
@@ -404,8 +408,36 @@ class DecisionAudit : public RowAudit {
     const RobotStep& them = s.step->robots[c.index];
     const geometry::Disc disc{them.anchor, other.radius};
     if (other.cooperates && cone_) return leaves_cone(s, c, disc) || keeps_pair_apart(s, c);
+    if (measures_others(run_.scenario)) return is_own_side(s, c);
     if (other.cooperates) return keeps_pair_apart(s, c);
     return vo::is_true({disc, at, radius, c.time_horizon, them.anchor_velocity, c.half_plane});
+  }
+
+  /// A line that leaves the robot no more than what was measured of the other proves to be its own: with E for how far
+  /// the other's way of braking may be from the foreseen one and l for the distance of that, the way of the choice goes
+  /// no more than (l - E - R) / 2, or 0, beyond the robot's own way of braking.
+  bool is_own_side(const Seen& s, const DecisionConstraint& c) const {
+    if (!has_numbers(c.half_plane)) return false;
+    const auto same = std::find_if(s.state->measured.begin(), s.state->measured.end(),
+                                   [&](const formation::MeasuredRobot& m) { return m.robot == c.index; });
+    if (same == s.state->measured.end() || !geometry::is_finite(same->position) ||
+        !geometry::is_finite(same->velocity) || !(same->age >= 0.0) || !std::isfinite(same->age))
+      return false;
+    const formation::Measurements& bounds = *run_.scenario.uncertainty->measurements;
+    const Rational tau(formation::braking_time_of(run_.scenario)), age(same->age), left = tau - run_.duration;
+    const Rational off_speed = Rational(bounds.velocity) + age * Rational(run_.scenario.acceleration->max);
+    const Rational off = Rational(bounds.position) + (age + tau) * off_speed;
+    const Point v = exactly(same->velocity), now = exactly(same->position) + age * v;
+    const exact::Straight theirs{now, now + left * v};
+    const exact::Straight mine{s.at, s.at + left * exactly(s.state->velocity)};
+    Rational square = std::min({exact::squared_distance(mine.from, theirs), exact::squared_distance(mine.to, theirs),
+                                exact::squared_distance(theirs.from, mine), exact::squared_distance(theirs.to, mine)});
+    const Rational radii = s.radius + Rational(run_.scenario.robots[c.index].radius);
+    const Rational usable = std::max(Rational(0), Rational((exact::root(square).high - off - radii) / 2));
+    const Point n = exactly(c.half_plane.normal);
+    const Rational length = exact::root(exact::dot(n, n)).high, room = usable + Rational(kRoomOfLines);
+    const Rational own = std::min(Rational(0), exact::dot(n, mine.to - mine.from));
+    return tau * Rational(c.half_plane.offset) >= own - room * length;
   }
 
   /// The half-plane excludes the inside of the cone of a method that promises nothing between robots; the recording has

@@ -94,6 +94,14 @@ void members(Codec& json, For<Codec, formation::OnWheels>& wheels) {
   json.member("heading", wheels.heading).member("left", wheels.speeds.left).member("right", wheels.speeds.right);
 }
 
+template <>
+inline constexpr bool kOnOneLine<formation::MeasuredRobot> = true;
+template <class Codec>
+void members(Codec& json, For<Codec, formation::MeasuredRobot>& seen) {
+  json.member("robot", seen.robot).member("position", seen.position).member("velocity", seen.velocity);
+  json.member("age", seen.age);
+}
+
 /// One robot's part of a row. What is empty or as usual is left out.
 template <class Codec>
 void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
@@ -105,6 +113,7 @@ void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   json.member_if(!is_same(robot.anchor, robot.position), "anchor", robot.anchor);
   json.member_if(!is_same(robot.anchor_velocity, robot.velocity), "anchor_velocity", robot.anchor_velocity);
   json.optional("wheels", robot.wheels);
+  json.member_if(!robot.measured.empty(), "measured", robot.measured);
   json.member("preferred", robot.preferred).member("chosen", robot.chosen).member("status", robot.status);
   json.member_if(!robot.bound.empty(), "bound", robot.bound);
   json.member_if(robot.violation != 0.0, "violation", robot.violation);

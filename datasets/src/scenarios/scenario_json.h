@@ -96,11 +96,16 @@ void members(Codec& json, For<Codec, formation::Acceleration>& acceleration) {
   json.member("max", acceleration.max);
 }
 
+template <class Codec>
+void members(Codec& json, For<Codec, formation::Measurements>& bounds) {
+  json.member("position", bounds.position).member("velocity", bounds.velocity).member("age", bounds.age);
+}
+
 template <>
 inline constexpr bool kOnOneLine<formation::Uncertainty> = true;
 template <class Codec>
 void members(Codec& json, For<Codec, formation::Uncertainty>& uncertainty) {
-  json.member("tracking", uncertainty.tracking);
+  json.optional("tracking", uncertainty.tracking).optional("measurements", uncertainty.measurements);
 }
 
 /// Its numbers: horizons, margins, times, distances.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "decision/own_side.h"
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
 #include "motion/differential.h"
@@ -90,6 +91,16 @@ PairConstraints braking(const RobotsAt& now, std::size_t i, std::size_t j) {
   return braking_pair(a, b, tau);
 }
 
+/// None yet; the robots' bodies move to their anchors.
+void begin_constraints(const RobotsAt& now, std::vector<std::vector<Constraint>>& out) {
+  out.resize(now.robots.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].clear();
+    now.scene.bodies().move(now.scene.robot(i), geometry::Disc{now.anchors[i].position, now.robots[i].radius},
+                            now.anchors[i].velocity);
+  }
+}
+
 /// Both go by a plan.
 PairConstraints with_plans(const RobotsAt& now, std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
   vo::ReciprocalOptions options;
@@ -155,11 +166,7 @@ void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Cons
 void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out) {
   const auto& [rules, robots, anchors, scene] = now;
   const std::size_t n = robots.size();
-  out.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    out[i].clear();
-    scene.bodies().move(scene.robot(i), geometry::Disc{anchors[i].position, robots[i].radius}, anchors[i].velocity);
-  }
+  begin_constraints(now, out);
   const vo::ReciprocalOptions rule = pair_rule(rules);
   std::vector<Vec2>& places = memory.places;
   places.clear();
@@ -179,6 +186,27 @@ void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std:
     if (b.yields) out[j].push_back(pair.of_b);
   });
   for (std::size_t i = 0; i < n; ++i) memory.nearest_first.sort(scene.bodies(), anchors[i].position, out[i]);
+}
+
+void add_own_side_constraints(const DecisionRules& rules, const Party& self, const Party& other,
+                              const Measurements& bounds, double age, std::vector<Constraint>& out) {
+  const OwnSide lines(rules, self.disc.position, self.disc.velocity,
+                      foreseen_way(rules, bounds, other.disc.position, other.disc.velocity, age),
+                      self.disc.radius + other.disc.radius);
+  for (const geometry::HalfPlane& h : lines) out.push_back(against_robot(h, true, self, other, rules.braking_time));
+}
+
+void own_side_constraints(const RobotsAt& now, const std::vector<std::vector<MeasuredRobot>>& measured,
+                          std::vector<std::vector<Constraint>>& out) {
+  begin_constraints(now, out);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const Party self = party(now, i, now.anchors[i].velocity);
+    for (const MeasuredRobot& m : measured[i]) {
+      Party other = party(now, m.robot, m.velocity);
+      other.disc.position = m.position;
+      add_own_side_constraints(now.rules, self, other, *now.rules.measurements, m.age, out[i]);
+    }
+  }
 }
 
 bool is_of_robot(const Scene& scene, const Constraint& c) {
@@ -296,7 +324,7 @@ DecisionConstraint Decider::named(const Kept& kept) const {
 
 void Decider::reserve(std::size_t constraints) {
   if (rules_->has_brakes()) {
-    constexpr std::size_t kMost = std::max<std::size_t>(kSidesOfLimit, kMostHalfPlanesOfWheels);
+    constexpr std::size_t kMost = kSidesOfLimit + kMostHalfPlanesOfWheels;
     constraints += kMost;
     limit_.reserve(kMost);
     limits_.reserve(kMost);
@@ -307,11 +335,11 @@ void Decider::reserve(std::size_t constraints) {
 }
 
 void Decider::limit_change(const Viewpoint& from) {
+  limit_.clear();
   if (from.wheels)
     from.wheels->limits->half_planes(from.wheels->state.heading, from.wheels->state.speeds,
                                      rules_->braked(from.velocity), limit_);
-  else
-    acceleration_limits(*rules_, from.velocity, limit_);
+  if (!from.wheels || rules_->measurements) add_acceleration_limits(*rules_, from.velocity, limit_);
   limits_.clear();
   for (const geometry::HalfPlane& h : limit_) {
     Constraint& c = limits_.emplace_back();
@@ -463,11 +491,11 @@ std::vector<geometry::HalfPlane> own_limits(const Scenario& scenario, const Robo
   std::vector<geometry::HalfPlane> limits;
   const detail::DecisionRules rules = detail::rules_of(scenario, {});
   const std::optional<DifferentialDrive>& drive = scenario.robots[robot].drive;
-  if (drive && step.wheels)
+  const bool has_wheels = drive && step.wheels;
+  if (has_wheels)
     detail::WheelLimits(*drive, rules.time_step, rules.braking_time)
         .half_planes(step.wheels->heading, step.wheels->speeds, rules.braked(step.velocity), limits);
-  else
-    detail::acceleration_limits(rules, step.velocity, limits);
+  if (!has_wheels || rules.measurements) detail::add_acceleration_limits(rules, step.velocity, limits);
   return limits;
 }
 

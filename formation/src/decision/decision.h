@@ -79,6 +79,15 @@ struct RobotsAt {
 /// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
 
+/// The same where robots measure each other: of each against those that it has measured, in this order, the half-planes
+/// that keep it on its own side (own_side.h).
+void own_side_constraints(const RobotsAt& now, const std::vector<std::vector<MeasuredRobot>>& measured,
+                          std::vector<std::vector<Constraint>>& out);
+
+/// Appends those of a robot against one that it has measured.
+void add_own_side_constraints(const DecisionRules& rules, const Party& self, const Party& other,
+                              const Measurements& bounds, double age, std::vector<Constraint>& out);
+
 bool is_of_robot(const Scene& scene, const Constraint& c);
 
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far

@@ -63,7 +63,8 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 /// contradict each other, all pairs of these fall back to those that they would have at rest, and decide again. In each
 /// round some pair does so for good, so that it ends. They keep what is left of their margin: resting satisfies that
 /// too. Half-planes of moving obstacles and of robots that do not yield may still be relaxed. With an acceleration such
-/// a robot keeps to what braking satisfies, against static obstacles too (braking.h).
+/// a robot keeps to what braking satisfies, against static obstacles too (braking.h). Own-side lines it satisfies as
+/// they are (own_side.h).
 void JointDecisions::repair(const Groups& groups, Step& row) {
   const auto is_contradicted = [&](std::size_t i) {
     return bodies_gave(row.robots[i]) || (groups.is_member(i) && held_by_all_[i]);
@@ -83,7 +84,8 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
       for (const Constraint& c : others[i]) {
         const std::size_t j = c.index;
         const bool both_yield = is_of_robot(scene_, c) && robots_[i].cooperates && robots_[j].cooperates;
-        if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
+        if (!both_yield || rules_.measurements || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end())
+          continue;
         fall_back(now(), i, j, others, kept);
         fallen[i].push_back(j);
         fallen[j].push_back(i);

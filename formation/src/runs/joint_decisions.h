@@ -55,6 +55,11 @@ class JointDecisions {
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
 
+  /// The same where robots measure each other.
+  void look_at_measured(const std::vector<std::vector<MeasuredRobot>>& measured) {
+    own_side_constraints(now(), measured, others);
+  }
+
   /// For a method that promises nothing between robots: replaces the half-planes against the others by those that
   /// leave the robot the velocity nearest to its preferred one.
   void take_sides(std::size_t i, Vec2 preferred) { formation::detail::take_sides(now(), i, preferred, others[i]); }

@@ -11,6 +11,7 @@
 #include "liveness/groups.h"
 #include "motion/differential.h"
 #include "runs/joint_decisions.h"
+#include "runs/measuring.h"
 #include "runs/own_decision.h"
 #include "runs/robot_run.h"
 #include "runs/rows.h"
@@ -27,6 +28,8 @@ namespace exactvo::formation::detail {
 namespace {
 
 using geometry::norm;
+
+constexpr const char* kNoRoom = "has no room between obstacles to turn its footprint towards where it wants to go";
 
 class KinematicSteps final : public Stepper {
  public:
@@ -47,6 +50,7 @@ class KinematicSteps final : public Stepper {
         journeys_(robots.journeys),
         ways_(robots.size()),
         steered_(robots.size()),
+        has_room_(robots.size(), 1),
         asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
@@ -56,6 +60,7 @@ class KinematicSteps final : public Stepper {
     if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, [this] { return schedule_.is_stopped(now_); });
+    if (rules_.measurements) measuring_.emplace(rules_, scenario_.robots);
     for (const Robot& robot : scenario_.robots) {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
@@ -109,7 +114,8 @@ class KinematicSteps final : public Stepper {
   }
 
   std::string why_not_there(std::size_t i) const override {
-    const std::string why = journeys_.why_not_there(i);
+    std::string why = journeys_.why_not_there(i);
+    if (!has_room_[i]) add_note(why, kNoRoom);
     if (!ways_[i].follower.circled()) return why;
     const std::string circled = "completed a full circuit of the obstacle without finding a way to its goal";
     return why.empty() ? circled : circled + "; " + scenario_.robots[i].id + " " + why;
@@ -139,7 +145,12 @@ class KinematicSteps final : public Stepper {
     if (journeys_.has_claims()) look_at_claims();
     if (groups_) look_at_groups();
     joint_.begin_step();
-    joint_.look_at_robots(groups_ ? &*groups_ : nullptr);
+    if (measuring_) {
+      measuring_->look(positions_, velocities_);
+      joint_.look_at_measured(measuring_->measured());
+    } else {
+      joint_.look_at_robots(groups_ ? &*groups_ : nullptr);
+    }
     Step row;
     row.time = time;
     move_obstacles(scenario_.moving_obstacles, time, scene_, row.moving);
@@ -227,6 +238,7 @@ class KinematicSteps final : public Stepper {
     }
     add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
     RobotStep step = undecided_now(i);
+    if (measuring_) step.measured = measuring_->measured()[i];
     step.note = journeys_.take_note(i);
     if (journeys_.has_come_to_rest(i)) add_note(step.note, "stays: " + journeys_.words_of_claim(i));
     if (groups_) add_note(step.note, groups_->note(i));
@@ -271,10 +283,15 @@ class KinematicSteps final : public Stepper {
     };
     decide(preferred);
     if (!wheels_[i]) return;
+    bool has_room = true;
     keep_wheels_within_limits(on_wheels_[i], rules_.braked(velocities_[i]), step, decide, [&](Vec2 u) {
-      return links_are_clear(space(), *scenario_.robots[i].drive, positions_[i], on_wheels_[i].state.heading, u,
-                             rules_.braking_time);
+      const bool is_clear = links_are_clear(space(), *scenario_.robots[i].drive, positions_[i],
+                                            on_wheels_[i].state.heading, u, rules_.braking_time);
+      has_room = has_room && is_clear;
+      return is_clear;
     });
+    if (!has_room && has_room_[i]) add_note(step.note, kNoRoom);
+    has_room_[i] = has_room;
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -399,10 +416,12 @@ class KinematicSteps final : public Stepper {
   std::vector<WheelsNow> on_wheels_;  ///< of robots that have some
   std::vector<OwnWay> ways_;
   std::vector<Vec2> steered_;                      ///< m/s, by the user
+  std::vector<char> has_room_;                     ///< to turn its footprint as it wanted, in the last step
   std::vector<std::vector<OwnConstraint>> asked_;  ///< by the user, of each robot
   ObstacleSpace walls_, open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
   JointDecisions joint_;
+  std::optional<Measuring> measuring_;  ///< where robots measure each other
   std::vector<GoalBodies> goal_bodies_;
   Recording& recording_;
   std::optional<RowFeed> rows_;

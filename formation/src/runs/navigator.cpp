@@ -80,11 +80,12 @@ DecisionRules rules_of(const NavigatorSetup& setup) {
   DecisionRules rules{setup.method,  Guidance::none,  setup.speed_bound,       setup.horizons,
                       setup.margins, setup.time_step, setup.neighbour_distance};
   if (setup.acceleration) rules.acceleration = *setup.acceleration;
-  const double speed = fastest(setup.speed_bound, setup.max_speed);
-  const double usual_time = setup.drive          ? usual_braking_time(setup.drive->max_wheel_speed,
-                                                                      setup.drive->max_wheel_acceleration, rules.time_step)
-                            : setup.acceleration ? usual_braking_time(speed, rules.acceleration, rules.time_step)
-                                                 : 0.0;
+  if (setup.acceleration && setup.drive) rules.measurements = Measurements{};  // others measure it, as it may them
+  const double speed = setup.drive ? setup.drive->max_wheel_speed : fastest(setup.speed_bound, setup.max_speed);
+  double usual_time = 0.0;
+  if (setup.acceleration) usual_time = usual_braking_time(speed, rules.acceleration, rules.time_step);
+  if (setup.drive)
+    usual_time = std::max(usual_time, usual_braking_time(speed, setup.drive->max_wheel_acceleration, rules.time_step));
   rules.braking_time = setup.braking_time.value_or(usual_time);
   const Horizons usual;
   for (double Horizons::*horizon : {&Horizons::most, &Horizons::orca, &Horizons::robots})
@@ -136,7 +137,11 @@ void require_drive(const NavigatorSetup& setup) {
   s.robots[0].drive->heading = 0.0;
   s.robots[0].drive->axle = {};
   const double tracking = setup.drive->tracking;
-  if (tracking != 0.0) s.uncertainty = Uncertainty{tracking};
+  if (tracking != 0.0 || setup.acceleration) s.uncertainty = Uncertainty{tracking};
+  if (setup.acceleration) {
+    s.acceleration = Acceleration{*setup.acceleration};
+    s.uncertainty->measurements = Measurements{};
+  }
   put_on_wheels(s.robots[0], DifferentialDrive(*s.robots[0].drive), s.time_step, tracking);
   std::vector<ScenarioProblem> problems = detail::field_problems(s);
   const std::string of_robot = "/robots/0";
@@ -163,9 +168,6 @@ const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec
   if (!setup.drive) require_none(field_problems(setup.radius, setup.max_speed));
   require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
   if (setup.acceleration) require_positive(*setup.acceleration, nullptr, 0, "acceleration");
-  if (setup.acceleration && setup.drive)
-    refuse(Problem::out_of_range, "acceleration", number(*setup.acceleration),
-           "none with a drive, whose wheels have max_wheel_acceleration");
   if (setup.braking_time) require_positive(*setup.braking_time, nullptr, 0, "braking_time");
   if (rules_of(setup).has_brakes() && !setup.cooperates)
     refuse(Problem::out_of_range, "cooperates", "false", kWithBrakes);
@@ -204,7 +206,7 @@ NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Meth
   setup.arrival_tolerance = scenario.arrival_tolerance;
   setup.neighbour_distance = scenario.neighbour_distance;
   setup.drive = r.drive;
-  if (scenario.acceleration && !r.drive) setup.acceleration = scenario.acceleration->max;
+  if (scenario.acceleration && (!r.drive || measures_others(scenario))) setup.acceleration = scenario.acceleration->max;
   if (const double tau = braking_time_of(scenario); tau > 0.0) setup.braking_time = tau;  // of all robots
   return setup;
 }
@@ -242,7 +244,9 @@ class Navigator::Core {
     if (robot_.drive) limits_.emplace(*robot_.drive, rules_.time_step, rules_.braking_time);
     const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
                                scene_.edges_by_place().size() + obstacles_.size();
-    const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
+    constexpr std::size_t kLines = 8;  // against a neighbour, mostly
+    const std::size_t statics = std::min(shapes, kMostShapes), others = kLines * setup.neighbours;
+    measured_.reserve(setup.neighbours);
     own_.reserve(statics, others);
     others_.reserve(others);
     nearest_first_.reserve(others);
@@ -302,6 +306,7 @@ class Navigator::Core {
     if (robot_.drive) step.wheels = now_.wheels;
     static_cast<Decision&>(step) = decision_;
     step.constraints = kept_;
+    step.measured = measured_;
     return step;
   }
 
@@ -323,11 +328,19 @@ class Navigator::Core {
     const Viewpoint braked = after_braking(rules_, here());
     own_.look(*way_.field, braked);
     others_.clear();
+    measured_.clear();
     const Party self{id_, 0, {now_.position, braked.velocity, robot_.radius}, robot_.max_speed, true};
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
       const Neighbour& n = neighbours[k];
-      if (!is_in_sight(n)) continue;
-      const Party other{n.id, robots_[k], {n.position, rules_.braked(n.velocity), n.radius}, n.max_speed, true};
+      if (!n.measured && !is_in_sight(n)) continue;
+      Party other{n.id, robots_[k], {n.position, n.velocity, n.radius}, n.max_speed, true};
+      if (n.measured) {
+        measured_.push_back({n.id, n.position, n.velocity, n.measured->age});
+        const Party now{id_, 0, {now_.position, now_.velocity, robot_.radius}, robot_.max_speed, true};
+        add_own_side_constraints(rules_, now, other, *n.measured, n.measured->age, others_);
+        continue;
+      }
+      other.disc.velocity = rules_.braked(n.velocity);
       others_.push_back(braking_pair(self, other, rules_.braking_time).of_a);
     }
     nearest_first_.sort(scene_.bodies(), now_.position, others_);
@@ -405,6 +418,7 @@ class Navigator::Core {
       require_vector(n.velocity, "neighbour", k, "velocity");
       require_positive(n.radius, "neighbour", k, "radius");
       require_positive(n.max_speed, "neighbour", k, "max_speed");
+      if (n.measured) require_bounds(*n.measured, k);
       if (rules_.has_brakes() && !n.cooperates)
         refuse(Problem::out_of_range, field_of("neighbour", k, "cooperates"), "false", kWithBrakes);
       if (rules_.acceleration < geometry::kInfinity) require_same_braking(n.max_speed, k);
@@ -412,6 +426,20 @@ class Navigator::Core {
         refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
                "another place than the robot's own");
     }
+  }
+
+  void require_bounds(const Measurements& bounds, std::size_t k) const {
+    if (!(rules_.acceleration < geometry::kInfinity))
+      refuse(Problem::out_of_range, field_of("neighbour", k, "measured"), "a measured neighbour",
+             "one that has told where it is, or an acceleration of the setup");
+    constexpr std::pair<const char*, double Measurements::*> kBounds[] = {
+        {"measured.position", &Measurements::position},
+        {"measured.velocity", &Measurements::velocity},
+        {"measured.age", &Measurements::age}};
+    for (const auto& [field, bound] : kBounds)
+      if (!(bounds.*bound >= 0.0 && bounds.*bound < kMost))
+        refuse(std::isfinite(bounds.*bound) ? Problem::out_of_range : Problem::not_finite,
+               field_of("neighbour", k, field), number(bounds.*bound), "a number, 0 or more and less than 2^30");
   }
 
   /// One braking time for all is what the promise rests on.
@@ -501,6 +529,7 @@ class Navigator::Core {
   NearestFirst nearest_first_;
   Decision decision_;
   std::vector<DecisionConstraint> kept_;
+  std::vector<MeasuredRobot> measured_;  ///< neighbours, in the last decision
 };
 
 Navigator::Navigator(const NavigatorSetup& setup, std::vector<Vec2> goals)

@@ -46,8 +46,7 @@ auto with_room_left(const Make& make, const Holds& holds) {
 
 }  // namespace
 
-void acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<HalfPlane>& out) {
-  out.clear();
+void add_acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<HalfPlane>& out) {
   if (!(rules.acceleration < geometry::kInfinity)) return;
   constexpr double kSide = 2.0 * geometry::kPi / kSidesOfLimit;
   const double reach = kAimedAt * rules.acceleration * rules.time_step * std::cos(0.5 * kSide);

@@ -24,9 +24,9 @@ namespace exactvo::formation::detail {
 /// Sides of the polygon that stands for the disc |u - v| <= A T.
 inline constexpr int kSidesOfLimit = 24;
 
-/// The polygon inside the disc |u - velocity| <= A T as half-planes, with a corner where braking leads. Whatever
-/// satisfies them is within the disc.
-void acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<geometry::HalfPlane>& out);
+/// Appends the polygon inside the disc |u - velocity| <= A T as half-planes, with a corner where braking leads.
+/// Whatever satisfies them is within the disc.
+void add_acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vector<geometry::HalfPlane>& out);
 
 /// The half-plane against what stands still, made at `braked` with horizon `braking_time`. `seen`: the body grown by
 /// the bare robot, and so again afterwards; `nearest` its `clearance_of`.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
@@ -24,7 +25,8 @@ struct DecisionRules {
   double time_step = 0.05;                            ///< s, > 0
   double neighbour_distance = 15.0;                   ///< m, > 0
   bool separate = false;                              ///< robots that overlap part, and do not come nearer
-  double acceleration = geometry::kInfinity;          ///< m/s^2, of each robot
+  double acceleration = geometry::kInfinity;          ///< m/s^2, of each robot; on wheels if others measure it
+  std::optional<Measurements> measurements = {};      ///< where robots measure each other
   double braking_time = 0.0;                          ///< s, tau of braking; 0: velocities jump
 
   bool has_brakes() const { return braking_time > 0.0; }
@@ -46,6 +48,7 @@ inline DecisionRules rules_of(const Scenario& scenario, const SimulationOptions&
       scenario.time_step, scenario.neighbour_distance};
   rules.separate = scenario.separate;
   if (scenario.acceleration) rules.acceleration = scenario.acceleration->max;
+  if (scenario.uncertainty) rules.measurements = scenario.uncertainty->measurements;
   rules.braking_time = braking_time_of(scenario);
   return rules;
 }

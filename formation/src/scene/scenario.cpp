@@ -111,11 +111,13 @@ void check_tube(const Scenario& s, const Robot& r, const At& at, Checker& c) {
   c.require(false, at("/radius")(), show(r.radius), "the radius that `keep_within_tube` makes");
 }
 
-/// Where it starts, as the scenario says.
-std::string start_of(const Robot& r) {
-  if (!r.drive) return show(r.position);
+/// Where it starts, as the scenario says, and what its discs take in beside the body.
+std::string start_of(const Scenario& s, const Robot& r) {
+  const double tracking = tracking_error_of(s);
+  const std::string more = tracking > 0.0 ? ", with the tracking error of " + detail::metres(tracking) : "";
+  if (!r.drive) return show(r.position) + more;
   return show(r.drive->axle) + ", with a disc of " + detail::metres(r.radius) + " about its reference point" +
-         (r.drive->chain.empty() ? "" : ", and a chain of discs of " + detail::metres(obstacle_radius(r)));
+         (r.drive->chain.empty() ? "" : ", and a chain of discs of " + detail::metres(obstacle_radius(r))) + more;
 }
 
 void check_robots(const Scenario& s, Checker& c) {
@@ -135,7 +137,7 @@ void check_robots(const Scenario& s, Checker& c) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0) || s.separate) continue;  // words are made for what is wrong only: a crowd has very many pairs
       c.require(false, at("/position")(),
-                start_of(r) + ", overlapping robot '" + s.robots[j].id + "' by " + detail::metres(-gap),
+                start_of(s, r) + ", overlapping robot '" + s.robots[j].id + "' by " + detail::metres(-gap),
                 "robots that do not overlap at the start");
     }
   }
@@ -153,9 +155,10 @@ void check_starts(const Scenario& s, Checker& c) {
         gap = std::min(gap, signed_distance(obstacle, link.center) - link.radius - detail::kRoomOfLinks);
       }
       if (!(gap < 0.0)) return;
-      c.require(false, "/robots/" + std::to_string(i) + "/position",
-                start_of(s.robots[i]) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
-                "a start that is clear of every obstacle");
+      c.require(
+          false, "/robots/" + std::to_string(i) + "/position",
+          start_of(s, s.robots[i]) + ", overlapping " + kind + " '" + obstacle.id + "' by " + detail::metres(-gap),
+          "a start that is clear of every obstacle");
     };
     for (const std::size_t k : boxes.near(robot.position, obstacle_reach(robot) + detail::kRoomOfLinks))
       require_clear(s.obstacles[k], "obstacle");
@@ -270,15 +273,45 @@ std::optional<std::size_t> first_drive(const Scenario& s) {
   return std::nullopt;
 }
 
+/// The first two edges with a point in common that neighbours have not; by their first corners. The same corner twice
+/// in turn is an edge that meets the one after it.
+std::pair<std::size_t, std::size_t> edges_that_meet(const std::vector<Vec2>& corners) {
+  const std::size_t n = corners.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const geometry::Segment one{corners[i], corners[(i + 1) % n]}, other{corners[j], corners[(j + 1) % n]};
+      const bool touch = one.b == other.a   ? geometry::distance(one, other.b) * geometry::distance(other, one.a) == 0.0
+                         : other.b == one.a ? geometry::distance(one, other.a) * geometry::distance(other, one.b) == 0.0
+                                            : geometry::distance(one, other) == 0.0;
+      if (touch) return {i, j};
+    }
+  return {0, 1};
+}
+
 /// Corners of a body, as its axle has it.
 void check_footprint(const DifferentialDrive& d, const std::string& at, Checker& c) {
   if (d.footprint.empty()) return;
   for (std::size_t k = 0; k < d.footprint.size(); ++k) c.finite(d.footprint[k], at + "/" + std::to_string(k));
   if (!c.problems.empty()) return;
-  if (d.footprint.size() < 3 || !geometry::is_simple(d.footprint))
-    return c.require(false, at, geometry::counted(d.footprint.size(), "corner"),
-                     "the corners of a polygon, whose edges do not cross");
-  c.require(geometry::contains(geometry::Polygon{d.footprint, {}}, Vec2{}), at, "a body beside its axle",
+  if (d.footprint.size() < 3)
+    return c.require(false, at, geometry::counted(d.footprint.size(), "corner"), "three corners or more");
+  if (!geometry::is_simple(d.footprint)) {
+    const auto [first, other] = edges_that_meet(d.footprint);
+    return c.require(false, at + "/" + std::to_string(first),
+                     "an edge from corner " + std::to_string(first) + ", " + show(d.footprint[first]) +
+                         ", that meets the one from corner " + std::to_string(other) + ", " + show(d.footprint[other]),
+                     "the corners of a polygon in turn, whose edges do not cross or touch");
+  }
+  if (geometry::contains(geometry::Polygon{d.footprint, {}}, Vec2{})) return;
+  const auto distance_of_edge = [&](std::size_t k) {
+    return geometry::distance(geometry::Segment{d.footprint[k], d.footprint[(k + 1) % d.footprint.size()]}, Vec2{});
+  };
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k < d.footprint.size(); ++k)
+    if (distance_of_edge(k) < distance_of_edge(nearest)) nearest = k;
+  c.require(false, at + "/" + std::to_string(nearest),
+            "a body beside its axle: [0, 0] is " + detail::metres(distance_of_edge(nearest)) +
+                " beyond the edge from corner " + std::to_string(nearest) + ", " + show(d.footprint[nearest]),
             "a polygon that contains [0, 0], the centre of the axle, since its corners are seen from there");
 }
 
@@ -311,6 +344,8 @@ void check_drive(const Scenario& s, std::size_t i, Checker& c) {
 /// Robots with an acceleration, of their velocity or of their wheels.
 void check_acceleration(const Scenario& s, Checker& c) {
   const std::optional<std::size_t> driven = first_drive(s);
+  c.require(s.acceleration || !measures_others(s), "/uncertainty/measurements", "robots without /acceleration",
+            "an /acceleration, which says how far a robot may be from where it was measured");
   const std::string with_it = s.acceleration ? " with /acceleration" : " with robots on wheels";
   if (!s.acceleration && !driven) {
     if (s.braking_time)
@@ -339,7 +374,8 @@ void check_acceleration(const Scenario& s, Checker& c) {
   if (!c.problems.empty()) return;  // tau is made of these numbers
   double stops = 0.0;
   for (const Robot& r : s.robots) {
-    if (s.acceleration && !r.drive) stops = std::max(stops, fastest(s.speed_bound, r.max_speed) / s.acceleration->max);
+    if (s.acceleration && (!r.drive || measures_others(s)))
+      stops = std::max(stops, fastest(s.speed_bound, r.max_speed) / s.acceleration->max);
     if (r.drive) stops = std::max(stops, r.drive->max_wheel_speed / r.drive->max_wheel_acceleration);
   }
   check_brakes(detail::rules_of(s, {}), stops, s.braking_time.has_value(), c);
@@ -438,13 +474,26 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 
 std::string assumed_words(const Scenario& scenario) {
   const double tracking = tracking_error_of(scenario);
-  if (!(tracking > 0.0)) return "";
-  return "assumed: no body is farther than " + detail::metres(tracking) + " from where the run has it";
+  std::string words;
+  if (tracking > 0.0) words = "no body is farther than " + detail::metres(tracking) + " from where the run has it";
+  if (measures_others(scenario)) {
+    const Measurements& m = *scenario.uncertainty->measurements;
+    words += (words.empty() ? "" : ", ") + std::string("robots measure others ") + detail::number_text(m.age, 6) +
+             " s ago at most, within " + detail::metres(m.position) + " and " + detail::number_text(m.velocity, 6) +
+             " m/s";
+  }
+  return words.empty() ? "" : "assumed: " + words;
 }
 
 std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
   c.not_negative(tracking_error_of(scenario), "/uncertainty/tracking", "m");
+  if (measures_others(scenario)) {
+    const Measurements& m = *scenario.uncertainty->measurements;
+    c.not_negative(m.position, "/uncertainty/measurements/position", "m");
+    c.not_negative(m.velocity, "/uncertainty/measurements/velocity", "m/s");
+    c.not_negative(m.age, "/uncertainty/measurements/age", "s");
+  }
   if (!c.problems.empty()) return std::move(c.problems);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i)
     if (scenario.robots[i].drive) check_drive(scenario, i, c);

@@ -141,6 +141,7 @@ class Navigator:
         cooperate: npt.ArrayLike = True,
         ids: Sequence[int] | None = None,
         bodies: Sequence[tuple[Any, Point]] = (),
+        measured: Mapping[str, Any] | None = None,
     ) -> NavigatorDecision:
         """What to do from `time` (s) on, at `position` (m) with `velocity` (m/s). Releases the interpreter's lock.
 
@@ -152,6 +153,9 @@ class Navigator:
                     way, and this robot takes the whole responsibility)
         ids         their numbers among robots; 1 to n by default
         bodies      pairs of a convex shape (m) and its velocity (m/s): what moves and is not expected to give way
+        measured    {"position": m, "velocity": m/s, "age": s}: neighbours have not told where they are but were measured, `age`
+                    ago and within these bounds; the robot keeps to its own side of lines (docs/guide/uncertainty.md). It
+                    takes an `acceleration`, of a robot with `kinematics` too
 
         Raises `ArgumentError` for numbers that are not finite or out of range, a time before the last one, a centre inside an
         obstacle, a neighbour in the robot's very place; the navigator is then as it was.
@@ -172,6 +176,7 @@ class Navigator:
             _one_each(max_speeds, count, "max_speeds"),
             _one_each(cooperate, count, "cooperate"),
             [(_native_shape(shape, "bodies"), moves) for shape, moves in _pairs(bodies)],
+            None if measured is None else _mapping(measured, "measured"),
         )
         chosen, preferred, status, violation, uncertified, mode, side, note, half_planes, twist, speeds = fields
         return NavigatorDecision(

@@ -78,11 +78,19 @@ class PythonNavigator {
 
   py::tuple decide(py::handle time, py::handle position, py::handle velocity, py::handle heading, py::handle wheels,
                    const std::vector<std::size_t>& ids, py::handle positions, py::handle velocities, py::handle radii,
-                   py::handle max_speeds, py::handle cooperate, const py::list& bodies) {
+                   py::handle max_speeds, py::handle cooperate, const py::list& bodies, py::handle measured) {
     const OneThread use(busy_, "navigator");
     const formation::NavigatorState now{finite(time, "time"), vector(position, "position"),
                                         vector(velocity, "velocity"), on_wheels(heading, wheels)};
     take_neighbours(ids, positions, velocities, radii, max_speeds, cooperate);
+    if (!measured.is_none()) {
+      using formation::Measurements;
+      Measurements bounds;
+      take_numbers<Measurements>(
+          py::cast<py::dict>(measured), "measured", bounds,
+          {{"position", &Measurements::position}, {"velocity", &Measurements::velocity}, {"age", &Measurements::age}});
+      for (formation::Neighbour& n : neighbours_) n.measured = bounds;
+    }
     moving_.clear();
     for (const py::handle body : bodies) {
       const py::tuple fields = py::cast<py::tuple>(body);

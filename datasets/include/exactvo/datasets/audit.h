@@ -125,6 +125,7 @@ struct AuditReport {
   bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
   bool has_places = false;          ///< a crowd's recording, which has no decisions
+  bool has_measurements = false;    ///< robots measure each other, within bounds that rows keep
   bool has_tube = false;            ///< radii have a tracking error, up to which bodies are where rows have them
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 

@@ -64,7 +64,8 @@ struct NavigatorSetup {
   /// are those that robots which brake rely on.
   std::optional<double> braking_time = {};
   /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
-  /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds.
+  /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds. With
+  /// both, the velocity of the reference point changes no faster either, as others rely on that measure it.
   std::optional<DifferentialDrive> drive = {};
   std::size_t neighbours = 32;  ///< memory is allocated at the start for this many neighbours and moving bodies
 };
@@ -97,6 +98,9 @@ struct Neighbour {
   double radius = 0.5;     ///< m, > 0
   double max_speed = 3.0;  ///< m/s, > 0
   bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole responsibility
+  /// None: it has told `position` and `velocity`, exactly. Else both are measured, `age` ago, and this robot keeps to
+  /// its own side of lines between the ways on which both brake (guide, uncertainty); that takes an acceleration.
+  std::optional<Measurements> measured = {};
 };
 
 /// A robot on wheels as others have to know it: its reference point, with a disc that holds the body. `axle`: m.

@@ -100,6 +100,14 @@ struct OnWheels {
   WheelSpeeds speeds;  ///< m/s, during the step that led here; 0 at the start
 };
 
+/// Another robot as one has measured it.
+struct MeasuredRobot {
+  std::size_t robot = 0;  ///< in the order of the scenario
+  Vec2 position;          ///< m, where it was `age` before the row
+  Vec2 velocity;          ///< m/s, how it drove there
+  double age = 0.0;       ///< s
+};
+
 /// One robot's state at the start of a step, and its decision.
 struct RobotStep : Decision {
   Vec2 position;                   ///< m, at the step's start
@@ -110,6 +118,7 @@ struct RobotStep : Decision {
   Vec2 anchor_velocity;  ///< m/s: the velocity at the anchor: the robot's own, or the one that it tracked before
   /// The active half-planes and those against bodies that could be met within a step; all of them if the options ask.
   std::vector<DecisionConstraint> constraints;
+  std::vector<MeasuredRobot> measured;  ///< the others in sight, where robots measure each other
 };
 
 /// A moving obstacle's displacement from its place at t = 0, and its velocity.

@@ -132,10 +132,20 @@ double obstacle_reach(const Robot& robot);
 /// m, of a robot with a footprint that is there: disc `link` of its chain, 1 or more.
 geometry::Disc link_at(const DifferentialDrive& drive, std::size_t link, Vec2 position, Vec2 heading);
 
+/// Robots measure each other instead of telling each other where they are. Bounds of what each knows of another, both
+/// of the other's reference point and relative to its own.
+struct Measurements {
+  double position = 0.0;  ///< m, >= 0: a measured place is off by this at most
+  double velocity = 0.0;  ///< m/s, >= 0: a measured velocity is off by this at most
+  double age = 0.0;       ///< s, >= 0: how old both are at most
+};
+
 /// What may differ between a run and the world. Robots are where a run has them only up to these bounds, which are
 /// assumed: a run can't see whether they hold.
 struct Uncertainty {
   double tracking = 0.0;  ///< m, >= 0: no point of a body is farther than this from where the run has it
+  /// None: robots know each other's places and velocities exactly.
+  std::optional<Measurements> measurements = {};
 };
 
 /// A speed at a time. Between knots the speed is linear; before the first and after the last it is held; two knots at
@@ -244,6 +254,11 @@ double stray_of(const DifferentialDrive& drive, double time_step);
 /// m: how far a body may be from where the run has it, `Uncertainty::tracking`.
 inline double tracking_error_of(const Scenario& scenario) {
   return scenario.uncertainty ? scenario.uncertainty->tracking : 0.0;
+}
+
+/// Whether robots measure each other, and keep to their own sides of lines between them (decision/own_side.h).
+inline bool measures_others(const Scenario& scenario) {
+  return scenario.uncertainty && scenario.uncertainty->measurements;
 }
 
 /// A robot that moves in any direction: the disc that holds its body of `body_radius` wherever within `tracking` of
