@@ -12,6 +12,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"
+#include "preflight/square_cover.h"
 #include "preflight/strip.h"
 #include "support/seeded_random.h"
 
@@ -349,6 +350,30 @@ TEST(Passing, RobotsInTheOpenChangeNoProofOfOthers) {
     ASSERT_EQ(proofs.size(), 1u) << others;
     EXPECT_EQ(proofs[0].first, 0u);
     EXPECT_EQ(proofs[0].second, static_cast<std::size_t>(others) + 1);
+  }
+}
+
+/// A robot in the open gets to any number of squares; to see that takes one row of them, not all that a cover may have.
+TEST(SquareCover, RowLeadsFromTheOpenBeyondAllWallsAndFromAClosedRoomNowhere) {
+  constexpr double kRadius = 0.5, kSide = 0.25;
+  Scenario open;
+  test_scenes::add_wall(open, {{-3.0, -5.0}, {3.0, -5.0}, {3.0, 5.0}});
+  Scenario closed = corridor(12.0, 8.0);
+  test_scenes::add_wall(closed, {{20.0, -5.0}, {20.0, 5.0}});
+  for (const double angle : {0.0, 0.3, 1.1}) {
+    const detail::CoverWalls in_open(moved(open, angle, {7.0, 1.0}).obstacles);
+    const detail::CoverWalls in_closed(moved(closed, angle, {7.0, 1.0}).obstacles);
+    std::size_t looks = 1000;
+    EXPECT_TRUE(detail::leads_outside({7.0, 1.0}, kRadius, kSide, in_open, looks)) << angle;
+    EXPECT_GT(looks, 900U) << angle;
+    std::size_t of_cover = 100000;
+    EXPECT_FALSE(detail::cover_from({7.0, 1.0}, kRadius, kSide, in_open, of_cover).is_whole) << angle;
+    looks = 1000;
+    EXPECT_FALSE(detail::leads_outside({7.0, 1.0}, kRadius, kSide, in_closed, looks)) << angle;
+    EXPECT_TRUE(detail::cover_from({7.0, 1.0}, kRadius, kSide, in_closed, of_cover).is_whole) << angle;
+    looks = 3;
+    EXPECT_FALSE(detail::leads_outside({7.0, 1.0}, kRadius, kSide, in_open, looks)) << angle;
+    EXPECT_EQ(looks, 0U) << angle;
   }
 }
 

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "crowd/layout.h"
+
 namespace exactvo::formation::crowd {
 namespace {
-
-/// How far beyond a cell its edges are looked for: rounding moves a point by far less into the next one.
-constexpr double kHalfDiagonal = 0.7072;
 
 /// Of the origin.
 double squared_distance(const Segment& s) {

@@ -12,10 +12,6 @@ using namespace crowd;
 
 namespace {
 
-/// Half a lattice step in both coordinates, sqrt(1/2), rounded up: half-planes are moved inward by it before the linear
-/// program, so that its answer can be rounded.
-constexpr double kHalfDiagonal = 0.7072;
-
 /// Motions that are tried after the rounded answer: each goes back over the row that the last one violates.
 constexpr int kCorrections = 6;
 
@@ -25,16 +21,6 @@ constexpr double kShares[] = {0x1p-12, 0x1p-8, 0x1p-4, 0.25, 0.5, 0.75};
 double squared_length(Motion m) {
   const double x = m.x, y = m.y;
   return x * x + y * y;
-}
-
-/// std::nearbyint, which is a call on targets before SSE4.1. |value| < 2^51.
-double nearest_whole(double value) {
-  constexpr double kWholeOnly = 0x1.8p52;
-  return (value + kWholeOnly) - kWholeOnly;
-}
-
-Motion whole(double x, double y) {
-  return {static_cast<std::int32_t>(nearest_whole(x)), static_cast<std::int32_t>(nearest_whole(y))};
 }
 
 Motion between(Motion from, Motion to, double share) {
@@ -50,81 +36,6 @@ const MotionRow* violated(const std::vector<MotionRow>& rows, Motion m) {
 
 /// A share of the squared speed: a velocity within it is inside the disc, whatever is rounded.
 constexpr double kWithinDisc = 1.0 - 0x1p-40;
-
-/// Lattice steps.
-struct Way {
-  double x, y;
-};
-
-/// The way nearest to a wish where one row binds or two: KKT. Heuristic in the last digits, like the linear program.
-class FewRows {
- public:
-  explicit FewRows(Motion wish) : wish_{static_cast<double>(wish.x), static_cast<double>(wish.y)} {}
-
-  bool has_room() const { return count_ < kMost; }
-  void add(double x, double y, double least) {
-    const double along = x * wish_.x + y * wish_.y;
-    allow_wish_ &= along >= least;
-    rows_[count_++] = {x, y, least + kHalfDiagonal * std::sqrt(x * x + y * y)};
-  }
-  bool allow_wish() const { return allow_wish_; }
-
-  bool solve(double squared_disc, Way& found) const {
-    const std::size_t first = most_missing(wish_);
-    const Row& row = rows_[first];
-    const double share = row.missing(wish_) / row.times(row);
-    found = {wish_.x + share * row.x, wish_.y + share * row.y};
-    const std::size_t second = most_missing(found);
-    if (second != first && rows_[second].missing(found) > 0.0) {
-      if (!meet(row, rows_[second], found)) return false;
-      const std::size_t third = most_missing(found);
-      if (third != first && third != second && rows_[third].missing(found) > 0.0) return false;
-    }
-    return found.x * found.x + found.y * found.y <= squared_disc;
-  }
-
- private:
-  /// Moved inward by kHalfDiagonal.
-  struct Row {
-    double x, y, least;
-
-    double missing(Way m) const { return least - (x * m.x + y * m.y); }
-    double times(const Row& other) const { return x * other.x + y * other.y; }
-  };
-
-  /// Where normals are nearer to parallel than this, the square of the sine, the linear program decides.
-  static constexpr double kParallel = 0x1p-10;
-
-  std::size_t most_missing(Way m) const {
-    std::size_t most = 0;
-    double missing = rows_[0].missing(m);
-    for (std::size_t k = 1; k < count_; ++k) {
-      const double its = rows_[k].missing(m);
-      // The order of rows depends on how robots are divided among threads: they break no tie.
-      const bool is_before = rows_[k].x != rows_[most].x ? rows_[k].x < rows_[most].x : rows_[k].y < rows_[most].y;
-      if (its > missing || (its == missing && is_before)) missing = its, most = k;
-    }
-    return most;
-  }
-
-  /// On both boundaries, if both pull the wish there.
-  bool meet(const Row& a, const Row& b, Way& found) const {
-    const double aa = a.times(a), bb = b.times(b), ab = a.times(b), cross = a.x * b.y - a.y * b.x,
-                 squared = cross * cross;
-    if (!(squared >= kParallel * aa * bb)) return false;
-    const double of_a = a.missing(wish_), of_b = b.missing(wish_);
-    const double pull_a = (of_a * bb - of_b * ab) / squared, pull_b = (of_b * aa - of_a * ab) / squared;
-    found = {wish_.x + (pull_a * a.x + pull_b * b.x), wish_.y + (pull_a * a.y + pull_b * b.y)};
-    return pull_a >= 0.0 && pull_b >= 0.0;
-  }
-
-  static constexpr std::size_t kMost = 16;
-
-  std::size_t count_ = 0;
-  Way wish_;
-  bool allow_wish_ = true;
-  Row rows_[kMost];
-};
 
 }  // namespace
 
@@ -166,10 +77,15 @@ void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, NearLi
   std::copy(&robots.wish_my[first], &robots.wish_my[last], to_y + first);
   find_cut(first, last, round, lists, b, robots);
   counts.overlapping += round == 0 ? b.near.overlapping : 0;
+  const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
   for (const std::int32_t cut : b.near.cut) {
     const auto robot = static_cast<std::size_t>(cut);
-    const bool stays = (b.near.state[robot - first] & NearPairs::kStays) != 0;
-    const Motion safe = safe_of(robot, round), m = stays ? safe : within_rows(robot, safe, b, one);
+    const Motion safe = safe_of(robot, round);
+    Motion m = safe;
+    if ((b.near.state[robot - first] & NearPairs::kStays) == 0) {
+      const Few found = has_obstacles ? Few::not_found : nearest_by_few(robot, b.near, m);
+      if (found != Few::allowed) m = within_rows(robot, safe, found, m, b, one);
+    }
     to_x[robot] = m.x;
     to_y[robot] = m.y;
     if (round == 0 || m == wish_of(robot)) continue;
@@ -191,7 +107,7 @@ void HardLevel<T>::find_cut(std::size_t first, std::size_t last, int round, Near
     b.near.find(robots, kinds_, first, last, lists);
   }
   make_pair_rows(columns, b.near.pairs, 0);
-  b.near.judge_rows(robots);
+  b.near.judge_rows();
   if (round > 0) return;
   const std::size_t open = b.near.pairs.size();
   b.near.add_clear(robots, kinds_, lists);
@@ -199,12 +115,10 @@ void HardLevel<T>::find_cut(std::size_t first, std::size_t last, int round, Near
 }
 
 /// The motion nearest to the wish that a robot's rows allow, which are put into b.rows by the places of the others.
+/// `few`: of nearest_by_few, which found it `found`.
 template <class T>
-Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const {
-  Motion few;
-  const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
-  const Few found = has_obstacles ? Few::not_found : nearest_of_few(robot, b.near, few);
-  if (found == Few::allowed) return few;
+Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, Few found, Motion few, HardBuffers& b,
+                                 OneRobotBuffers<T>& one) const {
   b.order.clear();
   b.near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t other) {
     b.order.push_back(static_cast<std::uint64_t>(other) << 32U | 2 * pair | std::uint64_t{!is_a});
@@ -224,45 +138,30 @@ Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, HardBuffers& b,
 
 /// Without obstacles nearly always one row binds, or two.
 template <class T>
-auto HardLevel<T>::nearest_of_few(std::size_t robot, const NearPairs& near, Motion& m) const -> Few {
-  m = wish_of(robot);
-  FewRows rows(m);
+Few HardLevel<T>::nearest_by_few(std::size_t robot, const NearPairs& near, Motion& m) const {
+  FewRows rows;
   bool has_room = true;
   near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t) {
     const PairTable& p = near.pairs;
     if (!(has_room &= rows.has_room())) return;
-    is_a ? rows.add(p.normal_x[pair], p.normal_y[pair], p.least_a[pair])
-         : rows.add(-p.normal_x[pair], -p.normal_y[pair], p.least_b[pair]);
+    const double* const least = is_a ? p.least_a.data() : p.least_b.data();
+    rows.add(is_a ? 1.0 : -1.0, p.normal_x[pair], p.normal_y[pair], least[pair]);
   });
   if (!has_room) return Few::not_found;
-  if (!rows.allow_wish()) {
-    const double disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]) / table_.velocity_step;
-    Way found{};
-    if (!rows.solve(disc * disc * kWithinDisc, found)) return Few::not_found;
-    m = whole(found.x, found.y);
-    if (!one_.can_drive(robot, m)) return Few::not_found;
-    if (!is_drivable(robot, m)) return Few::not_allowed;
-  }
-  return allows(robot, near, m) ? Few::allowed : Few::not_allowed;
+  const double disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]) / table_.velocity_step;
+  rows.wish = wish_of(robot);
+  rows.squared_disc = disc * disc * kWithinDisc;
+  rows.squared_way = squared_way(robot);
+  const Few found = nearest_of_few(rows, m);
+  return found != Few::not_found && !one_.can_drive(robot, m) ? Few::not_found : found;
 }
 
-/// Whether all rows of a robot allow a motion. Exact.
+/// Of what its kind allows and longest_way says.
 template <class T>
-bool HardLevel<T>::allows(std::size_t robot, const NearPairs& near, Motion m) const {
-  bool all = true;
-  near.for_pairs_of(robot,
-                    [&](std::size_t pair, bool is_a, std::int32_t) { all &= near.pairs.row(pair, is_a).allows(m); });
-  return all;
-}
-
-/// Not longer than its kind allows and than longest_way says, and allowed by wheels.
-template <class T>
-bool HardLevel<T>::is_drivable(std::size_t robot, Motion m) const {
+double HardLevel<T>::squared_way(std::size_t robot) const {
   const Motion wish = wish_of(robot);
   const std::int64_t longest = longest_way(wish.x, wish.y);
-  return squared_length(m) <=
-             std::min(kinds_[crowd_.robots.kind(robot)].squared_speed, static_cast<double>(longest * longest)) &&
-         one_.can_drive(robot, m);
+  return std::min(kinds_[crowd_.robots.kind(robot)].squared_speed, static_cast<double>(longest * longest));
 }
 
 /// Towards the reserved place, as far as the rows let it: such a robot is slowed down but never turned.
@@ -327,7 +226,8 @@ std::size_t HardLevel<T>::solve(std::size_t robot, HardBuffers& b, OneRobotBuffe
   problem.normal_y = b.y.data();
   problem.offset = b.offset.data();
   problem.count = lines;
-  problem.hard = hard;
+  // Rows that leave no room once they are moved inward give way, as little as they must.
+  problem.hard = moving == 0 ? obstacles : hard;
   const Motion wish = wish_of(robot);
   problem.preferred = {unit * wish.x, unit * wish.y};
   problem.disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]);
@@ -339,8 +239,9 @@ std::size_t HardLevel<T>::solve(std::size_t robot, HardBuffers& b, OneRobotBuffe
 template <class T>
 Motion HardLevel<T>::rounded(std::size_t robot, Motion safe, Motion first, std::size_t obstacles, const HardBuffers& b,
                              const OneRobotBuffers<T>& one) const {
+  const double longest = squared_way(robot);
   const auto holds = [&](Motion m) {
-    return is_drivable(robot, m) && violated(b.rows, m) == nullptr &&
+    return squared_length(m) <= longest && one_.can_drive(robot, m) && violated(b.rows, m) == nullptr &&
            (obstacles == 0 || one_.keeps_obstacles(robot, obstacles, one, m.x, m.y));
   };
   Motion m = first;

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/few_rows.h"
 #include "crowd/near_pairs.h"
 #include "crowd/one_robot.h"
 #include "crowd/pair_row.h"
@@ -49,16 +50,14 @@ class HardLevel {
               std::int32_t* to_y) const;
 
  private:
-  enum class Few { allowed, not_allowed, not_found };
-
   crowd::Motion wish_of(std::size_t robot) const;
   crowd::Motion safe_of(std::size_t robot, int round) const;
   void find_cut(std::size_t first, std::size_t last, int round, crowd::NearLists& lists, HardBuffers& b,
                 crowd::Robots& robots) const;
-  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, HardBuffers& b, OneRobotBuffers<T>& one) const;
-  Few nearest_of_few(std::size_t robot, const crowd::NearPairs& near, crowd::Motion& m) const;
-  bool allows(std::size_t robot, const crowd::NearPairs& near, crowd::Motion m) const;
-  bool is_drivable(std::size_t robot, crowd::Motion m) const;
+  crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, crowd::Few found, crowd::Motion few, HardBuffers& b,
+                            OneRobotBuffers<T>& one) const;
+  crowd::Few nearest_by_few(std::size_t robot, const crowd::NearPairs& near, crowd::Motion& m) const;
+  double squared_way(std::size_t robot) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   std::size_t solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const;
   crowd::Motion rounded(std::size_t robot, crowd::Motion safe, crowd::Motion first, std::size_t obstacles,

@@ -12,9 +12,6 @@ namespace {
 /// m, how far a search for neighbours goes at least.
 constexpr double kNearby = 0.01;
 
-/// Half a lattice step in both coordinates, sqrt(1/2), and what it is rounded by.
-constexpr double kHalfDiagonal = 0.7072;
-
 /// In lattice steps a time step: what lines are moved inward by, and how much of that may be used up again.
 constexpr double kSlackSteps = 0.75, kSpareSteps = 0.72;
 

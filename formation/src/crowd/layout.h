@@ -32,6 +32,9 @@ inline constexpr std::size_t kPadding = 64;
 inline constexpr std::int32_t kLatticeEnd = 1 << 30;
 /// Lattice steps that a robot or a body makes in a time step at most.
 inline constexpr double kLongestMotion = 0x1p22;
+/// Half the diagonal of a square with side 1, sqrt(1/2) rounded up: what rounding to the lattice adds in both
+/// coordinates.
+inline constexpr double kHalfDiagonal = 0.7072;
 /// An offset that always holds.
 inline constexpr double kNever = -1e30;
 

@@ -150,6 +150,19 @@ void find_asked(const Robots& robots, const std::vector<NearLists::Lanes>& packs
   }
 }
 
+/// Writes the pairs whose row may not allow a wish, and returns how many.
+std::size_t find_refusing(const PairTable& pairs, std::int32_t* refusing) {
+  const Words d;
+  const auto granted = hn::Set(d, PairTable::kGrantsBoth);
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < pairs.size(); k += hn::Lanes(d)) {
+    std::uint32_t lanes = bits_of_mask(hn::Ne(hn::LoadU(d, &pairs.flags[k]), granted));
+    if (pairs.size() - k < hn::Lanes(d)) lanes &= (1U << (pairs.size() - k)) - 1U;
+    for (; lanes != 0; lanes &= lanes - 1) refusing[found++] = static_cast<std::int32_t>(k) + __builtin_ctz(lanes);
+  }
+  return found;
+}
+
 /// One robot and `count` others, which are read to a multiple of kPack.
 void judge_one(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot,
                const std::int32_t* others, std::size_t count, std::uint16_t* near, std::uint16_t* clear,
@@ -214,6 +227,7 @@ namespace exactvo::formation::crowd {
 
 HWY_EXPORT(judge_all);
 HWY_EXPORT(find_asked);
+HWY_EXPORT(find_refusing);
 HWY_EXPORT(judge_one);
 HWY_EXPORT(list_lanes);
 
@@ -264,25 +278,32 @@ void NearLists::add(std::size_t begin, std::size_t size, const Candidates& other
 
 void NearPairs::start(const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last, bool is_first) {
   first_ = first, last_ = last, is_first_ = is_first;
-  both_radii_ = 2.0 * static_cast<double>(kinds[0].radius);
+  const double radii = kinds.size() == 1 ? 2.0 * static_cast<double>(kinds[0].radius) : 0.0;
+  if (radii != both_radii_) with_radii_ = 0;
+  both_radii_ = radii;
   pairs.clear();
   cut.clear();
   overlapping = 0;
-  state.assign(last - first, 0);
+  state.assign(last - first, is_first ? kAsked : 0);
   last_of_.resize(last - first);
   std::memset(last_of_.data(), 0xFF, (last - first) * sizeof last_of_[0]);
+}
+
+/// Of pairs of one kind, once for all places.
+void NearPairs::make_radii() {
+  if (both_radii_ == 0.0) return;
+  std::fill(pairs.radii.begin() + static_cast<std::ptrdiff_t>(with_radii_), pairs.radii.end(), both_radii_);
+  with_radii_ = pairs.radii.size();
 }
 
 HWY_INLINE void NearPairs::add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot,
                                std::size_t other, bool of_both) {
   const bool is_a = robots.id[robot] < robots.id[other];
   const std::size_t pair = pairs.add(is_a ? robot : other, is_a ? other : robot);
-  pairs.radii[pair] = kinds.size() == 1
-                          ? both_radii_
-                          : static_cast<double>(kinds[robots.kind(robot)].radius + kinds[robots.kind(other)].radius);
-  if (before_.size() < 2 * pair + 2) before_.resize(4 * pair + 64);
+  if (both_radii_ == 0.0)
+    pairs.radii[pair] = static_cast<double>(kinds[robots.kind(robot)].radius + kinds[robots.kind(other)].radius);
   const auto link = [this](std::size_t to, std::size_t entry) {
-    before_[entry] = last_of_[to - first_];
+    pairs.before[entry] = last_of_[to - first_];
     last_of_[to - first_] = static_cast<std::int32_t>(entry);
   };
   link(robot, 2 * pair + std::size_t{!is_a});
@@ -331,7 +352,7 @@ bool NearPairs::add_of_unknown(const Robots& robots, const std::vector<StepsOfKi
   for (std::size_t k = 0; open && k < near; ++k) {
     const bool is_clear = round_[k] < 0;
     const auto other = static_cast<std::size_t>(is_clear ? -1 - round_[k] : round_[k]);
-    const bool both = !is_clear && is_asked(robots, other);
+    const bool both = !is_clear && is_asked(other);
     if (!both || other > robot) add(robots, kinds, robot, other, both);
   }
   return near > 0;
@@ -343,6 +364,7 @@ void NearPairs::find(Robots& robots, const std::vector<StepsOfKind>& kinds, std:
   for (auto* bits : {&clear_, &doubtful_}) grow(*bits, lists.rows() + 1);
   HWY_DYNAMIC_DISPATCH(judge_all)(robots, kinds, lists, clear_.data(), doubtful_.data());
   for (const NearLists::Lanes& pack : lists.packs) take_pack(robots, kinds, pack, lists);
+  make_radii();
 }
 
 void NearPairs::take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack,
@@ -393,6 +415,7 @@ void NearPairs::add_clear(const Robots& robots, const std::vector<StepsOfKind>& 
             static_cast<std::size_t>(own + lists.away[row * kPack + lane]), false);
       }
   }
+  make_radii();
 }
 
 void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first,
@@ -400,6 +423,9 @@ void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>&
   start(kinds, first, last, false);
   grow(asked_, lists.packs.size());
   HWY_DYNAMIC_DISPATCH(find_asked)(robots, lists.packs, asked_.data());
+  for (std::size_t p = 0; p < lists.packs.size(); ++p)
+    for (std::uint32_t lanes = asked_[p]; lanes != 0; lanes &= lanes - 1)
+      state_of(static_cast<std::size_t>(lists.packs[p].begin) + lowest(lanes)) = kAsked;
   for (std::size_t p = 0; p < lists.packs.size(); ++p) {
     const std::uint32_t asked = asked_[p];
     if (asked == 0) continue;
@@ -410,27 +436,30 @@ void NearPairs::find_again(const Robots& robots, const std::vector<StepsOfKind>&
         const std::size_t lane = lowest(near), robot = begin + lane;
         const auto other =
             static_cast<std::size_t>(pack.begin + static_cast<std::int32_t>(lane) + lists.away[row * kPack + lane]);
-        const bool both = is_asked(robots, other);
+        const bool both = is_asked(other);
         if (!both || other > robot) add(robots, kinds, robot, other, both);
       }
     for (std::uint32_t lanes = pack.unknown & asked; lanes != 0; lanes &= lanes - 1)
       add_of_unknown(robots, kinds, begin + lowest(lanes));
   }
+  make_radii();
 }
 
-HWY_INLINE void NearPairs::cut_short(const Robots& robots, std::size_t robot, std::uint8_t how) {
-  if (!is_asked(robots, robot)) return;
+HWY_INLINE void NearPairs::cut_short(std::size_t robot, std::uint8_t how) {
+  if (!is_asked(robot)) return;
   std::uint8_t& own = state_of(robot);
   if ((own & kCut) == 0) cut.push_back(static_cast<std::int32_t>(robot));
   own |= kCut | how;
 }
 
-void NearPairs::judge_rows(const Robots& robots) {
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (pairs.grants_both(k)) continue;
+void NearPairs::judge_rows() {
+  grow(refusing_, pairs.size() + kPack);
+  const std::size_t count = HWY_DYNAMIC_DISPATCH(find_refusing)(pairs, refusing_.data());
+  for (std::size_t r = 0; r < count; ++r) {
+    const auto k = static_cast<std::size_t>(refusing_[r]);
     const std::uint8_t how = pairs.found(k) ? 0 : kStays;
-    if (!pairs.grants(k, true)) cut_short(robots, static_cast<std::size_t>(pairs.a[k]), how);
-    if (!pairs.grants(k, false)) cut_short(robots, static_cast<std::size_t>(pairs.b[k]), how);
+    if (!pairs.grants(k, true)) cut_short(static_cast<std::size_t>(pairs.a[k]), how);
+    if (!pairs.grants(k, false)) cut_short(static_cast<std::size_t>(pairs.b[k]), how);
   }
 }
 

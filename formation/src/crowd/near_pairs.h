@@ -78,7 +78,8 @@ class NearLists {
 class NearPairs {
  public:
   static constexpr std::uint8_t kCut = 1,  ///< one of its rows may not allow its wish
-      kStays = 2;                          ///< one of its pairs has no row
+      kStays = 2,                          ///< one of its pairs has no row
+      kAsked = 4;                          ///< its pairs are looked for
 
   PairTable pairs;
   std::vector<std::uint8_t> state;  ///< by robot of the range
@@ -93,14 +94,14 @@ class NearPairs {
   void find_again(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last,
                   const NearLists& lists);
   /// REQUIRES: pairs with rows. Marks the robots that are cut short and those that stay.
-  void judge_rows(const Robots& robots);
+  void judge_rows();
   /// After `find`: the other pairs of those that are cut.
   void add_clear(const Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists& lists);
 
   /// `what(pair, is_a, other)` for the pairs of a robot.
   template <class Do>
   void for_pairs_of(std::size_t robot, const Do& what) const {
-    for (std::int32_t e = last_of_[robot - first_]; e >= 0; e = before_[static_cast<std::size_t>(e)]) {
+    for (std::int32_t e = last_of_[robot - first_]; e >= 0; e = pairs.before[static_cast<std::size_t>(e)]) {
       const auto pair = static_cast<std::size_t>(e) / 2;
       const bool is_a = e % 2 == 0;
       what(pair, is_a, is_a ? pairs.b[pair] : pairs.a[pair]);
@@ -108,28 +109,27 @@ class NearPairs {
   }
 
  private:
+  void make_radii();
   void start(const std::vector<StepsOfKind>& kinds, std::size_t first, std::size_t last, bool is_first);
   void take_pack(Robots& robots, const std::vector<StepsOfKind>& kinds, const NearLists::Lanes& pack, NearLists& lists);
   void look_round(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
   bool add_of_unknown(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot);
   void add(const Robots& robots, const std::vector<StepsOfKind>& kinds, std::size_t robot, std::size_t other,
            bool of_both);
-  void cut_short(const Robots& robots, std::size_t robot, std::uint8_t how);
-  bool is_asked(const Robots& robots, std::size_t robot) const {
-    return is_ours(robot) && (is_first_ || robots.safe_mx[robot] != robots.wish_mx[robot] ||
-                              robots.safe_my[robot] != robots.wish_my[robot]);
-  }
+  void cut_short(std::size_t robot, std::uint8_t how);
+  bool is_asked(std::size_t robot) const { return is_ours(robot) && (state[robot - first_] & kAsked) != 0; }
   bool is_ours(std::size_t robot) const { return robot >= first_ && robot < last_; }
   std::uint8_t& state_of(std::size_t robot) { return state[robot - first_]; }
 
   std::size_t first_ = 0, last_ = 0;
-  bool is_first_ = true;                         ///< all are asked
-  double both_radii_ = 0.0;                      ///< R, where there is one kind
-  std::vector<std::int32_t> last_of_;            ///< of each robot its last entry; -1: none
-  std::vector<std::int32_t> before_;             ///< of an entry, 2 pair + (0: of a, 1: of b), that before it
-  std::vector<std::uint16_t> clear_, doubtful_;  ///< by row of the lists
-  std::vector<std::uint16_t> asked_;             ///< by pack of the lists
-  Array<std::int32_t> round_;                    ///< robots round one
+  std::size_t with_radii_ = 0;                                            ///< places of `pairs` that hold both_radii_
+  bool is_first_ = true;                                                  ///< all are asked
+  double both_radii_ = 0.0;                                               ///< R, where there is one kind
+  std::vector<std::int32_t> last_of_;                                     ///< of each robot its last entry; -1: none
+  std::vector<std::uint16_t> clear_, doubtful_;                           ///< by row of the lists
+  std::vector<std::uint16_t> asked_;                                      ///< by pack of the lists
+  Array<std::int32_t> refusing_;                                          ///< pairs
+  Array<std::int32_t> round_;                                             ///< robots round one
   std::vector<std::uint16_t> round_near_, round_clear_, round_doubtful_;  ///< of these, by sixteen
 };
 

@@ -380,6 +380,8 @@ void PairTable::make_room() {
   const std::size_t room = 2 * a.size() + 4 * kPack;
   for (auto* column : {&a, &b, &flags, &open}) column->resize(room);
   for (auto* column : {&radii, &normal_x, &normal_y, &least_a, &least_b, &wanted_x, &wanted_y}) column->resize(room);
+  before.resize(2 * room);
+  room_ = room - 2 * kPack;
 }
 
 void make_pair_rows(const MotionColumns& robots, PairTable& pairs, std::size_t first) {

@@ -59,9 +59,9 @@ class PairTable {
  public:
   std::size_t size() const { return size_; }
   void clear() { size_ = 0; }
-  /// Adds the row of the robots at two places of the columns and returns its number. The caller sets R.
+  /// Adds the row of the robots at two places of the columns and returns its number. The caller sets R and the entries.
   std::size_t add(std::size_t robot_a, std::size_t robot_b) {
-    if (size_ + 2 * kPack > a.size()) make_room();
+    if (size_ == room_) make_room();
     a[size_] = static_cast<std::int32_t>(robot_a);
     b[size_] = static_cast<std::int32_t>(robot_b);
     return size_++;
@@ -76,27 +76,27 @@ class PairTable {
   bool found(std::size_t k) const { return (flags[k] & kFound) != 0; }
   /// Its row surely allows the wish.
   bool grants(std::size_t k, bool of_a) const { return (flags[k] & (of_a ? kGrantsA : kGrantsB)) != 0; }
-  bool grants_both(std::size_t k) const { return flags[k] == (kFound | kGrantsA | kGrantsB); }
   MotionRow row(std::size_t k, bool of_a) const {
     const auto x = static_cast<std::int64_t>(normal_x[k]), y = static_cast<std::int64_t>(normal_y[k]);
     return of_a ? MotionRow{x, y, static_cast<std::int64_t>(least_a[k])}
                 : MotionRow{-x, -y, static_cast<std::int64_t>(least_b[k])};
   }
 
-  static constexpr std::int32_t kFound = 1, kGrantsA = 2, kGrantsB = 4;
+  static constexpr std::int32_t kFound = 1, kGrantsA = 2, kGrantsB = 4, kGrantsBoth = 7;
 
   Array<std::int32_t> a, b;          ///< places of robots
   Array<double> radii;               ///< R
   Array<double> normal_x, normal_y;  ///< N, whole
   Array<double> least_a, least_b;    ///< of the rows, whole
   Array<std::int32_t> flags;
+  Array<std::int32_t> before;        ///< of entry 2 k + (0: of a, 1: of b) that before it of the same robot; -1: none
   Array<std::int32_t> open;          ///< pairs that wait for better rows
   Array<double> wanted_x, wanted_y;  ///< their directions
 
  private:
   void make_room();
 
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, room_ = 0;
 };
 
 /// Makes the rows of the pairs from `first` on. Exact. REQUIRES: of every pair u = 0, or a motion for which it had rows

@@ -132,7 +132,7 @@ void Robots::lay_out_cells() {
 }
 
 /// Robots into their cells, in any order. The number of a robot's cell goes to next_my, how many came to it before to
-/// next_mx; both are free while robots are sorted.
+/// next_mx; what a step writes is free while robots are sorted. The robots in the new order go to wish_mx.
 void Robots::scatter(Tasks& tasks) {
   const std::size_t cells = static_cast<std::size_t>(rows_ * columns_);
   start_.resize(cells + 1);
@@ -144,7 +144,7 @@ void Robots::scatter(Tasks& tasks) {
   std::int32_t before = 0;
   for (std::size_t c = 1; c <= cells; ++c) start_[c] = before += start_[c];
   const std::int32_t *start = start_.data(), *cell = next_my.data(), *nth = next_mx.data();
-  std::int32_t* order = order_.data();
+  std::int32_t* order = wish_mx.data();
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i) order[start[cell[i]] + nth[i]] = static_cast<std::int32_t>(i);
   });
@@ -186,15 +186,15 @@ void Robots::order_within_cells(Tasks& tasks) {
   const std::size_t cells = static_cast<std::size_t>(rows_ * columns_);
   tasks.for_ranges(cells, kGrain, [&](std::size_t first, std::size_t last, int) {
     const auto begin = static_cast<std::size_t>(start_[first]), end = static_cast<std::size_t>(start_[last]);
-    for (std::size_t p = begin; p < end; ++p) next_mx[p] = x[order_[p]];
+    for (std::size_t p = begin; p < end; ++p) next_mx[p] = x[wish_mx[p]];
     for (std::size_t from = begin + 1; from < end; from += kBlock) {
       std::uint64_t low = not_above_the_last(next_mx.data() + from, std::min(kBlock, end - from));
       while (low != 0) {
         const auto k = static_cast<std::size_t>(__builtin_ctzll(low));
         low &= low - 1;
         const std::size_t p = from + k;
-        const std::int32_t cell = next_my[order_[p]];
-        if (next_my[order_[p - 1]] != cell) continue;
+        const std::int32_t cell = next_my[wish_mx[p]];
+        if (next_my[wish_mx[p - 1]] != cell) continue;
         put_in_order(p, start_[cell], start_[cell + 1]);
         // Whoever is next was above another.
         if (k + 1 < kBlock && p + 1 < end && next_mx[p + 1] <= next_mx[p]) low |= std::uint64_t{1} << (k + 1);
@@ -206,7 +206,7 @@ void Robots::order_within_cells(Tasks& tasks) {
 
 /// The robot at p of the cell that begins and ends there, among those before it, which are in order.
 void Robots::put_in_order(std::size_t p, std::int32_t begin, std::int32_t end) {
-  std::int32_t* const order = order_.data();
+  std::int32_t* const order = wish_mx.data();
   std::int32_t* const at_x = next_mx.data();
   if (end - begin > kFewInCell) {
     std::sort(order + begin, order + end,
@@ -228,11 +228,20 @@ void Robots::put_in_order(std::size_t p, std::int32_t begin, std::int32_t end) {
 /// next_mx is free while robots are sorted.
 void Robots::permute(Array<std::int32_t>& field, Tasks& tasks) {
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    const std::int32_t *from = field.data(), *order = order_.data();
+    const std::int32_t *from = field.data(), *order = wish_mx.data();
     std::int32_t* to = next_mx.data();
     for (std::size_t i = first; i < last; ++i) to[i] = from[order[i]];
   });
   field.swap(next_mx);
+}
+
+void Robots::permute_tags(Tasks& tasks) {
+  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i) next_mx[i] = tag[wish_mx[i]];
+  });
+  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i) tag[i] = static_cast<std::uint16_t>(next_mx[i]);
+  });
 }
 
 void Robots::sort(Tasks& tasks) {
@@ -242,10 +251,7 @@ void Robots::sort(Tasks& tasks) {
   scatter(tasks);
   order_within_cells(tasks);
   for (auto* field : {&y, &mx, &my, &id, &hint}) permute(*field, tasks);
-  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i) tags_scratch_[i] = tag[order_[i]];
-  });
-  tag.swap(tags_scratch_);
+  permute_tags(tasks);
 }
 
 Stretch Robots::searched(const Cells& cells, std::int32_t from, std::int32_t to) const {
@@ -261,10 +267,9 @@ std::size_t Robots::strip_end(std::size_t i) const {
 
 std::size_t Robots::bytes() const {
   std::size_t words = start_.capacity();
-  for (const auto* field :
-       {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my, &order_})
+  for (const auto* field : {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my})
     words += field->capacity();
-  return 4 * words + 2 * (tag.capacity() + tags_scratch_.capacity()) + next_kept.capacity();
+  return 4 * words + 2 * tag.capacity() + next_kept.capacity();
 }
 
 }  // namespace exactvo::formation::crowd

@@ -99,10 +99,9 @@ class Robots {
  private:
   template <class Do>
   void for_fields(const Do& what) {
-    for (auto* field :
-         {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my, &order_})
+    for (auto* field : {&x, &y, &mx, &my, &id, &hint, &wish_mx, &wish_my, &safe_mx, &safe_my, &next_mx, &next_my})
       what(*field);
-    what(tag), what(tags_scratch_), what(next_kept);
+    what(tag), what(next_kept);
   }
   void find_bounds(Tasks& tasks);
   void lay_out_cells();
@@ -111,6 +110,7 @@ class Robots {
   void order_within_cells(Tasks& tasks);
   void put_in_order(std::size_t p, std::int32_t begin, std::int32_t end);
   void permute(Array<std::int32_t>& field, Tasks& tasks);
+  void permute_tags(Tasks& tasks);
   Stretch searched(const Cells& cells, std::int32_t from, std::int32_t to) const;
   /// std::floor, which is a call on targets before SSE4.1.
   static std::int64_t whole_below(double value) {
@@ -128,10 +128,8 @@ class Robots {
   double strip_ = 1.0, bucket_ = 1.0, per_strip_ = 1.0, per_bucket_ = 1.0;
   Window bounds_{0, 0, 0, 0};
   std::int64_t first_row_ = 0, first_column_ = 0, rows_ = 1, columns_ = 1;
-  Array<std::int32_t> start_;  ///< where a cell begins, and the end of the last
-  Array<std::int32_t> order_;
+  Array<std::int32_t> start_;    ///< where a cell begins, and the end of the last
   std::vector<Extent> extents_;  ///< of a few ranges of robots
-  Array<std::uint16_t> tags_scratch_;
 };
 
 }  // namespace exactvo::formation::crowd

@@ -93,7 +93,8 @@ class Proofs {
         reach_(detail::terrain_of(scenario), 0.0, false) {}
 
   /// Where a robot gets to that proofs are looked for about; else null. A robot that starts in a wall is pushed out of
-  /// it: nothing holds it in its cover. A robot whose goal is out of reach is left out, as is one with a chain of discs.
+  /// it: nothing holds it in its cover. A robot whose goal is out of reach is left out, as is one with a chain of
+  /// discs.
   const SquareCover* little_room(std::size_t i) {
     const Robot& r = scenario_.robots[i];
     if (r.goals.size() != 1 || !(r.radius > 0.0) || obstacle_radius(r) < r.radius ||
@@ -199,7 +200,7 @@ class Proofs {
     if (!detail::fits_grid(r.position, side) || !detail::fits_grid(r.goals[0], side)) return nullptr;
     for (const SquareCover& c : covers_)
       if (c.radius == r.radius && c.side == side && is_in(c, robot)) return c.is_whole ? &c : nullptr;
-    if (looks_left_ == 0) return nullptr;
+    if (detail::leads_outside(r.position, r.radius, side, walls_, looks_left_) || looks_left_ == 0) return nullptr;
     covers_.push_back(detail::cover_from(r.position, r.radius, side, walls_, looks_left_));
     return covers_.back().is_whole ? &covers_.back() : nullptr;
   }

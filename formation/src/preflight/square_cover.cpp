@@ -50,6 +50,26 @@ bool CoverWalls::exclude_hull(std::initializer_list<Vec2> corners, double radius
   return found;
 }
 
+bool CoverWalls::is_outside(GridSquare q, double side, double radius) const {
+  return side * q.x > box_.high.x + radius || side * (q.x + 1.0) < box_.low.x - radius ||
+         side * q.y > box_.high.y + radius || side * (q.y + 1.0) < box_.low.y - radius;
+}
+
+bool leads_outside(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks) {
+  const GridSquare ways[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  for (const GridSquare way : ways) {
+    GridSquare q = square_at(start, side);
+    for (std::size_t k = 0; k < kMostSquares && !walls.is_outside(q, side, radius); ++k) {
+      q = {q.x + way.x, q.y + way.y};
+      if (looks == 0) return false;
+      --looks;
+      if (walls.exclude(q, side, radius)) break;
+    }
+    if (walls.is_outside(q, side, radius)) return true;
+  }
+  return false;
+}
+
 SquareCover cover_from(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks) {
   SquareCover cover;
   cover.radius = radius;

@@ -59,7 +59,9 @@ struct SquareCover {
 /// The edges of all obstacles.
 class CoverWalls {
  public:
-  explicit CoverWalls(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {}
+  explicit CoverWalls(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {
+    for (const geometry::Segment& edge : edges_.all()) box_.add(geometry::box_of(edge));
+  }
 
   const EdgesByPlace& edges() const { return edges_; }
 
@@ -69,11 +71,20 @@ class CoverWalls {
   /// The same of a single point.
   bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
 
+  /// Whether the square lies beyond all edges, and farther from their box than the radius: from there any number of
+  /// squares can be reached.
+  bool is_outside(GridSquare q, double side, double radius) const;
+
  private:
   bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const;
 
   EdgesByPlace edges_;
+  geometry::Box box_;  ///< of them
 };
+
+/// Whether a row or a column of squares leads from the start beyond all walls: then no cover from there is whole.
+/// `looks`: as of cover_from.
+bool leads_outside(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks);
 
 /// `looks`: at squares, how many are allowed and then how many are left.
 SquareCover cover_from(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks);

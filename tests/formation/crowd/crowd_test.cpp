@@ -757,12 +757,24 @@ TEST(CrowdSnapshot, AnExplanationBetweenChangesNothing) {
   }
 }
 
-TEST(CrowdMemory, StaysBelow96BytesARobot) {
+TEST(CrowdMemory, StaysBelow96BytesARobotInDenseCrowdsWithPreferencesByArray) {
   const std::size_t count = 10000;
-  const CrowdScene scene = crowd_scene("crowd", count);
-  Crowd crowd = crowd_of(scene);
-  run(crowd, 3);
-  EXPECT_LT(crowd.bytes(), 96 * count);
+  for (const char* kind : {"crowd", "dense"})
+    for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
+      CrowdScene scene = crowd_scene(kind, count);
+      scene.options.precision = precision;
+      Crowd crowd = crowd_of(scene);
+      crowd.set_steering(nullptr);
+      std::vector<Vec2> positions, preferred(count);
+      for (int k = 0; k < 41; ++k) {
+        crowd.positions(positions);
+        for (std::size_t i = 0; i < count; ++i) preferred[i] = scene.preferred(i, positions[i]);
+        crowd.set_preferred(preferred);
+        crowd.step();
+      }
+      EXPECT_LT(crowd.bytes(), 96 * count) << kind << ' ' << name(precision);
+      EXPECT_GT(crowd.bytes(), 60 * count) << kind << ' ' << name(precision);
+    }
 }
 
 }  // namespace
