@@ -94,14 +94,14 @@ def test_the_map_of_a_file(tmp_path):
 def test_pages_and_certificates_are_written(tmp_path, program):
     page, proofs = tmp_path / "check.html", tmp_path / "proofs.jsonl"
     near = {"A": EAST, "B": [(0, 0, 0.6), (1, 10, 0.6)]}
-    answer = exactvo.check(near, map=[exactvo.Wall([(5, -1), (5, 1)])], radius=0.25, near=0.5, page=page, certificates=str(proofs))
+    (tmp_path / "map.wkt").write_text("LINESTRING (5 -1, 5 1)\n")
+    answer = exactvo.check(near, map=tmp_path / "map.wkt", radius=0.25, near=0.5, page=page, certificates=str(proofs))
     assert answer.overlaps == 2 and "1 certificate for motions that come near and stay clear, none for 2 that touch" in answer.notes[-1]
     assert page.read_text().startswith("<!DOCTYPE html>")
     assert "1 certificate, 1 valid, 2 none" in program("audit", "--certificate", proofs)
     # The program's proofs of the same are the same.
     path = tmp_path / "t.csv"
     path.write_text("t,id,x,y\n0,A,0,0\n0,B,0,0.6\n1,A,10,0\n1,B,10,0.6\n")
-    (tmp_path / "map.wkt").write_text("LINESTRING (5 -1, 5 1)\n")
     program("check", path, "--map", tmp_path / "map.wkt", "--radius", 0.25, "--near", 0.5, "--certificates", tmp_path / "others.jsonl")
     assert (tmp_path / "others.jsonl").read_text() == proofs.read_text()
 

@@ -305,9 +305,11 @@ class Examination {
 
   void try_moment(double time) {
     for (const Pair& pair : pairs_) {
-      const double gap = distance_of(pair, time);
-      if (gap < least_) {
+      const double way_out = span_.gap(pair, time), gap = std::max(way_out, -pair.reach);
+      // Where sets without a radius overlap, the longest way out is shown.
+      if (gap < least_ || (gap == least_ && way_out < least_way_out_)) {
         least_ = gap;
+        least_way_out_ = way_out;
         nearest_time_ = time;
         nearest_ = pair;
       }
@@ -413,7 +415,7 @@ class Examination {
   bool is_open_ = false;
   double witness_ = kInfinity, open_until_ = 0.0;
   Bounds first_;
-  double least_ = kInfinity, nearest_time_ = 0.0;
+  double least_ = kInfinity, least_way_out_ = kInfinity, nearest_time_ = 0.0;
   Pair nearest_;
 };
 

@@ -124,8 +124,8 @@ function drawStrip(ctx, run, series, strip, colours, width, top, height) {
 const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5};
 
 function collisionWords(c) {
-  const depth = c.depth === null ? '' : `${c.depth.toPrecision(2)} m deep `;
-  return `collision with ${c.kind} ${c.with}, ${depth}at ${c.at.toFixed(2)} s`;
+  const depth = c.depth === null ? '' : `, ${c.depth.toPrecision(2)} m deep`;
+  return `collision with ${c.kind} ${c.with}${depth} at ${c.at.toFixed(2)} s`;
 }
 
 // Events of the run as {time, robot, kind, text}; collisions among them.

@@ -36,7 +36,6 @@ const KEYS = {
 };
 
 function showLegend(on) {
-  fillLegends();
   for (const id of ['world-legend', 'space-legend']) $(id).hidden = !on;
   $('legend').setAttribute('aria-pressed', String(on));
   resize();
@@ -109,4 +108,4 @@ function connectControls() {
   addEventListener('hashchange', () => readAddress().catch(report));
 }
 
-export {setTheme, showLegend, connectControls};
+export {fillLegends, setTheme, showLegend, connectControls};

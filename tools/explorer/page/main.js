@@ -11,7 +11,7 @@ import {changed, connectLive, editOfMoment, live} from './changing.js';
 import {onFrame} from './playing.js';
 import {connectPointer} from './pointer.js';
 import {svgOfMoment, svgOfRun} from './saving.js';
-import {connectControls, setTheme, showLegend} from './controls.js';
+import {connectControls, fillLegends, setTheme, showLegend} from './controls.js';
 
 async function start() {
   const prefersDark = typeof matchMedia === 'function' && matchMedia('(prefers-color-scheme: dark)').matches;
@@ -27,6 +27,7 @@ async function start() {
   connectPointer();
   connectLive();
   await openRun(page.list.some((r) => r.key === addressWords().get('run')) ? addressWords().get('run') : page.list[0].key);
+  fillLegends();
   await readAddress();
   requestAnimationFrame(onFrame);
 }
