@@ -574,8 +574,7 @@ Vec2 Crowd::velocity(RobotId robot) const {
 }
 
 Vec2 Crowd::heading(RobotId robot) const {
-  body_->wheels_of(robot);
-  return body_->core->wheels.heading(static_cast<std::int32_t>(robot));
+  return body_->wheels_of(robot).ahead;
 }
 
 Vec2 Crowd::wheel_speeds(RobotId robot) const {

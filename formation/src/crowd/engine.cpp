@@ -69,6 +69,10 @@ class CrowdEngine final : public CrowdCore {
     table_ = kind_table<T>(options, kinds);
     hard_.take_kinds();
     wheels.take_kinds(kinds, options);
+    wheel_offsets_.assign(kinds.size() * kMostWheelRows, T(0));
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+      for (std::size_t k = 0; k < wheels.polygon(kind).size(); ++k)
+        wheel_offsets_[kind * kMostWheelRows + k] = one_.row_offset(wheels.polygon(kind)[k].offset, kind);
   }
 
   void set_preferred(const std::vector<Vec2>& by_id) override {
@@ -372,9 +376,11 @@ class CrowdEngine final : public CrowdCore {
   /// The half-planes of a group against edges and bodies at rest and those of wheels, in the last rows before those of
   /// robots; how many rows.
   std::size_t hard_of(Pack* packs, std::size_t count, Scratch& s) {
-    if (edges.empty() && !one_.has_bodies() && wheels.empty()) return 0;
+    const bool has_obstacles = !edges.empty() || one_.has_bodies();
+    if (!has_obstacles && wheels.empty()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
     std::fill(s.hard, s.hard + count * kPack, 0);
+    if (!has_obstacles) return wheels_alone(packs, count, s);
     if (!edges.empty())
       for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
     if (one_.has_bodies())
@@ -392,13 +398,38 @@ class CrowdEngine final : public CrowdCore {
   void wheels_of_lane(const Pack& pack, std::size_t lane, std::size_t slot, Scratch& s) const {
     if (pack.alone >> lane & 1U) return;
     const std::size_t robot = pack.begin + lane;
+    const std::size_t to = static_cast<std::size_t>(s.hard[slot]) * kSlots + slot;
+    s.hard[slot] += put_wheels(robot, s.edge_x + to, s.edge_y + to, s.edge_c + to);
+  }
+
+  /// Every kSlots-th entry; how many.
+  std::int32_t put_wheels(std::size_t robot, T* x, T* y, T* c) const {
+    const std::size_t kind = robots.kind(robot);
     geometry::HalfPlane lines[kMostWheelRows];
-    const std::size_t count = wheels.rows(robots.kind(robot), robots.id[robot], lines);
+    const std::size_t count = wheels.rows(kind, robots.id[robot], lines);
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t to = (static_cast<std::size_t>(s.hard[slot]) + k) * kSlots + slot;
-      one_.put(lines[k], robot, s.edge_x[to], s.edge_y[to], s.edge_c[to]);
+      x[k * kSlots] = static_cast<T>(lines[k].normal.x);
+      y[k * kSlots] = static_cast<T>(lines[k].normal.y);
+      c[k * kSlots] = wheel_offsets_[kind * kMostWheelRows + k];
     }
-    s.hard[slot] += static_cast<std::int32_t>(count);
+    return static_cast<std::int32_t>(count);
+  }
+
+  /// Where there is nothing else: straight into their rows.
+  std::size_t wheels_alone(const Pack* packs, std::size_t count, Scratch& s) const {
+    const std::size_t rows = wheels.most_rows(), first = kRobotRows - rows * kSlots;
+    for (std::size_t at = first; at < kRobotRows; at += kSlots) {
+      std::fill(s.x + at, s.x + at + count * kPack, T(1));
+      std::fill(s.y + at, s.y + at + count * kPack, T(0));
+      std::fill(s.c + at, s.c + at + count * kPack, static_cast<T>(kNever));
+    }
+    for (std::size_t p = 0; p < count; ++p)
+      for (std::size_t lane = 0; lane < packs[p].size(); ++lane) {
+        const std::size_t slot = p * kPack + lane, to = first + slot;
+        if (packs[p].alone >> lane & 1U) continue;
+        s.hard[slot] = put_wheels(packs[p].begin + lane, s.x + to, s.y + to, s.c + to);
+      }
+    return rows;
   }
 
   /// Into s.edge_x and so on, their number into s.hard.
@@ -595,6 +626,7 @@ class CrowdEngine final : public CrowdCore {
   const OneRobot<T> one_{*this, table_};
   HardLevel<T> hard_{*this, table_, one_};
   Array<T> preferred_;
+  std::vector<T> wheel_offsets_;       ///< m/s, of kind and edge of its polygon, as rows have them
   std::vector<NearLists> near_lists_;  ///< of each range of robots
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };

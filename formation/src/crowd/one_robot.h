@@ -105,8 +105,12 @@ class OneRobot {
   void put(const Line& line, std::size_t robot, T& x, T& y, T& c) const {
     x = static_cast<T>(line.normal.x);
     y = static_cast<T>(line.normal.y);
-    c = std::max(table_.least_offset[crowd_.robots.kind(robot)],
-                 crowd::rounded_up<T>(line.offset + static_cast<double>(table_.lattice_slack)));
+    c = row_offset(line.offset, crowd_.robots.kind(robot));
+  }
+  /// m/s, of a half-plane of a robot of this kind, with what covers the rounding to the lattice.
+  T row_offset(double offset, std::size_t kind) const {
+    return std::max(table_.least_offset[kind],
+                    crowd::rounded_up<T>(offset + static_cast<double>(table_.lattice_slack)));
   }
 
  private:

@@ -16,7 +16,7 @@
 namespace exactvo::formation::crowd {
 
 template <>
-inline constexpr std::size_t doubles_of<WheelState> = 5;
+inline constexpr std::size_t doubles_of<WheelState> = 7;
 
 namespace {
 

@@ -27,35 +27,33 @@ constexpr double kNewDoubt = 0x1p-46;
 /// What (2) leaves out at kMostDoubt, and rounding.
 constexpr double kSecondOrder = 1.0 + 0x1p-21;
 
-/// atan(t) / t for t^2 = s <= 1/3, up to 2^-40 of it: a convergent of Gauss's continued fraction, 1 / (1 + s / (3 + 4 s
-/// / (5 + 9 s / (7 + ...)))). No call of a library: the same bits everywhere.
+/// atan(t) / t for t^2 = s <= 1/3, up to 2^-25 of it: the seventh convergent of Gauss's continued fraction, 1 / (1 + s
+/// / (3 + 4 s / (5 + 9 s / (7 + ...)))). No call of a library: the same bits everywhere.
 double arc_of(double s) {
-  constexpr int kTerms = 9;
-  double above = 1.0, below = 1.0, above_before = 0.0, below_before = 1.0;
-  for (int k = 1; k < kTerms; ++k) {
-    const double times = s * (k * k), plus = 2 * k + 1;
-    above_before = std::exchange(above, plus * above + times * above_before);
-    below_before = std::exchange(below, plus * below + times * below_before);
-  }
+  const double above = 135135.0 + s * (173250.0 + s * (53487.0 + s * 2304.0));
+  const double below = 135135.0 + s * (218295.0 + s * (99225.0 + s * 11025.0));
   return above / below;
+}
+
+/// The heading of a half-heading, of unit length.
+Vec2 ahead_of(double a, double b) {
+  const double shorter = 1.0 / (a * a + b * b);
+  return {(a * a - b * b) * shorter, 2.0 * a * b * shorter};
 }
 
 }  // namespace
 
 struct Wheels::Twist {
-  double left, right;  ///< ways of the wheels, lattice steps
-  double a, b;         ///< the half-heading after it
-  double growth;       ///< of what is unknown of the heading
+  double left, right;   ///< ways of the wheels, lattice steps
+  double room, growth;  ///< what is unknown of the heading grows by growth / room
 };
 
 Wheels::Twist Wheels::twist_of(const Limits& limits, const WheelState& from, Motion m) {
-  const double mx = m.x, my = m.y, a = from.a, b = from.b, whole = a * a + b * b;
-  const double ex = (a * a - b * b) / whole, ey = 2.0 * a * b / whole;
+  const double mx = m.x, my = m.y, ex = from.ahead.x, ey = from.ahead.y;
   const double x = mx * ex + my * ey, y = my * ex - mx * ey, ahead = limits.ahead + x;
   const double t = y / ahead, arc = arc_of(t * t), middle = x + y * t, across = limits.across * t;
-  const double squared = ahead * ahead + y * y;
-  return {(middle - across) * arc, (middle + across) * arc, (limits.ahead + mx) * a + my * b,
-          (limits.ahead - mx) * b + my * a, (limits.ahead * limits.ahead - (mx * mx + my * my)) / squared};
+  return {(middle - across) * arc, (middle + across) * arc, ahead * ahead + y * y,
+          limits.ahead * limits.ahead - (mx * mx + my * my)};
 }
 
 bool Wheels::is_driven(const Limits& limits, const WheelState& from, Motion m) {
@@ -64,7 +62,7 @@ bool Wheels::is_driven(const Limits& limits, const WheelState& from, Motion m) {
          std::fabs(twist.left - from.left) <= limits.change && std::fabs(twist.right - from.right) <= limits.change &&
          std::fabs(twist.right - twist.left) <= limits.turn &&
          twist.left + twist.right >= limits.open - 2.0 * limits.back &&
-         from.doubt * twist.growth * kSecondOrder + kNewDoubt <= kMostDoubt;
+         from.doubt * twist.growth * kSecondOrder <= (kMostDoubt - kNewDoubt) * twist.room;
 }
 
 void Wheels::drive(std::size_t kind, std::int32_t id, Motion m) {
@@ -74,19 +72,15 @@ void Wheels::drive(std::size_t kind, std::int32_t id, Motion m) {
     return;
   }
   const Twist twist = twist_of(limits_[kind], s, m);
-  const double size = std::sqrt(twist.a * twist.a + twist.b * twist.b);
-  s = {twist.a / size, twist.b / size, s.doubt * twist.growth * kSecondOrder + kNewDoubt, twist.left, twist.right};
-}
-
-Vec2 Wheels::heading(std::int32_t id) const {
-  const WheelState& s = state(id);
-  const double whole = s.a * s.a + s.b * s.b;
-  return {(s.a * s.a - s.b * s.b) / whole, 2.0 * s.a * s.b / whole};
+  const double k = limits_[kind].ahead, a = (k + m.x) * s.a + m.y * s.b, b = (k - m.x) * s.b + m.y * s.a;
+  const double longer = 1.0 / std::sqrt(a * a + b * b), doubt = s.doubt * twist.growth * kSecondOrder / twist.room;
+  s = {longer * a, longer * b, {}, std::min(doubt + kNewDoubt, kMostDoubt), twist.left, twist.right};
+  s.ahead = ahead_of(s.a, s.b);
 }
 
 std::size_t Wheels::rows(std::size_t kind, std::int32_t id, geometry::HalfPlane* out) const {
   if (!has(kind)) return 0;
-  const Vec2 e = heading(id), left{-e.y, e.x};
+  const Vec2 e = state(id).ahead, left{-e.y, e.x};
   std::size_t count = 0;
   for (const geometry::HalfPlane& h : limits_[kind].polygon)
     out[count++] = {h.normal.x * e + h.normal.y * left, h.offset};
@@ -96,15 +90,17 @@ std::size_t Wheels::rows(std::size_t kind, std::int32_t id, geometry::HalfPlane*
 void Wheels::put(std::int32_t id, Vec2 half_heading) {
   const auto at = static_cast<std::size_t>(id);
   if (at >= states_.size()) states_.resize(at + 1);
-  states_[at] = {half_heading.x, half_heading.y, 0.0, 0.0, 0.0};
+  const double a = half_heading.x, b = half_heading.y;
+  states_[at] = {a, b, ahead_of(a, b), 0.0, 0.0, 0.0};
 }
 
 bool Wheels::set_states(std::vector<WheelState> states) {
-  for (const WheelState& s : states) {
+  for (WheelState& s : states) {
     const double size = s.a * s.a + s.b * s.b;
     if (!(size > 0.5 && size < 4.0 && s.doubt >= 0.0 && s.doubt <= kMostDoubt && std::fabs(s.left) <= kLongestMotion &&
           std::fabs(s.right) <= kLongestMotion))
       return false;
+    s.ahead = ahead_of(s.a, s.b);
   }
   states_ = std::move(states);
   return true;
@@ -114,6 +110,7 @@ void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions&
   const double q = options.position_step, per_speed = options.time_step / q;
   limits_.assign(kinds.size(), {});
   has_some_ = false;
+  most_rows_ = 0;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     if (!kinds[k].wheels) continue;
     const CrowdWheels& wheels = *kinds[k].wheels;
@@ -146,6 +143,7 @@ void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions&
       limits.polygon.push_back({inward, geometry::dot(inward, from)});
     }
     if (wheels.max_backward_speed < side) limits.polygon.push_back({{1.0, 0.0}, -wheels.max_backward_speed});
+    most_rows_ = std::max(most_rows_, limits.polygon.size());
   }
 }
 

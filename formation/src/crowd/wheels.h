@@ -41,6 +41,7 @@ inline constexpr double kMostDoubt = 0x1p-24, kSpare = 1.0 - 0x1p-16;
 /// A robot on wheels between two steps.
 struct WheelState {
   double a = 1.0, b = 0.0;         ///< half-heading, up to a positive factor
+  Vec2 ahead{1.0, 0.0};            ///< the heading, a unit vector, rounded
   double doubt = 0.0;              ///< radians, by how much its heading may differ from the exact one at most
   double left = 0.0, right = 0.0;  ///< ways of the wheels in the last step, lattice steps
 };
@@ -62,9 +63,11 @@ class Wheels {
   /// Half-planes (m/s) of what the robot may wish, at most kMostWheelRows; how many.
   std::size_t rows(std::size_t kind, std::int32_t id, geometry::HalfPlane* out) const;
 
+  /// The edges of the set of velocities (m/s) in the frame of the heading; as `rows` has them.
+  const std::vector<geometry::HalfPlane>& polygon(std::size_t kind) const { return limits_[kind].polygon; }
+  std::size_t most_rows() const { return most_rows_; }
+
   const WheelState& state(std::int32_t id) const { return states_[static_cast<std::size_t>(id)]; }
-  /// A unit vector, rounded.
-  Vec2 heading(std::int32_t id) const;
   /// At rest. Makes room for all ids up to this one.
   void put(std::int32_t id, Vec2 half_heading);
   const std::vector<WheelState>& states() const { return states_; }
@@ -86,6 +89,7 @@ class Wheels {
   static bool is_driven(const Limits& limits, const WheelState& from, Motion m);
 
   bool has_some_ = false;
+  std::size_t most_rows_ = 0;       ///< of any kind
   std::vector<Limits> limits_;      ///< by kind
   std::vector<WheelState> states_;  ///< by id
 };

@@ -93,6 +93,10 @@ class AtStep : public formation::RunSink {
     RobotStep& step = row.robots[robot_];
     step.preferred = e.preferred;
     step.chosen = e.chosen;
+    if (scenario_.robots[robot_].drive) {
+      const Vec2 speeds = crowd.wheel_speeds(e.robot);
+      step.wheels = formation::OnWheels{crowd.heading(e.robot), {speeds.x, speeds.y}};
+    }
     // What does not turn it is not listed: the second level of the step slows it down.
     const std::vector<CrowdExplanation::Neighbour> none;
     if (e.reserved) step.note = "drives straight to a place that it has reserved; half-planes of robots do not turn it";
