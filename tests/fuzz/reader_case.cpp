@@ -4,7 +4,6 @@
 #include <exception>
 #include <fstream>
 
-#include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/validity.h"
@@ -83,7 +82,6 @@ std::string read(const FuzzedFormat& format, const fs::path& path, bool with_rep
   options.keep_going = true;
   options.keep_properties = true;
   options.repair = with_repair;
-  if (options.format == "movingai-scen") read_tasks(path);
   return judged(read_obstacles(path, options));
 }
 
@@ -103,7 +101,6 @@ const std::vector<FuzzedFormat>& fuzzed_formats() {
       {"gdal", ".geojson"},
       {"ros-map", ".yaml"},
       {"movingai-map", ".map"},
-      {"movingai-scen", ".scen"},
       {"carmen-log", ".log"},
       {"csm-log", ".log"},
       {"points-csv", ".csv"},
