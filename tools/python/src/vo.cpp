@@ -18,7 +18,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Of a convex shape: the apex is the shape's velocity.
+/// The cone of a convex shape; its apex is the velocity of the shape.
 using Cone = vo::ShiftedCone;
 
 Cone make_cone(py::handle shape, py::handle position, py::handle radius, py::handle time_horizon, py::handle velocity) {

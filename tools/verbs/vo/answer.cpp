@@ -73,7 +73,7 @@ Json json_of(const char* side, const vo::Leg& leg) {
           {"bracket", {{"inside", json_point(leg.normal)}, {"outside", json_point(leg.normal_outside)}}}};
 }
 
-/// Of the slope: narrower than a double of it.
+/// The width of the slope's interval: narrower than a double of it.
 constexpr double kWidth = 0x1p-60;
 
 OrderedJson leg_json(const char* side, const AlgebraicDirection& leg) {
@@ -107,30 +107,6 @@ std::string leg_words(const char* side, const AlgebraicDirection& leg) {
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
 OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
   return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
-}
-
-/// The exact legs counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
-/// cones share a leg.
-OrderedJson legs_by_angle_json(const VoAnswer& answer) {
-  std::vector<std::pair<const AlgebraicDirection*, OrderedJson>> legs;
-  for (std::size_t k = 0; k < answer.cones.size(); ++k) {
-    const std::optional<vo::ExactLegs>& exact = answer.cones[k].exact_legs;
-    if (!exact) continue;
-    const Place place = place_of(answer.question, k);
-    const auto add = [&](const char* side, const AlgebraicDirection& leg) {
-      legs.emplace_back(&leg, OrderedJson{{"obstacle", place.obstacle}, {"cone", place.cone}, {"side", side}});
-    };
-    add("left", exact->left);
-    add("right", exact->right);
-  }
-  std::stable_sort(legs.begin(), legs.end(),
-                   [](const auto& a, const auto& b) { return compare(*a.first, *b.first) == Sign::negative; });
-  OrderedJson groups = OrderedJson::array();
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (i == 0 || compare(*legs[i - 1].first, *legs[i].first) != Sign::zero) groups.push_back(OrderedJson::array());
-    groups.back().push_back(legs[i].second);
-  }
-  return groups;
 }
 
 std::string exact_legs_words(const vo::ExactLegs& legs) {
@@ -340,7 +316,7 @@ Json member_json(const vo::Member& m, Vec2 velocity) {
   return json;
 }
 
-/// Of what the certificate is: the obstacle's convex shape, and a robot that is no disc.
+/// What the certificate is about: the obstacle's convex shape, and a robot that is no disc.
 void add_shape(const ConeAnswer& a, Json& json) {
   json["shape"] = to_string(a.encounter.obstacle);
   if (a.encounter.robot) json["robot"] = to_string(geometry::ConvexShape{*a.encounter.robot});
@@ -381,30 +357,6 @@ Json taken_json(const VoQuestion& q, const AskedObstacle& o) {
   return json;
 }
 
-bool has_exact_legs(const VoAnswer& a) {
-  return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.exact_legs.has_value(); });
-}
-
-/// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
-Json kinds_of_cone(const VoAnswer& a) {
-  Json exact{"shape", "robot", "taken_as", "overlaps", "contains_velocity", "apex"};
-  if (has_exact_legs(a)) exact.insert(exact.begin(), "exact_legs");
-  return {{"exact", exact},
-          {"certified", {"half_plane", "contact_half_plane", "certificate", "why_no_certificate", "legs/bracket"}},
-          {"rounded", {"legs/direction", "legs/touch", "nearest_boundary", "u", "shared_half_plane", "variants"}}};
-}
-
-Json kinds_of_free(const VoAnswer& a) {
-  Json exact{"obstacles/shape", "obstacles/robot", "obstacles/taken_as", "obstacles/overlaps", "velocity_is_free"};
-  if (has_exact_legs(a)) exact.insert(exact.begin(), {"obstacles/exact_legs", "legs_by_angle"});
-  return {
-      {"exact", exact},
-      {"certified",
-       {"obstacles/half_plane", "obstacles/contact_half_plane", "obstacles/certificate", "obstacles/why_no_certificate",
-        "area", "least_components", "region/inside", "region/area", "region/given_away", "region/lost/area"}},
-      {"rounded", {"region/lost/farthest"}}};
-}
-
 void add_stages(Json& json) {
   const geometry::StageCounts counts = geometry::stage_counts();
   json["stage_counts"] = {{"filter", counts.filter}, {"exact", counts.exact}};
@@ -428,7 +380,6 @@ Json single_json(const VoAnswer& a) {
     }
   }
   for (const vo::Member& m : a.members) json["variants"].push_back(member_json(m, a.question.velocity));
-  json["kinds"] = kinds_of_cone(a);
   add_stages(json);
   return json;
 }
@@ -479,8 +430,6 @@ Json free_json(const VoAnswer& a) {
   json["area"] = json_bracket(f.free.area());
   json["least_components"] = f.free.least_components();
   json["region"] = region_json(a);
-  if (has_exact_legs(a)) json["legs_by_angle"] = legs_by_angle_json(a);
-  json["kinds"] = kinds_of_free(a);
   add_stages(json);
   return json;
 }
