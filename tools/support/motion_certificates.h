@@ -30,7 +30,7 @@ OrderedJson certificate_json(const geometry::MotionCertificate& certificate, con
 OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
                              const formation::SceneObstacle& obstacle);
 
-/// Of a body that drives and turns.
+/// The same for a body that drives and turns.
 OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
                              const geometry::RigidBody& body, const formation::SceneObstacle& obstacle);
 OrderedJson certificate_json(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& a,
