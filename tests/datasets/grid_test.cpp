@@ -2,7 +2,6 @@
 // Grids become polygons that are the union of their occupied cells: neither more nor less.
 #include <cmath>
 
-#include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/distance.h"
 #include "refusal.h"
@@ -156,22 +155,6 @@ TEST_F(GridTest, BadMapsAreNamed) {
   expect_refusal(refused("type octile\nheight 4000\nwidth 4000\nmap\n.."), DataCode::size, "line 4");
   expect_refusal(refused("type octile\nheight two\nwidth 2\nmap\n.."), DataCode::number, "line 2");
   expect_refusal(refused("type octile\nwidth 2\nmap\n.."), DataCode::format_syntax, "line 3");
-}
-
-TEST_F(GridTest, TasksAreReadWithTheirMapsAsWritten) {
-  const std::string text =
-      "version 1\n0\tmaps/dao/arena.map\t49\t49\t1\t11\t1\t12\t1\n9\ta b.map\t4\t4\t1\t1\t9\t1\t8.5\n";
-  const std::vector<PathTask> tasks = read_tasks(put("a.scen", text));
-  ASSERT_EQ(tasks.size(), 2u);
-  EXPECT_EQ(tasks[0].map, "maps/dao/arena.map");
-  EXPECT_EQ(tasks[1].map, "a b.map");
-  EXPECT_EQ(tasks[1].optimal_length, 8.5);
-  EXPECT_TRUE(is_inside_its_map(tasks[0]));
-  EXPECT_FALSE(is_inside_its_map(tasks[1]));
-  EXPECT_EQ(tasks[0].start.row, 11);
-  const DataError error = refusal_of([&] { read_tasks(put("b.scen", "version 1\n1 a.map 4 4 1 1\n")); });
-  expect_refusal(error, DataCode::wrong_count, "line 2");
-  EXPECT_EQ(refusal_of([&] { read_tasks(put("c.scen", "version 7\n")); }).code(), DataCode::format_syntax);
 }
 
 std::string pgm(const std::string& pixels) {

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "exactvo/datasets/audit.h"
-#include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "support/forged_crowd.h"
@@ -250,17 +249,9 @@ TEST(Findings, BeyondTheMostThatAreListedAreCounted) {
   EXPECT_EQ(file.unlisted.at(DataCode::repeated_vertex), repeats - kMostFindings);
 }
 
-using HostileTasks = TemporaryFolder;
+using HostileScenarios = TemporaryFolder;
 
-TEST_F(HostileTasks, AMapsPathIsWordsAndNothingIsOpened) {
-  const auto path = put("a.scen", "version 1\n0\t../../../etc/passwd\t2147483648\t2147483648\t0\t0\t1\t1\t1.5\n");
-  const std::vector<PathTask> tasks = read_tasks(path);
-  ASSERT_EQ(tasks.size(), 1u);
-  EXPECT_EQ(tasks[0].map, "../../../etc/passwd");
-  EXPECT_EQ(tasks[0].width, 2147483648);
-}
-
-TEST_F(HostileTasks, AScenarioNestedTooDeeplyIsRefused) {
+TEST_F(HostileScenarios, AScenarioNestedTooDeeplyIsRefused) {
   const auto path = put("a.json", "{\"name\": " + repeated("[", kDeep));
   try {
     load_scenario(path);

@@ -89,7 +89,6 @@ INSTANTIATE_TEST_SUITE_P(
                "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 2, 2 2, 1 1))\nGEOMETRYCOLLECTION (POINT Z (1 2 3))\n"},
         Sample{"jupedsim-wkt", "a.wkt", "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 2, 2 2, 1 1))"},
         Sample{"movingai-map", "a.map", "type octile\nheight 3\nwidth 4\nmap\n.@@.\n@..T\n.WW.\n"},
-        Sample{"movingai-scen", "a.scen", "version 1\n0\ta.map\t4\t3\t0\t0\t3\t2\t4.5\n"},
         Sample{"ros-map", "a.yaml",
                "image: m.pgm\nresolution: 0.05\norigin: [-1, 2, 0.5]\nnegate: 0\noccupied_thresh: 0.65\n"},
         Sample{"carmen-log", "a.log", "PARAM x\nFLASER 3 1.0 2.0 81.83 0 0 0.5 0 0 0 1 h 1\n"},

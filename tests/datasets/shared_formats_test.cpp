@@ -2,7 +2,6 @@
 // The public maps and scenes of the formats that have no library: counts agree with what others counted.
 #include <gtest/gtest.h>
 
-#include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "shared_data.h"
 
@@ -43,20 +42,6 @@ TEST(SharedFormats, MovingAiMapsHaveTheirBlockedCells) {
     ++maps;
   }
   EXPECT_GE(maps, 20u);
-}
-
-TEST(SharedFormats, MovingAiTasksCount) {
-  EXACTVO_NEEDS_SHARED_DATA();
-  int files = 0;
-  for (const ManifestRow& row : manifest_of({"movingai"})) {
-    if (row.format != "movingai-scen") continue;
-    ++files;
-    SCOPED_TRACE(row.path);
-    const std::vector<PathTask> tasks = read_tasks(shared_data() / row.path);
-    EXPECT_EQ(static_cast<long>(tasks.size()), row.count("tasks"));
-    EXPECT_TRUE(read_all(row.path).obstacles.empty());
-  }
-  EXPECT_GT(files, 0);
 }
 
 TEST(SharedFormats, RosMapsReadOrNameWhatIsMissing) {

@@ -35,7 +35,6 @@ seed wkt "$data"/wkt-*/*.wkt
 seed jupedsim-wkt "$data"/jupedsim-wkt/*
 seed gdal "$data"/geojson-*/*.geojson
 seed movingai-map "$data"/movingai*/*.map
-seed movingai-scen "$data"/movingai*/*.scen
 seed carmen-log "$data"/laser-*/*.log "$data"/laser-*/*.clf
 seed csm-log "$data"/laser-csm-json/*
 seed points-csv "$data"/points-csv/* "$data"/laser-csv/*

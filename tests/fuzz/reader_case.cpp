@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "exactvo/datasets/crowd_recording.h"
-#include "exactvo/datasets/moving_ai.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
@@ -136,7 +135,6 @@ std::string read(const FuzzedFormat& format, const fs::path& path, bool with_rep
   options.keep_going = true;
   options.keep_properties = true;
   options.repair = with_repair;
-  if (options.format == "movingai-scen") read_tasks(path);
   return judged(read_obstacles(path, options));
 }
 
@@ -156,7 +154,6 @@ const std::vector<FuzzedFormat>& fuzzed_formats() {
       {"gdal", ".geojson"},
       {"ros-map", ".yaml"},
       {"movingai-map", ".map"},
-      {"movingai-scen", ".scen"},
       {"carmen-log", ".log"},
       {"csm-log", ".log"},
       {"points-csv", ".csv"},

@@ -563,27 +563,11 @@ TEST(Messages, OneIsSingular) {
 
 constexpr const char* kVo = "vo --position 0,0 --radius 0.5 --time-horizon 2 --obstacle ";
 
-TEST(Messages, AFileOfVelocitiesIsCheckedBeforeTheFirstAnswer) {
-  place().write("v.txt", "1,0.2\n0,1\nabc\n1,1\n");
-  const std::string vo = std::string(kVo) + "'DISC(4 0, 1)' --velocities ";
-  const Outcome file = place().run(vo + "v.txt");
-  EXPECT_EQ(file.status, 2);
-  EXPECT_THAT(file.out, IsEmpty());
-  EXPECT_THAT(file.err, AllOf(HasSubstr("v.txt: line 3: found abc"), Not(HasSubstr("answered"))));
-  const Outcome stream = place().run(vo + "-", "cat v.txt | ");
-  EXPECT_EQ(stream.status, 2);
-  EXPECT_EQ(stream.out, "1,0.2 free\n0,1 free\n");
-  EXPECT_THAT(stream.err, AllOf(HasSubstr("line 3: found abc"), HasSubstr("; answered before it: 2 velocities")));
-}
-
 TEST(Messages, ContactPointsToItsHalfPlane) {
   const Outcome touching = place().run(std::string(kVo) + "'DISC(1.5 0, 1)' --velocity 1,0");
   EXPECT_THAT(touching.out, AllOf(HasSubstr("The half-plane of contact stands below"), HasSubstr("(contact)\n")));
   const Outcome within = place().run(std::string(kVo) + "'DISC(0.5 0, 1)' --velocity 1,0");
   EXPECT_THAT(within.out, HasSubstr("No half-plane of contact can be proven"));
-  const Outcome many = place().run(std::string(kVo) + "'DISC(1.5 0, 1)' --velocities -", "echo 1,0 | ");
-  EXPECT_EQ(many.out, "1,0 contact\n");
-  EXPECT_THAT(many.err, HasSubstr("vo with --velocity instead of --velocities shows the half-plane of contact"));
 }
 
 /// A minus before a zero that no other digit follows.
@@ -600,9 +584,6 @@ TEST(Messages, ZeroHasNoSign) {
                                        std::string("--velocity 1,0.2 --free --max-speed 1.5"),
                                        std::string("--velocity 1,0.2 --free --max-speed 1.5 --json")})
     EXPECT_TRUE(has_no_negative_zero(place().run(kVo + polygon + arguments).out)) << arguments;
-  for (const char* json : {"", " --json"}) {
-    EXPECT_TRUE(has_no_negative_zero(place().run(kVo + polygon + "--velocities -" + json, "echo -0.0,-0 | ").out));
-  }
   place().write("p.jsonl", R"({"bound": {"disc": 2}, "preferred": [-0.0, -0.0], "constraints": []})");
   EXPECT_TRUE(has_no_negative_zero(place().run("lp p.jsonl").out));
   EXPECT_TRUE(has_no_negative_zero(place().run("lp p.jsonl --json").out));

@@ -851,10 +851,9 @@ TEST(Program, ANameThatIsTooLongIsNoDefect) {
 
 TEST(Program, WhatIsPrintedForEverEndsWhenNobodyReadsIt) {
   const Workplace here;
-  here.write("run.sh",
-             "yes 3,0 | timeout 60 '" EXACTVO_PROGRAM
-             "' vo --obstacle 'DISC(4 0, 1)' --velocities - "
-             "--position 0,0 --radius 0.5 --time-horizon 2 | head -1 > first; echo ${PIPESTATUS[1]} > status");
+  here.write("wall.wkt", "LINESTRING (4 -1, 4 1)");
+  here.write("run.sh", "yes '{\"pose\": [0, 0, 0], \"velocity\": [1, 0], \"turn\": 0}' | timeout 60 '" EXACTVO_PROGRAM
+                       "' monitor --map wall.wkt --radius 0.5 | head -1 > first; echo ${PIPESTATUS[1]} > status");
   EXPECT_EQ(std::system(("cd '" + here.path().string() + "' && bash run.sh").c_str()), 0);
   EXPECT_EQ(here.read("status"), "0\n");
 }

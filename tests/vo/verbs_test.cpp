@@ -45,20 +45,6 @@ TEST(VerbVo, ExactLegsCanBeChecked) {
   EXPECT_EQ(legs[1].at("quarter_turns"), 0);
 }
 
-TEST(VerbVo, ConesThatShareALegAreListedTogether) {
-  // Both pass the direction (2, 1), one on each side; the robot is a point.
-  const Outcome run = Workplace().run(
-      "vo --obstacle 'POLYGON((2 1, 3 -1, 4 -1, 2 1))' --obstacle 'POLYGON((6 3, 6 5, 4 4, 6 3))' --position 0,0 "
-      "--velocity 1,0 --radius 0 --time-horizon 3 --free --max-speed 1 --exact-legs --json");
-  ASSERT_EQ(run.status, 0) << run.err;
-  const json out = json::parse(run.out);
-  EXPECT_EQ(out.at("obstacles")[1].at("exact_legs").size(), 2u);
-  const json order = out.at("legs_by_angle");
-  ASSERT_EQ(order.size(), 3u);
-  EXPECT_EQ(order[1], json::parse(R"([{"obstacle": 0, "cone": 0, "side": "left"},
-                                     {"obstacle": 1, "cone": 0, "side": "right"}])"));
-}
-
 TEST(VerbVo, OverlapHasNoCone) {
   const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
                                       "' --position 3,0 --velocity 1,0 --radius 0.3 --time-horizon 3 --json");
@@ -303,19 +289,6 @@ TEST(VerbVo, ObstaclesThatAreNoneAreNamed) {
   EXPECT_NE(refusal("vo --obstacle 'POINT(3 0)'").find("a point is no obstacle"), std::string::npos);
   const std::string mistyped = refusal("vo --obstcle x");
   EXPECT_NE(mistyped.find("unknown option '--obstcle'; did you mean '--obstacle'?"), std::string::npos) << mistyped;
-}
-
-TEST(VerbVo, EveryFieldIsSaidToBeExactCertifiedOrRounded) {
-  const json out =
-      json_of("--obstacle '" + kSquare +
-              "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --responsibility 0.5 --variant all");
-  std::string all;
-  for (const json& kind : out.at("kinds"))
-    for (const json& field : kind) all += " " + field.get<std::string>() + " ";
-  for (const auto& [key, value] : out.items()) {
-    if (key == "kinds" || key == "time_horizon" || key == "stage_counts" || key == "legs") continue;
-    EXPECT_NE(all.find(" " + key + " "), std::string::npos) << key;
-  }
 }
 
 TEST(VerbVo, FiguresShowTheVelocityBesideALongConeAndWhatAnEllipseEncloses) {

@@ -220,12 +220,6 @@ Json about_json(const datasets::RecordingFile& file) {
   return json;
 }
 
-Json bodies_json(const formation::Recording& run) {
-  Json bodies = Json::array();
-  for (const vo::Body& body : run.bodies) bodies.push_back(to_json(body));
-  return bodies;
-}
-
 Json goal_bodies_json(const formation::Recording& run) {
   Json goal_bodies = Json::array();
   for (const formation::GoalBodies& o : run.goal_bodies)
@@ -285,10 +279,6 @@ bool is_of_plan(formation::Mode mode) {
   return mode == formation::Mode::by_plan || mode == formation::Mode::going_back;
 }
 
-const char* words_of_plan(formation::Mode mode) {
-  return mode == formation::Mode::by_plan ? "goes by a joint plan" : "goes back to where its plan begins";
-}
-
 /// Notes are the simulation's words.
 const char* kind_of_note(const std::string& note) {
   const auto has = [&](const char* words) { return note.find(words) != std::string::npos; };
@@ -321,11 +311,6 @@ std::size_t numbers_in(const Step& row) {
   for (const RobotStep& robot : row.robots)
     count += kNumbersOfDecision + kNumbersOfHalfPlane * robot.constraints.size();
   return count;
-}
-
-std::uint8_t flags_of(const DecisionConstraint& c) {
-  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0) |
-                                   (c.fell_back ? 8 : 0));
 }
 
 void append(std::vector<double>& numbers, Vec2 v) {
@@ -361,7 +346,7 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
       for (const lp::ActiveConstraint& part : r.bound) parts.push_back(&part);
       for (const DecisionConstraint& c : r.constraints) {
         half_planes.push_back(&c);
-        flags.push_back(flags_of(c));
+        flags.push_back(static_cast<std::uint8_t>(c.certified | c.hard << 1 | c.active << 2 | c.fell_back << 3));
         append(line, c.half_plane.normal);
         line.push_back(c.half_plane.offset);
       }
@@ -437,7 +422,8 @@ void RunPacker::note_events(const Step& row) {
     if (!r.note.empty()) add_event(row.time, i, kind_of_note(r.note), r.note);
     if (!first && r.mode != modes_[i]) {
       if (is_of_plan(r.mode))
-        add_event(row.time, i, "plan", words_of_plan(r.mode));
+        add_event(row.time, i, "plan",
+                  r.mode == formation::Mode::by_plan ? "goes by a joint plan" : "goes back to where its plan begins");
       else if (is_of_plan(modes_[i]))
         add_event(row.time, i, "plan", "goes by itself again");
     }
@@ -578,7 +564,8 @@ Json shown_metrics(const std::string& text) {
 Json packed_head(const datasets::RecordingFile& about, const PackedRunLimits& limits) {
   Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
   if (limits.has_scenario) head["scenario"] = scenario_json(about.scenario);
-  head["bodies"] = bodies_json(about.recording);
+  head["bodies"] = Json::array();
+  for (const vo::Body& body : about.recording.bodies) head["bodies"].push_back(to_json(body));
   head["goal_bodies"] = goal_bodies_json(about.recording);
   head["plans"] = plans_json(about.recording);
   head["routes"] = routes_json(about, limits);

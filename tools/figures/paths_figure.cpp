@@ -199,12 +199,6 @@ std::vector<Points> passing_area(const RecordingFile& run) {
   return rectangles;
 }
 
-void add_passing_area(PanelLayers& to) {
-  to.rings("no room to pass: where robots can be that would have to", passing_area(to.run),
-           fmt::format("with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder", kSeparatorColour),
-           "no room to pass");
-}
-
 /// Obstacles, moving ones at the time marks, and with details enclosures, routes and where there is no room to pass.
 void add_scene(PanelLayers& to) {
   to.obstacles(to.run.scenario.obstacles, to.detailed ? 4 : 2.5, to.detailed);
@@ -212,7 +206,9 @@ void add_scene(PanelLayers& to) {
   if (!to.detailed) return;
   add_enclosures(to);
   add_routes(to);
-  add_passing_area(to);
+  to.rings("no room to pass: where robots can be that would have to", passing_area(to.run),
+           fmt::format("with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder", kSeparatorColour),
+           "no room to pass");
 }
 
 // --- Robots ---

@@ -44,15 +44,6 @@ struct Series {
   std::vector<double> values;  ///< one a row of the recording
 };
 
-/// For a run of one row, whose curve has no length.
-std::string point_style(std::size_t i) {
-  return fmt::format("with points pt 7 lc rgb '{}'", series_colour(i));
-}
-
-std::string style_of(std::size_t i) {
-  return fmt::format("with lines lw 2{} lc rgb '{}'", series_dash(i), series_colour(i));
-}
-
 /// The time axis: to the end, but where robots got stuck not far beyond their last move.
 double run_time(const RecordingFile& run) {
   return run.recording.steps.empty() ? 0.0 : run.recording.steps.back().time;
@@ -110,7 +101,9 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, const 
       for (const std::size_t k : drawn_rows(times, values, shown_time(run), range, whole))
         data.row({times[k], values[k]});
     }
-    plot.data(index, "using 1:2 " + (times.size() == 1 ? point_style(first) : style_of(first)),
+    // The curve of a run of one row has no length.
+    const std::string style = times.size() == 1 ? "points pt 7" : std::string("lines lw 2") + series_dash(first);
+    plot.data(index, fmt::format("using 1:2 with {} lc rgb '{}'", style, series_colour(first)),
               robot_in_legend(first, all.size(), all[first].label, kKeyLength));
   }
 }

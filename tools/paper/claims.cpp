@@ -36,7 +36,7 @@ Runs formation_runs(const ReportData& data, const std::string& controller) {
   return runs;
 }
 
-/// Of some runs alone nothing is said that is about all of them.
+/// A part of the runs says nothing about all of them.
 bool complete(const Runs& runs) {
   return std::none_of(runs.begin(), runs.end(), [](const Json* r) { return r->is_null(); });
 }

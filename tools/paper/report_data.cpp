@@ -151,10 +151,6 @@ void add_once(const std::string& word, std::vector<std::string>& words) {
   if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
 }
 
-std::string controller_of(const Json& run) {
-  return run["controller"].is_null() ? "" : run["controller"].get<std::string>();
-}
-
 }  // namespace
 
 ReportData::ReportData(const fs::path& section_five, const fs::path& campaigns, fs::path scenarios)
@@ -184,8 +180,9 @@ void ReportData::add_source(const std::string& name, const std::vector<Json>& pr
 
 const Json& ReportData::run(const std::string& scenario, const std::string& method,
                             const std::string& controller) const {
+  const Json wanted = controller.empty() ? Json() : Json(controller);
   for (const Json& r : summary_)
-    if (r["scenario"] == scenario && r["method"] == method && controller_of(r) == controller) return r;
+    if (r["scenario"] == scenario && r["method"] == method && r["controller"] == wanted) return r;
   return kNull;
 }
 

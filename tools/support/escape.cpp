@@ -11,7 +11,7 @@ namespace {
 
 using boost::locale::utf::code_point;
 
-/// Of bytes that are no UTF-8 the code is none.
+/// Bytes that are no UTF-8 have no code.
 bool is_harmless(code_point c) {
   if (!boost::locale::utf::is_valid_codepoint(c) || c < 0x20 || (c >= 0x7F && c < 0xA0)) return false;
   const bool separates_lines = c == 0x2028 || c == 0x2029;

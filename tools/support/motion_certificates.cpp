@@ -101,11 +101,6 @@ RoundedPolygon part_in(const OrderedJson& json) {
   return {list_in(json.at("corners"), 1, pair_in), json.at("radius").get<double>()};
 }
 
-struct Moving {
-  Motion motion;
-  RigidBody body;
-};
-
 Motion motion_in(const OrderedJson& json) {
   if (!json.contains("basis")) return StraightMotion{timed_in(json.at("from")), timed_in(json.at("to"))};
   const auto basis = std::find(std::begin(kBases), std::end(kBases), json["basis"].get<std::string>());
@@ -114,8 +109,12 @@ Motion motion_in(const OrderedJson& json) {
                       json.at("end").get<double>(), list_in(json.at("points"), 1, pair_in)};
 }
 
-Moving moving_in(const OrderedJson& json) {
-  return {motion_in(json), list_in(json.at("body"), 1, part_in)};
+TurningMotion turning_in(const OrderedJson& json) {
+  const TimedPoint from = timed_in(json.at("from"));
+  return {from.time,
+          json.at("until").get<double>(),
+          from.at,
+          {pair_in(json.at("velocity")), json.at("turn").get<double>()}};
 }
 
 Separation separation_in(const OrderedJson& json) {
@@ -123,67 +122,50 @@ Separation separation_in(const OrderedJson& json) {
           json.at("to").get<double>(), pair_in(json.at("direction")), json.at("margin").get<double>()};
 }
 
-struct Read {
-  MotionCertificate certificate;
-  Moving a;
-  std::optional<Moving> b;
-  std::optional<geometry::Obstacle> obstacle;
-};
-
-Read certificate_in(const OrderedJson& json) {
-  Read read{{list_in(json.at("separations"), 0, separation_in)}, moving_in(json.at("a")), {}, {}};
-  require_readable(json.contains("b") != json.contains("obstacle"));
-  if (json.contains("b")) read.b = moving_in(json["b"]);
-  if (json.contains("obstacle")) read.obstacle = obstacle_in(json["obstacle"]);
-  return read;
-}
-
-/// A body that drives and turns.
-struct Turning {
-  TurningMotion motion;
+template <class AnyMotion>
+struct Moving {
+  AnyMotion motion;
   RigidBody body;
 };
 
-Turning turning_in(const OrderedJson& json) {
-  const TimedPoint from = timed_in(json.at("from"));
-  return {{from.time,
-           json.at("until").get<double>(),
-           from.at,
-           {pair_in(json.at("velocity")), json.at("turn").get<double>()}},
-          list_in(json.at("body"), 1, part_in)};
-}
-
-/// Against another, or against an obstacle.
-struct ReadTurning {
+/// A certificate of a body against another one, or against an obstacle.
+template <class AnyMotion>
+struct Read {
   MotionCertificate certificate;
-  Turning a;
-  std::optional<Turning> b;
+  Moving<AnyMotion> a;
+  std::optional<Moving<AnyMotion>> b;
   std::optional<geometry::Obstacle> obstacle;
+
+  bool is_proven() const {
+    return b ? proves_clear(certificate, a.motion, a.body, b->motion, b->body)
+             : proves_clear(certificate, a.motion, a.body, *obstacle);
+  }
 };
 
-CheckedCertificate check_turning(const OrderedJson& certificate) {
-  const auto read = read_or_nothing([&] {
-    ReadTurning all{
-        {list_in(certificate.at("separations"), 0, separation_in)}, turning_in(certificate.at("a")), {}, {}};
-    require_readable(certificate.contains("b") != certificate.contains("obstacle"));
-    if (certificate.contains("b")) all.b = turning_in(certificate["b"]);
-    if (certificate.contains("obstacle")) all.obstacle = obstacle_in(certificate["obstacle"]);
-    return all;
+template <class AnyMotion>
+std::optional<Read<AnyMotion>> certificate_in(const OrderedJson& json, AnyMotion (*motion)(const OrderedJson&)) {
+  return read_or_nothing([&] {
+    const auto moving = [&](const OrderedJson& m) {
+      return Moving<AnyMotion>{motion(m), list_in(m.at("body"), 1, part_in)};
+    };
+    Read<AnyMotion> read{{list_in(json.at("separations"), 0, separation_in)}, moving(json.at("a")), {}, {}};
+    require_readable(json.contains("b") != json.contains("obstacle"));
+    if (json.contains("b")) read.b = moving(json["b"]);
+    if (json.contains("obstacle")) read.obstacle = obstacle_in(json["obstacle"]);
+    return read;
   });
+}
+
+CheckedCertificate check_turning(const OrderedJson& certificate) {
+  const auto read = certificate_in(certificate, turning_in);
   if (!read) return {"not a certificate", "", false};
   const TurningMotion& m = read->a.motion;
   const std::string claim = fmt::format(
       "clear of {}, from ({:.6g}, {:.6g}) at {:.6g} s with ({:.6g}, {:.6g}) m/s, {:.6g} rad/s until {:.6g} s",
       read->b ? "another body" : "an obstacle", m.at.x, m.at.y, m.start, m.twist.velocity.x, m.twist.velocity.y,
       m.twist.turn, m.end);
-  const bool is_proven = read->b ? proves_clear(read->certificate, m, read->a.body, read->b->motion, read->b->body)
-                                 : proves_clear(read->certificate, m, read->a.body, *read->obstacle);
+  const bool is_proven = read->is_proven();
   return {is_proven ? "valid" : "not proven", claim, is_proven};
-}
-
-bool proves(const Read& read) {
-  if (read.obstacle) return proves_clear(read.certificate, read.a.motion, read.a.body, *read.obstacle);
-  return proves_clear(read.certificate, read.a.motion, read.a.body, read.b->motion, read.b->body);
 }
 
 }  // namespace
@@ -218,7 +200,7 @@ bool is_motion_certificate(const OrderedJson& certificate) {
 CheckedCertificate check_motion_certificate(const OrderedJson& certificate) {
   const OrderedJson* a = member(certificate, "a");
   if (a != nullptr && member(*a, "turn") != nullptr) return check_turning(certificate);
-  const auto read = read_or_nothing([&] { return certificate_in(certificate); });
+  const auto read = certificate_in(certificate, motion_in);
   if (!read) return {"not a certificate", "", false};
   const Motion& m = read->a.motion;
   std::string claim = read->b ? "clear of another body" : "clear of an obstacle";
@@ -227,7 +209,8 @@ CheckedCertificate check_motion_certificate(const OrderedJson& certificate) {
     const geometry::Vec2 from = position_at(m, start), to = position_at(m, end);
     claim += fmt::format(", from ({:.6g}, {:.6g}) at {:.6g} s to ({:.6g}, {:.6g}) at {:.6g} s", from.x, from.y, start,
                          to.x, to.y, end);
-    return proves(*read) ? CheckedCertificate{"valid", claim, true} : CheckedCertificate{"not proven", claim, false};
+    return read->is_proven() ? CheckedCertificate{"valid", claim, true}
+                             : CheckedCertificate{"not proven", claim, false};
   } catch (const std::logic_error&) {
     return {"not a certificate", claim, false};  // times that fall, a radius below 0
   }

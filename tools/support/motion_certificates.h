@@ -35,7 +35,7 @@ std::string certificate_text(const geometry::MotionCertificate& certificate, con
 std::string certificate_text(const geometry::MotionCertificate& certificate, const BodyInMotion& a,
                              std::string_view obstacle);
 
-/// Of a body that drives and turns.
+/// The same for a body that drives and turns.
 std::string certificate_text(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& motion,
                              const geometry::RigidBody& body, std::string_view obstacle);
 std::string certificate_text(const geometry::MotionCertificate& certificate, const geometry::TurningMotion& a,

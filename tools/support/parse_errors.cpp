@@ -16,7 +16,7 @@ namespace exactvo::tools {
 
 namespace {
 
-/// Of the program, and of the verbs for which `is_meant` holds.
+/// The options of the program, and of the verbs for which `is_meant` holds.
 std::vector<const CLI::Option*> options_of(const CLI::App& app, const std::function<bool(const CLI::App*)>& is_meant) {
   std::vector<const CLI::Option*> all = app.get_options();
   for (const CLI::App* verb : app.get_subcommands(is_meant)) {
@@ -92,8 +92,8 @@ std::string value_of(const CLI::Option& option, const std::vector<std::string>& 
   return parsed;
 }
 
-/// Of an option with a CLI::Range of whole numbers, whose type is called "UINT:INT in [1 - 1000000]", or so; else
-/// empty.
+/// The range of an option with a CLI::Range of whole numbers, whose type is called "UINT:INT in [1 - 1000000]" or so;
+/// empty for other options.
 std::string range_words(const std::string& type) {
   const std::string before = " in [", between = " - ";
   const std::size_t at = type.find(before), end = type.find(']', at);
@@ -185,39 +185,6 @@ void check_no_empty_values(const CLI::App& app) {
     if (is_flag(*option) || std::find(values.begin(), values.end(), "") == values.end()) continue;
     throw UsageError(option->get_name(), "", kind_of_value(*option));
   }
-}
-
-namespace {
-
-/// Options whose value is a point or a velocity, X,Y.
-constexpr const char* kPointOptions[] = {"--position", "--velocity", "--obstacle-velocity", "--goal", "--from", "--to"};
-
-bool is_number(const std::string& word) {
-  char* end = nullptr;
-  std::strtod(word.c_str(), &end);
-  return !word.empty() && *end == '\0';
-}
-
-/// The two numbers of a word that ends in the comma between them, as in "0, 0", or that has none.
-std::string without_comma(const std::string& word) {
-  return !word.empty() && word.back() == ',' ? word.substr(0, word.size() - 1) : word;
-}
-
-}  // namespace
-
-std::vector<std::string> with_points_joined(const std::vector<std::string>& words) {
-  std::vector<std::string> joined;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    const bool takes_point =
-        std::find(std::begin(kPointOptions), std::end(kPointOptions), words[k]) != std::end(kPointOptions);
-    if (takes_point && k + 2 < words.size() && is_number(without_comma(words[k + 1])) && is_number(words[k + 2])) {
-      joined.push_back(words[k] + "=" + without_comma(words[k + 1]) + "," + words[k + 2]);
-      k += 2;
-    } else {
-      joined.push_back(words[k]);
-    }
-  }
-  return joined;
 }
 
 CLI::Validator whole_number(unsigned long long least, unsigned long long most) {

@@ -21,9 +21,6 @@ void check_switches(const CLI::App& app, const std::vector<std::string>& words);
 /// Refuses (UsageError) an option or argument that was given an empty text. REQUIRES: a parsed command line.
 void check_no_empty_values(const CLI::App& app);
 
-/// The command line with points of two words as one: "--position 0 0" becomes "--position=0,0". Other words stay.
-std::vector<std::string> with_points_joined(const std::vector<std::string>& words);
-
 /// A check for an option's value; its message is in the form "found 'X', expected a whole number from 1 to 9".
 CLI::Validator whole_number(unsigned long long least, unsigned long long most);
 

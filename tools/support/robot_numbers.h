@@ -17,10 +17,10 @@
 
 namespace exactvo::tools {
 
-/// Of coordinates, velocities and radii: m, m/s.
+/// The bound of coordinates, velocities and radii: m, m/s.
 inline constexpr double kLargestNumber = vo::kMostApex;
 
-/// Of horizons, s: lengths over them, and velocities times them, keep their squares within doubles too.
+/// The bounds of horizons, s: lengths over them, and velocities times them, keep their squares within doubles too.
 inline constexpr double kLeastHorizon = 0x1p-100;
 inline constexpr double kMostHorizon = 0x1p100;
 

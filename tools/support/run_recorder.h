@@ -27,7 +27,7 @@ namespace exactvo::tools {
 /// half-planes, which no figure of a run shows.
 class ShownRows {
  public:
-  /// Of all robots together.
+  /// Counts the states of all robots together.
   static constexpr std::size_t kMostStates = 200'000;
 
   void add(const formation::Step& row, const formation::LyapunovRow* lyapunov);

@@ -23,7 +23,7 @@ class TerminateOnSignal {
   TerminateOnSignal(const TerminateOnSignal&) = delete;
   TerminateOnSignal& operator=(const TerminateOnSignal&) = delete;
 };
-/// Of the one that was made last; null where none lives. Async-signal-safe.
+/// The words of the one that was made last; null where none lives. Async-signal-safe.
 const char* words_of_termination();
 
 /// A folder that a signal removes with all in it, for as long as the object lives. Beyond a fixed number of them at a

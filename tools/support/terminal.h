@@ -82,7 +82,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(double done, const std::string& doing);
-  /// Of work whose share done is not known.
+  /// For work whose progress is not known.
   void say(const std::string& doing);
   /// Whether it is seen at all.
   bool enabled() const { return enabled_; }

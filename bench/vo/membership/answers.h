@@ -5,8 +5,6 @@
 /// Whether [0, t_max v] meets S, by the same algorithm twice: in plain doubles, believing every sign, and in rationals
 /// (GMP) without any filter but with the same short cuts. Discs, ellipses with an area, and convex polygons.
 
-#include <memory>
-
 #include "exactvo/geometry/support.h"
 
 namespace exactvo::bench {
@@ -15,20 +13,5 @@ bool plain_meets(const geometry::GrownShape& s, geometry::Vec2 v, double t_max);
 bool rational_meets(const geometry::GrownShape& s, geometry::Vec2 v, double t_max);
 /// The same in rationals as the formulas stand, without looking at one sign to spare the next.
 bool naive_meets(const geometry::GrownShape& s, geometry::Vec2 v, double t_max);
-
-/// `rational_meets` with all that does not depend on the velocity converted and multiplied out before: what a cone is
-/// for rationals that are asked about many velocities. Discs and ellipses.
-class RationalCone {
- public:
-  RationalCone(const geometry::GrownShape& s, double t_max);
-  ~RationalCone();
-  RationalCone(RationalCone&&) noexcept;
-  bool contains(geometry::Vec2 v) const;
-
-  struct Numbers;
-
- private:
-  std::unique_ptr<const Numbers> numbers_;
-};
 
 }  // namespace exactvo::bench

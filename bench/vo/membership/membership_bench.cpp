@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What does exact membership cost? Against plain doubles (`ratio` = exact / plain), against rationals without a filter
 // (`ratio` = rational / exact: with the filter's short cuts, and `naive`, every sign evaluated), and how often the
-// filter fails on random input (`failure_rate`). The same for a cone that was prepared once (vo::Membership): against
-// plain doubles, against rationals from the doubles (`rational`) and against rationals that were prepared as
-// well (`prepared_rational`); `general_share` is what it leaves to the general predicate. Last, what it costs to have
-// one: the constructor of vo::VelocityObstacle, which proves its shape valid, and of vo::Membership.
-#include <algorithm>
-
+// filter fails on random input (`failure_rate`). Last, what it costs to have a cone: the constructor of
+// vo::VelocityObstacle, which proves its shape valid.
 #include "exactvo/geometry/predicates.h"
-#include "exactvo/vo/membership.h"
+#include "exactvo/vo/velocity_obstacle.h"
 #include "in_turns.h"
 #include "instances.h"
 #include "membership/answers.h"
@@ -72,71 +68,6 @@ void naive_against_exact(benchmark::State& state, Obstacle kind) {
 BENCHMARK_CAPTURE(naive_against_exact, disc, Obstacle::disc);
 BENCHMARK_CAPTURE(naive_against_exact, ellipse, Obstacle::ellipse);
 
-// --- Prepared ---
-
-struct PreparedInstance {
-  vo::Membership membership;
-  Instance instance;
-  RationalCone rational;
-};
-
-std::vector<PreparedInstance> prepared_instances(Obstacle kind, std::size_t count, std::uint64_t seed) {
-  std::vector<PreparedInstance> out;
-  for (const Instance& i : random_instances(kind, count, seed)) {
-    const vo::VelocityObstacle obstacle(i.s.shape, i.s.origin, i.s.radius, i.time_horizon);
-    out.push_back({vo::Membership(obstacle), i, RationalCone(i.s, i.time_horizon)});
-  }
-  return out;
-}
-
-bool prepared(const PreparedInstance& i) {
-  return i.membership.contains(i.instance.velocity);
-}
-bool unprepared_plain(const PreparedInstance& i) {
-  return plain(i.instance);
-}
-bool unprepared_rational(const PreparedInstance& i) {
-  return rational(i.instance);
-}
-bool prepared_rational(const PreparedInstance& i) {
-  return i.rational.contains(i.instance.velocity);
-}
-
-bool all_agree(const std::vector<PreparedInstance>& instances) {
-  return std::all_of(instances.begin(), instances.end(), [](const PreparedInstance& i) {
-    return prepared(i) == exact(i.instance) && prepared(i) == prepared_rational(i);
-  });
-}
-
-void prepared_against_plain(benchmark::State& state, Obstacle kind) {
-  const std::vector<PreparedInstance> instances = prepared_instances(kind, kInstances, 8);
-  if (!all_agree(instances)) return state.SkipWithError("the exact answers differ");
-  geometry::reset_stage_counts();
-  for (const PreparedInstance& i : instances) benchmark::DoNotOptimize(prepared(i));
-  const geometry::StageCounts counts = geometry::stage_counts();
-  report_ratio(state, instances, prepared, prepared, unprepared_plain);
-  state.counters["general_share"] =
-      static_cast<double>(counts.exact + counts.filter) / static_cast<double>(instances.size());
-}
-BENCHMARK_CAPTURE(prepared_against_plain, disc, Obstacle::disc);
-BENCHMARK_CAPTURE(prepared_against_plain, ellipse, Obstacle::ellipse);
-
-void rational_against_prepared(benchmark::State& state, Obstacle kind) {
-  const std::vector<PreparedInstance> instances = prepared_instances(kind, kSlowInstances, 9);
-  if (!all_agree(instances)) return state.SkipWithError("the exact answers differ");
-  report_ratio(state, instances, prepared, unprepared_rational, prepared, 9, kPasses);
-}
-BENCHMARK_CAPTURE(rational_against_prepared, disc, Obstacle::disc);
-BENCHMARK_CAPTURE(rational_against_prepared, ellipse, Obstacle::ellipse);
-
-void prepared_rational_against_prepared(benchmark::State& state, Obstacle kind) {
-  const std::vector<PreparedInstance> instances = prepared_instances(kind, kSlowInstances, 9);
-  if (!all_agree(instances)) return state.SkipWithError("the exact answers differ");
-  report_ratio(state, instances, prepared, prepared_rational, prepared, 9, kPasses);
-}
-BENCHMARK_CAPTURE(prepared_rational_against_prepared, disc, Obstacle::disc);
-BENCHMARK_CAPTURE(prepared_rational_against_prepared, ellipse, Obstacle::ellipse);
-
 // --- Having one ---
 
 void construct(benchmark::State& state, Obstacle kind) {
@@ -153,20 +84,6 @@ BENCHMARK_CAPTURE(construct, ellipse, Obstacle::ellipse);
 BENCHMARK_CAPTURE(construct, segment, Obstacle::segment);
 BENCHMARK_CAPTURE(construct, polygon_8, Obstacle::polygon8);
 BENCHMARK_CAPTURE(construct, polygon_16, Obstacle::polygon16);
-
-void prepare(benchmark::State& state, Obstacle kind) {
-  const std::vector<Instance> instances = random_instances(kind, kInstances, 8);
-  std::vector<vo::VelocityObstacle> obstacles;
-  for (const Instance& i : instances) obstacles.emplace_back(i.s.shape, i.s.origin, i.s.radius, i.time_horizon);
-  std::size_t next = 0;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(vo::Membership(obstacles[next]));
-    if (++next == obstacles.size()) next = 0;
-  }
-}
-BENCHMARK_CAPTURE(prepare, disc, Obstacle::disc);
-BENCHMARK_CAPTURE(prepare, ellipse, Obstacle::ellipse);
-BENCHMARK_CAPTURE(prepare, polygon_8, Obstacle::polygon8);
 
 }  // namespace
 }  // namespace exactvo::bench

@@ -168,68 +168,6 @@ struct Naive {
 
 }  // namespace
 
-// --- Prepared ---
-
-/// A disc is held as the ellipse of no size, its radius added to the robot's.
-struct RationalCone::Numbers {
-  bool is_disc;
-  P p;
-  Q l11, l21, l22, R, t_max;
-  Q trace, D, RD;      // of |L|^2, det(L)^2, r^2 det(L)^2
-  bool start_is_in_S;  // asked whenever v leads away
-};
-
-namespace {
-
-bool prepared_holds(const RationalCone::Numbers& c, const P& u) {
-  if (c.is_disc) return dot(u, u) <= c.R;
-  const Q x = c.l22 * u.x, y = c.l11 * u.y - c.l21 * u.x;
-  const Q b = c.trace + c.R - dot(u, u), rest = c.D + c.R * c.trace - (x * x + y * y);
-  return !is_outside(b, rest, c.RD);
-}
-
-bool prepared_disc(const RationalCone::Numbers& c, const P& v) {
-  const Q pv = dot(c.p, v);
-  if (sgn(pv) <= 0) return c.start_is_in_S;
-  const Q speed2 = dot(v, v);
-  if (pv >= c.t_max * speed2) return prepared_holds(c, {Q(c.p.x - c.t_max * v.x), Q(c.p.y - c.t_max * v.y)});
-  const Q across = cross(v, c.p);
-  return across * across <= c.R * speed2;
-}
-
-bool prepared_ellipse(const RationalCone::Numbers& c, const P& v) {
-  const P n{Q(-v.y), v.x};
-  const P ln{Q(c.l11 * n.x + c.l21 * n.y), Q(c.l22 * n.y)}, ld{Q(c.l11 * v.x + c.l21 * v.y), Q(c.l22 * v.y)};
-  const Q speed2 = dot(v, v), b = dot(ln, ln), d = c.R * speed2, np = dot(n, c.p);
-  const Q rest = np * np - b - d;
-  if (sgn(rest) > 0 && rest * rest > 4 * b * d) return false;
-  const Q tilt = np * dot(ld, ln), f = b * d, pv = dot(c.p, v);
-  if (sign_with_root(pv * b - tilt, pv, f) <= 0) return c.start_is_in_S;
-  const Q later = pv - c.t_max * speed2;
-  if (sign_with_root(later * b - tilt, later, f) < 0) return true;
-  return prepared_holds(c, {Q(c.p.x - c.t_max * v.x), Q(c.p.y - c.t_max * v.y)});
-}
-
-}  // namespace
-
-RationalCone::RationalCone(const GrownShape& s, double t_max) {
-  const auto* disc = std::get_if<geometry::Disc>(&s.shape);
-  const Ellipse e = disc ? Ellipse{disc->center, 0.0, 0.0, 0.0} : std::get<Ellipse>(s.shape);
-  const Q r = disc ? Q(Q(disc->radius) + Q(s.radius)) : Q(s.radius), R = r * r;
-  const Q l11(e.l11), l21(e.l21), l22(e.l22), det = l11 * l22, D = det * det;
-  auto numbers =
-      std::make_unique<Numbers>(Numbers{disc != nullptr, exactly(e.center) - exactly(s.origin), l11, l21, l22, R,
-                                        Q(t_max), Q(l11 * l11 + l21 * l21 + l22 * l22), D, Q(R * D), false});
-  numbers->start_is_in_S = prepared_holds(*numbers, numbers->p);
-  numbers_ = std::move(numbers);
-}
-RationalCone::~RationalCone() = default;
-RationalCone::RationalCone(RationalCone&&) noexcept = default;
-
-bool RationalCone::contains(Vec2 v) const {
-  return numbers_->is_disc ? prepared_disc(*numbers_, exactly(v)) : prepared_ellipse(*numbers_, exactly(v));
-}
-
 bool naive_meets(const GrownShape& s, Vec2 v, double t_max) {
   return std::visit(Naive{s, exactly(v), Q(t_max)}, s.shape);
 }

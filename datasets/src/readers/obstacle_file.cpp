@@ -136,7 +136,6 @@ const std::vector<Reader>& readers() {
       {"wkt", looks_like_wkt, read_wkt},
       {"jupedsim-wkt", nullptr, read_jupedsim_wkt},
       {"movingai-map", looks_like_moving_ai_map, read_moving_ai_map},
-      {"movingai-scen", looks_like_moving_ai_scen, read_moving_ai_scen},
       {"ros-map", looks_like_ros_map, read_ros_map},
       {"csm-log", looks_like_csm_log, read_csm_log},
       {"carmen-log", looks_like_carmen_log, read_carmen_log},

@@ -45,8 +45,6 @@ void read_wkt_text(std::string_view text, const std::string& place, const std::s
 // moving_ai.cpp
 bool looks_like_moving_ai_map(const FormatProbe& probe);
 void read_moving_ai_map(const std::filesystem::path& path, Collector& out);
-bool looks_like_moving_ai_scen(const FormatProbe& probe);
-void read_moving_ai_scen(const std::filesystem::path& path, Collector& out);
 
 // ros_map.cpp
 bool looks_like_ros_map(const FormatProbe& probe);

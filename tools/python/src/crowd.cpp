@@ -23,7 +23,7 @@ namespace {
 using formation::RobotId;
 using namespace py::literals;
 
-/// Of an id that names nobody.
+/// The place of an id without a robot.
 constexpr Vec2 kNowhere{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
 /// Values by id that Python sees: numbers, or rows of two. They grow by a new allocation; what saw the old one keeps it

@@ -302,7 +302,7 @@ py::array_t<std::uint8_t> check_batch(py::handle normals, py::handle offsets, py
 
 // --- Answers ---
 
-/// Of the answer that the lanes gave, what binds; the disc, which they do not name, wherever it may.
+/// What binds in the answer that the lanes gave; the disc, which they do not name, wherever it may.
 lp::Solution solution_at(const lp::BatchAnswers<double>& answers, double disc, std::size_t i) {
   constexpr double kOnDisc = 1e-6;
   lp::Solution s;

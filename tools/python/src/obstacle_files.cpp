@@ -125,17 +125,14 @@ py::tuple batch(const std::vector<fs::path>& paths, const fs::path& out, const s
   datasets::BatchConfiguration configuration;
   configuration.reading.repair = repair;
   configuration.geojson_in_metres = metres;
-  configuration.geopackage = configuration.geojson = configuration.pictures = false;
+  configuration.geojson = configuration.pictures = false;
   for (const std::string& name : write) {
-    if (name == "geopackage")
-      configuration.geopackage = true;
-    else if (name == "geojson")
+    if (name == "geojson")
       configuration.geojson = true;
     else if (name == "pictures")
       configuration.pictures = true;
     else if (name != "measurements")
-      throw ArgumentError("write", "\"" + name + "\"",
-                          "some of \"measurements\", \"pictures\", \"geopackage\", \"geojson\"");
+      throw ArgumentError("write", "\"" + name + "\"", "some of \"measurements\", \"pictures\", \"geojson\"");
   }
   datasets::BatchRun run;
   run.paths = paths;

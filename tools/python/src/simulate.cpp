@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 using datasets::LoadedScenario;
-/// Of a function that touches no Python object.
+/// Releases the lock of the interpreter round a function that touches no Python object.
 using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
 /// A run with its columns: [step][robot][xy].

@@ -90,7 +90,7 @@ OrderedJson positions(const Points& points) {
   return list;
 }
 
-/// Of points that are metres or degrees already.
+/// The points are metres or degrees already.
 OrderedJson ring_geometry(const Points& ring) {
   if (ring.size() == 1) return {{"type", "Point"}, {"coordinates", positions(ring)[0]}};
   if (ring.size() == 2) return {{"type", "LineString"}, {"coordinates", positions(ring)}};

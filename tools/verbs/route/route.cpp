@@ -279,7 +279,7 @@ Vec2 place_of(Vec2 given, const char* end, const AskedMap& map, const Answers& a
   return *metres;
 }
 
-/// Of the longer side of the obstacles' box.
+/// A multiple of the longer side of the obstacles' box.
 constexpr double kFarthestOfQueries = 4.0;
 /// m; all that --from and --to take.
 constexpr double kFarthestOfEmptyMap = kLargestNumber;
@@ -301,7 +301,7 @@ ExitCode answer_many(const AskedMap& map, const RouteFlags& flags) {
   return all ? ExitCode::success : ExitCode::negative;
 }
 
-/// Of a cell's side: exact beside every number of a cell up to 2^16, and nothing beside any length.
+/// A share of a cell's side: exact beside every number of a cell up to 2^16, and nothing beside any length.
 constexpr double kIntoCell = 0x1p-36;
 
 ExitCode route(const RouteFlags& flags) {

@@ -18,8 +18,6 @@ using geometry::Bracket;
 using geometry::HalfPlane;
 using geometry::Sign;
 using vo::AlgebraicDirection;
-using vo::FreeArrangement;
-using vo::ShiftedCone;
 
 namespace {
 
@@ -75,73 +73,7 @@ Json json_of(const char* side, const vo::Leg& leg) {
           {"bracket", {{"inside", json_point(leg.normal)}, {"outside", json_point(leg.normal_outside)}}}};
 }
 
-namespace {
-
-std::string ellipse_words(const VoQuestion& question, std::size_t cone) {
-  return fmt::format("obstacle {} takes part as an ellipse, whose offset has degree eight",
-                     place_of(question, cone).obstacle);
-}
-
-std::string contact_words(const VoQuestion& question, std::size_t cone) {
-  return fmt::format("the robot touches or overlaps obstacle {}", place_of(question, cone).obstacle);
-}
-
-std::string curves_words(const std::vector<ShiftedCone>& cones) {
-  std::size_t curves = 0;
-  for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
-  return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
-}
-
-/// REQUIRES: not Refusal::none.
-std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, const VoQuestion& question) {
-  switch (refusal) {
-    case vo::Refusal::ellipse: {
-      const auto held = [](const ShiftedCone& c) { return FreeArrangement::can_hold(c); };
-      const auto first = std::find_if_not(cones.begin(), cones.end(), held);
-      return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
-    }
-    case vo::Refusal::cones:
-      return fmt::format("{}, more than {}", geometry::counted(cones.size(), "convex shape"), vo::kMostCones);
-    case vo::Refusal::curves:
-      return curves_words(cones);
-    case vo::Refusal::range:
-      return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
-    default:
-      return "the scene's magnitudes are too different for exact results";
-  }
-}
-
-OrderedJson json_of(const vo::PointBracket& p) {
-  return OrderedJson::array({json_bracket(p.x), json_bracket(p.y)});
-}
-
-OrderedJson json_of(const vo::FreeArc& arc, const VoQuestion& question) {
-  OrderedJson json{{"kind", name(arc.kind)}, {"obstacle", nullptr}, {"cone", nullptr}};
-  if (arc.kind != vo::ArcKind::speed_circle) {
-    const Place place = place_of(question, arc.cone);
-    json["obstacle"] = place.obstacle;
-    json["cone"] = place.cone;
-  }
-  json["from"] = json_of(arc.from);
-  json["to"] = json_of(arc.to);
-  if (arc.turn == 0) return json;
-  json["center"] = json_point(arc.center);
-  json["radius"] = arc.radius;
-  json["turn"] = arc.turn;
-  return json;
-}
-
-OrderedJson json_of(const vo::FreePiece& piece, const VoQuestion& question) {
-  OrderedJson arcs = OrderedJson::array();
-  for (const vo::FreeArc& arc : piece.boundary) arcs.push_back(json_of(arc, question));
-  return {{"area", json_bracket(piece.area)}, {"arcs", arcs}};
-}
-
-const char* word_of(bool inside) {
-  return inside ? "yes" : "no";
-}
-
-/// Of the slope: narrower than a double of it.
+/// The width of the slope's interval: narrower than a double of it.
 constexpr double kWidth = 0x1p-60;
 
 OrderedJson leg_json(const char* side, const AlgebraicDirection& leg) {
@@ -172,71 +104,9 @@ std::string leg_words(const char* side, const AlgebraicDirection& leg) {
                      leg.quarter_turns(), polynomial_words(leg.polynomial()));
 }
 
-}  // namespace
-
-/// The cones are those of the question's encounters. `half_planes` is null where a cone has none.
-ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion& question,
-                        const std::vector<geometry::HalfPlane>* half_planes) {
-  const auto touched = std::find_if(cones.begin(), cones.end(), [](const ShiftedCone& c) { return c.cone.overlaps(); });
-  if (touched != cones.end())
-    return {{}, {}, contact_words(question, static_cast<std::size_t>(touched - cones.begin()))};
-  FreeArrangement::Attempt attempt = FreeArrangement::attempt(cones, question.max_speed);
-  if (!attempt.free) return {{}, {}, words(attempt.refusal, cones, question)};
-  ExactFree exact{std::move(attempt.free), {}, ""};
-  if (half_planes) exact.region_inside = exact.free->attempt_holds(*half_planes);
-  return exact;
-}
-
-/// Null where there is none.
-OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question) {
-  if (!exact.free) return nullptr;
-  OrderedJson pieces = OrderedJson::array();
-  for (const vo::FreePiece& piece : exact.free->pieces()) pieces.push_back(json_of(piece, question));
-  return {{"components", pieces.size()},
-          {"area", json_bracket(exact.free->area())},
-          {"region_inside", exact.region_inside ? OrderedJson(word_of(*exact.region_inside)) : OrderedJson()},
-          {"pieces", pieces}};
-}
-
-/// One line or two.
-std::string exact_free_words(const ExactFree& exact) {
-  if (!exact.free) return fmt::format("exact result      none: {}\n", exact.why_not);
-  const std::size_t pieces = exact.free->pieces().size();
-  const Bracket area = exact.free->area();
-  const std::string text = fmt::format("exact result      area {:.10g} to {:.10g} (m/s)^2, {}", area.low, area.high,
-                                       geometry::counted(pieces, "connected part"));
-  return text + (exact.region_inside
-                     ? fmt::format("; all that the half-planes allow is free: {}\n", word_of(*exact.region_inside))
-                     : "\n");
-}
-
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
 OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
   return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
-}
-
-/// The exact legs counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
-/// cones share a leg.
-OrderedJson legs_by_angle_json(const VoAnswer& answer) {
-  std::vector<std::pair<const AlgebraicDirection*, OrderedJson>> legs;
-  for (std::size_t k = 0; k < answer.cones.size(); ++k) {
-    const std::optional<vo::ExactLegs>& exact = answer.cones[k].exact_legs;
-    if (!exact) continue;
-    const Place place = place_of(answer.question, k);
-    const auto add = [&](const char* side, const AlgebraicDirection& leg) {
-      legs.emplace_back(&leg, OrderedJson{{"obstacle", place.obstacle}, {"cone", place.cone}, {"side", side}});
-    };
-    add("left", exact->left);
-    add("right", exact->right);
-  }
-  std::stable_sort(legs.begin(), legs.end(),
-                   [](const auto& a, const auto& b) { return compare(*a.first, *b.first) == Sign::negative; });
-  OrderedJson groups = OrderedJson::array();
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (i == 0 || compare(*legs[i - 1].first, *legs[i].first) != Sign::zero) groups.push_back(OrderedJson::array());
-    groups.back().push_back(legs[i].second);
-  }
-  return groups;
 }
 
 std::string exact_legs_words(const vo::ExactLegs& legs) {
@@ -392,7 +262,6 @@ std::string free_words(const VoAnswer& a) {
       text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
   text += fmt::format("free velocities   area {:.6g} to {:.6g} (m/s)^2, at least {}\n", f.free.area().low,
                       f.free.area().high, geometry::counted(f.free.least_components(), "connected part"));
-  text += exact_free_words(f.exact);
   if (f.report) return text + region_words(a);
   return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: no velocity is free.\n"
                                  : "half-planes       an obstacle has no proven one: they allow no velocity\n");
@@ -447,7 +316,7 @@ Json member_json(const vo::Member& m, Vec2 velocity) {
   return json;
 }
 
-/// Of what the certificate is: the obstacle's convex shape, and a robot that is no disc.
+/// What the certificate is about: the obstacle's convex shape, and a robot that is no disc.
 void add_shape(const ConeAnswer& a, Json& json) {
   json["shape"] = to_string(a.encounter.obstacle);
   if (a.encounter.robot) json["robot"] = to_string(geometry::ConvexShape{*a.encounter.robot});
@@ -488,34 +357,6 @@ Json taken_json(const VoQuestion& q, const AskedObstacle& o) {
   return json;
 }
 
-bool has_exact_legs(const VoAnswer& a) {
-  return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.exact_legs.has_value(); });
-}
-
-/// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
-Json kinds_of_cone(const VoAnswer& a) {
-  Json exact{"shape", "robot", "taken_as", "overlaps", "contains_velocity", "apex"};
-  if (has_exact_legs(a)) exact.insert(exact.begin(), "exact_legs");
-  return {{"exact", exact},
-          {"certified", {"half_plane", "contact_half_plane", "certificate", "why_no_certificate", "legs/bracket"}},
-          {"rounded", {"legs/direction", "legs/touch", "nearest_boundary", "u", "shared_half_plane", "variants"}}};
-}
-
-Json kinds_of_free(const VoAnswer& a) {
-  Json exact{"obstacles/shape",        "obstacles/robot",        "obstacles/taken_as",
-             "obstacles/overlaps",     "velocity_is_free",       "exact/components",
-             "exact/region_inside",    "exact/pieces/arcs/kind", "exact/pieces/arcs/obstacle",
-             "exact/pieces/arcs/cone", "exact/pieces/arcs/turn"};
-  if (has_exact_legs(a)) exact.insert(exact.begin(), {"obstacles/exact_legs", "legs_by_angle"});
-  return {
-      {"exact", exact},
-      {"certified",
-       {"obstacles/half_plane", "obstacles/contact_half_plane", "obstacles/certificate", "obstacles/why_no_certificate",
-        "area", "least_components", "region/inside", "region/area", "region/given_away", "region/lost/area",
-        "exact/area", "exact/pieces/area", "exact/pieces/arcs/from", "exact/pieces/arcs/to"}},
-      {"rounded", {"region/lost/farthest", "exact/pieces/arcs/center", "exact/pieces/arcs/radius"}}};
-}
-
 void add_stages(Json& json) {
   const geometry::StageCounts counts = geometry::stage_counts();
   json["stage_counts"] = {{"filter", counts.filter}, {"exact", counts.exact}};
@@ -539,7 +380,6 @@ Json single_json(const VoAnswer& a) {
     }
   }
   for (const vo::Member& m : a.members) json["variants"].push_back(member_json(m, a.question.velocity));
-  json["kinds"] = kinds_of_cone(a);
   add_stages(json);
   return json;
 }
@@ -590,10 +430,6 @@ Json free_json(const VoAnswer& a) {
   json["area"] = json_bracket(f.free.area());
   json["least_components"] = f.free.least_components();
   json["region"] = region_json(a);
-  json["exact"] = exact_free_json(f.exact, a.question);
-  json["why_not_exact"] = f.exact.free ? Json() : Json(f.exact.why_not);
-  if (has_exact_legs(a)) json["legs_by_angle"] = legs_by_angle_json(a);
-  json["kinds"] = kinds_of_free(a);
   add_stages(json);
   return json;
 }
@@ -642,11 +478,8 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
                     question.max_speed,
                     std::move(half_planes),
                     std::move(cone_of),
-                    {},
                     {}};
-  const bool keep_something = !overlaps && answer.half_planes.size() == cones.size();
-  if (keep_something) answer.report = answer.free.compare(answer.half_planes);
-  answer.exact = exact_free_of(answer.free.cones(), question, keep_something ? &answer.half_planes : nullptr);
+  if (!overlaps && answer.half_planes.size() == cones.size()) answer.report = answer.free.compare(answer.half_planes);
   return answer;
 }
 

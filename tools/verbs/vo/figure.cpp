@@ -50,7 +50,7 @@ double drawn_horizon(const ConeAnswer& a) {
   return std::max(a.cone.nearest().distance, kNearest) / std::max(norm(a.encounter.velocity), kSlowest);
 }
 
-/// Of the velocities' spread: a cone that is wider is shown in part, so that the arrows remain to be seen.
+/// A multiple of the velocities' spread: a wider cone is shown in part, so that the arrows remain to be seen.
 constexpr double kWidestView = 3.0;
 
 Box velocities_of(const ConeAnswer& a) {
@@ -146,7 +146,7 @@ void draw_half_planes(const std::vector<ConeAnswer>& cones, Panel& panel) {
   panel.half_planes("shared half-plane", shared, kShared, kHatches, "shared half-plane, not certified");
 }
 
-/// Of several cones the way to the nearest means something where the velocity is free, and no single one else.
+/// With several cones the way to the nearest boundary means something only where the velocity is free.
 void draw_change(const std::vector<ConeAnswer>& cones, Panel& panel) {
   const auto nearer = [](const ConeAnswer& a, const ConeAnswer& b) {
     return a.nearest && (!b.nearest || a.nearest->signed_distance < b.nearest->signed_distance);

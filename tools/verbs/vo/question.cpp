@@ -150,7 +150,8 @@ ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
 using Shapes = std::pair<Taken, std::vector<ConvexShape>>;
 
 Shapes shapes_of(const geometry::Obstacle& obstacle, const VoFlags& flags) {
-  if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::fast_smallest_ellipse(vertices_of(obstacle)).ellipse}};
+  if (flags.enclose == "ellipse")
+    return {Taken::smallest_ellipse, {geometry::fast_smallest_ellipse(vertices_of(obstacle)).ellipse}};
   if (flags.enclose == "trap-free") return {Taken::trap_free_ellipse, {trap_free(vertices_of(obstacle), flags)}};
   if (geometry::is_convex(obstacle)) return {Taken::itself, geometry::convex_cover(obstacle)};
   if (flags.pieces == "hull") return {Taken::convex_hull, {geometry::hull_shape(vertices_of(obstacle))}};
@@ -234,20 +235,6 @@ std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
   return variants;
 }
 
-/// Many velocities are answered by whether they collide, and by nothing else.
-void check_option_conflicts_of_velocities(const VoFlags& flags) {
-  const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
-  refuse_both(by_rule, "--time-horizon " + flags.time_horizon, "--velocities",
-              "the rule gives each velocity a horizon of its own; give a time in s, or infinite");
-  const std::pair<bool, const char*> others[] = {{!flags.velocity.empty(), "--velocity"},
-                                                 {flags.free, "--free"},
-                                                 {flags.exact_legs, "--exact-legs"},
-                                                 {!flags.variants.empty(), "--variant"},
-                                                 {flags.responsibility != 1.0, "--responsibility"},
-                                                 {!flags.figure.empty(), "--figure"}};
-  for (const auto& [is_there, option] : others) refuse_both(is_there, "--velocities", option);
-}
-
 /// What goes with what, and what would be ignored.
 void check_option_conflicts(const VoFlags& flags) {
   require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
@@ -257,14 +244,11 @@ void check_option_conflicts(const VoFlags& flags) {
   if (!flags.goal.empty() && flags.enclose != "trap-free") throw lacking("--goal", "--enclose trap-free");
   refuse_both(flags.enclose == "trap-free" && !flags.robot.empty(), "--robot", "--enclose trap-free",
               "the ellipse is fitted for a disc; give --radius");
-  require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
-          "X,Y in m/s, or --velocities FILE for many");
-  if (!flags.velocities.empty()) check_option_conflicts_of_velocities(flags);
   refuse_both(flags.responsibility != 1.0 && flags.free, "--responsibility", "--free");
   refuse_both(!flags.variants.empty() && flags.free, "--variant", "--free");
 }
 
-/// Of the obstacles and the robot, those that are files, with what is read with them.
+/// The files among the obstacles and the robot, with what is read with them.
 std::vector<std::filesystem::path> files_named_in(const VoFlags& flags) {
   std::vector<std::string> texts = flags.obstacles;
   texts.push_back(flags.robot);
@@ -293,7 +277,7 @@ void check_numbers(const VoFlags& flags) {
 vo::Encounter robot_alone(const VoFlags& flags) {
   vo::Encounter e;
   e.position = parse_point("--position", flags.position);
-  if (flags.velocities.empty()) e.velocity = parse_point("--velocity", flags.velocity);
+  e.velocity = parse_point("--velocity", flags.velocity);
   e.radius = flags.radius.value_or(0.0);
   e.responsibility = flags.responsibility;
   if (!flags.robot.empty()) e.robot = robot_of(flags.robot, flags.reading);
@@ -316,9 +300,9 @@ void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& fl
 }
 
 void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
-  if (q.obstacles.size() != 1 && !q.free && flags.velocities.empty())
+  if (q.obstacles.size() != 1 && !q.free)
     throw UsageError("--obstacle", geometry::counted(q.obstacles.size(), "obstacle"),
-                     "one obstacle (several go with --free and --velocities)");
+                     "one obstacle (several go with --free)");
   if (q.encounters.size() != 1 && !q.variants.empty())
     throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
                      "a convex shape: add --pieces hull or --enclose ellipse");
@@ -363,7 +347,7 @@ VoQuestion question_of(const VoFlags& flags) {
 void declare_options(CLI::App& app, VoFlags& flags) {
   app.add_option("--obstacle", flags.obstacles,
                  "WKT; a file with one obstacle; 'DISC(x y, r)'; 'ELLIPSE(cx cy, l11 l21 l22)', the image of the unit "
-                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free and --velocities")
+                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free")
       ->required()
       ->allow_extra_args(false);
   declare_reading_flags(app, flags.reading);
@@ -374,10 +358,7 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "For a non-convex obstacle: convex (default: all of its convex pieces) or hull");
   app.add_option("--enclose", flags.enclose, "none, ellipse (the smallest) or trap-free (needs --goal)");
   app.add_option("--position", flags.position, "Position of the robot, X,Y in m")->required();
-  app.add_option("--velocity", flags.velocity, "X,Y in m/s; required unless --velocities is given");
-  app.add_option("--velocities", flags.velocities,
-                 "FILE, or - for stdin: which of many velocities collide, one line of answer each (with --json JSON "
-                 "Lines). The file: vx,vy on each line, CSV with columns vx and vy, or JSON Lines");
+  app.add_option("--velocity", flags.velocity, "X,Y in m/s")->required();
   app.add_option("--radius", flags.radius, "Radius of the robot, m; required unless --robot is given");
   app.add_option("--robot", flags.robot,
                  "A robot that is a convex polygon, instead of --radius: WKT round its reference point 0,0");

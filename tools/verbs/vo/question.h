@@ -44,7 +44,6 @@ struct VoFlags {
   std::string pieces;
   ReadingFlags reading;  ///< of obstacles that are files
   std::string position, velocity, goal, robot;
-  std::string velocities;  ///< a file, or "-"
   std::optional<double> radius;
   std::string time_horizon;
   double responsibility = 1.0;
@@ -76,7 +75,7 @@ struct AskedObstacle {
 };
 
 /// The same as values, checked. `encounters` are with convex shapes: one an obstacle, or one a piece of it. Without
-/// --free and --velocities there is exactly one obstacle.
+/// --free there is exactly one obstacle.
 struct VoQuestion {
   std::vector<AskedObstacle> obstacles;
   std::vector<vo::Encounter> encounters;
@@ -85,7 +84,7 @@ struct VoQuestion {
   bool exact_legs = false;
   bool free = false;
   double max_speed = 0.0;  ///< m/s, of --free
-  Vec2 velocity;           ///< (0, 0) where many are asked for by --velocities
+  Vec2 velocity;
 };
 
 /// The obstacle, and which of its encounters.
