@@ -59,6 +59,7 @@ def raising_calls(folder):
     good = {name: (function, given) for name, function, given in good_calls(folder)}
     missing, elsewhere = str(folder / "missing"), str(folder / "map.wkt" / "below a file")
     cone = exactvo.VelocityObstacle(WALL, position=(0, 0), radius=0.5, time_horizon=2)
+    ellipse = exactvo.VelocityObstacle(exactvo.Ellipse((4, 0), 1, 0, 2), position=(0, 0), radius=0.5, time_horizon=2)
     free = exactvo.free_velocities([cone], max_speed=2)
     uncertified = lp.solve([(-1, 0)], [-0.5], (2, 0), max_speed=2, solver="batch")
     plan = exactvo.RouteMap(DOOR, 0.4).plan(0.4)
@@ -84,6 +85,7 @@ def raising_calls(folder):
         ("vo.free_velocities", "ArgumentError", wrong("vo.free_velocities", cones=[WALL])),
         ("vo.FreeVelocities.contains", "ArgumentError", lambda: free.contains("x")),
         ("vo.FreeVelocities.compare", "ArgumentError", lambda: free.compare([None])),
+        ("vo.FreeVelocities.exact", "ArgumentError", lambda: exactvo.free_velocities([ellipse], max_speed=2).exact()),
         ("shapes.hull", "ArgumentError", lambda: shapes.hull([])),
         ("shapes.obstacles", "ArgumentError", lambda: shapes.obstacles([exactvo.Disc((0, 0), 1)])),
         ("shapes.Ellipse.from_axes", "ArgumentError", lambda: exactvo.Ellipse.from_axes((0, 0), a=1, b=2)),

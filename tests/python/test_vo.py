@@ -146,8 +146,9 @@ def test_free_velocities_are_bracketed_and_compared(program):
     cones = [cone(np.array([(2, -1), (3, -1), (3, 1), (2, 1)], dtype=float)), cone(exactvo.Segment((-1, 2), (0, 2)))]
     free = exactvo.free_velocities(cones, max_speed=1.5)
     low, high = free.area
-    assert 0 < low <= high < low + 0.01
-    assert free.least_components >= 1
+    exact = free.exact()
+    assert low <= exact.area[0] <= exact.area[1] <= high and high - low < 0.01
+    assert exact.components >= free.least_components >= 1
     for v in np.random.default_rng(11).uniform(-1.5, 1.5, (200, 2)):
         assert free.contains(v) == (math.hypot(*v) <= 1.5 and not any(c.contains(v) for c in cones))
     report = free.compare([c.half_plane((1, 0.2)) for c in cones])
@@ -167,6 +168,8 @@ def test_free_velocities_refuse_what_they_cannot_hold():
         exactvo.free_velocities([cone()], max_speed=1, relative_tolerance=0.5)
     with pytest.raises(exactvo.ArgumentError, match="VelocityObstacle"):
         exactvo.free_velocities([WALL], max_speed=1)
+    with pytest.raises(exactvo.ArgumentError, match="ellipse"):
+        exactvo.free_velocities([cone(exactvo.Ellipse((4, 1), 1.5, 0.25, 0.5))], max_speed=1).exact()
 
 
 def test_reciprocal_halves_add_up():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// free_campaign [SCENES] [SEED] [CLASS]: compares FreeVelocities with the oracle on so many scenes of each class, and
+// free_campaign [SCENES] [SEED] [CLASS]: compares FreeArrangement with the oracle on so many scenes of each class, and
 // prints those that differ as lines of the corpus (geometry/free_scenes.txt). Exit status 1 where one does.
 #include <cstdio>
 #include <cstdlib>

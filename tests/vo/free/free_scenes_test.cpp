@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FreeVelocities against the oracle of oracle.h: every scene that once went wrong, and a slice of the campaign.
+// FreeArrangement against the oracle of oracle.h: every scene that once went wrong, and a slice of the campaign.
 #include <gtest/gtest.h>
 
 #include "vo/free/oracle.h"

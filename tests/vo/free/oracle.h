@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What is free, found in another way than free_velocities.h finds it, sharing nothing with it but the scene.
+/// What is free, found in another way than free_arrangement.h finds it, sharing nothing with it but the scene.
 ///
 /// The faces of F: every front's circles and edges, both legs and the circle of the speed as *whole* circles and lines
 /// (which part of a curve bounds something is asked of samples, not of the construction), with a line through each
@@ -38,7 +38,7 @@ std::vector<OracleFace> free_faces(const FreeScene& scene);
 /// Whether |v| <= max_speed and v lies in no cone. In rationals. REQUIRES: no cone overlaps the robot.
 bool is_free(const FreeScene& scene, geometry::Vec2 v);
 
-/// What the oracle refutes of FreeVelocities' answer to the scene; empty where nothing is. `random` places the samples.
+/// What is wrong with FreeArrangement's answer to the scene; empty where nothing is. `random` places the samples.
 std::string difference_from_oracle(const FreeScene& scene, SeededRandom& random);
 
 }  // namespace exactvo::test

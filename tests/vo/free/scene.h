@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Scenes for free_velocities.h as plain data: made by class, written to the corpus and read back.
+/// Scenes for free_arrangement.h as plain data: made by class, written to the corpus and read back.
 
 #include <string>
 #include <vector>

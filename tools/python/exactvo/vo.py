@@ -30,6 +30,7 @@ from .shapes import ConvexShape, Floats, Point, Polygon, ShapeLike, _native_shap
 __all__ = [
     "Certificate",
     "Comparison",
+    "ExactFree",
     "FreeVelocities",
     "HalfPlane",
     "Leg",
@@ -294,6 +295,15 @@ class Comparison:
         return f"Comparison(inside={self.inside!r}, area={self.area}, given_away={self.given_away})"
 
 
+@dataclass(frozen=True)
+class ExactFree:
+    """The free velocities in exact arithmetic: how many components they have, and a bracket of their area as narrow as
+    doubles allow."""
+
+    components: int
+    area: tuple[float, float]  #: (m/s)^2
+
+
 class FreeVelocities:
     """{ v : |v| <= max_speed } minus the velocity obstacles, held between two regions `inner` and `outer`. See
     `free_velocities`. Raises `ArgumentError`."""
@@ -342,6 +352,14 @@ class FreeVelocities:
         inside, area, given_away, lost = self._native.compare(normals, np.array([h.offset for h in listed], dtype=np.float64))
         pieces = tuple(LostPiece(tuple(rings), bracket, farthest, index) for rings, bracket, farthest, index in lost)
         return Comparison(inside, area, given_away, pieces)
+
+    def exact(self) -> ExactFree:
+        """In exact algebraic arithmetic: milliseconds for a few obstacles. Discs, segments and polygons only; raises
+        `ArgumentError` with the reason where it cannot be had."""
+        answer = _exactvo.exact_free([cone._native for cone in self._arguments[0]], self._arguments[1])
+        if isinstance(answer, str):
+            raise ArgumentError("cones", f"a scene refused for its {answer}", "what vo/free_arrangement.h takes")
+        return ExactFree(*answer)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _free_again, self._arguments

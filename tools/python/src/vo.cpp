@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/free_arrangement.h"
 #include "exactvo/vo/free_velocities.h"
 #include "exactvo/vo/reciprocal.h"
 #include "exactvo/vo/velocity_obstacle.h"
@@ -138,6 +139,16 @@ vo::FreeVelocities make_free(const py::list& cones, py::handle max_speed, py::ha
   return {std::move(shifted), options};
 }
 
+/// The number of components and the bracket of the area, exactly; or the word why not.
+py::object exact_free(const py::list& cones, py::handle max_speed) {
+  std::vector<vo::ShiftedCone> shifted = cones_of(cones);
+  const double speed = positive(max_speed, "max_speed");
+  const vo::FreeArrangement::Attempt attempt =
+      without_gil([&] { return vo::FreeArrangement::attempt(std::move(shifted), speed); });
+  if (!attempt.free) return py::str(name(attempt.refusal));
+  return py::make_tuple(attempt.free->pieces().size(), bracket(attempt.free->area()));
+}
+
 }  // namespace
 
 void bind_vo(py::module_& module) {
@@ -213,6 +224,7 @@ void bind_vo(py::module_& module) {
       .def("inner", [](const vo::FreeVelocities& f) { return pieces_of(f.inner()); })
       .def("outer", [](const vo::FreeVelocities& f) { return pieces_of(f.outer()); })
       .def("compare", &compare);
+  module.def("exact_free", &exact_free);
 }
 
 }  // namespace exactvo::python

@@ -18,6 +18,8 @@ using geometry::Bracket;
 using geometry::HalfPlane;
 using geometry::Sign;
 using vo::AlgebraicDirection;
+using vo::FreeArrangement;
+using vo::ShiftedCone;
 
 namespace {
 
@@ -73,6 +75,72 @@ Json json_of(const char* side, const vo::Leg& leg) {
           {"bracket", {{"inside", json_point(leg.normal)}, {"outside", json_point(leg.normal_outside)}}}};
 }
 
+namespace {
+
+std::string ellipse_words(const VoQuestion& question, std::size_t cone) {
+  return fmt::format("obstacle {} takes part as an ellipse, whose offset has degree eight",
+                     place_of(question, cone).obstacle);
+}
+
+std::string contact_words(const VoQuestion& question, std::size_t cone) {
+  return fmt::format("the robot touches or overlaps obstacle {}", place_of(question, cone).obstacle);
+}
+
+std::string curves_words(const std::vector<ShiftedCone>& cones) {
+  std::size_t curves = 0;
+  for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
+  return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
+}
+
+/// REQUIRES: not Refusal::none.
+std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, const VoQuestion& question) {
+  switch (refusal) {
+    case vo::Refusal::ellipse: {
+      const auto held = [](const ShiftedCone& c) { return FreeArrangement::can_hold(c); };
+      const auto first = std::find_if_not(cones.begin(), cones.end(), held);
+      return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
+    }
+    case vo::Refusal::cones:
+      return fmt::format("{}, more than {}", geometry::counted(cones.size(), "convex shape"), vo::kMostCones);
+    case vo::Refusal::curves:
+      return curves_words(cones);
+    case vo::Refusal::range:
+      return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
+    default:
+      return "the scene's magnitudes are too different for exact results";
+  }
+}
+
+OrderedJson json_of(const vo::PointBracket& p) {
+  return OrderedJson::array({json_bracket(p.x), json_bracket(p.y)});
+}
+
+OrderedJson json_of(const vo::FreeArc& arc, const VoQuestion& question) {
+  OrderedJson json{{"kind", name(arc.kind)}, {"obstacle", nullptr}, {"cone", nullptr}};
+  if (arc.kind != vo::ArcKind::speed_circle) {
+    const Place place = place_of(question, arc.cone);
+    json["obstacle"] = place.obstacle;
+    json["cone"] = place.cone;
+  }
+  json["from"] = json_of(arc.from);
+  json["to"] = json_of(arc.to);
+  if (arc.turn == 0) return json;
+  json["center"] = json_point(arc.center);
+  json["radius"] = arc.radius;
+  json["turn"] = arc.turn;
+  return json;
+}
+
+OrderedJson json_of(const vo::FreePiece& piece, const VoQuestion& question) {
+  OrderedJson arcs = OrderedJson::array();
+  for (const vo::FreeArc& arc : piece.boundary) arcs.push_back(json_of(arc, question));
+  return {{"area", json_bracket(piece.area)}, {"arcs", arcs}};
+}
+
+const char* word_of(bool inside) {
+  return inside ? "yes" : "no";
+}
+
 /// The width of the slope's interval: narrower than a double of it.
 constexpr double kWidth = 0x1p-60;
 
@@ -102,6 +170,44 @@ std::string leg_words(const char* side, const AlgebraicDirection& leg) {
   const geometry::Vec2 d = leg.rounded();
   return fmt::format("{:<17} ({:.6g}, {:.6g}): (1, t) turned by {} quarters, {} = 0\n", side, d.x, d.y,
                      leg.quarter_turns(), polynomial_words(leg.polynomial()));
+}
+
+}  // namespace
+
+/// The cones are those of the question's encounters. `half_planes` is null where a cone has none.
+ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion& question,
+                        const std::vector<geometry::HalfPlane>* half_planes) {
+  const auto touched = std::find_if(cones.begin(), cones.end(), [](const ShiftedCone& c) { return c.cone.overlaps(); });
+  if (touched != cones.end())
+    return {{}, {}, contact_words(question, static_cast<std::size_t>(touched - cones.begin()))};
+  FreeArrangement::Attempt attempt = FreeArrangement::attempt(cones, question.max_speed);
+  if (!attempt.free) return {{}, {}, words(attempt.refusal, cones, question)};
+  ExactFree exact{std::move(attempt.free), {}, ""};
+  if (half_planes) exact.region_inside = exact.free->attempt_holds(*half_planes);
+  return exact;
+}
+
+/// Null where there is none.
+OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question) {
+  if (!exact.free) return nullptr;
+  OrderedJson pieces = OrderedJson::array();
+  for (const vo::FreePiece& piece : exact.free->pieces()) pieces.push_back(json_of(piece, question));
+  return {{"components", pieces.size()},
+          {"area", json_bracket(exact.free->area())},
+          {"region_inside", exact.region_inside ? OrderedJson(word_of(*exact.region_inside)) : OrderedJson()},
+          {"pieces", pieces}};
+}
+
+/// One line or two.
+std::string exact_free_words(const ExactFree& exact) {
+  if (!exact.free) return fmt::format("exact result      none: {}\n", exact.why_not);
+  const std::size_t pieces = exact.free->pieces().size();
+  const Bracket area = exact.free->area();
+  const std::string text = fmt::format("exact result      area {:.10g} to {:.10g} (m/s)^2, {}", area.low, area.high,
+                                       geometry::counted(pieces, "connected part"));
+  return text + (exact.region_inside
+                     ? fmt::format("; all that the half-planes allow is free: {}\n", word_of(*exact.region_inside))
+                     : "\n");
 }
 
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
@@ -262,6 +368,7 @@ std::string free_words(const VoAnswer& a) {
       text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
   text += fmt::format("free velocities   area {:.6g} to {:.6g} (m/s)^2, at least {}\n", f.free.area().low,
                       f.free.area().high, geometry::counted(f.free.least_components(), "connected part"));
+  text += exact_free_words(f.exact);
   if (f.report) return text + region_words(a);
   return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: no velocity is free.\n"
                                  : "half-planes       an obstacle has no proven one: they allow no velocity\n");
@@ -430,6 +537,8 @@ Json free_json(const VoAnswer& a) {
   json["area"] = json_bracket(f.free.area());
   json["least_components"] = f.free.least_components();
   json["region"] = region_json(a);
+  json["exact"] = exact_free_json(f.exact, a.question);
+  json["why_not_exact"] = f.exact.free ? Json() : Json(f.exact.why_not);
   add_stages(json);
   return json;
 }
@@ -478,8 +587,11 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
                     question.max_speed,
                     std::move(half_planes),
                     std::move(cone_of),
+                    {},
                     {}};
-  if (!overlaps && answer.half_planes.size() == cones.size()) answer.report = answer.free.compare(answer.half_planes);
+  const bool keep_something = !overlaps && answer.half_planes.size() == cones.size();
+  if (keep_something) answer.report = answer.free.compare(answer.half_planes);
+  answer.exact = exact_free_of(answer.free.cones(), question, keep_something ? &answer.half_planes : nullptr);
   return answer;
 }
 

@@ -3,6 +3,9 @@
 
 /// \file
 /// What `exactvo vo` answers, as JSON, in words and drawn.
+///
+/// The unrounded answers: free velocities (--free), and why there are none to show where an ellipse
+/// takes part, where the curves are too many, and in contact; the algebraic legs (--exact-legs).
 
 #include <cstddef>
 #include <optional>
@@ -12,12 +15,19 @@
 #include "exactvo/vo/algebraic_direction.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
+#include "exactvo/vo/free_arrangement.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure.h"
 #include "support/json_layout.h"
 #include "verbs/vo/question.h"
 
 namespace exactvo::tools {
+
+struct ExactFree {
+  std::optional<vo::FreeArrangement> free;
+  std::optional<bool> region_inside;  ///< whether all that the half-planes keep is free; without half-planes nothing
+  std::string why_not;                ///< where `free` is nothing
+};
 
 /// About one obstacle. Velocities are absolute; the cone is for velocities relative to the obstacle's.
 struct ConeAnswer {
@@ -41,6 +51,7 @@ struct FreeAnswer {
   std::vector<geometry::HalfPlane> half_planes;
   std::vector<std::size_t> cone_of;  ///< of each half-plane
   std::optional<vo::RegionReport> report;
+  ExactFree exact;
 };
 
 /// Whether the ellipse round an obstacle contains it: asked of every vertex by the exact predicate.
