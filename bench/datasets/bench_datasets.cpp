@@ -167,7 +167,7 @@ void show_naive(const std::vector<Polygon>& polygons) {
 
 BatchConfiguration configuration_of(bool everything) {
   BatchConfiguration configuration;
-  configuration.geojson = configuration.pictures = everything;
+  configuration.geopackage = configuration.geojson = configuration.pictures = everything;
   return configuration;
 }
 
@@ -264,7 +264,7 @@ void show_batches(const fs::path& input, const fs::path& folder, std::size_t obs
       std::printf("    %-44s %7.2f s  %8.0f obstacles/s  x%.2f\n", who, seconds, of_it / seconds, times);
     };
     std::printf("  %s, the quickest of %d:\n",
-                everything ? "GeoJSON, pictures, measurements" : "measurements alone", rounds);
+                everything ? "GeoPackage, GeoJSON, pictures, measurements" : "measurements alone", rounds);
     show("one worker", s.one_worker, count, 1.0);
     show("two workers", s.two_workers, count, gain);
     show("two batches at once, nothing shared", s.two_apart, 2.0 * count, ceiling);

@@ -311,14 +311,16 @@ TEST(GeoJsonInDegrees, OneTripThroughOgr2ogrKeepsTheSize) {
 
 // --- What a batch writes ---
 
-TEST(BatchSizes, AreSaidBeforeAndWhatIsFortyTimesTheInputIsWrittenOnRequest) {
+TEST(BatchSizes, AreSaidBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest) {
   const Workplace here;
   here.write("room.wkt", kRoom);
   const Outcome outcome = here.run("batch room.wkt --out out");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 file, 67 B: about 87.1 B in out"), HasSubstr("--write geojson adds")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 file, 67 B: about 87.1 B in out"), HasSubstr("--write geopackage adds"),
+                                 HasSubstr("--write geojson adds")));
   EXPECT_TRUE(here.has("out/measurements.jsonl"));
   EXPECT_TRUE(here.has("out/index.html"));
+  EXPECT_FALSE(here.has("out/obstacles.gpkg"));
   EXPECT_FALSE(here.has("out/obstacles.geojson"));
 }
 

@@ -47,7 +47,7 @@ std::string to_json(const BatchConfiguration& c) {
   json.member("memory_limit", c.memory_limit);
   append_shape_options(json, c.shapes);
   if (c.robot) append_robot(json, *c.robot);
-  json.member("geojson", c.geojson);
+  json.member("geopackage", c.geopackage).member("geojson", c.geojson);
   json.member("geojson_in_metres", c.geojson_in_metres).member("pictures", c.pictures);
   return json.end_object().take();
 }
@@ -60,9 +60,9 @@ Identity identity_of(const BatchConfiguration& configuration, std::vector<Input>
 /// Said before the work, not after.
 void refuse_the_unavailable(const BatchConfiguration& configuration, const BatchRun& run) {
   const bool in_degrees = configuration.geojson && !configuration.geojson_in_metres;
-  if (built_with_gdal() || !in_degrees) return;
+  if (built_with_gdal() || !(configuration.geopackage || in_degrees)) return;
   throw DataError(DataCode::format_unavailable, run.out.string(), "",
-                  "GeoJSON in degrees to write, and a build without GDAL",
+                  "a GeoPackage or GeoJSON in degrees to write, and a build without GDAL",
                   "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON in metres");
 }
 
@@ -104,9 +104,9 @@ std::vector<InputFacts> all_facts(const Journal& journal, std::size_t inputs) {
 
 /// Whatever a batch may write to OUT, of this configuration or another.
 bool is_output(const std::string& name) {
-  if (name == "measurements.jsonl" || name == page_name(0)) return true;
-  for (const std::string layer : kLayers) {
-    if (name == layer + ".geojson") return true;
+  if (name == "measurements.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
+  for (const Layer& layer : layers()) {
+    if (name == std::string(layer.name) + ".geojson") return true;
   }
   const std::size_t number = std::strtoull(name.c_str() + std::min<std::size_t>(name.size(), 5), nullptr, 10);
   return number > 1 && name == page_name(number - 1);

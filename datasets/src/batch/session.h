@@ -6,7 +6,7 @@
 ///
 ///     claim    which inputs are this process's: all of them, every n-th (a shard), a share by size (a rank)
 ///     read     one at a time, in order: input -> chunks of obstacles; what the journal has is not read again
-///     work     any number at a time: chunk -> part (text), which goes to the journal
+///     work     any number at a time: chunk -> part (text, rows), which goes to the journal
 ///     finish   one at a time, in order: part -> outputs, if this process merges; the end of an input -> its facts
 ///
 /// At the end one process puts the outputs in their place. Whatever a kill leaves, the journal says what is missing.

@@ -39,4 +39,9 @@ void read_jupedsim_sqlite_file(const std::filesystem::path& path, const SqliteTr
                   "a build with EXACTVO_WITH_GDAL=ON, or JuPedSim's text");
 }
 
+std::unique_ptr<batch::GeoPackage> batch::make_geopackage(const std::filesystem::path& path, const std::string&) {
+  throw DataError(DataCode::format_unavailable, path.string(), "", "a GeoPackage to write",
+                  "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");
+}
+
 }  // namespace exactvo::datasets

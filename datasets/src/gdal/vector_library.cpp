@@ -5,8 +5,9 @@
 namespace exactvo::datasets {
 
 const VectorLibrary& vector_library() {
-  static constexpr VectorLibrary kLibrary{read_vector_file,     read_in_system,            to_gdal_file, read_gdal_image,
-                                          make_plane_transform, read_jupedsim_sqlite_file, set_wait_hook};
+  static constexpr VectorLibrary kLibrary{read_vector_file,          read_in_system,         to_gdal_file,
+                                          read_gdal_image,           batch::make_geopackage, make_plane_transform,
+                                          read_jupedsim_sqlite_file, set_wait_hook};
   return kLibrary;
 }
 

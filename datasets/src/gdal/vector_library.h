@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "batch/formats/geopackage.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/local_plane.h"
 #include "readers/readers.h"
@@ -29,6 +30,7 @@ struct VectorLibrary {
   decltype(&datasets::read_in_system) read_in_system;
   decltype(&datasets::to_gdal_file) to_gdal_file;
   decltype(&datasets::read_gdal_image) read_gdal_image;
+  decltype(&batch::make_geopackage) make_geopackage;
   decltype(&datasets::make_plane_transform) make_plane_transform;
   decltype(&datasets::read_jupedsim_sqlite_file) read_jupedsim_sqlite_file;
   decltype(&datasets::set_wait_hook) set_wait_hook;  ///< of the module's own copy of text_file.cpp

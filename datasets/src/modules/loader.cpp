@@ -75,7 +75,7 @@ const void* load_module(const std::string& name, const std::string& purpose) {
 const VectorLibrary& vector_library() {
   static const VectorLibrary& library = []() -> const VectorLibrary& {
     const auto& loaded =
-        *static_cast<const VectorLibrary*>(load("gdal", "vector files and pictures (GDAL)", RTLD_LOCAL));
+        *static_cast<const VectorLibrary*>(load("gdal", "vector files, pictures and GeoPackages (GDAL)", RTLD_LOCAL));
     loaded.set_wait_hook(call_wait_hook);  // the program's: a signal ends the module's readers too
     return loaded;
   }();

@@ -58,7 +58,7 @@ class SharedBatch : public TemporaryFolder {
   std::map<std::string, Json> run(bool repair) {
     BatchConfiguration configuration;
     configuration.reading.repair = repair;
-    configuration.geojson = configuration.pictures = false;
+    configuration.geopackage = configuration.geojson = configuration.pictures = false;
     BatchRun how;
     how.paths = {shared_data()};
     how.out = folder_ / (repair ? "repaired" : "plain");

@@ -123,8 +123,10 @@ TEST_F(Batches, OutputsAgreeWithEachOther) {
   if (!built_with_gdal()) return;
   ReadOptions options;
   options.keep_going = true;
+  const ObstacleFile package = read_obstacles(out("out") / "obstacles.gpkg", options);
   const ObstacleFile geojson = read_obstacles(out("out") / "obstacles.geojson", options);
   EXPECT_EQ(geojson.obstacles.size(), result.summary.obstacles_out);
+  EXPECT_GT(package.obstacles.size(), 5 * result.summary.obstacles_out) << "all five layers";
 }
 
 TEST_F(Batches, WorkersDoNotShowInTheBytes) {
@@ -315,7 +317,7 @@ TEST_F(Batches, AnotherOutputIntoTheFolderLeavesNothingOfTheLast) {
   write_text(out("out") / "page-12.html", "a page of more inputs");
   write_text(out("out") / "page-one.html", "somebody's own");
   BatchConfiguration figures;
-  figures.geojson = figures.pictures = false;
+  figures.geopackage = figures.geojson = figures.pictures = false;
   run_batch(figures, run_to("out"));
   run_batch(figures, run_to("fresh"));
   EXPECT_EQ(difference(out("fresh"), out("out")), "page-one.html ");
@@ -411,6 +413,7 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   BatchRun run = run_to("out");
   run.workers = 1;  // a child of fork has no threads but its own
   BatchConfiguration configuration;
+  configuration.geopackage = false;
   BatchRun ahead = run_to("ahead");
   ahead.workers = 1;
   EXPECT_EQ(status_with_files_up_to(5000000, configuration, ahead), 42) << "the parts fit, an output doesn't";

@@ -23,7 +23,7 @@ class BatchJournal : public TemporaryFolder {
  protected:
   void SetUp() override {
     TemporaryFolder::SetUp();
-    plain_.geojson = plain_.pictures = false;
+    plain_.geopackage = plain_.geojson = plain_.pictures = false;
     journal_.emplace(folder_ / "out");
     journal_->begin({});
   }

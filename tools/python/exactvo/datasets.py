@@ -261,7 +261,7 @@ def batch(
 ) -> BatchSummary:
     """Every obstacle of every file decomposed and certified into the folder `out`, as `exactvo batch` (docs/guide/batch.md).
 
-    write      outputs: "measurements" (always), "pictures", "geojson"
+    write      outputs: "measurements" (always), "pictures", "geopackage", "geojson"
     jobs       worker threads; 0: as many as there are processors
     resume     go on with what is in `out`
     repair     repair what is invalid

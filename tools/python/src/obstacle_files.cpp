@@ -125,14 +125,17 @@ py::tuple batch(const std::vector<fs::path>& paths, const fs::path& out, const s
   datasets::BatchConfiguration configuration;
   configuration.reading.repair = repair;
   configuration.geojson_in_metres = metres;
-  configuration.geojson = configuration.pictures = false;
+  configuration.geopackage = configuration.geojson = configuration.pictures = false;
   for (const std::string& name : write) {
-    if (name == "geojson")
+    if (name == "geopackage")
+      configuration.geopackage = true;
+    else if (name == "geojson")
       configuration.geojson = true;
     else if (name == "pictures")
       configuration.pictures = true;
     else if (name != "measurements")
-      throw ArgumentError("write", "\"" + name + "\"", "some of \"measurements\", \"pictures\", \"geojson\"");
+      throw ArgumentError("write", "\"" + name + "\"",
+                          "some of \"measurements\", \"pictures\", \"geopackage\", \"geojson\"");
   }
   datasets::BatchRun run;
   run.paths = paths;

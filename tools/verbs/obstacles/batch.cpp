@@ -55,12 +55,13 @@ struct BatchFlags {
 };
 
 void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
-  const std::vector<std::string> known{"geojson", "pictures", "measurements"};
+  const std::vector<std::string> known{"geopackage", "geojson", "pictures", "measurements"};
   std::vector<std::string> words;
   for (const std::string& word : boost::split(words, text, boost::is_any_of(",")))
     require(std::count(known.begin(), known.end(), word) > 0, "--write", word,
-            "geojson, pictures, measurements" + suggestion(word, known));
+            "geopackage, geojson, pictures, measurements" + suggestion(word, known));
   const auto has = [&](const char* word) { return std::count(words.begin(), words.end(), word) > 0; };
+  configuration.geopackage = has("geopackage");
   configuration.geojson = has("geojson");
   configuration.pictures = has("pictures");
 }
@@ -97,6 +98,10 @@ BatchConfiguration configuration_of(const BatchFlags& flags) {
   configuration.robot = robot_of(flags);
   choose_outputs(flags.write, configuration);
   configuration.geojson_in_metres = flags.metres;
+  if (configuration.geopackage && !datasets::built_with_gdal()) {
+    message("note: built without GDAL, so no GeoPackage is written");
+    configuration.geopackage = false;
+  }
   return configuration;
 }
 
@@ -143,15 +148,18 @@ BatchRun run_of(const BatchFlags& flags) {
 /// What is written, times the input: measured on 20,000 polygons of 14 corners as WKT. Grids and compressed files may
 /// give much more.
 constexpr double kMeasurementsOfInput = 1.3;
+constexpr double kGeoPackageOfInput = 31.0;
 constexpr double kGeoJsonOfInput = 41.0;
 
 /// Sizes to expect, before the work; twice as much stands on the disk while parts and outputs do.
 void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const std::string& out) {
   const auto input = static_cast<double>(progress.input_bytes);
-  const double factor = kMeasurementsOfInput + (c.geojson ? kGeoJsonOfInput : 0.0);
+  const double factor =
+      kMeasurementsOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
   std::string text =
       fmt::format("{}{}, {}: about {} in {}", counted(progress.inputs, "file"),
                   progress.ranks > 1 ? " in each rank" : "", size_text(input), size_text(factor * input), out);
+  if (!c.geopackage) text += fmt::format("; --write geopackage adds about {}", size_text(kGeoPackageOfInput * input));
   if (!c.geojson) text += fmt::format("; --write geojson adds about {}", size_text(kGeoJsonOfInput * input));
   message(text);
   std::error_code error;
@@ -179,7 +187,7 @@ std::string words_of(const BatchTally& tally, const char* what) {
   return text;
 }
 
-/// A shard knows only what it did itself, and how long that took: it has no rate of the whole.
+/// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
 std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
   std::string text = words_of(s.files, "file") + "\n" + words_of(s.obstacles, "obstacle");
   text += fmt::format("\n{} skipped (points, empty geometries)\n", counted(s.passed_over, "input"));
@@ -299,8 +307,10 @@ void declare_run(CLI::App& app, BatchFlags& flags) {
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--shard", flags.shard,
                  "i/n: every n-th file from the i-th on; the last shard to finish merges the results");
-  app.add_option("--write", flags.write,
-                 "Outputs, from measurements (always), pictures, geojson; the last is some 40 times the input")
+  app.add_option(
+         "--write", flags.write,
+         "Outputs, from measurements (always), pictures, geopackage, geojson; the last two are some 30 and 40 times "
+         "the input")
       ->capture_default_str();
   app.add_flag("--metres", flags.metres,
                "GeoJSON in metres, which other programs read as degrees; by default longitude and latitude");

@@ -47,11 +47,12 @@ struct BatchConfiguration {
   /// Bytes for obstacles under way; 0: no limit but the chunks' own. Files that are read whole and larger than a 20th
   /// of it are refused: so it belongs to what is written.
   std::uint64_t memory_limit = 0;
-  std::optional<BatchRobot> robot;  ///< none: no half-planes
-  bool geojson = true;              ///< obstacles.geojson, facades.geojson, ...; without GDAL E_FORMAT_UNAVAILABLE,
-                                    ///< unless `geojson_in_metres`
-  bool geojson_in_metres = false;   ///< coordinates in metres; other programs will read them as degrees
-  bool pictures = true;             ///< index.html
+  std::optional<BatchRobot> robot;      ///< none: no half-planes
+  bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
+  bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...; without GDAL E_FORMAT_UNAVAILABLE,
+                                        ///< unless `geojson_in_metres`
+  bool geojson_in_metres = false;       ///< coordinates in metres; other programs will read them as degrees
+  bool pictures = true;                 ///< index.html
 };
 
 /// How it is run; none of it changes the results.

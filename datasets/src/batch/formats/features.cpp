@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "batch/formats/bytes.h"
 #include "exactvo/geometry/pi.h"
 #include "json/json_text.h"
 #include "obstacles/courses.h"
@@ -19,7 +20,9 @@ using geometry::Ring;
 using geometry::Segment;
 using geometry::Vec2;
 
-enum LayerNumber : std::size_t { kObstacles, kFacades, kPieces, kHulls, kEllipses };  // in the order of kLayers
+enum LayerNumber : std::size_t { kObstacles, kFacades, kPieces, kHulls, kEllipses };
+
+using Length = std::uint32_t;  // of a text in a row
 
 constexpr int kFinePoints = 48;    // round the whole obstacle
 constexpr int kCoarsePoints = 20;  // round a facade
@@ -45,6 +48,51 @@ Feature flat_or_filled(std::size_t layer, Ring ring) {
   return feature;
 }
 
+// --- The fields of each layer ---
+
+std::vector<Field> obstacle_fields(const FeatureHead& head, const ObstacleShapes& shapes) {
+  const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
+  const geometry::ShapeMeasurements& f = shapes.measurements;
+  const bool free = shapes.trap_free.ellipse.has_value();
+  return {{"key", head.key},
+          {"file", head.file},
+          {"id", head.id},
+          {"outcome", head.outcome},
+          {"certified", count(shapes.certified() ? 1 : 0)},
+          {"vertices", count(f.vertices)},
+          {"facades", count(shapes.facades.facades.size())},
+          {"pieces", count(shapes.pieces.size())},
+          {"area", f.area},
+          {"hull_area", f.hull_area},
+          {"ellipse_area", f.ellipse_area},
+          {"trap_free_area", f.trap_free_area},
+          {"trap_free_beyond", f.trap_free_beyond},
+          {"trap_free", std::string(free ? name(shapes.trap_free.grade) : "none")}};
+}
+
+std::vector<Field> facade_fields(const std::string& key, std::int64_t number, const Segment& facade, double clearance) {
+  return {{"key", key}, {"number", number}, {"length", norm(facade.b - facade.a)}, {"clearance", clearance}};
+}
+
+std::vector<Field> piece_fields(const std::string& key, std::int64_t number) {
+  return {{"key", key}, {"number", number}};
+}
+
+std::vector<Field> hull_fields(const std::string& key, double area) {
+  return {{"key", key}, {"area", area}};
+}
+
+std::vector<Field> ellipse_fields(const std::string& key, const char* kind, std::int64_t number, const Ellipse& e) {
+  return {{"key", key},
+          {"kind", std::string(kind)},
+          {"number", number},
+          {"center_x", e.center.x},
+          {"center_y", e.center.y},
+          {"l11", e.l11},
+          {"l21", e.l21},
+          {"l22", e.l22}};
+}
+
 // --- Features ---
 
 Feature obstacle_feature(const FeatureHead& head, const ObstacleShapes& shapes) {
@@ -57,36 +105,13 @@ Feature obstacle_feature(const FeatureHead& head, const ObstacleShapes& shapes) 
   } else {
     feature.rings.push_back(std::get<geometry::Polyline>(shapes.obstacle).points);
   }
-  const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
-  const geometry::ShapeMeasurements& f = shapes.measurements;
-  const bool free = shapes.trap_free.ellipse.has_value();
-  feature.fields = {{"key", head.key},
-                    {"file", head.file},
-                    {"id", head.id},
-                    {"outcome", head.outcome},
-                    {"certified", count(shapes.certified() ? 1 : 0)},
-                    {"vertices", count(f.vertices)},
-                    {"facades", count(shapes.facades.facades.size())},
-                    {"pieces", count(shapes.pieces.size())},
-                    {"area", f.area},
-                    {"hull_area", f.hull_area},
-                    {"ellipse_area", f.ellipse_area},
-                    {"trap_free_area", f.trap_free_area},
-                    {"trap_free_beyond", f.trap_free_beyond},
-                    {"trap_free", std::string(free ? name(shapes.trap_free.grade) : "none")}};
+  feature.fields = obstacle_fields(head, shapes);
   return feature;
 }
 
 Feature ellipse_feature(const std::string& key, const char* kind, std::int64_t number, const Ellipse& e, int points) {
   Feature feature = flat_or_filled(kEllipses, outline_of(e, points));
-  feature.fields = {{"key", key},
-                    {"kind", std::string(kind)},
-                    {"number", number},
-                    {"center_x", e.center.x},
-                    {"center_y", e.center.y},
-                    {"l11", e.l11},
-                    {"l21", e.l21},
-                    {"l22", e.l22}};
+  feature.fields = ellipse_fields(key, kind, number, e);
   return feature;
 }
 
@@ -98,7 +123,7 @@ void give_facades(const FeatureHead& head, const ObstacleShapes& shapes, const T
     feature.rings = {{s.a, s.b}};
     const auto k = static_cast<std::size_t>(number);
     const double clearance = k < shapes.facade_ellipses.size() ? shapes.facade_ellipses[k].clearance : 0.0;
-    feature.fields = {{"key", head.key}, {"number", number++}, {"length", norm(s.b - s.a)}, {"clearance", clearance}};
+    feature.fields = facade_fields(head.key, number++, s, clearance);
     take(feature);
   }
 }
@@ -109,14 +134,14 @@ void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
     const auto* segment = std::get_if<Segment>(&piece);
     Ring ring = segment != nullptr ? Ring{segment->a, segment->b} : std::get<ConvexPolygon>(piece).vertices;
     Feature feature = flat_or_filled(kPieces, std::move(ring));
-    feature.fields = {{"key", head.key}, {"number", number++}};
+    feature.fields = piece_fields(head.key, number++);
     take(feature);
   }
 }
 
 void give_hull(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   Feature feature = flat_or_filled(kHulls, shapes.hull.vertices);
-  feature.fields = {{"key", head.key}, {"area", shapes.measurements.hull_area}};
+  feature.fields = hull_fields(head.key, shapes.measurements.hull_area);
   take(feature);
 }
 
@@ -148,7 +173,50 @@ void append_geometry(JsonWriter& json, const Feature& feature, const Place& plac
   json.end_object();
 }
 
+// --- Rows ---
+
+void append(std::string& bytes, const std::string& text) {
+  append_text<Length>(bytes, text);
+}
+template <class Number>
+void append(std::string& bytes, Number number) {
+  append_raw(bytes, number);
+}
+
+void take(std::string_view& bytes, std::string& text) {
+  text = take_text<Length>(bytes);
+}
+template <class Number>
+void take(std::string_view& bytes, Number& number) {
+  number = take_raw<Number>(bytes);
+}
+
+/// Well-known binary (OGC 06-103r4, 8.2), in the byte order of the machines that this runs on.
+std::string geometry_of(const Feature& feature) {
+  constexpr char kLittleEndian = 1;
+  constexpr std::uint32_t kLineString = 2;
+  constexpr std::uint32_t kPolygon = 3;
+  std::string bytes(1, kLittleEndian);
+  append_raw(bytes, feature.is_polygon ? kPolygon : kLineString);
+  if (feature.is_polygon) append_raw(bytes, static_cast<std::uint32_t>(feature.rings.size()));
+  for (const Ring& ring : feature.rings) {
+    append_raw(bytes, static_cast<std::uint32_t>(ring.size() + (feature.is_polygon ? 1 : 0)));
+    for (const Vec2 p : ring) append_raw(bytes, p);
+    if (feature.is_polygon) append_raw(bytes, ring.front());
+  }
+  return bytes;
+}
+
 }  // namespace
+
+const std::vector<Layer>& layers() {
+  static const std::vector<Layer> kLayers{{"obstacles", obstacle_fields({}, {})},
+                                          {"facades", facade_fields("", 0, {}, 0.0)},
+                                          {"pieces", piece_fields("", 0)},
+                                          {"hulls", hull_fields("", 0.0)},
+                                          {"ellipses", ellipse_fields("", "", 0, {})}};
+  return kLayers;
+}
 
 void features_of(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   take(obstacle_feature(head, shapes));
@@ -167,6 +235,23 @@ std::string to_geojson(const Feature& feature, const Place& place) {
   json.end_object();
   append_geometry(json, feature, place);
   return json.end_object().take();
+}
+
+void append_row(std::string& bytes, const Feature& feature) {
+  append_raw(bytes, static_cast<std::uint8_t>(feature.layer));
+  append_text<Length>(bytes, geometry_of(feature));
+  for (const Field& field : feature.fields) std::visit([&](const auto& value) { append(bytes, value); }, field.value);
+}
+
+Row read_row(std::string_view& bytes) {
+  Row row;
+  row.layer = take_raw<std::uint8_t>(bytes);
+  row.geometry = take_text<Length>(bytes);
+  for (const Field& field : layers()[row.layer].fields) {
+    row.values.push_back(field.value);
+    std::visit([&](auto& value) { take(bytes, value); }, row.values.back());
+  }
+  return row;
 }
 
 Ring outline_of(const Ellipse& e, int points) {

@@ -2,12 +2,12 @@
 #pragma once
 
 /// \file
-/// What a batch writes of an obstacle for maps: features of GeoJSON, in layers.
+/// What a batch writes of an obstacle for maps: features in layers, the same for GeoPackage and GeoJSON.
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -22,21 +22,27 @@ struct Field {
   Value value;
 };
 
-inline constexpr std::array kLayers{"obstacles", "facades", "pieces", "hulls", "ellipses"};
+struct Layer {
+  const char* name;
+  std::vector<Field> fields;  ///< those of its features, with any values of their types
+};
+
+/// obstacles, facades, pieces, hulls, ellipses.
+const std::vector<Layer>& layers();
 
 /// A polygon has rings (not closed here), a line has one and is open.
 struct Feature {
-  std::size_t layer = 0;  ///< of kLayers
+  std::size_t layer = 0;
   bool is_polygon = false;
   std::vector<geometry::Ring> rings;
-  std::vector<Field> fields;
+  std::vector<Field> fields;  ///< the layer's
 };
 
 /// Who the obstacle is.
 struct FeatureHead {
   std::string file;
   std::string id;
-  std::string key;  ///< "FILE#NUMBER": what the features of all layers have in common
+  std::string key;  ///< "FILE#NUMBER": what the rows of all layers have in common
   std::string outcome;
 };
 
@@ -50,6 +56,16 @@ void features_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes
 using Place = std::function<geometry::Ring(geometry::Ring)>;
 /// A line of GeoJSON, without comma or newline. The geometry is null where `place` throws.
 std::string to_geojson(const Feature& feature, const Place& place);
+
+/// Appends the feature to `bytes` for `read_row`.
+void append_row(std::string& bytes, const Feature& feature);
+/// Takes the next one off the front. REQUIRES: what append_row wrote.
+struct Row {
+  std::size_t layer = 0;
+  std::string_view geometry;  ///< well-known binary
+  std::vector<Value> values;
+};
+Row read_row(std::string_view& bytes);
 
 /// Points of the boundary for drawing.
 geometry::Ring outline_of(const geometry::Ellipse& ellipse, int points);

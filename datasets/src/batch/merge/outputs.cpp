@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "batch/formats/features.h"
+#include "gdal/vector_library.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -25,14 +26,15 @@ Outputs::Outputs(const Journal& journal, const BatchConfiguration& configuration
     : folder_(started_folder(journal)), measurements_(output_file(*folder_ / "measurements.jsonl")) {
   measurements_->write("{\"provenance\":" + provenance + "}\n");
   if (configuration.geojson) start_geojson(configuration.geojson_in_metres, provenance);
+  if (configuration.geopackage) geopackage_ = vector_library().make_geopackage(*folder_ / "obstacles.gpkg", provenance);
 }
 
 void Outputs::start_geojson(bool in_metres, const std::string& provenance) {
   const std::string units = in_metres ? ",\"units\":\"m\"" : "";
-  for (const std::string layer : kLayers) {
-    geojson_.push_back({output_file(*folder_ / (layer + ".geojson")), true});
-    geojson_.back().first->write("{\"type\":\"FeatureCollection\",\"name\":\"" + layer + "\"" + units +
-                                 ",\"provenance\":" + provenance + ",\"features\":[\n");
+  for (const Layer& layer : layers()) {
+    geojson_.push_back({output_file(*folder_ / (std::string(layer.name) + ".geojson")), true});
+    geojson_.back().first->write("{\"type\":\"FeatureCollection\",\"name\":\"" + std::string(layer.name) + "\"" +
+                                 units + ",\"provenance\":" + provenance + ",\"features\":[\n");
   }
 }
 
@@ -44,6 +46,7 @@ void Outputs::add(const PartView& part) {
     if (!std::exchange(is_empty, false)) file->write(",\n");
     file->write(part.features[k]);
   }
+  if (geopackage_) geopackage_->add(part.rows);
   counts_ += part.counts;
 }
 
@@ -53,6 +56,7 @@ void Outputs::finish() {
     file->write("\n]}\n");
     file->commit();
   }
+  if (geopackage_) geopackage_->finish();
 }
 
 std::unique_ptr<AtomicFile> output_file(const fs::path& path) {

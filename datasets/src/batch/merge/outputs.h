@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The files of a batch that grow part by part: measurements.jsonl and the GeoJSON layers. The same parts in the same
-/// order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
+/// The files of a batch that grow part by part: measurements.jsonl, the GeoJSON layers, the GeoPackage. The same parts
+/// in the same order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
 /// session.cpp, summary.h.)
 
 #include <filesystem>
@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch/formats/geopackage.h"
 #include "batch/plan/journal.h"
 #include "batch/work/part.h"
 #include "exactvo/datasets/atomic_file.h"
@@ -40,6 +41,7 @@ class Outputs {
   std::shared_ptr<const std::filesystem::path> folder_;  ///< before the files, which are closed first
   std::unique_ptr<AtomicFile> measurements_;
   std::vector<std::pair<std::unique_ptr<AtomicFile>, bool>> geojson_;  ///< with whether nothing was added yet
+  std::unique_ptr<GeoPackage> geopackage_;
 };
 
 /// On a file system without locks another process may be through first and take the folder away. Made anew it would

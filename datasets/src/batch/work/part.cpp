@@ -94,8 +94,10 @@ std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& s
 
 void append_features(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
                      const BatchConfiguration& configuration, const Place& place, Part& part) {
-  if (!configuration.geojson) return;
+  if (!configuration.geojson && !configuration.geopackage) return;
   features_of(head, shapes, [&](const Feature& feature) {
+    if (configuration.geopackage) append_row(part.rows, feature);
+    if (!configuration.geojson) return;
     std::string& text = part.features[feature.layer];
     if (!text.empty()) text += ",\n";
     text += to_geojson(feature, place);
@@ -121,7 +123,7 @@ geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
 
 // --- Bytes: the magic line, their number, the counts, then every text after its length ---
 
-constexpr std::string_view kMagic = "EXACTVO PART 6\n";
+constexpr std::string_view kMagic = "EXACTVO PART 5\n";
 using Number = std::uint64_t;
 
 constexpr std::size_t kNumbers = 4;
@@ -137,6 +139,7 @@ template <class Text>
 std::vector<Text*> texts_of(PartOf<Text>& part) {
   std::vector<Text*> texts{&part.pictures, &part.measurements};
   for (Text& layer : part.features) texts.push_back(&layer);
+  texts.push_back(&part.rows);
   return texts;
 }
 
@@ -169,7 +172,7 @@ Counts& Counts::operator+=(const Counts& more) {
 
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
   Part part;
-  part.features.resize(kLayers.size());
+  part.features.resize(layers().size());
   const Place place = place_for(chunk, configuration);
   const geometry::ShapeOptions options = options_for(configuration);
   std::size_t pictures = chunk.number == 0 && configuration.pictures ? kPicturesOfInput : 0;
@@ -196,7 +199,7 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
 }
 
 std::string to_bytes(Part part) {
-  EXACTVO_REQUIRE(part.features.size() == kLayers.size(), std::to_string(part.features.size()));
+  EXACTVO_REQUIRE(part.features.size() == layers().size(), std::to_string(part.features.size()));
   const auto numbers = numbers_of(part.counts);
   const std::vector<std::string*> texts = texts_of(part);
   // To the byte, so that a part is not moved while it grows.
@@ -238,7 +241,7 @@ PartView view_of_part(std::string_view bytes, const std::filesystem::path& path)
   if (take(std::min(bytes.size(), kMagic.size())) != kMagic) refuse_part(path);
   if (take_number() != all) refuse_part(path);
   PartView part;
-  part.features.resize(kLayers.size());
+  part.features.resize(layers().size());
   for (Number* number : numbers_of(part.counts)) *number = take_number();
   for (std::string_view* text : texts_of(part)) *text = take(take_number());
   return part;

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What is made of one chunk of obstacles, ready to be merged with its neighbours: text, no shapes.
+/// What is made of one chunk of obstacles, ready to be merged with its neighbours: text and rows, no shapes.
 
 #include <cstdint>
 #include <filesystem>
@@ -49,6 +49,7 @@ struct PartOf {
   Text pictures;               ///< SVG
   Text measurements;           ///< JSON Lines
   std::vector<Text> features;  ///< a layer each: GeoJSON features, a comma and a newline between them
+  Text rows;                   ///< features.h
 };
 using Part = PartOf<std::string>;
 using PartView = PartOf<std::string_view>;  ///< looks into a part's bytes
