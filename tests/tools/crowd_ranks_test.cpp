@@ -90,7 +90,7 @@ wait $run
 )");
 }
 
-TEST(CrowdOverRanks, ARankThatDiesEndsTheRunAndResumeGoesOnToTheSameBytes) {
+TEST(CrowdOverRanks, ARankThatDiesEndsTheRunWithAWordAndResumeGoesOnToTheSameBytes) {
   const Workplace here;
   here.write("ring.json", kRing);
   write_killer(here);
@@ -102,6 +102,9 @@ TEST(CrowdOverRanks, ARankThatDiesEndsTheRunAndResumeGoesOnToTheSameBytes) {
     const Outcome killed = here.run(run, kEnvironment + "sh kill.sh KILL " + lost);
     EXPECT_NE(killed.status, 0);
     EXPECT_TRUE(killed.out.empty()) << killed.out;
+    EXPECT_THAT(killed.err, HasSubstr("error: rank " + lost +
+                                      " of 3 is gone; --resume goes on from the last snapshot [E_RANK_LOST]"));
+    EXPECT_EQ(count_of("E_RANK_LOST", killed.err), 1U) << killed.err;
     EXPECT_TRUE(here.has("killed.evr.snapshot") && here.has("killed.evr.unfinished"));
     EXPECT_FALSE(here.has("killed.evr"));
   }

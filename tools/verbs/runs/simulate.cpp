@@ -23,6 +23,7 @@
 #include "explorer/page.h"
 #include "support/escape.h"
 #include "support/files.h"
+#include "support/rank_watch.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
@@ -42,7 +43,7 @@ std::string run_summary(const datasets::RunInfo& info, const formation::Scenario
 
 /// Lines of a kind; metrics.json has all.
 constexpr std::size_t kMostLines = 10;
-/// Up to this many robots have a line each.
+/// Of so many robots each has its line.
 constexpr std::size_t kMostRobots = 50;
 
 std::string or_dash(const std::optional<double>& value, const char* unit) {
@@ -110,7 +111,7 @@ std::string margin_line(const formation::Metrics& m) {
                      geometry::counted(margin.robots, "robot"));
 }
 
-/// Among many robots only those that stopped elsewhere have lines.
+/// Of many robots there are lines for those alone that stopped elsewhere.
 std::string robot_lines(const formation::Scenario& scenario, const formation::Metrics& m) {
   std::string text;
   if (m.robots.size() > kMostRobots) return text;
@@ -244,7 +245,7 @@ std::string results(const SimulateFlags& flags, const FinishedRun& run) {
   return flags.json ? run.metrics_json() : run_summary(run.file.info, run.file.scenario, run.metrics);
 }
 
-/// Removes those of an earlier run that was made the other way, or whose table was small.
+/// Of an earlier run that was made the other way, or whose table was small.
 void remove_other_recordings(const std::filesystem::path& target, const std::filesystem::path& staged) {
   std::error_code ignored;
   for (const char* name : {"recording.jsonl", "recording.evr", "trajectory.csv", "lyapunov.csv"})
@@ -425,6 +426,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
 ExitCode over_ranks(formation::Ranks& ranks, const std::function<ExitCode()>& work) {
   if (ranks.rank() > 0) set_quiet(true);
   try {
+    const RankWatch watch(ranks);
     const ExitCode code = work();
     ranks.least(0);  // the others stay until the first has written everything
     return code;

@@ -19,6 +19,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/notices.h"
 #include "figures/crowd_figures.h"
+#include "support/rank_watch.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -195,6 +196,7 @@ std::optional<FinishedRun> run_on_crowd(const CrowdTask& task) {
   if (has_snapshots) {
     options.snapshot_every = flags.snapshot_every;
     options.keep_snapshot = [&](const std::string& bytes) { snapshot.keep(bytes); };
+    if (task.ranks) RankWatch::keeps_snapshots();
     if (flags.resume) options.resume_from = read_in_all(snapshot, task.ranks);
     if (flags.resume)
       message(options.resume_from.empty() ? "no snapshot of " + task.record.string() + ": begins at the beginning"
