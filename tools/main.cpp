@@ -88,7 +88,6 @@ ExitCode parse_and_run() {
     return ExitCode::bad_input;
   }
   given.erase(given.begin());
-  given = with_points_joined(given);
   check_switches(app, given);
   std::reverse(given.begin(), given.end());  // as the parser takes them
   try {
