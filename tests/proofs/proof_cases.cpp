@@ -220,8 +220,8 @@ std::optional<Json> clear_at_random(bool curved, SeededRandom& random) {
       c.b ? geometry::certify(c.a, c.body_a, *c.b, c.body_b) : geometry::certify(c.a, c.body_a, *c.obstacle);
   if (!certificate || certificate->separations.size() > 60) return std::nullopt;  // few lines that take long
   const tools::BodyInMotion moving{c.a, &c.body_a};
-  if (c.b) return tools::certificate_json(*certificate, moving, {*c.b, &c.body_b});
-  return tools::certificate_json(*certificate, moving, formation::SceneObstacle{"0", *c.obstacle});
+  if (c.b) return Json::parse(tools::certificate_text(*certificate, moving, {*c.b, &c.body_b}));
+  return Json::parse(tools::certificate_text(*certificate, moving, tools::obstacle_text({"0", *c.obstacle})));
 }
 
 void write_moving(bool curved, std::size_t count, SeededRandom& random, const std::string& folder) {
@@ -288,7 +288,7 @@ std::optional<Json> turning_at_random(SeededRandom& random) {
   const geometry::Obstacle obstacle = standing_at_random(random, motion.at);
   const auto certificate = geometry::certify(motion, body, obstacle);
   if (!certificate || certificate->separations.size() > 60) return std::nullopt;  // each takes the check in C++ a while
-  return tools::certificate_json(*certificate, motion, body, {"0", obstacle});
+  return Json::parse(tools::certificate_text(*certificate, motion, body, tools::obstacle_text({"0", obstacle})));
 }
 
 /// The ring of a wall as a polygon: what is within it is inside, however clear of its edges.
