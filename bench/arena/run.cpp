@@ -82,7 +82,7 @@ class Measuring : public RunSink {
   }
 
   Metrics finish(const Recording& run) { return evaluator_->finish(run).metrics; }
-  /// Of a run that was ended.
+  /// The recording so far of a run that was ended.
   const Recording& known() const { return known_; }
   double end() const { return end_; }          ///< s, of the last row
   double seconds() const { return seconds_; }  ///< of processor time that measuring took

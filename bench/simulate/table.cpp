@@ -27,7 +27,7 @@ std::string quoted(const std::string& word) {
   return "'" + std::regex_replace(word, std::regex("'"), "'\\''") + "'";
 }
 
-/// Of the name of a benchmark, which may have a plus.
+/// A pattern that matches the name of a benchmark, which may have a plus.
 std::string as_regex(const std::string& name) {
   return std::regex_replace(name, std::regex("[+]"), "[+]");
 }
@@ -53,7 +53,8 @@ std::vector<std::string> names_in(const std::string& program, const TableOptions
   return names;
 }
 
-/// Of a run with its metrics: what the verb `simulate` takes before it writes. Nothing where the program lacks it.
+/// How fast a run with its metrics is, which is what the verb `simulate` does before it writes. Nothing where the
+/// program lacks it.
 std::optional<Rate> rate_of(const std::string& program, const std::string& name, double duration) {
   const std::string cut = duration > 0.0 ? fmt::format(" --duration={}", duration) : "";
   const std::string text = output_of(quoted(program) + cut + " --benchmark_format=json --benchmark_min_time=0.2 " +

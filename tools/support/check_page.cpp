@@ -25,7 +25,7 @@ namespace {
 
 /// What a page lists.
 constexpr std::size_t kMostOverlaps = 1000;
-/// Of a curve, so many chords are drawn.
+/// Chords that are drawn for a curve.
 constexpr int kChords = 16;
 
 bool is_plain_disc(const geometry::RigidBody& body) {

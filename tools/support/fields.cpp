@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kBlanks = " \t\r\n";
 
-/// Of a field, and of its quotation marks as CSV has them: commas between them part no fields.
+/// Where the first field ends, with its quotation marks as CSV has them: commas between them part no fields.
 std::size_t end_of_field(std::string_view line) {
   bool is_quoted = false;
   for (std::size_t k = 0; k < line.size(); ++k) {

@@ -23,7 +23,7 @@ namespace {
 
 /// Bytes kept back before a write call.
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
-/// Of a large file, so many bytes are sent on to the disk while the rest is being made; `commit` waits for less then.
+/// Bytes of a large file that are sent on to the disk while the rest is being made; `commit` then waits for less.
 constexpr std::size_t kSentAtOnce = std::size_t{1} << 22;
 
 void make_directories(const std::filesystem::path& directory) {

@@ -63,7 +63,7 @@ Fault fault_of_coordinates(const Json& value, int depth, const std::string& poin
   return std::nullopt;
 }
 
-/// Of a member that is not as it should be.
+/// The fault of a member that is not as it should be.
 GeoJsonFault fault_of_member(const Json& object, const char* key, const std::string& pointer, const char* expected) {
   const auto member = object.find(key);
   return {pointer + "/" + key, member == object.end() ? "nothing" : described(*member), expected};

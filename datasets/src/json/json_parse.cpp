@@ -148,7 +148,7 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   /// At a key that the object has already. Unless this throws, the last value counts.
   virtual void on_second(const std::string& /*key*/) {}
 
-  /// Of objects and lists whose end has not come.
+  /// How many objects and lists have not ended yet.
   std::size_t depth() const { return open_.size(); }
   Json& innermost() const { return *open_.back().value; }
 
@@ -347,7 +347,7 @@ std::optional<std::string> pointer_within(const Json& value, const Json& all) {
   return std::nullopt;
 }
 
-/// Of a member; 0 beyond the 64th, which no object of ours has.
+/// The bit of a member; 0 beyond the 64th, which no object of ours has.
 std::uint64_t bit_of(std::size_t member) {
   return member < 64 ? std::uint64_t{1} << member : 0;
 }

@@ -79,7 +79,7 @@ void append_measurements(JsonWriter& json, const ObstacleShapes& shapes) {
   json.member("pieces_count", std::uint64_t{shapes.pieces.size()});
   json.member("area", f.area).member("perimeter", f.perimeter).member("hull_area", f.hull_area);
   json.member("ellipse_area", f.ellipse_area).member("least_ellipse_area", f.least_ellipse_area);
-  // Of the smallest ellipse over the obstacle; walls have no area to compare with.
+  // The area of the smallest ellipse over that of the obstacle; walls have no area to compare with.
   json.member("inflation", f.area > 0.0 ? std::optional(f.ellipse_area / f.area) : std::nullopt);
   json.member("deviation", shapes.facades.deviation);
   json.member("trap_free_area", f.trap_free_area).member("trap_free_beyond", f.trap_free_beyond);

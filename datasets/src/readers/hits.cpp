@@ -33,7 +33,7 @@ std::int64_t cell_of(double x, double cell) {
   return k;
 }
 
-/// Of hits whose cells have exact coordinates; the others are refused.
+/// The box of hits whose cells have exact coordinates; the others are refused.
 geometry::Box box_of_hits(const std::vector<geometry::Vec2>& hits, double cell, const Collector& out) {
   geometry::Box box;
   for (const geometry::Vec2 hit : hits) {

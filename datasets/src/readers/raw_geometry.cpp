@@ -306,7 +306,7 @@ void Collector::take_findings(const std::vector<RingFinding>& findings,
   for (auto left_out = end; left_out != findings.end(); ++left_out) ++result_.unlisted[left_out->code];
 }
 
-/// Of an input that can be used.
+/// Counts an input that can be used.
 void Collector::count(const std::vector<RingFinding>& findings) {
   ++result_.counts.read;
   ++(findings.empty() ? result_.counts.done : result_.counts.repaired);

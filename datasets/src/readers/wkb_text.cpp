@@ -93,7 +93,7 @@ class WkbReader {
     return p;
   }
 
-  /// Of things of so many bytes at least: no more than there is room for.
+  /// A number of things of so many bytes each at least: no more than there is room for.
   std::size_t count(std::size_t bytes_each) {
     const std::size_t n = integer();
     if (n > (bytes_.size() - at_) / bytes_each)

@@ -155,8 +155,8 @@ class RunAudit {
     return std::move(tally_);
   }
 
-  /// Of a run that ends early, whose last row nobody knows to be one: what is said of it beforehand holds for the rows
-  /// there are. REQUIRES: `file` has no goal's bodies and no plan of a row that did not come.
+  /// Ends a run that breaks off, whose last row was not known to be the last: what the file says beforehand holds for
+  /// the rows that there are. REQUIRES: `file` has no goal's bodies and no plan of a row that did not come.
   AuditTally finish_early() {
     tally_.report.rows = rows_;
     look_at_plans();

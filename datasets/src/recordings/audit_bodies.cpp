@@ -139,7 +139,7 @@ class BodyAudit {
            has_reached(robot.goals[before->goal], *place, std::max(robot.radius, run_.scenario.arrival_tolerance));
   }
 
-  /// Of each obstacle, whether each of its edges lies in a body that stands for it on the way to that goal.
+  /// For each obstacle, whether each of its edges lies in a body that stands for it on the way to that goal.
   std::vector<bool> covered_by(const GoalBodies& of_goal) const {
     std::vector<std::vector<bool>> edges;
     for (const RationalObstacle& o : run_.obstacles) edges.emplace_back(o.edges.size(), false);

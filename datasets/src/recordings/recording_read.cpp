@@ -283,7 +283,7 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
   throw DataError(DataCode::format_unknown, name, "", kind_of(beginning), recording);
 }
 
-/// Of a text that must outlive it.
+/// The lines of a text that must outlive the result.
 NextLine lines_of(std::string_view text) {
   return [rest = text](std::string_view& line) mutable {
     if (rest.empty()) return false;

@@ -214,7 +214,7 @@ constexpr const char* kFormats =
     "lines of JSON, an object each, or CSV with a column preferred_x, or binary instances: their count (int32, little "
     "endian), then 20 bytes or more each";
 
-/// Of a binary file; none where there are no four bytes.
+/// How many problems a binary file says it has; none where there are no four bytes.
 std::optional<std::int32_t> count_of(const std::string& bytes) {
   if (bytes.size() < 4) return std::nullopt;
   std::uint32_t count = 0;

@@ -33,7 +33,7 @@ constexpr std::size_t kMostRobots = 10'000'000;
 /// Places drawn for a robot until one is free.
 constexpr int kDraws = 1000;
 
-/// Of random_key: what these draws share with no others.
+/// The stream of random_key that these draws share with no others.
 constexpr std::uint64_t kStream = 0x726f626f7473;  // "robots"
 
 /// m and m/s; the schema's bound of radii and speeds.

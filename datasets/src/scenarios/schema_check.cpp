@@ -98,7 +98,7 @@ class Checker {
     refuse(DataCode::wrong_type, value, described(value), with_unit(expected, rules));
   }
 
-  /// Of a list of objects: what each has. An entry alone is often written in the place of the list.
+  /// The keys of each object of a list. An entry alone is often written in the place of the list.
   std::string of_entries(const Json& schema) const {
     const Json& entry = resolved(schema);
     std::string keys;

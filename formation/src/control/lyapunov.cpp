@@ -75,7 +75,7 @@ double exponential_integral(Vec2 from, Vec2 to, Vec2 a, const Decays& decays) {
   return once.duration * dot(w, w - a) + e1 * dot(b, 2.0 * w - a) + e2 * squared_norm(b);
 }
 
-/// Of the integrand over the step from a row to the next, with the decision and the leader's velocity of that row.
+/// The integral of the integrand over the step from a row to the next, with that row's decision and leader's velocity.
 double integral_over_step(const Recording& run, const Decays& decays, const Step& row, const Step& next) {
   const double h = run.time_step;
   double sum = 0.0;

@@ -134,7 +134,7 @@ bool Groups::serves_any(const Members& seeds, const Members& who, const Roadmap&
   });
 }
 
-/// Of the generator, for a plan from where the robots were in that row.
+/// Calls of the generator at most, for a plan from where the robots were in that row.
 std::size_t Groups::most_calls(std::size_t row) const {
   if (row == history_.last()) return kCalls;
   return row == history_.first() ? kCallsFromTheStart : kCallsGoingBack;

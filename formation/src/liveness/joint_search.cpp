@@ -16,7 +16,7 @@ namespace {
 
 using Joint = std::vector<PlaceNumber>;
 
-/// Of robots that push each other within a joint step, since each takes some of the stack. More can still move, in
+/// Robots at most that push each other within a joint step, since each takes some of the stack. More can still move, in
 /// several steps: sequences of single moves need no chains at all, so that the search stays complete.
 constexpr std::size_t kLongestChain = 256;
 constexpr PlaceNumber kNowhere = static_cast<PlaceNumber>(-1);

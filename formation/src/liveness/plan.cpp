@@ -123,8 +123,8 @@ void Following::advance(const std::vector<Vec2>& at) {
   }
 }
 
-/// Of the way to the end of the move, the largest share up to `share` that stays clear of what the earlier move's robot
-/// has still to sweep until it is done.
+/// The largest share, up to `share`, of the way to the end of the move that stays clear of what the earlier move's
+/// robot has still to sweep until it is done.
 double Following::clear_share(std::size_t move, std::size_t earlier, double share, const std::vector<Vec2>& at) const {
   constexpr int kHalvings = 12;
   const std::size_t i = plan_[move].robot, j = plan_[earlier].robot;

@@ -41,7 +41,7 @@ constexpr double kWallRounding = 1e-7;
 constexpr double kLongestDrive = 1.61;
 constexpr double kWidestRows = 1.2;
 constexpr double kCostOfPushing = 0.2, kCostOfPushingOn = 0.6;
-/// Of a place where the robot that pushes would push it again next, as far ahead of that as `kFarAhead`.
+/// The cost of a place where the robot that pushes would push it again next, as far ahead of that as `kFarAhead`.
 constexpr double kCostOfBeingAhead = 1.0, kFarAhead = 2.0;
 /// As near to a wall a robot can also drive straight along its row.
 constexpr double kBesideWall = 0.1;
@@ -634,8 +634,8 @@ void Reservations::find_earlier(std::size_t i) {
   });
 }
 
-/// Of what is left of its way, what stays clear of the ways of all earlier tickets. These only get shorter: a way that
-/// is clear of them remains so.
+/// The share of what is left of its way that stays clear of the ways of all earlier tickets. These only get shorter: a
+/// way that is clear of them remains so.
 double Reservations::share_allowed(std::size_t i) {
   if (clear_[i] == of_[i].ticket) return 1.0;
   constexpr int kMostSteps = 8;

@@ -137,7 +137,7 @@ Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<do
     latest_on.resize(edges.size(), kNoMove);
     latest_start.resize(edges.size(), -geometry::kInfinity);
     for (const RoadmapEdges::NearEdge& n : near) {
-      // Of an edge the latest move of a robot that is large enough to be near: those before it started no later.
+      // The latest move on the edge of a robot that is large enough to be near: those before it started no later.
       if (!(latest_start[n.edge] + n.lead > timed.start)) continue;
       std::size_t earlier = latest_on[n.edge];
       while (earlier != kNoMove && !is_near(n.squared, table.moves[earlier])) earlier = before_it_on[earlier];

@@ -170,8 +170,8 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
   return queue + chained(scenario, chain) + end_words(scenario, row, chain.back());
 }
 
-/// Of those about their goals who could have taken its own, the one that is nearest to its goal has. Where robots end
-/// elsewhere, only who is at its goal.
+/// Names, among the robots about their goals that could have taken its own, the one nearest to its goal; where robots
+/// end elsewhere, only one that is at its goal.
 std::string why_it_stays(const Scenario& scenario, const Step& row, std::size_t robot) {
   if (scenario.formation) return "its slot cannot be filled";
   std::optional<std::size_t> first;

@@ -25,7 +25,7 @@ namespace {
 constexpr int kBrakingParts = 4;
 /// m, of kMonitorSlack: a way that ends before an obstacle leaves this much, room for the directions of a certificate.
 constexpr double kRoomAtTheEnd = 0.5 * kMonitorSlack;
-/// Of a way that is gone already: more than its displacement is rounded (turning.cpp: 16 u).
+/// A share of the way that is gone already: more than the rounding of its displacement (turning.cpp: 16 u).
 constexpr double kOfWayGone = 0x1p-46;
 
 /// A box along the chord of a way that holds the footprint all the time. What is on one side of it stays clear, which
@@ -126,7 +126,7 @@ double Monitor::left_within(const Stretch& stretch, const Part& part, const Stan
   return kInfinity;
 }
 
-/// Of a part and a piece that are in contact as the way begins; else null.
+/// The contact of a part and a piece that touch as the way begins; else null.
 Monitor::Contact* Monitor::contact_of(std::size_t piece, std::size_t part, double reach) {
   for (Contact& contact : contacts_)
     if (contact.piece == piece && contact.part == part) return contact.gap < 0.0 ? &contact : nullptr;

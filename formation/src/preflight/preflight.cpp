@@ -166,7 +166,8 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
                                        : "the leader never reaches the end of its path");
 }
 
-/// Of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was rounded.
+/// A share of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was
+/// rounded.
 constexpr double kRounding = 1e-12;
 
 bool exceeds(double speed, double max_speed) {
@@ -185,7 +186,8 @@ struct TopSpeed {
   double counted = 0.0;  ///< m/s, of it
 };
 
-/// Of the time: a jump of speed at a corner comes before or after it by a rounding, and what is shorter is not driven.
+/// A share of the time: a jump of speed at a corner comes before or after it by a rounding, and what is shorter is not
+/// driven.
 constexpr double kInstant = 1e-9;
 
 /// Over the part of the motion that happens: up to the path's end and the time limit.

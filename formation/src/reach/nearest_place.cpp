@@ -77,8 +77,8 @@ std::string words_of(const NearestPlace& nearest) {
   return least > 0.0 ? at + " (no place nearer than " + metres(least) + " can be reached)" : at;
 }
 
-/// Of the goal on the outlines of single edges. Of which a place nearer to the goal is `offset` away is itself no
-/// farther than both together.
+/// The feet of the goal on the outlines of single edges. An edge that is `offset` away from a place nearer to the goal
+/// is itself no farther than both together.
 std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 goal, double nearer_than) const {
   constexpr int kDirections = 16;  // about a vertex in which the goal lies: then all are as near
   std::vector<Candidate> all;

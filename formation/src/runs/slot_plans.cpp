@@ -25,7 +25,7 @@ double gap_of(const Margins& margins) {
 /// Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to each other.
 constexpr double kShareOfGap = 0.25;
 
-/// Of the tolerance: it ends beside its slot and counts as there.
+/// A share of the tolerance: a robot that ends as near beside its slot counts as there.
 constexpr double kNearEnough = 0.9;
 
 /// With the speed at which robots close in on their slots.

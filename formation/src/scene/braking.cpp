@@ -15,7 +15,7 @@ using geometry::HalfPlane;
 
 /// Share of a limit that is left to roundings.
 constexpr double kAimedAt = 1.0 - 1e-12;
-/// Of the skin: 2^-30 m of it are lost at most where it is used up.
+/// Halvings of the skin: at most 2^-30 m of it are lost where it is used up.
 constexpr int kHalvings = 30;
 
 /// Beyond the rounding of the product.

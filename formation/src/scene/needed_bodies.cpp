@@ -106,7 +106,7 @@ double inverse_of_square(Vec2 along) {
   return length2 > 0.0 && std::isfinite(1.0 / length2) ? 1.0 / length2 : 0.0;
 }
 
-/// Of the cut-off where u is nearest to it, else of the line across the way to the nearest point.
+/// The room of the cut-off where u is nearest to it, else of the line across the way to the nearest point.
 template <class Tau>
 double room_of_segment(const geometry::Segment& s, Vec2 x, Vec2 u, double kept, const Tau& tau_of) {
   const Vec2 along = s.b - s.a, start = s.a - x;
@@ -190,7 +190,7 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
   return window;
 }
 
-/// Of what is met again, `built` says what has its half-plane.
+/// `built` says which of those that are met again have their half-plane.
 void StaticField::meet_shapes(const Viewpoint& from, const Need& need, const std::vector<Constraint>& built,
                               Meetings& meetings) const {
   std::vector<Met>& met = meetings.met;

@@ -69,7 +69,8 @@ struct Checker {
   }
 };
 
-/// Of every robot, those before it that could overlap it, in order. Robots whose numbers are none overlap nothing.
+/// For every robot, those before it that could overlap it, in order. Robots with NaN among their numbers overlap
+/// nothing.
 std::vector<std::vector<std::size_t>> near_each_other(const std::vector<Robot>& robots) {
   constexpr double kRounding = 0x1p-40;  // far more than the gap of a pair is off by
   std::vector<geometry::Box> boxes;

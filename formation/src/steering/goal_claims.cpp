@@ -18,7 +18,7 @@ GoalClaims::GoalClaims(const Scenario& scenario, const RoomAtEnds& room, double 
       claimed_(4.0 * largest_),
       robots_(scenario.robots.size()) {}
 
-/// Of those in `others` that leave robot i no room in `place` the nearest, of such the first.
+/// The nearest of those in `others` that leave robot i no room in `place`; the first of several as near.
 template <class PlaceOf>
 std::optional<std::size_t> GoalClaims::nearest_in(const Cells<std::size_t>& others, const PlaceOf& place_of,
                                                   std::size_t i, Vec2 place) const {

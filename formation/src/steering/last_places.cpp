@@ -12,7 +12,7 @@
 namespace exactvo::formation::detail {
 namespace {
 
-/// Of the arrival tolerance: the rest is left for a robot that only comes near its place.
+/// A share of the arrival tolerance: the rest is left for a robot that only comes near its place.
 constexpr double kMoved = 0.9;
 
 double room_for(const Scenario& s, std::size_t i, std::size_t j, const RoomAtEnds& room) {

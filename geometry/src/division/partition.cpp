@@ -145,8 +145,8 @@ PartitionMethod chosen(PartitionMethod method, std::size_t size) {
   return size <= kMostForOptimal ? PartitionMethod::optimal : PartitionMethod::triangles;
 }
 
-/// Of a simple ring: whether it is convex and has no vertex in the middle of a side. Then it is its own optimal
-/// partition, as CGAL lists it too.
+/// Whether a simple ring is convex and has no vertex in the middle of a side. Then it is its own optimal partition, as
+/// CGAL lists it too.
 bool turns_left_everywhere(const Ring& ring) {
   const std::size_t n = ring.size();
   for (std::size_t i = 0; i < n; ++i)

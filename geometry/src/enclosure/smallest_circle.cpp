@@ -42,7 +42,7 @@ void take_if_smaller(Vec2 center, const std::vector<Vec2>& points, std::vector<V
   if (radius < best.radius) best = {center, radius, std::move(holders)};  // false for the NaN of a flat triangle
 }
 
-// Of at most four points: the smallest circle is centred between two of them or at a circumcentre.
+// At most four points: the smallest circle is centred between two of them or at a circumcentre.
 HeldCircle smallest_of_few(const std::vector<Vec2>& points) {
   HeldCircle best;
   for (std::size_t i = 0; i < points.size(); ++i) {

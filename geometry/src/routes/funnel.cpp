@@ -9,7 +9,7 @@
 namespace exactvo::geometry::routing {
 namespace {
 
-/// Of the coordinates: ends this close to each other are one.
+/// A share of the coordinates: ends this close to each other are one.
 constexpr double kSame = 0x1p-45;
 
 }  // namespace

@@ -39,7 +39,7 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
   edges_by_place_ = BoxGrid(std::move(boxes));
 }
 
-/// Of a polygon: by the edges that the ray towards +x may cross.
+/// Decides it by the edges that the ray towards +x may cross.
 bool ObstacleIndex::is_inside(Vec2 x) const {
   if (!has_interior_ || !box_.contains(x)) return false;
   return detail::even_odd_place(x, [&](const auto& visit) {

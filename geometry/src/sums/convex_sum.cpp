@@ -71,7 +71,7 @@ inline bool rises(Vec2 along) {
   return along.y > 0.0 || (along.y == 0.0 && along.x > 0.0);
 }
 
-// Of several vertices as low as any, the leftmost.
+// The leftmost of the lowest vertices.
 const Vec2* lowest(const Vec2* begin, const Vec2* end, double least_y) {
   const Vec2* first = begin;
   while (first + 1 != end && first->y != least_y) ++first;
@@ -151,7 +151,7 @@ void require_convex(const ConvexPolygon& polygon) {
 // e x f by d (|e| + |f|) + 2 d^2, lengths as |x| + |y|. The margin is 4 d (|e| + |f|) = 8 u M (|e| + |f|): no e x f
 // passes it unless |e| + |f| > 16 d, and then it is more than three times as wide, which leaves room for its rounding.
 // Between the edges and the rounded ones lie only edges that turn left as well, so both rings go round equally often.
-// Of two parallel edges that were merged the first stands for both: a longer edge only gains. A NaN or an overflow
+// The first of two parallel edges that were merged stands for both: a longer edge only gains. A NaN or an overflow
 // proves nothing.
 class Order {
  public:

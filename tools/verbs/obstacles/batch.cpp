@@ -187,7 +187,7 @@ std::string words_of(const BatchTally& tally, const char* what) {
   return text;
 }
 
-/// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
+/// For a shard only what the last one did is known, and how long that took: no rate of the whole.
 std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
   std::string text = words_of(s.files, "file") + "\n" + words_of(s.obstacles, "obstacle");
   text += fmt::format("\n{} skipped (points, empty geometries)\n", counted(s.passed_over, "input"));

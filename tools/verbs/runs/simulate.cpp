@@ -43,7 +43,7 @@ std::string run_summary(const datasets::RunInfo& info, const formation::Scenario
 
 /// Lines of a kind; metrics.json has all.
 constexpr std::size_t kMostLines = 10;
-/// Of so many robots each has its line.
+/// Up to so many robots have a line each.
 constexpr std::size_t kMostRobots = 50;
 
 std::string or_dash(const std::optional<double>& value, const char* unit) {
@@ -111,7 +111,7 @@ std::string margin_line(const formation::Metrics& m) {
                      geometry::counted(margin.robots, "robot"));
 }
 
-/// Of many robots there are lines for those alone that stopped elsewhere.
+/// With many robots only those have lines that stopped elsewhere.
 std::string robot_lines(const formation::Scenario& scenario, const formation::Metrics& m) {
   std::string text;
   if (m.robots.size() > kMostRobots) return text;
@@ -245,7 +245,7 @@ std::string results(const SimulateFlags& flags, const FinishedRun& run) {
   return flags.json ? run.metrics_json() : run_summary(run.file.info, run.file.scenario, run.metrics);
 }
 
-/// Of an earlier run that was made the other way, or whose table was small.
+/// Removes recordings of an earlier run that was made the other way, or whose table was small.
 void remove_other_recordings(const std::filesystem::path& target, const std::filesystem::path& staged) {
   std::error_code ignored;
   for (const char* name : {"recording.jsonl", "recording.evr", "trajectory.csv", "lyapunov.csv"})

@@ -104,7 +104,7 @@ ExactLegs legs_of(const RationalVector& centre, const Body& body) {
   return {*found.left, *found.right};
 }
 
-/// Of points, no body needs algebra.
+/// The legs of a cone round points, none of which needs algebra.
 ExactLegs legs_of_points(const std::vector<RationalVector>& points) {
   const RationalVector *left = &points.front(), *right = left;
   for (const RationalVector& p : points) {

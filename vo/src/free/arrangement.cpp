@@ -149,7 +149,7 @@ std::vector<Stretch> Arrangement::stretches_of(std::size_t curve) {
   return out;
 }
 
-/// Of an arc that is no more than half of its circle: over the middle of its chord.
+/// The middle of an arc that is no more than half of its circle lies over the middle of its chord.
 Point Arrangement::middle_of(const Stretch& s) const {
   const Curve& c = curves_[s.curve];
   const Point &from = points_[s.from], &to = points_[s.to];

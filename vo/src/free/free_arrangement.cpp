@@ -97,7 +97,7 @@ PointBracket bracket_of(const Point& x, double max_speed) {
 }
 
 // Green's theorem: the triangles with the origin, and the segments between arcs and their chords.
-/// Of what the walk goes round. At most 2^-48 max_speed^2 wide, or as narrow as doubles are there.
+/// The area that the walk goes round: at most 2^-48 max_speed^2 wide, or as narrow as doubles are there.
 geometry::Bracket area_of(const Arrangement& arrangement, const std::vector<Stretch>& walk, double max_speed) {
   const Fineness fineness(arrangement, walk, max_speed);
   Rational twice = 0;
@@ -152,7 +152,7 @@ std::size_t most_curves_of(const std::vector<ShiftedCone>& cones) {
   return most;
 }
 
-/// Of cones that can be held. A cone in contact has no curves: it forbids everything.
+/// REQUIRES: cones that can be held. A cone in contact has no curves: it forbids everything.
 bool has_too_many_curves(const std::vector<ShiftedCone>& cones) {
   if (most_curves_of(cones) <= kMostCurves) return false;
   std::size_t curves = 0;

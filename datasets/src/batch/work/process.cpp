@@ -40,7 +40,7 @@ class Chunker {
     if (chunk_.items.size() >= kItemsOfChunk || chunk_.vertices >= kVerticesOfChunk) end_chunk();
   }
 
-  /// Of what is added from now on.
+  /// The plane of what is added from now on.
   void set_plane(const LocalPlane& plane) {
     if (!chunk_.items.empty()) end_chunk();
     plane_ = chunk_.plane = plane;
@@ -68,7 +68,7 @@ class Chunker {
     chunk_.plane = plane_;
   }
 
-  /// Of a plane without a place on earth, by the first obstacle: the others are not known yet.
+  /// The offset of a plane without a place on earth, by the first obstacle: the others are not known yet.
   void choose_offset(const geometry::Obstacle& shape) {
     const std::vector<geometry::Vec2> points = geometry::vertices_of(shape);
     plane_.offset = chunk_.plane.offset = offset_for(points.front(), points.front());
@@ -218,7 +218,7 @@ void read_input(const Input& input, std::size_t number, const BatchConfiguration
       changed.has_changed = true;
       return give(std::move(changed));
     }
-    // Of a file that turned out to be broken further on nothing is used.
+    // Nothing is used of a file that turned out to be broken further on.
     const bool with_chunks = facts.code.empty() || facts.tally.read > 0;
     chunker.finish(std::move(facts), with_chunks);
   } catch (const Failure& failure) {
