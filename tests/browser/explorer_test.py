@@ -552,7 +552,7 @@ class PageItself(Page):
         listed = self.run_script("return [...document.querySelectorAll('#collisions button')].map((b) => b.textContent)")
         self.assertEqual(len(listed), 2)
         self.assertIn("A: collision with robot B", listed[0])
-        self.assertIn("C: collision with obstacle 1", listed[1])
+        self.assertIn("C: collision with obstacle polygon 1", listed[1])
         there = self.run_script("const r = exactvo.page.run; return [0, 0.5, 1.5, 3].map((t) => [0, 1, 2].map((i) => r.isThere(i, t)))")
         self.assertEqual(there, [[True, True, False], [True, True, False], [False, False, False], [False, False, True]])
         self.run_script("document.querySelectorAll('#collisions button')[0].click()")
