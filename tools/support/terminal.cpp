@@ -15,6 +15,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "support/escape.h"
+#include "support/rank_watch.h"
 #include "support/stop.h"
 
 namespace exactvo::tools {
@@ -44,12 +45,19 @@ std::atomic<bool> stderr_is_terminal{false};
 extern "C" void on_interrupt(int signal) {
   interrupt_seen = signal;
   if (const char* words = words_of_termination()) end_now("exactvo: error: interrupted; ", words, "\n");
-  ::alarm(kGrace);
+  if (watches_ranks())
+    begin_end_of_rank();
+  else
+    ::alarm(kGrace);
 }
 
 /// Something does not look at `interrupted`: a library, or a long computation. No file is half-written under its own
 /// name at any time, so that the program may end anywhere; files of one output may then be of two runs.
 extern "C" void on_end_of_grace(int) {
+  if (watches_ranks()) {
+    say_which_rank_is_lost();
+    end_now("");
+  }
   end_now("exactvo: error: interrupted\n");
 }
 
