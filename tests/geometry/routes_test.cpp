@@ -520,6 +520,18 @@ TEST(RouteCorpus, EveryCaseIsAnsweredWithProof) {
   }
 }
 
+// Property (1): no detour to cross the gate in which the route begins.
+TEST(RoutePlan, ARouteFromTheMiddleOfATightGateGoesStraightOn) {
+  const std::vector<Obstacle> gate{Polyline{{{0, 0}, {24, 0}, {24, 24}, {0, 24}, {0, 0}}},
+                                   Polyline{{{20, 9}, {22, 9}}}};
+  for (const Vec2 goal : {Vec2{23, 12}, Vec2{23, 5}}) {
+    const RouteAnswer answer = asked(gate, 1.0, {23, 9}, goal);
+    ASSERT_TRUE(std::holds_alternative<Route>(answer));
+    EXPECT_EQ(check(gate, {1.0, {23, 9}, goal}, answer), "");
+    EXPECT_DOUBLE_EQ(std::get<Route>(answer).length, std::fabs(goal.y - 9.0));
+  }
+}
+
 TEST(RouteCorpus, ALineReadsBackWithItsHoles) {
   const test::RouteCase one{
       {{Polygon{{{0, 0}, {9, 0}, {9, 9}, {0, 9}}, {{{3, 3}, {3, 6}, {6, 6}}}}, Polyline{{{0, 0.1}, {1, 2}}}},

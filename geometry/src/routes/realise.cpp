@@ -21,6 +21,7 @@ class Realiser {
       const Leg& leg = legs_[i];
       const std::vector<Point> from = straight_.near(leg.from), to = straight_.near(leg.to);
       const bool is_between_gates = i > 0 && i + 1 < legs_.size();
+      if (is_in_gate(leg)) continue;
       if (!(is_between_gates && plan_.is_clear(leg.from.at, leg.to.at)) && !between(from, to, leg) &&
           !between_far(from, to, leg) && !in_parts(from, to, leg) && !by_the_middles(from, to, leg))
         return std::nullopt;
@@ -50,11 +51,17 @@ class Realiser {
       legs_.back().last = static_cast<std::size_t>(w.at);
       legs_.back().to = straight_.gate_of(w.portal, !w.from_left);
       legs_.emplace_back();
-      legs_.back().first = static_cast<std::size_t>(w.at) + 1;
-      legs_.back().from = straight_.gate_of(w.portal, w.from_left);
+      legs_.back().first = static_cast<std::size_t>(w.last.at) + 1;
+      legs_.back().from = straight_.gate_of(w.last.portal, w.last.from_left);
     }
     legs_.back().last = way_.portals.size();
     legs_.back().to = straight_.end_at(t);
+  }
+
+  /// Whether the route begins or ends in the middle of a gate, and the leg leads from there to there.
+  bool is_in_gate(const Leg& leg) const {
+    const Point &a = leg.from.at, &b = leg.to.at;
+    return legs_.size() > 1 && a.is_double() && b.is_double() && a.rounded() == b.rounded() && plan_.is_clear(a, b);
   }
 
   void append(const Point& p) {

@@ -24,13 +24,22 @@
 
 namespace exactvo::geometry::routing {
 
+/// A portal of a gate, and how the route crosses it.
+struct GateCrossing {
+  int portal = -1;
+  bool from_left = false;  ///< from the portal's left cell
+  int at = 0;              ///< its place in `Way::portals`
+};
+
 /// What the route passes, in order: a tight gate, to be crossed through its middle, or a vertex to go round.
 struct Waypoint {
-  int portal = -1;         ///< of the gate; -1: a vertex
+  int portal = -1;         ///< of the gate, the first in a row; -1: a vertex
   bool from_left = false;  ///< the gate is crossed from its portal's left cell
   int vertex = -1;
   bool on_left = false;  ///< the vertex lies to the left of the route
   int at = 0;            ///< its place in `Way::portals`
+  /// The last portal of the gate in that row: a route that begins in the gate may cross it back and forth.
+  GateCrossing last = {};
 };
 
 struct Way {

@@ -85,13 +85,17 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
   set_waypoints(turns, from_left, way);
 }
 
-/// The turns and the tight gates, along the way; of those in a row that are pieces of one gate, or the same turn, the
-/// first.
+/// The turns and the tight gates, along the way. Those in a row that are pieces of one gate, or the same turn, are one.
 void WaySearch::set_waypoints(const std::vector<Waypoint>& turns, const std::vector<bool>& from_left, Way& way) const {
   std::vector<Waypoint>& list = way.waypoints;
   for (std::size_t k = 0; k < way.portals.size(); ++k)
     if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
+      list.push_back({way.portals[k],
+                      from_left[k],
+                      -1,
+                      false,
+                      static_cast<int>(k),
+                      {way.portals[k], from_left[k], static_cast<int>(k)}});
   list.insert(list.end(), turns.begin(), turns.end());
   std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
   const auto same = [&](const Waypoint& a, const Waypoint& b) {
@@ -100,7 +104,14 @@ void WaySearch::set_waypoints(const std::vector<Waypoint>& turns, const std::vec
     const Portal &p = map_.portals[a.portal], &q = map_.portals[b.portal];
     return p.link >= 0 && p.link == q.link;
   };
-  list.erase(std::unique(list.begin(), list.end(), same), list.end());
+  std::size_t count = 0;
+  for (const Waypoint& w : list) {
+    if (count > 0 && same(list[count - 1], w))
+      list[count - 1].last = w.last;
+    else
+      list[count++] = w;
+  }
+  list.resize(count);
 }
 
 // --- The second search ---
