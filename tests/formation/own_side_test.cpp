@@ -185,6 +185,51 @@ TEST(OwnSide, WithoutAnyKnowledgeOfTheSideARobotBrakes) {
   }
 }
 
+/// Of fast robots with little room too, whose numbers are rounded by more than the room of a slow one.
+TEST(OwnSide, BrakingSatisfiesTheLinesOfRobotsOfAnySpeedInRationals) {
+  test::SeededRandom random(test::seed_of_run(75));
+  std::size_t asked = 0;
+  for (const double speed : {0.001, 0.22, 3.0, 30.0, 300.0, 3000.0}) {
+    detail::DecisionRules r = rules();
+    r.acceleration = random.uniform(0.1, 10.0);
+    r.braking_time = 1.1 * speed / r.acceleration + r.time_step;
+    for (int k = 0; k < 500; ++k) {
+      const Vec2 v = random.uniform(0.0, speed) * random.direction(), braked = r.braked(v);
+      const detail::ForeseenWay other{way_of(r, random.uniform(0.5, 2.0) * random.direction(), v), 0.1};
+      const detail::OwnSide side(r, {}, v, other, 1.5);
+      for (const geometry::HalfPlane& h : side) {
+        const Rational room = dot(exactly(h.normal), exactly(braked)) - Rational(h.offset);
+        ASSERT_GT(room, Rational(0x1p-50) * Rational(norm(braked))) << "a double beside it; " << speed << " m/s, " << k;
+        ++asked;
+      }
+    }
+  }
+  EXPECT_GT(asked, 6000u);
+}
+
+/// As slow ones do: nothing is relaxed, and the audit proves it.
+TEST(OwnSide, RobotsOf300MetresASecondKeepToTheirSides) {
+  Scenario s;
+  for (int i = 0; i < 4; ++i) {
+    Robot robot;
+    robot.id = "R" + std::to_string(i + 1);
+    robot.position = 8000.0 * heading_vector(17.0 + 90.0 * i);
+    robot.goals = {-robot.position};
+    robot.radius = 5.0;
+    robot.max_speed = 300.0;
+    s.robots.push_back(robot);
+  }
+  s.time_limit = 40.0;
+  s.horizons.most = s.horizons.orca = s.horizons.robots = 36.0;
+  s.acceleration = Acceleration{10.0};
+  s.uncertainty = Uncertainty{0.0, Measurements{0.02, 0.05, 0.1}};
+  const datasets::RecordingFile file = recorded(s);
+  EXPECT_EQ(relaxed_in(file.recording), 0u);
+  const AuditReport report = datasets::audit(file);
+  EXPECT_TRUE(report.clean()) << (report.findings.empty() ? "open" : report.findings.front());
+  EXPECT_GT(report[AuditPoint::half_planes].proven, 1000u);
+}
+
 struct BoundsCase {
   Measurements bounds;
   const char* name;

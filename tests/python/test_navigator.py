@@ -187,8 +187,9 @@ def test_robots_on_wheels_that_only_measure_each_other_pass():
         time += step
         nearest = min(nearest, np.linalg.norm(axle[0] - axle[1]) - 0.21)
     assert all(n.has_arrived for n in navigators) and nearest > 0
-    with pytest.raises(exactvo.ArgumentError, match="measured"):
-        navigators[0].decide(time, axle[0], positions=[(9, 9)], max_speeds=0.2, measured={"position": -1})
+    for wrong in ({**bounds, "position": -1}, {"position": 0.02, "age": 0.1}):
+        with pytest.raises(exactvo.ArgumentError, match="measured"):
+            navigators[0].decide(time, axle[0], positions=[(9, 9)], max_speeds=0.2, measured=wrong)
 
 
 def test_wheels_without_a_number_are_refused():

@@ -70,6 +70,17 @@ TEST(WheelsPage, ItsScenarioAndCommandsRunAsTheyStand) {
   EXPECT_THAT(here.read("out/burgers/trajectory.csv"), HasSubstr("heading_x,heading_y,left_wheel_m_s,right_wheel_m_s"));
 }
 
+TEST(WheelsVerb, ExplainGivesTheLimitsOfWheelsAndThoseThatOthersRelyOnThatMeasureThem) {
+  const Workplace here;
+  const auto limits = [&](const char* scene) {
+    return here.run("explain " + data_file(std::string("robots/") + scene) + " --time 0.2 --robot R1").out;
+  };
+  EXPECT_THAT(limits("burgers_measured.json"),
+              HasSubstr("wheels: at most 0.22 m/s and 1 m/s^2; reference point: at most 0.45 m/s^2, 0.0225 m/s in"));
+  EXPECT_THAT(limits("burgers4.json"),
+              AllOf(HasSubstr("at most 0.22 m/s and 1 m/s^2"), Not(HasSubstr("reference point: "))));
+}
+
 TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
   const Workplace here;
   std::size_t scenes = 0;

@@ -138,11 +138,14 @@ bool takes_preferred(const Decision& d) {
 
 /// Its own limit.
 std::string limit_words(const Decision& d) {
-  if (const std::optional<formation::DifferentialDrive>& drive = d.who().drive)
-    return fmt::format("wheels: at most {:g} m/s and {:g} m/s^2", drive->max_wheel_speed,
-                       drive->max_wheel_acceleration);
-  return fmt::format("at most {:g} m/s^2, {:.3g} m/s in a time step", d.scenario.acceleration->max,
-                     d.scenario.acceleration->max * d.scenario.time_step);
+  const auto change = [&] {
+    return fmt::format("at most {:g} m/s^2, {:.3g} m/s in a time step", d.scenario.acceleration->max,
+                       d.scenario.acceleration->max * d.scenario.time_step);
+  };
+  const std::optional<formation::DifferentialDrive>& drive = d.who().drive;
+  if (!drive) return change();
+  return fmt::format("wheels: at most {:g} m/s and {:g} m/s^2", drive->max_wheel_speed, drive->max_wheel_acceleration) +
+         (measures_others(d.scenario) ? "; reference point: " + change() : "");
 }
 
 std::string contact_words(const Decision& d, std::size_t i) {

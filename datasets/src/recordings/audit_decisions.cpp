@@ -105,8 +105,9 @@ bool is_hard_in(OwnStage stage, const OwnConstraint& c) {
   return stage == OwnStage::held && c.hard;
 }
 
-/// m: lines between robots that measure each other leave this much room beside the way of braking.
-constexpr double kRoomOfLines = 0x1p-43;
+/// m, and the share of its length: lines between robots that measure each other leave this much room beside the way of
+/// braking.
+constexpr double kRoomOfLines = 0x1p-43, kRoomOfWays = 0x1p-45;
 
 constexpr const char* kBesideExact = " has multipliers although it says that no double multipliers prove it";
 
@@ -317,8 +318,11 @@ class DecisionAudit : public RowAudit {
       if (is_true) {
         run_.tally.proven(AuditPoint::half_planes);
       } else if (c.certified || is_clear_of(s, c)) {
+        const bool is_line = measures_others(run_.scenario) && c.source == BodyKind::robot;
         run_.tally.refuted(AuditPoint::half_planes,
-                           at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
+                           at_row(s.row, "a half-plane of " + id(s) +
+                                             (is_line ? " gives it more than its measurement proves to be its own"
+                                                      : " is not disjoint from its velocity obstacle")));
       } else {
         run_.tally.open(AuditPoint::half_planes,
                         at_row(s.row, "a half-plane of " + id(s) + " is not certified: it overlaps the body"));
@@ -435,9 +439,10 @@ class DecisionAudit : public RowAudit {
     const Rational radii = s.radius + Rational(run_.scenario.robots[c.index].radius);
     const Rational usable = std::max(Rational(0), Rational((exact::root(square).high - off - radii) / 2));
     const Point n = exactly(c.half_plane.normal);
-    const Rational length = exact::root(exact::dot(n, n)).high, room = usable + Rational(kRoomOfLines);
-    const Rational own = std::min(Rational(0), exact::dot(n, mine.to - mine.from));
-    return tau * Rational(c.half_plane.offset) >= own - room * length;
+    const Point way = mine.to - mine.from;
+    const Rational room = usable + Rational(kRoomOfLines) + Rational(kRoomOfWays) * exact::length_at_most(way);
+    return tau * Rational(c.half_plane.offset) >=
+           std::min(Rational(0), exact::dot(n, way)) - room * exact::root(exact::dot(n, n)).high;
   }
 
   /// The half-plane excludes the inside of the cone of a method that promises nothing between robots; the recording has

@@ -54,6 +54,7 @@ OwnSide::OwnSide(const DecisionRules& rules, Vec2 position, Vec2 velocity, const
   const double apart = norm(between), least = apart - other.off;
   const bool is_known = least > 0.0;  // on which side it is
   const double mine = std::max(0.0, 0.5 * (least - radii - kContactSkin));
+  const double room = std::max(kRoomOfLines, kRoomOfWays * norm(own.b - own.a));
   const double half = is_known
                           ? std::min(geometry::kPi, std::acos(std::min(1.0, least / (apart + other.off))) + kBeyond)
                           : geometry::kPi;
@@ -76,7 +77,7 @@ OwnSide::OwnSide(const DecisionRules& rules, Vec2 position, Vec2 velocity, const
     for (int p = 0; p <= parts; ++p) {
       const double angle = ends[k] + width * p / parts;
       const Vec2 n{std::cos(angle), std::sin(angle)};
-      lines_[count_++] = {n, std::min(0.0, dot(n, braked)) - (usable + kRoomOfLines) / rules.braking_time};
+      lines_[count_++] = {n, std::min(0.0, dot(n, braked)) - (usable + room) / rules.braking_time};
     }
   }
 }

@@ -17,8 +17,8 @@
 ///     n_a . (x + tau u) >= min over F of n_a . y - s cos eta
 ///
 /// Any n of a part is a n_a + b n_b with a + b <= 1 / cos eta, and the minimum over F is at one end for all three: so n
-/// . (x + tau u) >= min over F of n . y - s. Certified up to roundings: these and `kRoomOfLines` use the skin up, which
-/// is part of R.
+/// . (x + tau u) >= min over F of n . y - s. Certified up to roundings: these and the room of lines use the skin up,
+/// which is part of R.
 
 #include <array>
 #include <cstddef>
@@ -28,9 +28,10 @@
 
 namespace exactvo::formation::detail {
 
-/// m: so much room a line leaves beside the way of braking, so that a robot held from all sides has a velocity between
-/// doubles. In each step some of the skin, 10^-6 m, may go into it.
-inline constexpr double kRoomOfLines = 0x1p-44;
+/// m, and the share of the way of braking that roundings of fast robots need: so much room a line leaves beside this
+/// way, so that a robot held from all sides has a velocity between doubles. In each step some of the skin, 10^-6 m, may
+/// go into it.
+inline constexpr double kRoomOfLines = 0x1p-44, kRoomOfWays = 0x1p-46;
 
 /// The way on which another robot may brake.
 struct ForeseenWay {

@@ -62,7 +62,8 @@ class Navigator:
     neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
     braking_time        s, the same of all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
-                        max_wheel_acceleration, and with an acceleration neighbours of another max_speed are refused.
+                        max_wheel_acceleration, the longer of both where both are given, and with an acceleration neighbours
+                        of another max_speed are refused.
                         Horizons that are not given are at least this long
     kinematics          two wheels on one axle, by the names of a scenario (docs/guide/wheels.md): {"wheel_separation": 0.16,
                         "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}. `radius` is then that of the body about the
@@ -153,9 +154,9 @@ class Navigator:
                     way, and this robot takes the whole responsibility)
         ids         their numbers among robots; 1 to n by default
         bodies      pairs of a convex shape (m) and its velocity (m/s): what moves and is not expected to give way
-        measured    {"position": m, "velocity": m/s, "age": s}: neighbours have not told where they are but were measured, `age`
-                    ago and within these bounds; the robot keeps to its own side of lines (docs/guide/uncertainty.md). It
-                    takes an `acceleration`, of a robot with `kinematics` too
+        measured    {"position": m, "velocity": m/s, "age": s}: neighbours have not told where they are but were measured,
+                    exactly `age` ago and within these bounds; the robot keeps to its own side of lines, and they to theirs
+                    (docs/guide/uncertainty.md). It takes an `acceleration`, of a robot with `kinematics` too
 
         Raises `ArgumentError` for numbers that are not finite or out of range, a time before the last one, a centre inside an
         obstacle, a neighbour in the robot's very place; the navigator is then as it was.

@@ -86,9 +86,12 @@ class PythonNavigator {
     if (!measured.is_none()) {
       using formation::Measurements;
       Measurements bounds;
+      const auto numbers = py::cast<py::dict>(measured);
       take_numbers<Measurements>(
-          py::cast<py::dict>(measured), "measured", bounds,
+          numbers, "measured", bounds,
           {{"position", &Measurements::position}, {"velocity", &Measurements::velocity}, {"age", &Measurements::age}});
+      for (const char* key : {"position", "velocity", "age"})
+        if (!numbers.contains(key)) throw ArgumentError("measured", std::string("no ") + key, "all three bounds");
       for (formation::Neighbour& n : neighbours_) n.measured = bounds;
     }
     moving_.clear();

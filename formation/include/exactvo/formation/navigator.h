@@ -98,8 +98,9 @@ struct Neighbour {
   double radius = 0.5;     ///< m, > 0
   double max_speed = 3.0;  ///< m/s, > 0
   bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole responsibility
-  /// None: it has told `position` and `velocity`, exactly. Else both are measured, `age` ago, and this robot keeps to
-  /// its own side of lines between the ways on which both brake (guide, uncertainty); that takes an acceleration.
+  /// None: it has told `position` and `velocity`, exactly. Else both are measured, exactly `age` ago, and this robot
+  /// keeps to its own side of lines between the ways on which both brake, as the other one has to, at the same times
+  /// (guide, uncertainty); that takes an acceleration.
   std::optional<Measurements> measured = {};
 };
 
