@@ -144,8 +144,9 @@ TEST_F(CrowdsOnWheels, TheAuditRefutesOtherHeadingsLimitsAndRadii) {
   EXPECT_TRUE(audit_with([](std::string&) {}).clean());
   const geometry::Vec2 ahead = formation::half_heading_of(10.0), aside = formation::half_heading_of(100.0);
   const AuditReport turned = audit_with([&](std::string& head) {
-    replace(head, ahead.x, aside.x);
-    replace(head, ahead.y, aside.y);
+    const std::size_t at = head.find(in_bytes(ahead.x) + in_bytes(ahead.y));
+    ASSERT_NE(at, std::string::npos);
+    head.replace(at, 2 * sizeof(double), in_bytes(aside.x) + in_bytes(aside.y));
   });
   EXPECT_GT(found(turned, "L runs a wheel faster than it may"), 0U);
   const AuditReport slower = audit_with([](std::string& head) { replace(head, 0.22, 0.2); });
@@ -157,7 +158,7 @@ TEST_F(CrowdsOnWheels, TheAuditRefutesOtherHeadingsLimitsAndRadii) {
   EXPECT_EQ(found(smaller, "have no room for the arc of a step"), 1U);
 }
 
-TEST_F(CrowdsOnWheels, TheAuditRefutesWhatRobotsWithoutWheelsDrive) {
+TEST_F(CrowdsOnWheels, TheAuditRefutesWheelsThatChangeTheirSpeedTooMuch) {
   Scenario scenario = burgers();
   CrowdRecorder recorder(folder_ / "c.evr", scenario, 1);
   for (formation::Robot& robot : scenario.robots)
@@ -222,6 +223,12 @@ TEST_F(CrowdsOnWheels, DamagedHeadsAreRefused) {
   refused([](std::string& head) { replace(head, formation::half_heading_of(75.0).x, 7.0); });
   refused([](std::string& head) { replace(head, 1.0, std::nan("")); });
   refused([](std::string& head) { head.pop_back(); });
+  refused([](std::string& head) {  // behind the last heading: whether ids follow
+    const geometry::Vec2 last = formation::half_heading_of(10.0);
+    const std::size_t at = head.find(in_bytes(last.x) + in_bytes(last.y)) + 2 * sizeof(double);
+    ASSERT_EQ(head.at(at), 1);
+    head[at] = 2;
+  });
 }
 
 TEST_F(CrowdsOnWheels, ScenariosWhoseRobotsCannotStopInAStepAreRefused) {
@@ -229,6 +236,7 @@ TEST_F(CrowdsOnWheels, ScenariosWhoseRobotsCannotStopInAStepAreRefused) {
   Scenario scenario = burgers();
   scenario.robots[2].drive->max_wheel_acceleration = 0.8;
   EXPECT_EQ(pointer(scenario), "/robots/2/kinematics/max_wheel_acceleration");
+  EXPECT_NE(formation::crowd_problems(scenario)[0].expected.find("a time_step of at least 0.275 s"), std::string::npos);
   scenario = burgers();
   scenario.robots[1].drive->reference = 0.05;
   EXPECT_EQ(pointer(scenario), "/robots/1/kinematics/reference");

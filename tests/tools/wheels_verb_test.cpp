@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -32,6 +33,11 @@ std::vector<std::string> blocks_of_the_page() {
     }
   }
   return blocks;
+}
+
+std::string text_of_the_page() {
+  std::ifstream page(EXACTVO_SOURCE_DIR "/docs/guide/wheels.md");
+  return {std::istreambuf_iterator<char>(page), std::istreambuf_iterator<char>()};
 }
 
 const std::string& burgers() {
@@ -102,6 +108,19 @@ TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
     }
   }
   EXPECT_GE(scenes, 6u);
+}
+
+/// With the keys that the page names for crowds.
+TEST(WheelsVerb, CrowdsOnWheelsAreProvenAndExplained) {
+  const Workplace here;
+  const std::string keys = R"("time_step": 0.25, "horizons": { "least": 0.5 })";
+  EXPECT_NE(text_of_the_page().find(keys), std::string::npos);
+  here.write("burgers.json", with(burgers(), "\"time_limit\": 60", keys + ", \"time_limit\": 60"));
+  const Outcome run = here.run("simulate burgers.json --decisions none --no-figures --out run");
+  EXPECT_THAT(run.out, HasSubstr("all robots arrived")) << run.err;
+  EXPECT_THAT(here.run("audit run").out, HasSubstr("wheels and headings follow from choices: "));
+  EXPECT_THAT(here.run("explain run --robot R1 --time 2").out,
+              AllOf(HasSubstr("heading "), HasSubstr("wheels of robot R1")));
 }
 
 /// What bodies may be off by is said wherever results are.

@@ -213,8 +213,9 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
     for (std::uint32_t k = 0; k < bodies; ++k) head.bodies.push_back(get_body(in));
   }
   if (version >= 4) get_wheels(in, head);
-  const bool has_ids = version == 3 || (version >= 4 && in.get<std::uint8_t>() != 0);
-  if (has_ids) get_ids(in, head);
+  const std::uint8_t has_ids = version >= 4 ? in.get<std::uint8_t>() : version == 3;
+  in.require(has_ids <= 1, "robots that neither have ids nor have none");
+  if (has_ids == 1) get_ids(in, head);
   in.require_end();
   return head;
 }

@@ -92,16 +92,19 @@ void require_valid(const CrowdOptions& o) {
   require_in_range("threads", o.threads, o.threads >= 0 && o.threads <= 1024, "0 to 1024");
 }
 
-static void require_valid(const CrowdWheels& w, const CrowdKind& k, double time_step) {
-  const double way = k.max_speed * time_step, b = w.wheel_separation, a = w.max_wheel_acceleration;
+static void require_valid(const CrowdWheels& w, const CrowdKind& k, const CrowdOptions& o) {
+  const double time_step = o.time_step, far = kLatticeEnd * o.position_step, way = k.max_speed * time_step,
+               b = w.wheel_separation, a = w.max_wheel_acceleration, least_turn = 0x1p-20 / time_step;
   require_in_range("wheel_separation", b, b > 0.0, "above 0 m");
-  require_in_range("reference", w.reference, w.reference >= way && 16.0 * w.reference >= b,
+  require_in_range("reference", w.reference, w.reference >= way && 16.0 * w.reference >= b && w.reference < far,
                    "at least " + number(std::max(way, b / 16.0)) +
-                       " m: max_speed times the time step, and a sixteenth of wheel_separation");
+                       " m, max_speed times the time step and a sixteenth of wheel_separation, and below " +
+                       number(far) + " m");
   if (!(a * time_step >= k.max_speed))
     require_in_range("max_wheel_acceleration", a, false,
                      "at least " + number(k.max_speed / time_step) + " m/s^2: a wheel stops within a time step");
-  if (!(w.max_angular_speed > 0.0)) require_in_range("max_angular_speed", w.max_angular_speed, false, "above 0 rad/s");
+  if (!(w.max_angular_speed >= least_turn))
+    require_in_range("max_angular_speed", w.max_angular_speed, false, "at least " + number(least_turn) + " rad/s");
   if (!(w.max_backward_speed >= 0.0))
     require_in_range("max_backward_speed", w.max_backward_speed, false, "at least 0 m/s");
 }
@@ -119,7 +122,7 @@ void require_valid(const CrowdKind& k, const CrowdOptions& o) {
                    k.edge_horizon == 0.0 || (k.edge_horizon >= o.time_step && k.edge_horizon <= 0x1p20),
                    "0 or the time step, " + number(o.time_step) + ", to 2^20 s");
   require_in_range("neighbours", k.neighbours, k.neighbours >= 1 && k.neighbours <= kMostNeighbours, "1 to 15");
-  if (k.wheels) require_valid(*k.wheels, k, o.time_step);
+  if (k.wheels) require_valid(*k.wheels, k, o);
 }
 
 CrowdBody::CrowdBody(const CrowdOptions& options) {

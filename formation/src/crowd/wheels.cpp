@@ -9,14 +9,19 @@
 
 namespace exactvo::formation {
 
+// No call of a library: the same bits everywhere.
 Vec2 half_heading_of(double degrees) {
-  const double half = std::remainder(0.5 * degrees, 360.0), eighth = half / 45.0;
-  if (eighth == std::floor(eighth)) {  // quarter turns are exact
-    constexpr Vec2 kExact[] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
-    return kExact[static_cast<int>(eighth) + 4];
+  constexpr Vec2 kEighths[] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
+  const double half = std::remainder(0.5 * degrees, 360.0), eighth = std::nearbyint(half / 45.0);
+  const double rest = (half - 45.0 * eighth) * (geometry::kPi / 180.0), s = rest * rest;  // at most 22.5 degrees
+  double cosine = 1.0, sine = 1.0;  // by their series, the latter without its factor
+  for (int k = 16; k > 0; k -= 2) {
+    cosine = 1.0 - s / (k * (k - 1)) * cosine;
+    sine = 1.0 - s / (k * (k + 1)) * sine;
   }
-  const double angle = half * (geometry::kPi / 180.0);
-  return {std::cos(angle), std::sin(angle)};
+  sine *= rest;
+  const Vec2 e = kEighths[static_cast<int>(eighth) + 4];
+  return {e.x * cosine - e.y * sine, e.x * sine + e.y * cosine};
 }
 
 namespace crowd {
@@ -121,20 +126,22 @@ void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions&
     limits.across = wheels.wheel_separation / q;
     limits.most = kSpare * fastest * per_speed;
     limits.change = kSpare * wheels.max_wheel_acceleration * options.time_step * per_speed;
-    limits.turn = kSpare * wheels.wheel_separation * wheels.max_angular_speed * per_speed;
+    limits.turn = limits.across * (kSpare * wheels.max_angular_speed * options.time_step - 4.0 * kMostDoubt);
     limits.back = wheels.max_backward_speed * per_speed;
     limits.open = (1.0 - kSpare) * fastest * per_speed;
     // Theorem 1, for twists: their ways are longer than chords.
-    const double q_most = fastest * options.time_step / (2.0 * wheels.reference);
-    const double longer = std::asin(q_most) / q_most, beta = wheels.wheel_separation / (2.0 * wheels.reference);
+    const double sine = fastest * options.time_step / (2.0 * wheels.reference), squared = 1.0 - sine * sine;
+    const double longer = arc_of(sine * sine / squared) / std::sqrt(squared);  // asin(sine) / sine
+    const double beta = wheels.wheel_separation / (2.0 * wheels.reference);
     const double apex = kSpare * fastest / longer;
     const double side =
         std::min(fastest / std::sqrt(1.0 + beta * beta), wheels.reference * wheels.max_angular_speed) / longer * kSpare;
-    const double touches = std::acos(std::min(1.0, side / apex)), arc = 2.0 * (geometry::kPi - touches);
+    const double cosine = std::min(1.0, side / apex), half = std::sqrt((1.0 - cosine) / (1.0 + cosine));
+    const double touches = 2.0 * half * arc_of(half * half), arc = 2.0 * (geometry::kPi - touches);  // acos, nearly
     std::vector<Vec2> corners{{apex, 0.0}};
     for (std::size_t c = 0; c <= kChordsOfWheels; ++c) {
       const double angle = touches + arc * static_cast<double>(c) / static_cast<double>(kChordsOfWheels);
-      corners.push_back(side * Vec2{std::cos(angle), std::sin(angle)});
+      corners.push_back(side * geometry::normalized(half_heading_of(angle * (360.0 / geometry::kPi))));
     }
     for (std::size_t c = 0; c < corners.size(); ++c) {
       const Vec2 from = corners[c], along = corners[(c + 1) % corners.size()] - from;

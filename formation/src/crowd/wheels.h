@@ -16,8 +16,9 @@
 ///  conj(e)|^2
 ///      at most, and what follows of second order: less than 1 where the robot drives ahead. A motion after which more
 ///      than kMostDoubt were unknown is not driven.
-///  (3) With K >= 2 |m|, b <= 16 D and an unknown angle d of the heading, the speeds that a twist gives the wheels are
-///      off by less than 32 d |m|. kSpare leaves more than that of every limit.
+///  (3) With K >= 2 |m|, b <= 16 D and an unknown angle d of the heading, the ways that a twist gives the wheels are
+///      off by less than 32 d |m|, and the angle by which it turns by less than 4 d. More than that is left of every
+///      limit: a share of it, kSpare, and of turning 4 kMostDoubt as well.
 ///  (4) Rest is always among the motions: a wheel may stop within a step (A T >= W). All motions that are driven are
 ///      accepted by `allow`, so the wheels keep their limits whatever the two levels of the step do.
 /// The half-planes of the first level are those of theorem 1 about a polygon of few edges; they say what a robot may

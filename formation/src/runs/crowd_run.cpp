@@ -499,7 +499,8 @@ void require_drive(const Robot& r, const std::string& pointer, double time_step,
   require(d.max_wheel_acceleration * time_step >= d.max_wheel_speed, kinematics + "max_wheel_acceleration",
           number(d.max_wheel_acceleration) + " m/s^2",
           "at least " + number(d.max_wheel_speed / time_step) +
-              " m/s^2, for a crowd, whose robots stop within a time step; or a longer one");
+              " m/s^2, for a crowd, whose robots stop within a time step, or a time_step of at least " +
+              number(d.max_wheel_speed / d.max_wheel_acceleration) + " s");
   const double least = std::max(d.max_wheel_speed * time_step, d.wheel_separation / 16.0);
   require(d.reference >= least, kinematics + "reference", number(d.reference) + " m",
           "at least " + number(least) + " m, for a crowd: the way of a time step, and wheel_separation / 16");

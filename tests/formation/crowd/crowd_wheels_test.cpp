@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <cstring>
 #include <sstream>
 #include <vector>
 
@@ -125,6 +126,32 @@ TEST(CrowdWheels, Lemma3_WheelsDependOnTheHeadingByLessThanIsStated) {
   EXPECT_GT(most, 8.0L);
 }
 
+/// Of what is allowed under a limit of 0.003 rad/s, with as much unknown of the heading as may be.
+TEST(CrowdWheels, Lemma3_RobotsThatTurnSlowlyKeepTheirLimitWhereverTheyReallyHead) {
+  constexpr double kTurn = 0.003;
+  CrowdKind kind = burger();
+  kind.wheels->max_angular_speed = kTurn;
+  crowd::Wheels wheels;
+  wheels.take_kinds({kind}, {});
+  wheels.put(0, {1.0, 0.0});
+  std::vector<crowd::WheelState> states = wheels.states();
+  states[0].doubt = crowd::kMostDoubt;
+  ASSERT_TRUE(wheels.set_states(states));
+  const long double ahead = 2.0L * 0.08L / static_cast<long double>(kLattice);
+  long double most = 0.0L;
+  std::size_t judged = 0;
+  for (std::int32_t x = 1; x < 14400; ++x)
+    for (std::int32_t y = 0; wheels.allow(0, 0, {x, y}) && y < 100; ++y) {
+      const long double d = -static_cast<long double>(crowd::kMostDoubt);  // it heads to the right of that
+      const long double along = x * std::cos(d) + y * std::sin(d), aside = y * std::cos(d) - x * std::sin(d);
+      most = std::max(most, 2.0L * std::atan(aside / (ahead + along)) / static_cast<long double>(kStep));
+      ++judged;
+    }
+  EXPECT_GT(judged, 14000U);
+  EXPECT_LE(most, static_cast<long double>(kTurn));
+  EXPECT_GT(most, 0.99L * static_cast<long double>(kTurn));
+}
+
 TEST(CrowdWheels, Lemma4_RestIsAlwaysAllowed) {
   crowd::Wheels wheels;
   CrowdOptions options;
@@ -148,6 +175,24 @@ TEST(CrowdWheels, AHeadingIsKeptToTheDegreesThatWereGiven) {
   }
   EXPECT_EQ(crowd.heading(1), (Vec2{0.0, 1.0}));
   EXPECT_EQ(crowd.heading(2), (Vec2{-1.0, 0.0}));
+}
+
+/// Whichever sine and cosine the library of the machine has.
+TEST(CrowdWheels, HalfHeadingsHaveTheSameBitsEverywhere) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (int k = -3600; k <= 7200; ++k) {
+    const Vec2 half = half_heading_of(0.1 * k);
+    for (const double x : {half.x, half.y}) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &x, sizeof bits);
+      hash = (hash ^ bits) * 0x100000001b3U;
+    }
+    const long double angle = 0.1 * k * 3.14159265358979323846264L / 360.0L;
+    const long double x = half.x, y = half.y, off = y * std::cos(angle) - x * std::sin(angle);
+    ASSERT_LE(std::abs(off), 0x1p-51L * std::hypot(x, y)) << k;
+    ASSERT_GT(x * std::cos(angle) + y * std::sin(angle), 0.0L) << k;
+  }
+  EXPECT_EQ(hash, 0xd5a2acdfd6c301f3U) << std::hex << hash;
 }
 
 /// Runs it and asks everything of every step.
@@ -356,6 +401,8 @@ TEST(CrowdWheels, KindsThatCannotStopOrTurnAreRefused) {
   refused("max_wheel_acceleration", [](CrowdKind& k) { k.wheels->max_wheel_acceleration = std::nan(""); });
   refused("reference", [](CrowdKind& k) { k.wheels->reference = 0.054; });
   refused("reference", [](CrowdKind& k) { k.wheels->wheel_separation = 1.5; });
+  refused("reference", [](CrowdKind& k) { k.wheels->reference = 1e200; });
+  refused("max_angular_speed", [](CrowdKind& k) { k.wheels->max_angular_speed = 1e-6; });
   refused("wheel_separation", [](CrowdKind& k) { k.wheels->wheel_separation = 0.0; });
   refused("max_angular_speed", [](CrowdKind& k) { k.wheels->max_angular_speed = 0.0; });
   refused("max_backward_speed", [](CrowdKind& k) { k.wheels->max_backward_speed = -0.1; });

@@ -107,6 +107,10 @@ class AtStep : public formation::RunSink {
     d.time = row.time;
     for (const CrowdExplanation::Neighbour& n : e.reserved ? none : e.neighbours)
       add(d, step, n.half_plane, ConstraintSource::robot, n.robot, geometry::Disc{{}, 0.0}, {n.robot}, n.touching);
+    for (const geometry::HalfPlane& own : e.wheels) {
+      add(d, step, own, ConstraintSource::robot, robot_, geometry::Disc{{}, 0.0}, {robot_}, false);
+      step.constraints.back().hard = true;
+    }
     for (const CrowdExplanation::Edge& edge : e.edges)
       add(d, step, edge.half_plane, ConstraintSource::obstacle_edge, step.constraints.size(), edge.edge,
           obstacle_of(edge.edge, scenario_), edge.touching);

@@ -78,19 +78,20 @@ using ObstacleId = std::uint32_t;
 
 /// Two wheels on an axle. What the crowd moves is the reference point of the robot, `reference` ahead of the axle's
 /// centre; it can go in any direction, and the heading follows as a trailer follows its coupling. A robot on wheels
-/// starts at rest and can always stop within a step.
+/// starts at rest and can always stop within a step. One that prefers to go straight back for ever stands in the end,
+/// since its heading becomes too uncertain (ADR 0022): prefer a direction a degree beside that.
 struct CrowdWheels {
   double reference = 0.0;         ///< m, at least max_speed times the time step and a sixteenth of the separation
   double wheel_separation = 0.0;  ///< m, > 0
   /// m/s^2: in a step a wheel's speed changes by this times the time step, which is at least the kind's max_speed.
   double max_wheel_acceleration = geometry::kInfinity;
-  double max_angular_speed = geometry::kInfinity;   ///< rad/s, > 0
+  double max_angular_speed = geometry::kInfinity;   ///< rad/s, at least 2^-20 in a time step
   double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre
 };
 
 /// The half of a heading (degrees; 0 along x, 90 along y) as a vector of any length: what a crowd takes for where a
-/// robot on wheels heads is exactly this direction, twice as far from x. Exact for quarter turns, else the nearest
-/// doubles.
+/// robot on wheels heads is exactly this direction, twice as far from x. Exact for quarter turns, else the heading is
+/// within 2^-50 rad of the degrees; the same bits everywhere.
 Vec2 half_heading_of(double degrees);
 
 /// What robots of a kind have in common.
