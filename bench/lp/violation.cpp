@@ -39,9 +39,10 @@ double worst_breach(const lp::Problem& problem, lp::Vec2 velocity) {
   const mpq_class x = velocity.x, y = velocity.y, limit = disc;
   const mpq_class beyond = x * x + y * y - limit * limit;
   if (sgn(beyond) <= 0) return of_lines;
-  const double speed = std::hypot(velocity.x, velocity.y);
-  return std::max(of_lines,
-                  std::isfinite(speed) ? beyond.get_d() / (speed + disc) : std::numeric_limits<double>::max());
+  const double sum = std::hypot(velocity.x, velocity.y) + disc;
+  if (!std::isfinite(sum)) return std::numeric_limits<double>::max();
+  const mpq_class excess = beyond / mpq_class(sum);  // not in doubles: they have no square of 1e200
+  return std::max(of_lines, excess.get_d());
 }
 
 }  // namespace exactvo::bench

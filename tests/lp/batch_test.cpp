@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
@@ -363,6 +364,36 @@ TEST(Batch, AmongWallsNothingViolatesTheSoftLinesLess) {
     ASSERT_NEAR(s.violation, right.violation, 1e-11) << text_of(problem);
   }
   EXPECT_GT(relaxed, 15000u);
+}
+
+/// Without numbers of lines, so that only as many lines as may be hard have them.
+Batch<double> answered_barely(std::vector<Problem> problems) {
+  Batch<double> batch(std::move(problems));
+  BatchAnswers<double> out = batch.out();
+  out.active = nullptr;
+  solve_batch(batch.in(), out, 0, batch.problems().size());
+  return batch;
+}
+
+// The memory of a thread still held the hard lines of larger problems, and lanes without a problem counted them.
+TEST(Batch, LargerProblemsBeforeChangeNoBit) {
+  const std::vector<Problem> few = contradictions_with_walls(2000);
+  std::vector<Problem> many = generate("RI60", 2000, 31);
+  for (Problem& p : many)
+    for (std::size_t k = 0; k < 40; ++k) p.constraints[k].priority = Priority::hard;
+  for (const char* target : {"", "AVX2", "SSE4", "SSE2"}) {
+    if (!limit_batch_target(target)) continue;
+    std::vector<Batch<double>> fresh;
+    std::thread([&] { fresh.push_back(answered_barely(few)); }).join();  // with a memory of its own
+    answered_barely(many);
+    const Batch<double> after = answered_barely(few);
+    EXPECT_EQ(after.vx, fresh[0].vx) << target;
+    EXPECT_EQ(after.vy, fresh[0].vy) << target;
+    EXPECT_EQ(after.violation, fresh[0].violation) << target;
+    EXPECT_EQ(after.status, fresh[0].status) << target;
+    EXPECT_GT(std::count(after.status.begin(), after.status.end(), 1), 1500) << target;
+  }
+  ASSERT_TRUE(limit_batch_target(""));
 }
 
 template <class T>

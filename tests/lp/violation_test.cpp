@@ -49,6 +49,7 @@ TEST(WorstBreach, KnowsTheDiscAndVelocitiesThatAreNoNumbers) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     EXPECT_EQ(worst_breach(problem, {bad, 0.0}), most);
   EXPECT_EQ(worst_breach(problem, {-most, -most}), most);
+  EXPECT_DOUBLE_EQ(worst_breach(problem, {1e200, 0.0}), 1e200) << "its square is beyond all doubles";
 }
 
 }  // namespace

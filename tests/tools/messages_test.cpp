@@ -121,6 +121,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"vo --obstacle 'DISC(4 0, 1)' --responsibility half",
                             "--responsibility: found 'half', expected a number"},
                     Mistake{"vo --obstacle 'DISC(4 0, 1)' --raduis 1", "did you mean '--radius'?"},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0 0 --velocity 1,0 --time-horizon 3 --radius 1",
+                            "--position 0 0: found two words, expected X,Y in one: --position=0,0"},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity -1 -2 --time-horizon 3 --radius 1",
+                            "--velocity -1 -2: found two words, expected X,Y in one: --velocity=-1,-2"},
                     Mistake{"lp", "missing argument file: "},
                     Mistake{"lp s.json t.json", "unexpected argument 't.json'"},
                     Mistake{"lp s.json --certfy", "did you mean '--certify'?"},
@@ -377,6 +381,15 @@ TEST(Messages, AGoalThatIsWalledInIsSaidBeforeTheRun) {
   EXPECT_THAT(place().run("simulate room.json").err,
               HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with a gap of 0.8 m for a "
                         "robot 1 m wide"));
+}
+
+TEST(Messages, TasksInPlaceOfObstaclesAreSentToRoute) {
+  place().write("t.scen", "version 1\n0\tgrid.map\t4\t3\t0\t0\t3\t2\t5\n");
+  for (const char* verb : {"validate t.scen", "convert t.scen t.geojson"}) {
+    const Outcome outcome = place().run(verb);
+    EXPECT_EQ(outcome.status, 2) << verb;
+    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("tasks of Moving AI are for exactvo route MAP --queries")) << verb;
+  }
 }
 
 TEST(Messages, ObstaclesInPlaceOfAScenarioAreCalledThatWithTheWayToUseThem) {

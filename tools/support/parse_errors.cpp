@@ -115,10 +115,31 @@ std::string kind_of_value(const CLI::Option& option) {
   return "a value: " + option.get_description();
 }
 
+bool is_number(const std::string& word) {
+  char* end = nullptr;
+  std::strtod(word.c_str(), &end);
+  return !word.empty() && end == word.c_str() + word.size();
+}
+
+/// A point that was given as two words, "--position 0 0"; else empty.
+std::string point_words(const std::vector<const CLI::Option*>& options, const std::vector<std::string>& words,
+                        const std::string& surplus) {
+  for (std::size_t k = 2; k < words.size(); ++k) {
+    const CLI::Option* option = option_named(options, words[k - 2]);
+    if (words[k] != surplus || !option || option->get_description().find("X,Y") == std::string::npos) continue;
+    if (is_number(words[k - 1]) && is_number(surplus))
+      return fmt::format("{0} {1} {2}: found two words, expected X,Y in one: {0}={1},{2}", words[k - 2], words[k - 1],
+                         surplus);
+  }
+  return "";
+}
+
 std::string surplus_words(const std::vector<const CLI::Option*>& options, const std::vector<std::string>& words,
                           const std::vector<std::string>& surplus) {
   if (surplus.empty()) return "an argument was not expected";
   const std::string& word = surplus.front();
+  const std::string point = point_words(options, words, word);
+  if (!point.empty()) return point;
   if (word.size() > 1 && word[0] == '-')
     return fmt::format("unknown option '{}'{}", word, suggestion(word, long_names(options)));
   const auto at = std::find(words.begin(), words.end(), word);

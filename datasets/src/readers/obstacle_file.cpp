@@ -52,6 +52,7 @@ const Reader& reader_named(const std::string& name, const std::filesystem::path&
 std::string hint_for(const FormatProbe& probe) {
   for (const char* image : {".pgm", ".png", ".pnm", ".bmp", ".tif"})
     if (probe.extension == image) return "; of a ROS map give the .yaml that names its image";
+  if (probe.extension == ".scen") return "; tasks of Moving AI are for exactvo route MAP --queries";
   return "; if its format is one of these, name it with --format (convert: --from): " + all_names();
 }
 

@@ -114,7 +114,7 @@ class Lockstep {
   HWY_INLINE void solve(PackStates& states, std::size_t packs) {
     for_all(states, packs, [this](PackState& w) {
       w.pack.derive();
-      if (kHard && out_.active) w.pack.numbered = in_.lines;
+      number_lines(w.pack);
       w.pack.start();
     });
     for_all(states, packs, [this](PackState& w) { turn_away(w); });
@@ -136,6 +136,15 @@ class Lockstep {
       }
       count = left;
     }
+  }
+
+  /// While lanes relax hard lines are told by their numbers; of the others they are kept where they are asked for.
+  HWY_INLINE void number_lines(Pack<D>& p) const {
+    if (!kHard) return;
+    p.numbered = in_.lines;
+    if (out_.active) return;
+    const auto hard = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(D(), p.hard_count)));
+    p.numbered = std::min(p.numbered, hard);
   }
 
   /// Lanes whose numbers are too large or too small to square.
@@ -286,8 +295,8 @@ class Lockstep {
     for (std::size_t from = 0; from < size; from += kLanes) {
       const M lanes = hn::FirstN(d, std::min(kLanes, size - from));
       Pack<D> p;
-      rare_.load(from, p);
-      if (kHard && out_.active) p.numbered = in_.lines;
+      rare_.load(from, lanes, p);
+      number_lines(p);
       Descent<D> descent(p);
       descent.template run<kHard, kNumbers>(rare_.rows(from), lanes);
       const M left = hn::And(lanes, hn::Or(descent.unsettled, doubtful(p, lanes)));

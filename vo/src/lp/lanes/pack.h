@@ -86,7 +86,7 @@ struct Pack {
   LineV<D> entering;              ///< the line violated most
   M violated;                     ///< lanes that have one
   M relaxing;                     ///< lanes on the relaxation phase
-  std::size_t numbered;  ///< among hard lines: while a lane relaxes, so many lines have numbers, the hard ones first
+  std::size_t numbered = 0;       ///< while a lane relaxes, this many lines have numbers: among them all hard ones
 
   HWY_INLINE void derive() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
@@ -94,7 +94,6 @@ struct Pack {
     noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
     disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
     disc_squared = hn::Mul(disc, disc);
-    numbered = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, hard_count)));
   }
 
   HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }

@@ -92,13 +92,15 @@ class Pool {
     }
   }
 
-  /// The lanes from `from` on as a pack; those past the end hold what was there before.
-  HWY_INLINE void load(std::size_t from, Pack<D>& p) const {
+  /// The lanes from `from` on as a pack, of which `lanes` hold a problem; the others hold what was there before,
+  /// without hard lines.
+  HWY_INLINE void load(std::size_t from, M lanes, Pack<D>& p) const {
     const D d;
     V id = hn::Zero(d);
     std::size_t known = 0;
     for_each_row(p, id, [&](V& v) { v = hn::LoadU(d, row(known++) + from); });
     p.id = hn::BitCast(hn::RebindToUnsigned<D>(), id);
+    p.hard_count = hn::IfThenElseZero(lanes, p.hard_count);
     p.derive();
     p.vx = p.vy = p.level = hn::Zero(d);
     p.violated = p.none();
