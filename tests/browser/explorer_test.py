@@ -552,7 +552,7 @@ class PageItself(Page):
         listed = self.run_script("return [...document.querySelectorAll('#collisions button')].map((b) => b.textContent)")
         self.assertEqual(len(listed), 2)
         self.assertIn("A: collision with robot B", listed[0])
-        self.assertIn("C: collision with obstacle 1", listed[1])
+        self.assertIn("C: collision with obstacle polygon 1", listed[1])
         there = self.run_script("const r = exactvo.page.run; return [0, 0.5, 1.5, 3].map((t) => [0, 1, 2].map((i) => r.isThere(i, t)))")
         self.assertEqual(there, [[True, True, False], [True, True, False], [False, False, False], [False, False, True]])
         self.run_script("document.querySelectorAll('#collisions button')[0].click()")
@@ -566,6 +566,8 @@ class PageItself(Page):
         self.assertAlmostEqual(y, 10 * time - 5, delta=2 * ROBOTS_AT_A_TIME)
         self.assertGreaterEqual(corners, 4)
         self.assertIn("exactvo check", self.text("#why"))
+        jitter, speed = self.run_script("const s = exactvo.page.series; return [s.jitter, s.speed].map((v) => v.some(Number.isFinite))")
+        self.assertEqual((jitter, speed), (False, True))
 
     def test_the_moment_as_svg(self):
         self.run_program("view", "--out", "start.html")
