@@ -566,6 +566,8 @@ class PageItself(Page):
         self.assertAlmostEqual(y, 10 * time - 5, delta=2 * ROBOTS_AT_A_TIME)
         self.assertGreaterEqual(corners, 4)
         self.assertIn("exactvo check", self.text("#why"))
+        jitter, speed = self.run_script("const s = exactvo.page.series; return [s.jitter, s.speed].map((v) => v.some(Number.isFinite))")
+        self.assertEqual((jitter, speed), (False, True))
 
     def test_the_moment_as_svg(self):
         self.run_program("view", "--out", "start.html")

@@ -177,6 +177,38 @@ TEST(TrajectoryFile, PlacesOfSumoInDegreesAreRefused) {
   EXPECT_EQ(content_of(file, {"sumo-fcd", 0.0, 1e5}).rows.size(), 2u) << "with a scale, as the caller says";
 }
 
+TEST(TrajectoryFile, PlacesOfSumoInMetresAreReadHoweverFewRowsThereAre) {
+  // A ring of 20 m at the origin, of which a row is kept each hour, and a car that comes back after two.
+  std::string file = "<fcd-export>\n";
+  for (int k = 0; k < 6; ++k)
+    file += "<timestep time=\"" + std::to_string(3600 * k) + "\"><vehicle id=\"r\" x=\"" +
+            std::to_string(20.0 * std::cos(k)) + "\" y=\"" + std::to_string(20.0 * std::sin(k)) +
+            "\" speed=\"8\"/></timestep>\n";
+  EXPECT_EQ(content_of(file + "</fcd-export>\n").rows.size(), 6u);
+  const std::string back = R"(<fcd-export>
+<timestep time="0"><vehicle id="car" x="10" y="0" speed="14"/></timestep>
+<timestep time="1"><vehicle id="car" x="24" y="0" speed="14"/></timestep>
+<timestep time="7200"><vehicle id="car" x="24" y="1" speed="14"/></timestep>
+</fcd-export>
+)";
+  EXPECT_EQ(content_of(back).rows.size(), 3u);
+  // Beyond 180 nothing is in degrees, whatever the speeds say.
+  const std::string stuck = R"(<fcd-export>
+<timestep time="0"><vehicle id="car" x="500" y="0" speed="14"/></timestep>
+<timestep time="1"><vehicle id="car" x="500" y="0" speed="14"/></timestep>
+</fcd-export>
+)";
+  EXPECT_EQ(content_of(stuck).rows.size(), 2u);
+}
+
+TEST(TrajectoryFile, QuotedFieldsMayHaveTheirSeparatorInside) {
+  const Content c = content_of("\"t\";\"id\";\"x\";\"y\"\n0;\"a;b\";1;2\n1;c;3;\"4\"\n");
+  EXPECT_EQ(c.file.format, "csv");
+  EXPECT_THAT(c.file.agents, ElementsAre("a;b", "c"));
+  ASSERT_EQ(c.rows.size(), 2u);
+  expect_row(c.rows[1], 1, 1.0, 3.0, 4.0, 3);
+}
+
 TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   const Content c = content_of(
       "statistics:\n  cost: 3\nschedule:\n  agent0:\n    - x: 0\n      y: 1\n      t: 0\n    - x: 0\n      y: 2\n      "

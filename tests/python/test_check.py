@@ -113,6 +113,17 @@ def test_files_that_would_be_overwritten_are_refused(tmp_path):
         with pytest.raises(exactvo.ArgumentError):
             exactvo.check(path, radius=0.25, **more)
     assert path.read_text().startswith("t,id")
+    chart = tmp_path / "map.wkt"
+    chart.write_text("LINESTRING (5 -1, 5 1)\n")
+    (tmp_path / "link.wkt").symlink_to(chart)
+    for name in ("map.wkt", "link.wkt"):
+        with pytest.raises(exactvo.ArgumentError):
+            exactvo.check({"A": EAST}, map=chart, radius=0.25, certificates=tmp_path / name)
+    for k in range(2):  # again over its own proofs, not over the rows
+        assert exactvo.check(tmp_path, radius=0.25, certificates=tmp_path / "proofs.jsonl", page=tmp_path / "check.html").clear
+        with pytest.raises(exactvo.ArgumentError):
+            exactvo.check(tmp_path, radius=0.25, certificates=path)
+    assert path.read_text().startswith("t,id") and chart.read_text().startswith("LINE")
     with pytest.raises(exactvo.DataError):
         exactvo.check(path, radius=0.25, certificates=tmp_path)
 

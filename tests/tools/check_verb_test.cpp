@@ -360,6 +360,18 @@ TEST(CheckVerb, AContactThatGoesOnIntoWhatIsOpenIsLeftOpen) {
                                  HasSubstr("0 overlaps, 0 contacts, 1 open")));
 }
 
+TEST(CheckVerb, TheExampleOfAnOverlapIsNoMomentAtWhichTheyOnlyTouch) {
+  // Two squares touch for a second before both turn, corner into side.
+  const Outcome outcome =
+      checked("t,id,x,y,theta\n0,A,0,0,0\n0,B,1,0,0\n1,A,0,0,0\n1,B,1,0,0\n2,A,0,0,0.5\n2,B,1,0,0.5\n",
+              "--footprint 'POLYGON ((-0.5 -0.5, 0.5 -0.5, 0.5 0.5, -0.5 0.5))' --json");
+  EXPECT_EQ(outcome.status, 1);
+  const json overlap = json_lines(outcome.out).front();
+  EXPECT_EQ(overlap["event"], "overlap");
+  EXPECT_EQ(overlap["first"][0], 0.0);
+  EXPECT_GT(overlap["time"], 1.0);
+}
+
 TEST(CheckVerb, PairsWithoutAProofSayWhetherTheyTouch) {
   const Workplace here;
   here.write("t.csv", "t,id,x,y,theta\n0,A,0,0,-0.5\n0,B,6,0,-0.5\n1,A,0,0,0.5\n1,B,6,0,0.5\n");

@@ -110,7 +110,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   return fields;
 }
 
-std::optional<std::vector<std::string>> csv_fields_of(std::string_view line) {
+std::optional<std::vector<std::string>> csv_fields_of(std::string_view line, char separator) {
   std::vector<std::string> fields;
   for (;;) {
     const std::string_view rest = line.substr(std::min(line.find_first_not_of(kBlanks), line.size()));
@@ -125,12 +125,12 @@ std::optional<std::vector<std::string>> csv_fields_of(std::string_view line) {
         field += rest[at];
       }
       line = rest.substr(at + 1);
-      if (!trimmed(line.substr(0, line.find(','))).empty()) return std::nullopt;
+      if (!trimmed(line.substr(0, line.find(separator))).empty()) return std::nullopt;
     } else {
-      field = std::string(trimmed(line.substr(0, line.find(','))));
+      field = std::string(trimmed(line.substr(0, line.find(separator))));
     }
     fields.push_back(std::move(field));
-    const std::size_t end = line.find(',');
+    const std::size_t end = line.find(separator);
     if (end == std::string_view::npos) return fields;
     line.remove_prefix(end + 1);
   }

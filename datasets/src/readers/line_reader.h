@@ -86,7 +86,7 @@ std::vector<std::string_view> words_of(std::string_view line);
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
 /// The same of CSV (RFC 4180): in a field that begins with a quotation mark separators count for nothing, and two
 /// quotation marks are one. None where a quotation mark is not closed, or more follows it than blanks.
-std::optional<std::vector<std::string>> csv_fields_of(std::string_view line);
+std::optional<std::vector<std::string>> csv_fields_of(std::string_view line, char separator = ',');
 std::string_view trimmed(std::string_view text);
 
 }  // namespace exactvo::datasets

@@ -245,15 +245,19 @@ class GoneWays {
     if (agent >= last_.size()) last_.resize(agent + 1);
     auto& last = last_[agent];
     if (last) {
-      by_speed_ += speed * (time - last->time);
+      by_speed_ += speed * std::min(time - last->time, kLongestStep);
       by_place_ += norm(at - last->at);
     }
+    is_on_globe_ = is_on_globe_ && std::fabs(at.x) <= 180.0 && std::fabs(at.y) <= 90.0;
     last = geometry::TimedPoint{time, at};
   }
   /// A degree of latitude is 111 km long, one of longitude seldom less than 1 km; ways in metres agree to a few parts.
-  bool are_in_degrees() const { return by_speed_ > 10.0 && by_speed_ > 500.0 * by_place_; }
+  bool are_in_degrees() const { return is_on_globe_ && by_speed_ > 10.0 && by_speed_ > 500.0 * by_place_; }
 
  private:
+  /// s: in more, a vehicle may have come back to where it was.
+  static constexpr double kLongestStep = 60.0;
+  bool is_on_globe_ = true;
   std::vector<std::optional<geometry::TimedPoint>> last_;
   double by_speed_ = 0.0, by_place_ = 0.0;  ///< m, and units of length
 };

@@ -489,7 +489,9 @@ class Events {
   static void join(MotionEvent& open, const MotionEvent& next) {
     if (next.last.high > open.last.high) open.last = next.last;
     if (next.first.low < open.first.low) open.first = next.first;
-    if (next.clearance.low < open.clearance.low) {
+    // Polygons that only touch are as near as those that overlap, but are no example of an overlap.
+    if (next.encounter > open.encounter ||
+        (next.encounter == open.encounter && next.clearance.low < open.clearance.low)) {
       open.nearest_time = next.nearest_time;
       open.place = next.place;
       open.at = next.at;

@@ -20,7 +20,8 @@ function seriesOf(run, robot) {
     series.obstacle[k] = obstacleClearance(run, row, robot);
     series.others[k] = robotClearance(run, row, robot);
     series.speed[k] = Math.hypot(run.vx(row, robot), run.vy(row, robot));
-    series.jitter[k] = jitterAt(run, row, robot);
+    // Rows of a check are no steps: of one just behind a bend, the jitter says only how near it stands.
+    series.jitter[k] = run.about.method === 'check' ? NaN : jitterAt(run, row, robot);
     series.least.obstacle = Math.min(series.least.obstacle, series.obstacle[k]);
     series.least.others = Math.min(series.least.others, series.others[k]);
   }
@@ -166,7 +167,7 @@ function drawCharts(ctx, run, series, events, colours, width, height) {
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, width, height);
   drawMarks(ctx, run, events, series.robot, colours, width, 3, 10);
-  // Clearances of outlines are not measured: no axes without a line.
+  // Clearances of outlines and the jitter of a check are not measured: no axes without a line.
   const strips = STRIPS.filter((strip) => strip.lines.some(([name]) => series[name].some(Number.isFinite)));
   const top = 18, bottom = 16, each = (height - top - bottom - GAP * (strips.length - 1)) / strips.length;
   strips.forEach((strip, k) => drawStrip(ctx, run, series, strip, colours, width, top + k * (each + GAP), each));

@@ -213,7 +213,7 @@ def check(
 
     Raises `ArgumentError`, `DataError` with the line or row, `MissingFileError`.
     """
-    written = _written(trajectories, page=page, certificates=certificates)
+    written = _written(trajectories, map, page=page, certificates=certificates)
     if isinstance(trajectories, Recording) and _is_on_wheels(trajectories):
         _no_time(time)
         options = {"between": between, "near": near, "max_speed": max_speed, "max_gap": max_gap, "scale": scale, **written}
@@ -267,19 +267,22 @@ def check(
     )
 
 
-def _written(trajectories: Any, **files: PathLike | None) -> dict[str, str | None]:
-    """What is written, none of it over another or over what is read."""
+def _written(trajectories: Any, map: Any, **files: PathLike | None) -> dict[str, str | None]:
+    """What is written, none of it over another or over what is read: of a folder its recordings and its CSV."""
     written = {name: None if file is None else os.fspath(file) for name, file in files.items()}
-    read = trajectories if isinstance(trajectories, (list, tuple)) else [trajectories]
-    taken = {os.path.abspath(file) for file in read if isinstance(file, (str, os.PathLike))}
+    read = [*(trajectories if isinstance(trajectories, (list, tuple)) else [trajectories]), map]
+    names = [os.fspath(file) for file in read if isinstance(file, (str, os.PathLike))]
+    in_folders = [os.path.join(folder, name) for folder in names if os.path.isdir(folder) for name in os.listdir(folder)]
+    names += [file for file in in_folders if file.endswith((os.sep + "recording.jsonl", ".evr", ".csv"))]
+    taken = {os.path.realpath(file) for file in names}
     for name, file in written.items():
         if file is None:
             continue
         if not file or (name == "page" and not file.endswith(".html")):
             raise ArgumentError(name, repr(file), "a name for a file" + (" that ends in .html" if name == "page" else ""))
-        if os.path.abspath(file) in taken:
+        if os.path.realpath(file) in taken:
             raise ArgumentError(name, repr(file), "another file than those that are read or written besides")
-        taken.add(os.path.abspath(file))
+        taken.add(os.path.realpath(file))
     return written
 
 
