@@ -181,8 +181,8 @@ BoxGrid grid_of(const std::vector<Segment>& edges) {
   return BoxGrid(std::move(boxes));
 }
 
-/// Boxes of motions once a step; so many samples of each pair whose boxes meet. None: what any check has to do that
-/// looks for pairs in this way.
+/// Looks for pairs by the boxes of their motions in each step, and takes this number of samples of each pair that it
+/// finds. With none it does what any check by these boxes has to do.
 Verdicts sampled_with_same_boxes(const Scene& scene, int samples) {
   Verdicts found;
   const BoxGrid edges = grid_of(scene.edges);

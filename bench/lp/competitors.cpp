@@ -126,7 +126,7 @@ Entry own_entry(std::string name, Rules rules) {
   return {std::move(name), rules, "", [](const std::vector<lp::Problem>& p) { return std::make_unique<Kind>(p); }};
 }
 
-/// Solvers that take microseconds a problem get so many at most.
+/// Problems at most for a solver that takes microseconds each.
 constexpr std::size_t kSlow = 4096;
 
 template <class T>

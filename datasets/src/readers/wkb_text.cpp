@@ -93,7 +93,8 @@ class WkbReader {
     return p;
   }
 
-  /// A number of things of so many bytes each at least: no more than there is room for.
+  /// Reads how many things follow, each of at least `bytes_each` bytes; refuses more than the rest of the bytes can
+  /// hold.
   std::size_t count(std::size_t bytes_each) {
     const std::size_t n = integer();
     if (n > (bytes_.size() - at_) / bytes_each)

@@ -83,7 +83,7 @@ using ObstacleId = std::uint32_t;
 struct CrowdWheels {
   double reference = 0.0;         ///< m, at least max_speed times the time step and a sixteenth of the separation
   double wheel_separation = 0.0;  ///< m, > 0
-  /// m/s^2: in a step a wheel's speed changes by this times the time step, which is at least the kind's max_speed.
+  /// m/s^2, at least the kind's max_speed divided by the time step: a wheel can stop within a step.
   double max_wheel_acceleration = geometry::kInfinity;
   double max_angular_speed = geometry::kInfinity;   ///< rad/s, at least 2^-20 in a time step
   double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre

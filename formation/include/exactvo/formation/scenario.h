@@ -132,8 +132,8 @@ double obstacle_reach(const Robot& robot);
 /// m, of a robot with a footprint that is there: disc `link` of its chain, 1 or more.
 geometry::Disc link_at(const DifferentialDrive& drive, std::size_t link, Vec2 position, Vec2 heading);
 
-/// Robots measure each other instead of telling each other where they are. Bounds of what each knows of another, both
-/// of the other's reference point and relative to its own.
+/// Robots measure each other instead of telling each other where they are: bounds of the errors. A measurement is of
+/// the other's reference point, relative to the robot's own.
 struct Measurements {
   double position = 0.0;  ///< m, >= 0: a measured place is off by this at most
   double velocity = 0.0;  ///< m/s, >= 0: a measured velocity is off by this at most

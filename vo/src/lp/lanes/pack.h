@@ -193,8 +193,7 @@ HWY_INLINE void find_most(const Rows<T>& rows, std::size_t first, std::size_t la
 /// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
 /// second only the hard ones do, and soft ones count from `level` on. The level is taken off the soft ones rather than
 /// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. The number of
-/// the line costs a sixth of the time: it is kept with kIndex and, where hard lines are told by it, while a lane
-/// relaxes.
+/// the line is kept with kIndex and, where hard lines are told by it, while a lane relaxes.
 ///
 /// While something is asked for ahead, in the first three rounds, no lane relaxes yet: that takes three lines.
 template <bool kHard, bool kIndex, Ask kAsk, class D, class T>
