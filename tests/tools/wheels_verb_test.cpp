@@ -89,16 +89,19 @@ TEST(WheelsVerb, ExplainGivesTheLimitsOfWheelsAndThoseThatOthersRelyOnThatMeasur
 
 TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
   const Workplace here;
-  std::size_t scenes = 0;
+  std::size_t scenes = 0, formations = 0;
   for (const auto& entry : std::filesystem::directory_iterator(data_file("robots"))) {
     if (entry.path().extension() != ".json") continue;
     ++scenes;
     const std::string name = entry.path().stem().string();
     const Outcome run = here.run("simulate " + entry.path().string() + " --no-figures --out " + name);
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_THAT(run.out, AllOf(testing::ContainsRegex("(all robots|the robot) arrived"), HasSubstr(", 0 relaxed")))
-        << name;
-    EXPECT_THAT(run.err, HasSubstr("joint plans rely on robots that can stand at once"));
+    const bool is_formation = here.read(name + "/metrics.json").find("\"formation_course\": {") != std::string::npos;
+    formations += is_formation;
+    const char* const ends = is_formation ? "arrival      3 of 3 robots" : "(all robots|the robot) arrived";
+    EXPECT_THAT(run.out, AllOf(testing::ContainsRegex(ends), HasSubstr(", 0 relaxed"))) << name;
+    EXPECT_THAT(run.err, HasSubstr(is_formation ? "while no limit of the wheels binds"
+                                                : "joint plans rely on robots that can stand at once"));
     const Outcome audit = here.run("audit " + name + " --scenario " + entry.path().string() + " --json");
     EXPECT_EQ(audit.status, 0) << audit.out;
     const nlohmann::json points = nlohmann::json::parse(audit.out).at("points");
@@ -107,7 +110,8 @@ TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
       EXPECT_EQ(points.at(point).at("asked"), points.at(point).at("proven")) << name << " " << point;
     }
   }
-  EXPECT_GE(scenes, 6u);
+  EXPECT_GE(scenes, 10u);
+  EXPECT_EQ(formations, 4u);
 }
 
 /// With the keys that the page names for crowds.
@@ -156,6 +160,47 @@ TEST(WheelsVerb, RunsThatCannotKeepThePromiseAreRefused) {
   const Outcome none = here.run("simulate burgers.json --decisions none --record a.evr");
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.err, HasSubstr("/robots/0/kinematics"));
+}
+
+/// Figures and pages of a formation on wheels have headings and wheels, and no Lyapunov functions.
+TEST(WheelsVerb, FormationsAreDrawnWithHeadings) {
+  const Workplace here;
+  const Outcome run = here.run("simulate " + data_file("robots/B1_huskies.json") + " --out run");
+  EXPECT_THAT(run.out,
+              AllOf(HasSubstr("on wheels no theorem says that robots reach their slots"), Not(HasSubstr("V of (18)"))))
+      << run.err;
+  for (const char* file : {"figures/wheels.svg", "figures/formation_error.svg", "figures/paths.svg", "explorer.html"})
+    EXPECT_TRUE(here.has(std::string("run/") + file)) << file;
+  EXPECT_FALSE(here.has("run/lyapunov.csv"));
+  EXPECT_FALSE(here.has("run/figures/lyapunov.svg"));
+  EXPECT_THAT(here.read("run/explorer.html"), HasSubstr("drawOnWheels"));
+  EXPECT_THAT(here.run("explain run --robot R1 --time 21").out, AllOf(HasSubstr("heading "), HasSubstr("left wheel ")));
+  EXPECT_EQ(here.run("audit run").status, 0);
+  for (const char* flags : {"--controller paper-signs", "--integrator euler", "--controller-option filter_last=off"}) {
+    const Outcome refused = here.run("simulate " + data_file("robots/B1_huskies.json") + " " + flags);
+    EXPECT_EQ(refused.status, 2) << flags;
+    EXPECT_THAT(refused.err, HasSubstr("with robots on wheels")) << flags;
+  }
+}
+
+/// One robot of it without wheels, or a controller that its proof lacks.
+TEST(WheelsVerb, FormationsThatAreNotProvenOnWheelsAreRefused) {
+  const Workplace here;
+  const std::string scene = here.read(data_file("robots/B1_huskies.json"));
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    here.write("bad.json", with(scene, from, to));
+    const Outcome outcome = here.run("simulate bad.json");
+    EXPECT_EQ(outcome.status, 2) << to;
+    return outcome.err;
+  };
+  const std::size_t first = scene.find("\"heading\""), end = scene.find("},\n", first);
+  EXPECT_THAT(refusal(scene.substr(first, end - first), "\"radius\": 0.598, \"max_speed\": 1 "),
+              AllOf(HasSubstr("/robots/0/kinematics"), HasSubstr("E_SCENARIO"), HasSubstr("on wheels, or none")));
+  const std::string options = "\"recentre\": true, \"controller_options\": ";
+  EXPECT_THAT(refusal("\"recentre\": true", options + "{\"acceleration_bound\": 2}"),
+              AllOf(HasSubstr("/formation/controller_options/acceleration_bound"), HasSubstr("E_SCENARIO")));
+  EXPECT_THAT(refusal("\"recentre\": true", options + "{\"filter_last\": false}"),
+              AllOf(HasSubstr("/formation/controller_options/filter_last"), HasSubstr("E_SCENARIO")));
 }
 
 struct BadWheels {

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "exactvo/formation/stability.h"
+
 namespace exactvo::tools {
 
 using datasets::RecordingFile;
@@ -59,7 +61,7 @@ struct RunRecorder::Files {
   Files(const std::filesystem::path& folder, const RecordingFile& about)
       : recording(folder / "recording.jsonl", about) {
     trajectory.emplace(folder / "trajectory.csv", about.scenario);
-    if (about.scenario.formation) lyapunov.emplace(folder / "lyapunov.csv");
+    if (tracks_choices(about.scenario)) lyapunov.emplace(folder / "lyapunov.csv");
   }
 
   datasets::RecordingWriter recording;

@@ -163,9 +163,7 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 }  // namespace
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
-  formation::SimulationOptions options;
-  parse(flags.method, options.method);
-  for (const formation::ScenarioProblem& p : option_problems(scenario, options))
+  for (const formation::ScenarioProblem& p : option_problems(scenario, simulation_options(flags)))
     throw UsageError("--" + p.pointer, p.found, p.expected);
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
@@ -181,7 +179,7 @@ void note_liveness(const SimulationFlags& flags, const formation::Scenario& scen
   if (scenario.formation && is_asked_for && used != formation::Liveness::plan)
     message(
         "note: --liveness plan is off here: joint plans of a formation need method ivo or ivo-cluster, no moving "
-        "obstacles, and a controller whose brake points follow the choices");
+        "obstacles, no robots on wheels, and a controller whose brake points follow the choices");
   // ivo-edge never has guidance: there it is said only to who asks for plans.
   const bool may_have_guidance = options.method != formation::Method::ivo_edge;
   if (!scenario.formation && used == formation::Liveness::bias && (is_asked_for || may_have_guidance))

@@ -8,6 +8,7 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/require.h"
 #include "files/sha256.h"
@@ -25,9 +26,9 @@ using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
 
-/// How robots move between rows: straight without a formation; with one, as its integrator has it.
+/// How robots move between rows: straight, unless they track what they choose; then as the integrator has it.
 MotionLaw law_of(const RecordingFile& file) {
-  if (!file.scenario.formation) return MotionLaw::straight;
+  if (!tracks_choices(file.scenario)) return MotionLaw::straight;
   const std::string integrator = file.info.integrator.value_or("exact");
   if (integrator == "exact") return MotionLaw::exponential;
   return integrator == "euler" ? MotionLaw::straight : MotionLaw::hermite;
@@ -54,14 +55,15 @@ void check_header(const RecordingFile& file, const Step& first, const formation:
   const formation::Recording& recording = file.recording;
   const std::optional<formation::FormationSpec>& formation = file.scenario.formation;
   const AuditPoint scenario = AuditPoint::scenario;
+  const bool tracks = tracks_choices(file.scenario);
   tally.ask(scenario, recording.time_step == file.scenario.time_step, "the header's time step is not the scenario's");
   tally.ask(scenario, recording.motion == law_of(file),
             "the header's motion is not that of its scenario and integrator");
-  tally.ask(scenario, recording.tracking_gain == (formation ? formation->gains.k3 : 0.0),
+  tally.ask(scenario, recording.tracking_gain == (tracks ? formation->gains.k3 : 0.0),
             "the header's tracking gain is not the scenario's k3");
   if (formation && recording.controller_options) {
     tally.ask(scenario, has_its_offsets(file), "the header's offsets are not the scenario's");
-    tally.ask(scenario, recording.relative_frame == !recording.controller_options->absolute_frame,
+    tally.ask(scenario, recording.relative_frame == (tracks && !recording.controller_options->absolute_frame),
               "the header's frame is not that of its controller");
   }
   if (!formation)

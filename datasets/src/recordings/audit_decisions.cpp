@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "exactvo/formation/stability.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/family.h"
@@ -115,7 +116,7 @@ class DecisionAudit : public RowAudit {
  public:
   explicit DecisionAudit(const AuditedRun& run)
       : run_(run),
-        literal_horizons_(run.file.recording.controller_options &&
+        literal_horizons_(tracks_choices(run.scenario) && run.file.recording.controller_options &&
                           !run.file.recording.controller_options->horizon_clamp) {
     formation::Method method = formation::Method::ivo;
     if (parse(run.file.info.method, method) && !promises_between_robots(method))

@@ -4,7 +4,9 @@
 //     exact           P = e^-kT                                Q = (1 - P) / k
 //     explicit Euler  P = 1 - kT                               Q = T
 //     rk4             P = 1 - z + z^2/2 - z^3/6 + z^4/24       Q = T (1 - z/2 + z^2/6 - z^3/24), z = kT
-// (the adaptive ones solve the law to their tolerance, which is no proof). A kinematic robot goes x + T v, bit for bit.
+// (the adaptive ones solve the law to their tolerance, which is no proof). A robot that drives at what it chooses, with
+// a goal or on wheels, goes x + T v, bit for bit.
+#include "exactvo/formation/stability.h"
 #include "exactvo/geometry/told_apart.h"
 #include "recordings/audit_points.h"
 
@@ -60,9 +62,10 @@ Point scaled(const Interval& x, const Point& p) {
 
 class SequenceAudit : public RowAudit {
  public:
-  explicit SequenceAudit(const AuditedRun& run) : run_(run) {
+  explicit SequenceAudit(const AuditedRun& run) : run_(run), tracks_(tracks_choices(run.scenario)) {
     if (!run.scenario.formation) return;
     leader_.emplace(run.scenario.formation->leader);
+    if (!tracks_) return;
     const std::string integrator = run.file.info.integrator.value_or("exact");
     const Rational k(run.scenario.formation->gains.k3), z = k * run.duration;
     if (run.law) {
@@ -125,13 +128,13 @@ class SequenceAudit : public RowAudit {
     });
   }
 
-  /// Kinematic robots and controllers without a brake point build half-planes at the robot. The brake point is
-  /// x + v / k3, round what was tracked before.
+  /// Robots that drive at what they choose and controllers without a brake point build half-planes at the robot. The
+  /// brake point is x + v / k3, round what was tracked before.
   bool has_its_anchor(const RowInRun& at, std::size_t i) const {
     const RobotStep& r = at.row.robots[i];
     const std::optional<formation::ControllerOptions>& options = run_.file.recording.controller_options;
-    if (run_.scenario.formation && !options) return true;  // nothing is known of its controller
-    if (!at.next || !options || !options->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
+    if (tracks_ && !options) return true;  // nothing is known of its controller
+    if (!at.next || !tracks_ || !options->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
     if (r.anchor != r.position + r.velocity / run_.scenario.formation->gains.k3) return false;
     if (!at.before) return r.anchor_velocity == r.velocity;
     return !tracks_its_choice() || r.anchor_velocity == (*at.before)[i].chosen;
@@ -166,7 +169,7 @@ class SequenceAudit : public RowAudit {
   }
 
   bool follows(const RobotStep& from, const RobotStep& to) const {
-    if (!run_.scenario.formation) {
+    if (!tracks_) {
       const Vec2 next = from.position + run_.file.recording.time_step * from.chosen;
       return to.velocity == from.chosen && to.position == next;
     }
@@ -207,8 +210,9 @@ class SequenceAudit : public RowAudit {
   }
 
   const AuditedRun& run_;
+  const bool tracks_;  ///< robots track what they choose
   std::optional<exact::ExactWay> leader_;
-  std::optional<Law> law_;  ///< of a formation
+  std::optional<Law> law_;  ///< of robots that track
 };
 
 }  // namespace

@@ -21,6 +21,7 @@ struct RelativeState {
 };
 
 /// The options of a run's controller: those that the run was given, else the controller's with the scenario's switches.
+/// On wheels there is no brake point ahead of the robot: it drives at what it chooses.
 ControllerOptions controller_options_in_use(const Scenario& scenario, const SimulationOptions& options);
 
 /// Less their mean.

@@ -3,6 +3,7 @@
 
 #include "control/consensus.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/stability.h"
 
 namespace exactvo::formation {
 namespace {
@@ -110,9 +111,11 @@ std::vector<std::string> controller_option_set_names() {
 namespace detail {
 
 ControllerOptions controller_options_in_use(const Scenario& scenario, const SimulationOptions& options) {
-  if (options.controller_options) return *options.controller_options;
-  const ControllerOptions of_controller = controller_options_of(options.controller);
-  return scenario.formation ? switched(of_controller, scenario.formation->controller_options) : of_controller;
+  ControllerOptions used = options.controller_options.value_or(controller_options_of(options.controller));
+  if (!scenario.formation) return used;
+  if (!options.controller_options) used = switched(used, scenario.formation->controller_options);
+  used.brake_point = used.brake_point && tracks_choices(scenario);
+  return used;
 }
 
 }  // namespace detail

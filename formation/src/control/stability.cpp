@@ -52,11 +52,13 @@ double euler_limit_of(const Polynomial& m) {
   return d <= 0.0 ? m.p / m.q : 4.0 / (m.p + std::sqrt(d));
 }
 
-/// How much of v - w is left after a step, and the time over which it carried the position.
+/// How much of v - w is left after a step, and the time over which it carried the position: of a reference point that
+/// drives at w nothing.
 struct Held {
-  double left, lag;
+  double left = 0.0, lag = 0.0;
 };
-Held held_step(Integrator integrator, double k3, double dt) {
+Held held_step(std::optional<Integrator> integrator, double k3, double dt) {
+  if (!integrator) return {};
   const double z = -k3 * dt;
   if (integrator == Integrator::euler) return {1.0 + z, dt};
   if (integrator != Integrator::rk4) return {std::exp(z), -std::expm1(z) / k3};
@@ -89,14 +91,19 @@ Stability stability_of(const FormationSpec& spec) {
   return s;
 }
 
-double step_spectral_radius(const FormationSpec& spec, Integrator integrator, double dt) {
+bool tracks_choices(const Scenario& scenario) {
+  return scenario.formation &&
+         std::none_of(scenario.robots.begin(), scenario.robots.end(), [](const Robot& r) { return r.drive; });
+}
+
+double step_spectral_radius(const FormationSpec& spec, std::optional<Integrator> integrator, double dt) {
   const Held held = held_step(integrator, spec.gains.k3, dt);
   double greatest = 0.0;
   for (double l : eigenvalues_of(spec.topology)) greatest = std::max(greatest, radius_of_mode(spec.gains, l, held, dt));
   return greatest;
 }
 
-std::vector<std::string> step_warnings(const FormationSpec& spec, Integrator integrator, double dt) {
+std::vector<std::string> step_warnings(const FormationSpec& spec, std::optional<Integrator> integrator, double dt) {
   std::vector<std::string> warnings;
   const Stability s = stability_of(spec);
   if (integrator == Integrator::euler && dt >= s.euler_step_limit)

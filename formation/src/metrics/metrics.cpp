@@ -10,6 +10,7 @@
 
 #include "control/lyapunov_accumulator.h"
 #include "exactvo/formation/speed_profile.h"
+#include "exactvo/formation/stability.h"
 #include "exactvo/formation/stuck.h"
 #include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/distance.h"
@@ -130,7 +131,7 @@ Evaluator::Evaluator(const Scenario& scenario, const Recording& run, TakeRow tak
   parts_->take_row = std::move(take_row);
   parts_->clearances.emplace(scenario, parts_->run);
   parts_->stuck.emplace(scenario);
-  if (scenario.formation) parts_->lyapunov.emplace(scenario, parts_->run);
+  if (tracks_choices(scenario)) parts_->lyapunov.emplace(scenario, parts_->run);
 }
 
 Evaluator::Evaluator(const Scenario& scenario, RunSink* next)

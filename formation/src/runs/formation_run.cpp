@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formations: Sections IV and V.B, with the options of controller_options.h. The loop over time and when it ends, and
 // how the controller is put together from the terms of control/consensus.h: `wanted_velocity`, `tracked_velocity`.
+// Robots on wheels do not track: their reference points drive at what the filter chooses, and brake as all robots on
+// wheels do (scene/braking.h).
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -9,6 +11,7 @@
 #include "control/consensus.h"
 #include "decision/decision.h"
 #include "exactvo/formation/notices.h"
+#include "exactvo/formation/stability.h"
 #include "metrics/divergence.h"
 #include "motion/integrators.h"
 #include "motion/leader.h"
@@ -17,6 +20,7 @@
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
 #include "runs/slot_plans.h"
+#include "runs/wheels_of_run.h"
 #include "scene/moment.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
@@ -58,10 +62,13 @@ class FormationRun {
         rules_(formation_rules(scenario, options, switches_)),
         spec_(*scenario.formation),
         options_(options),
+        tracks_(tracks_choices(scenario)),
         scene_(scenario, options),
         schedule_(scenario, options),
         decider_(rules_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, switches_)),
+        wheels_(scenario.robots, rules_),
+        walls_(tracks_ ? std::vector<SceneObstacle>{} : scenario.obstacles),
         joint_(
             rules_, scenario.robots, scene_, schedule_, decider_, [this](std::size_t i) { return viewpoint(i); },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }) {
@@ -75,16 +82,16 @@ class FormationRun {
       const Vec2 slot = spec_.leader.path.back() + offsets_[i];
       robots_.push_back({{r.position, r.velocity},
                          r.velocity,
-                         StaticField(scene_, rules_, r.radius, r.position, slot, rule),
+                         StaticField(scene_, rules_, obstacle_radius(r), r.position, slot, rule),
                          {},
                          {}});
     }
   }
 
   void run(Recording& recording, RunSink& sink) {
-    recording.motion = motion_of(options_.integrator);
+    recording.motion = tracks_ ? motion_of(options_.integrator) : MotionLaw::straight;
     recording.time_step = scenario_.time_step;
-    recording.tracking_gain = spec_.gains.k3;
+    recording.tracking_gain = tracks_ ? spec_.gains.k3 : 0.0;
     recording.relative_frame = !switches_.absolute_frame;
     recording.controller_options = switches_;
     recording.offsets = offsets_;
@@ -142,7 +149,7 @@ class FormationRun {
     joint_.look_at_robots(plans_ ? &plans_->groups() : nullptr);
     move_obstacles(scenario_.moving_obstacles, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
-    if (plans_) joint_.settle(plans_->groups(), row);
+    if (plans_ || rules_.has_brakes()) joint_.settle(plans_ ? &plans_->groups() : nullptr, row);
     return row;
   }
 
@@ -170,7 +177,11 @@ class FormationRun {
 
   Viewpoint viewpoint(std::size_t i) const {
     const Robot& spec = scenario_.robots[i];
-    return {anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+    Viewpoint here{anchor(i), anchor_velocity(i), obstacle_radius(spec), spec.max_speed};
+    here.robot = i;
+    here.body = scene_.robot(i);
+    here.wheels = wheels_.of(i);
+    return here;
   }
 
   void decide_one(std::size_t i, double time, const LeaderState& leader, RobotStep& step) {
@@ -182,7 +193,7 @@ class FormationRun {
     if (plans_) add_note(step.note, plans_->groups().note(i));
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
     if (goes_by_plan(i)) return choose_by_plan(i, step);
-    statics_.look(robots_[i].field, here, reach_of_step(rules_.time_step, here.max_speed));
+    look(i);
     const Vec2 wanted = wanted_velocity(i, leader);
     const RobotBypass::Situation situation{time,
                                            moment(scenario_.horizons),
@@ -191,13 +202,24 @@ class FormationRun {
                                            spec_.catch_up_speed,
                                            leader.velocity == Vec2{},
                                            wanted};
-    DecisionInput in = input(i, steered(i, situation, step), here, time);
+    const Vec2 preferred = steered(i, situation, step);
     if (misses_slot(i) && norm(relative_.position[i]) <= scenario_.arrival_tolerance) step.mode = Mode::staying;
-    decider_.decide(in, step);
-    if (!switches_.smoothing) return;
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
-    in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
-    decider_.decide(in, step);
+    choose(i, wheels_.aside(i, switches_.smoothing ? (preferred + 4.0 * robots_[i].tracked) / 5.0 : preferred), step);
+  }
+
+  void look(std::size_t i) {
+    const Viewpoint here = viewpoint(i);
+    statics_.look(robots_[i].field, joint_.brakes(i) ? joint_.braked(here) : here,
+                  reach_of_step(rules_.time_step, here.max_speed));
+  }
+
+  /// REQUIRES: it has looked, and nobody after it.
+  void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
+    wheels_.choose(i, preferred, joint_.anchors[i], walls_, step, [&](Vec2 wish) {
+      decider_.decide({wish, viewpoint(i), &statics_.lines(), &joint_.others[i], schedule_.keeps_all(now_), &statics_},
+                      step);
+    });
   }
 
   // --- Robots that go by plan ---
@@ -238,14 +260,8 @@ class FormationRun {
 
   void choose_again(std::size_t i, RobotStep& step) {
     if (goes_by_plan(i)) return choose_by_plan(i, step);
-    const Viewpoint here = viewpoint(i);
-    statics_.look(robots_[i].field, here, reach_of_step(rules_.time_step, here.max_speed));
-    decider_.decide(input(i, step.preferred, here, now_), step);
-  }
-
-  /// REQUIRES: it has looked, and nobody after it.
-  DecisionInput input(std::size_t i, Vec2 preferred, const Viewpoint& here, double time) {
-    return {preferred, here, &statics_.lines(), &joint_.others[i], schedule_.keeps_all(time), &statics_};
+    look(i);
+    choose(i, step.preferred, step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -296,8 +312,14 @@ class FormationRun {
   /// From where the row was decided.
   void move(const Step& row) {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
+      BodyState& body = robots_[i].body;
       robots_[i].tracked = tracked_velocity(i, row);
-      robots_[i].body = step_body(options_.integrator, robots_[i].body, robots_[i].tracked, decay_);
+      if (tracks_) {
+        body = step_body(options_.integrator, body, robots_[i].tracked, decay_);
+      } else {
+        wheels_.drive(i, robots_[i].tracked);
+        body = {body.position + scenario_.time_step * robots_[i].tracked, robots_[i].tracked};
+      }
     }
   }
 
@@ -308,7 +330,10 @@ class FormationRun {
     row.leader_position = leader.position;
     row.leader_velocity = leader.velocity;
     row.robots.reserve(robots_.size());
-    for (const FormationRobot& r : robots_) row.robots.push_back(undecided(r.body.position, r.body.velocity));
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      row.robots.push_back(undecided(robots_[i].body.position, robots_[i].body.velocity));
+      if (const WheelsNow* wheels = wheels_.of(i)) row.robots.back().wheels = wheels->state;
+    }
     return row;
   }
 
@@ -328,6 +353,7 @@ class FormationRun {
     if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
     add_note(recording.outcome, spec_.leader.why_short);
+    if (!tracks_) add_note(recording.outcome, "on wheels no theorem says that robots reach their slots");
     add_note(recording.outcome, assumed_words(scenario_));
   }
 
@@ -350,6 +376,7 @@ class FormationRun {
   DecisionRules rules_;
   const FormationSpec& spec_;
   const SimulationOptions& options_;
+  bool tracks_;  ///< not on wheels: these drive at what they choose
   Scene scene_;
   RunSchedule schedule_;
   Decider decider_;
@@ -361,6 +388,8 @@ class FormationRun {
   std::vector<GoalBodies> goal_bodies_;
   // Memory that a step leaves to the next.
   RelativeState relative_;  ///< of the row that is decided
+  WheelsOfRun wheels_;
+  ObstacleSpace walls_;  ///< that footprints keep clear of
   JointDecisions joint_;
   NeededConstraints statics_;  ///< of the robot that decides
 };

@@ -46,17 +46,18 @@ void JointDecisions::choose_by_plan(std::size_t i, const Groups& groups, const S
   decider_.decide({share.value_or(0.0) * wanted, here, &statics_, &others[i], schedule_.keeps_all(time)}, step);
 }
 
-void JointDecisions::settle(Groups& groups, Step& row) {
+void JointDecisions::settle(Groups* groups, Step& row) {
   repair(groups, row);
-  while (groups.any() && groups.halt_those_held_back(row)) {
-    look_at_robots(&groups);
+  if (!groups) return;
+  while (groups->any() && groups->halt_those_held_back(row)) {
+    look_at_robots(groups);
     for (std::size_t i = 0; i < row.robots.size(); ++i) {
       add_moving_constraints(rules_, viewpoint_(i), scene_, others[i]);
       choose_again_(i, row.robots[i]);
     }
     repair(groups, row);
   }
-  groups.end_step(row);
+  groups->end_step(row);
 }
 
 /// Repair instead of relaxing (liveness, rule R0): as long as there are robots whose half-planes, as they decided last,
@@ -65,9 +66,10 @@ void JointDecisions::settle(Groups& groups, Step& row) {
 /// too. Half-planes of moving obstacles and of robots that do not yield may still be relaxed. With an acceleration such
 /// a robot keeps to what braking satisfies, against static obstacles too (braking.h). Own-side lines it satisfies as
 /// they are (own_side.h).
-void JointDecisions::repair(const Groups& groups, Step& row) {
+void JointDecisions::repair(const Groups* groups, Step& row) {
+  const auto is_member = [&](std::size_t i) { return groups && groups->is_member(i); };
   const auto is_contradicted = [&](std::size_t i) {
-    return bodies_gave(row.robots[i]) || (groups.is_member(i) && held_by_all_[i]);
+    return bodies_gave(row.robots[i]) || (is_member(i) && held_by_all_[i]);
   };
   std::set<std::size_t> contradicted;
   for (std::size_t i = 0; i < others.size(); ++i)
@@ -103,7 +105,7 @@ void JointDecisions::repair(const Groups& groups, Step& row) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     const lp::Status status = row.robots[i].status;
     const bool is_held = rules_.has_brakes() ? status != lp::Status::optimal : status == lp::Status::no_interior;
-    if (!is_held || groups.is_member(i)) continue;
+    if (!is_held || is_member(i)) continue;
     row.robots[i].preferred = rules_.has_brakes() ? rules_.braked(anchors[i].velocity) : Vec2{};
     choose_again_(i, row.robots[i]);
   }

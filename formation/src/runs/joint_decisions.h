@@ -69,12 +69,12 @@ class JointDecisions {
   void choose_by_plan(std::size_t i, const Groups& groups, const StaticField& field, double time, RobotStep& step);
 
   /// Once all have decided: half-planes that contradict each other are repaired, groups that are held back are halted,
-  /// whereupon all decide again, and the groups hear how the step ended.
-  void settle(Groups& groups, Step& row);
+  /// whereupon all decide again, and the groups hear how the step ended. `groups`: null without any.
+  void settle(Groups* groups, Step& row);
 
  private:
   RobotsAt now() const { return {rules_, robots_, anchors, scene_}; }
-  void repair(const Groups& groups, Step& row);
+  void repair(const Groups* groups, Step& row);
   void record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const;
 
   const DecisionRules& rules_;

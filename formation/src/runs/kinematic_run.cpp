@@ -9,7 +9,6 @@
 #include "exactvo/formation/passing.h"
 #include "exactvo/geometry/require.h"
 #include "liveness/groups.h"
-#include "motion/differential.h"
 #include "runs/joint_decisions.h"
 #include "runs/measuring.h"
 #include "runs/own_decision.h"
@@ -17,7 +16,7 @@
 #include "runs/rows.h"
 #include "runs/run_schedule.h"
 #include "runs/runs.h"
-#include "scene/chain.h"
+#include "runs/wheels_of_run.h"
 #include "scene/goals.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
@@ -28,8 +27,6 @@ namespace exactvo::formation::detail {
 namespace {
 
 using geometry::norm;
-
-constexpr const char* kNoRoom = "has no room between obstacles to turn its footprint towards where it wants to go";
 
 class KinematicSteps final : public Stepper {
  public:
@@ -48,9 +45,9 @@ class KinematicSteps final : public Stepper {
         positions_(robots.at),
         velocities_(robots.velocity),
         journeys_(robots.journeys),
+        wheels_(scenario_.robots, rules_),
         ways_(robots.size()),
         steered_(robots.size()),
-        has_room_(robots.size(), 1),
         asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
@@ -65,14 +62,6 @@ class KinematicSteps final : public Stepper {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
       before_.push_back(robot.velocity);
-      wheels_.push_back(
-          robot.drive ? std::optional<WheelLimits>(std::in_place, *robot.drive, rules_.time_step, rules_.braking_time)
-                      : std::nullopt);
-    }
-    for (std::size_t i = 0; i < wheels_.size(); ++i) {
-      const std::optional<DifferentialDrive>& drive = scenario_.robots[i].drive;
-      on_wheels_.push_back(
-          {wheels_[i] ? &*wheels_[i] : nullptr, {drive ? heading_vector(drive->heading) : Vec2{}, {}}});
     }
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look_at_goal(i);
@@ -87,7 +76,7 @@ class KinematicSteps final : public Stepper {
 
   void move() override {
     for (std::size_t i = 0; i < ways_.size(); ++i) {
-      if (wheels_[i]) drive(i, row_.robots[i].chosen);
+      if (wheels_.of(i)) wheels_.drive(i, row_.robots[i].chosen);
       before_[i] = velocities_[i];
       velocities_[i] = row_.robots[i].chosen;
       positions_[i] += scenario_.time_step * row_.robots[i].chosen;
@@ -115,7 +104,7 @@ class KinematicSteps final : public Stepper {
 
   std::string why_not_there(std::size_t i) const override {
     std::string why = journeys_.why_not_there(i);
-    if (!has_room_[i]) add_note(why, kNoRoom);
+    if (!wheels_.has_room(i)) add_note(why, WheelsOfRun::kNoRoom);
     if (!ways_[i].follower.circled()) return why;
     const std::string circled = "completed a full circuit of the obstacle without finding a way to its goal";
     return why.empty() ? circled : circled + "; " + scenario_.robots[i].id + " " + why;
@@ -159,7 +148,7 @@ class KinematicSteps final : public Stepper {
     if (options_.steering || options_.half_planes) ask_user();
     row.robots.reserve(ways_.size());
     for (std::size_t i = 0; i < ways_.size(); ++i) row.robots.push_back(decide_one(i));
-    if (groups_) joint_.settle(*groups_, row);
+    if (groups_) joint_.settle(&*groups_, row);
     return row;
   }
 
@@ -252,7 +241,7 @@ class KinematicSteps final : public Stepper {
                            : options_.steering ? steered(i, step)
                                                : journeys_.beside_taken(i, steer(i, step));
     const Vec2 wish = liveness_ == Liveness::off ? preferred : kept_right(i, preferred, step);
-    choose(i, wheels_[i] ? turned_aside(on_wheels_[i].state.heading, wish) : wish, step);
+    choose(i, wheels_.aside(i, wish), step);
     return step;
   }
 
@@ -262,7 +251,7 @@ class KinematicSteps final : public Stepper {
     here.turns_after = journeys_.turns_after(i);
     here.robot = i;
     here.body = scene_.robot(i);
-    if (wheels_[i]) here.wheels = &on_wheels_[i];
+    here.wheels = wheels_.of(i);
     return here;
   }
 
@@ -278,20 +267,9 @@ class KinematicSteps final : public Stepper {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
-    const auto decide = [&](Vec2 wish) {
+    wheels_.choose(i, preferred, joint_.anchors[i], space(), step, [&](Vec2 wish) {
       own_.choose(wish, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
-    };
-    decide(preferred);
-    if (!wheels_[i]) return;
-    bool has_room = true;
-    keep_wheels_within_limits(on_wheels_[i], rules_.braked(velocities_[i]), step, decide, [&](Vec2 u) {
-      const bool is_clear = links_are_clear(space(), *scenario_.robots[i].drive, positions_[i],
-                                            on_wheels_[i].state.heading, u, rules_.braking_time);
-      has_room = has_room && is_clear;
-      return is_clear;
     });
-    if (!has_room && has_room_[i]) add_note(step.note, kNoRoom);
-    has_room_[i] = has_room;
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -308,7 +286,7 @@ class KinematicSteps final : public Stepper {
   /// was within its reach in the last step, the share that it took. (Turns on wheels are tight: there all counts.)
   Vec2 unhindered(std::size_t i, Vec2 preferred) const {
     const double most = acceleration_of(scenario_, i) * scenario_.time_step, wanted = norm(preferred - before_[i]);
-    if (wheels_[i] || !(wanted > most)) return velocities_[i];
+    if (wheels_.of(i) || !(wanted > most)) return velocities_[i];
     const Vec2 within_reach = (most / wanted) * (preferred - before_[i]);
     const double taken = dot(velocities_[i] - before_[i], within_reach) / (most * most);
     return velocities_[i] + std::clamp(taken, 0.0, 1.0) * (preferred - velocities_[i]);
@@ -360,16 +338,9 @@ class KinematicSteps final : public Stepper {
     return norm(velocities_[i]) <= kAtRest * scenario_.robots[i].max_speed;
   }
 
-  /// By the twist that takes its reference point on by a step of `u`.
-  void drive(std::size_t i, Vec2 u) {
-    OnWheels& state = on_wheels_[i].state;
-    const TwistOfStep twist = twist_of(*scenario_.robots[i].drive, scenario_.time_step, state.heading, u);
-    state = {turned(state.heading, twist.turn), twist.wheels};
-  }
-
   RobotStep undecided_now(std::size_t i) const {
     RobotStep step = undecided(positions_[i], velocities_[i]);
-    if (wheels_[i]) step.wheels = on_wheels_[i].state;
+    if (const WheelsNow* wheels = wheels_.of(i)) step.wheels = wheels->state;
     return step;
   }
 
@@ -412,11 +383,9 @@ class KinematicSteps final : public Stepper {
   std::vector<Vec2>&positions_, &velocities_;
   std::vector<Vec2> before_;  ///< m/s, at the beginning of the last step
   Journeys& journeys_;
-  std::vector<std::optional<WheelLimits>> wheels_;
-  std::vector<WheelsNow> on_wheels_;  ///< of robots that have some
+  WheelsOfRun wheels_;
   std::vector<OwnWay> ways_;
   std::vector<Vec2> steered_;                      ///< m/s, by the user
-  std::vector<char> has_room_;                     ///< to turn its footprint as it wanted, in the last step
   std::vector<std::vector<OwnConstraint>> asked_;  ///< by the user, of each robot
   ObstacleSpace walls_, open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off

@@ -13,6 +13,7 @@
 #include "preflight/preflight.h"
 #include "reach/reachability.h"
 #include "runs/runs.h"
+#include "scene/field_problems.h"
 #include "scene/number_text.h"
 #include "steering/guide.h"
 
@@ -26,8 +27,11 @@ using Clock = std::chrono::steady_clock;
 std::vector<std::string> warnings_with(const Scenario& scenario, const SimulationOptions& options,
                                        Reachability& reach) {
   std::vector<std::string> warnings;
-  if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
+  const bool tracks = tracks_choices(scenario);
   if (scenario.formation)
+    warnings = step_warnings(*scenario.formation, tracks ? std::optional(options.integrator) : std::nullopt,
+                             scenario.time_step);
+  if (tracks)
     for (std::string& warning : controller_warnings(scenario, controller_options_in_use(scenario, options)))
       warnings.push_back(std::move(warning));
   for (std::string& warning : preflight_warnings(scenario, offsets_in_use(scenario, options), reach))
@@ -83,6 +87,16 @@ std::vector<ScenarioProblem> option_problems(const Scenario& scenario, const Sim
                                                 : brakes ? ", which cannot promise to brake in time, " + braking
                                                          : ", which promises nothing between robots that part"),
                         "another method: orca, ivo-edge, ivo-cluster or ivo"});
+  if (scenario.formation && !tracks_choices(scenario)) {
+    if (const std::string option = unfit_for_wheels(controller_options_in_use(scenario, options)); !option.empty())
+      problems.push_back({"controller",
+                          option + (option == "acceleration_bound" ? "" : " off") + ", with robots on wheels",
+                          "a controller whose robots drive at what they choose: default, or another one with "
+                          "absolute_frame, filter_last and horizon_clamp and without an acceleration_bound"});
+    if (options.integrator != Integrator::exact)
+      problems.push_back({"integrator", name(options.integrator) + std::string(", with robots on wheels"),
+                          "exact: their reference points drive at what they choose"});
+  }
   if (options.threads < 0 || options.threads > 1024)
     problems.push_back({"threads", std::to_string(options.threads), "0 to 1024"});
   if (scenario.formation && options.steering)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "exactvo/formation/simulation.h"
@@ -20,5 +21,9 @@ std::vector<ScenarioProblem> braking_problems(const DecisionRules& rules, double
 
 /// The same of a robot's radius (m) and greatest speed (m/s): "/radius" and "/max_speed".
 std::vector<ScenarioProblem> field_problems(double radius, double max_speed);
+
+/// The option by which robots of a formation on wheels would not drive at what they choose, within the horizons that
+/// braking needs: one that is off, or "acceleration_bound". Empty where there is none.
+std::string unfit_for_wheels(const ControllerOptions& options);
 
 }  // namespace exactvo::formation::detail

@@ -342,6 +342,23 @@ void check_drive(const Scenario& s, std::size_t i, Checker& c) {
             "a position, radius or max_speed of another reference point", "those that `put_on_wheels` makes");
 }
 
+/// All robots of a formation move by one law: they track what they choose, or on wheels drive at it.
+void check_formation_on_wheels(const Scenario& s, Checker& c) {
+  const std::optional<std::size_t> driven = first_drive(s);
+  if (!s.formation || !driven) return;
+  for (std::size_t i = 0; i < s.robots.size(); ++i)
+    c.require(s.robots[i].drive.has_value(), "/robots/" + std::to_string(i) + "/kinematics",
+              "a robot that moves in any direction, in a formation with '" + s.robots[*driven].id + "' on wheels",
+              "all robots of a formation on wheels, or none");
+  const AskedControllerOptions& asked = s.formation->controller_options;
+  const std::string option = detail::unfit_for_wheels(switched({}, asked));
+  if (option.empty()) return;
+  const bool is_bound = option == "acceleration_bound";
+  c.require(false, "/formation/controller_options/" + option, is_bound ? show(*asked.acceleration_bound) : "false",
+            is_bound ? "none with robots on wheels, which have max_wheel_acceleration"
+                     : "true with robots on wheels, which drive at what they choose");
+}
+
 /// Robots with an acceleration, of their velocity or of their wheels.
 void check_acceleration(const Scenario& s, Checker& c) {
   const std::optional<std::size_t> driven = first_drive(s);
@@ -356,12 +373,9 @@ void check_acceleration(const Scenario& s, Checker& c) {
   }
   if (s.acceleration) c.positive(s.acceleration->max, "/acceleration/max", "m/s^2");
   if (s.braking_time) c.positive(*s.braking_time, "/braking_time", "s");
-  if (driven)
-    c.require(!s.formation, "/robots/" + std::to_string(*driven) + "/kinematics", "a robot on wheels in a formation",
-              "robots that move in any direction");
-  else
-    c.require(!s.formation, "/acceleration", "an acceleration of robots of a formation",
-              "robots with goals; a formation has /formation/controller_options/acceleration_bound");
+  c.require(!s.formation || !s.acceleration, "/acceleration", "an acceleration of robots of a formation",
+            driven ? "none: wheels have their own, max_wheel_acceleration"
+                   : "robots with goals; a formation has /formation/controller_options/acceleration_bound");
   c.require(s.moving_obstacles.empty(), "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
             "none" + with_it + ": no braking is proven to evade what moves by itself");
   c.require(!s.separate, "/separate", "true",
@@ -486,6 +500,13 @@ std::string assumed_words(const Scenario& scenario) {
   return words.empty() ? "" : "assumed: " + words;
 }
 
+std::string detail::unfit_for_wheels(const ControllerOptions& options) {
+  if (options.acceleration_bound > 0.0) return "acceleration_bound";
+  if (!options.absolute_frame) return "absolute_frame";
+  if (!options.filter_last) return "filter_last";
+  return options.horizon_clamp ? "" : "horizon_clamp";
+}
+
 std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
   c.not_negative(tracking_error_of(scenario), "/uncertainty/tracking", "m");
@@ -506,6 +527,7 @@ std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   check_times(rules_of(scenario, {}), scenario.arrival_tolerance, scenario.time_limit, c);
   check_separate(scenario, c);
   check_acceleration(scenario, c);
+  check_formation_on_wheels(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
   return std::move(c.problems);
 }

@@ -175,7 +175,8 @@ std::string run_summary(const datasets::RunInfo& info, const formation::Scenario
                         const formation::Metrics& m) {
   std::string text = shown(in_words(info)) + ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
   text += robot_lines(scenario, m);
-  if (scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
+  if (scenario.formation) text += formation_lines(m);
+  if (m.lyapunov) text += lyapunov_lines(*m.lyapunov);
   text += stuck_lines(m.stuck) + arrival_line(m);
   const double robot_steps = static_cast<double>(m.robots.size() * m.steps);
   text += fmt::format("  clearance    to obstacles {}, between robots {}\n{}", or_dash(m.min_obstacle_clearance, "m"),
@@ -218,9 +219,14 @@ void announce(const formation::Scenario& scenario, const formation::SimulationOp
   if (!scenario.formation) return;
   if (const std::string moved = formation::recentring_notice(scenario, options); !moved.empty()) message(moved);
   const formation::Stability s = stability_of(*scenario.formation);
+  const std::string spectrum = fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; ",
+                                           s.eigenvalues.front(), s.eigenvalues.back());
+  if (!tracks_choices(scenario))
+    return message(fmt::format(
+        "{}while no limit of the wheels binds, an error is left by a step with {:.4g} of it at most in the long run",
+        spectrum, step_spectral_radius(*scenario.formation, std::nullopt, scenario.time_step)));
   const bool has_limit = options.integrator == formation::Integrator::euler;
-  message(fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s{}",
-                      s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate,
+  message(fmt::format("{}the slowest mode decays at {:.4g} 1/s{}", spectrum, s.convergence_rate,
                       has_limit ? fmt::format("; explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
                                               s.euler_step_limit, scenario.time_step)
                                 : ""));

@@ -4,10 +4,12 @@
 /// \file
 /// What can be said of a formation before it runs: the spectrum of its topology, how fast it converges, and how long a
 /// step its integrator bears. Free space, no saturation: x'' = -(k3 + k2 l) x' - (k3 kappa + k1 l) x for every
-/// eigenvalue l of L + B.
+/// eigenvalue l of L + B. Robots on wheels have no v' = -k3 (v - w): their reference points drive at w itself, from
+/// step to step x+ = x + T w, w = -(kappa + k1 l / k3) x - (k2 l / k3) w_before, while no limit of the wheels binds.
 ///
 /// Rounded (Eigen's symmetric eigenvalue solver).
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,15 +26,18 @@ struct Stability {
   double euler_exact_limit = 0.0;   ///< s: where the spectral radius of Euler's step matrix reaches 1
 };
 
-/// REQUIRES: an n x n adjacency and n pinning gains (simulation.h, `validate`).
+/// Whether robots track what they choose, v' = -k3 (v - w): those of a formation do, unless they are on wheels.
+bool tracks_choices(const Scenario& scenario);
+
+/// Of robots that track what they choose. REQUIRES: an n x n adjacency and n pinning gains (simulation.h, `validate`).
 Stability stability_of(const FormationSpec& spec);
 
 /// The greatest modulus of the eigenvalues of one step with the decision held over it: below 1 the linear formation
 /// converges. `exact` and `euler` have closed forms; the others approximate `exact` and get its answer, except rk4,
-/// whose own polynomial is used.
-double step_spectral_radius(const FormationSpec& spec, Integrator integrator, double dt);
+/// whose own polynomial is used. No integrator: of reference points of robots on wheels.
+double step_spectral_radius(const FormationSpec& spec, std::optional<Integrator> integrator, double dt);
 
 /// In words, empty where all is well: a step at which the integrator or the held decision is unstable.
-std::vector<std::string> step_warnings(const FormationSpec& spec, Integrator integrator, double dt);
+std::vector<std::string> step_warnings(const FormationSpec& spec, std::optional<Integrator> integrator, double dt);
 
 }  // namespace exactvo::formation
