@@ -381,6 +381,9 @@ TEST(Movers, ScenariosThatPromiseNothingAreRefused) {
                 s.robots[1].position = {-3.0, 0.0};
               }),
               HasSubstr("/uncertainty/measurements"));
+  for (const double least : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THAT(refused([&](Scenario& s) { s.acceleration->max = least; }), HasSubstr("/acceleration/max"));
+  EXPECT_THAT(refused([](Scenario& s) { s.acceleration->max = 1e-300; }), HasSubstr("/horizons/most"));
   EXPECT_THAT(refused([](Scenario& s) { s.robots[0].velocity = {0.1, 0.0}; }), HasSubstr("start at rest"));
   EXPECT_THAT(refused([](Scenario& s) { s.braking_time = 0.36; }), HasSubstr("/braking_time: 0.36; the 4 time steps"));
 }

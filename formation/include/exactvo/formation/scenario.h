@@ -255,10 +255,13 @@ inline double stopping_speed(double acceleration, double time_step, std::size_t 
   return static_cast<double>(steps) * (kShare * acceleration * time_step);
 }
 
-/// The least number of steps after which a robot of that speed (m/s) stands. REQUIRES: finite numbers, above 0.
+/// The least number of steps, 1 or more, after which a robot of that speed (m/s) stands; no more than 10^15.
 inline std::size_t stopping_steps(double speed, double acceleration, double time_step) {
-  auto steps = static_cast<std::size_t>(std::ceil(speed / stopping_speed(acceleration, time_step, 1)));
-  while (speed > stopping_speed(acceleration, time_step, steps)) ++steps;
+  constexpr double kMost = 1e15;
+  const double about = std::ceil(speed / stopping_speed(acceleration, time_step, 1));
+  if (!(about < kMost)) return static_cast<std::size_t>(kMost);
+  auto steps = static_cast<std::size_t>(std::max(1.0, about));
+  if (speed > stopping_speed(acceleration, time_step, steps)) ++steps;  // rounded
   return steps;
 }
 
