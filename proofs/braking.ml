@@ -23,11 +23,14 @@ let acceleration scenario = match Json.find "acceleration" scenario with None | 
 
 let share_of scenario = if Json.find "speed_bound" scenario = Some (Json.Str "box") then Float.sqrt 2. else 1.
 
-(* The braking time that a scenario does not state is 1.1 V / A of the robot that is slowest to stop, and at least a step. *)
+(* The braking time that a scenario does not state is 1.1 V / A of the robot that is slowest to stop, and at least a step. Among
+   movers of bounded speed it is no less than the steps in which that robot stands. *)
 let usual_time scenario robots step =
+  let movers = match Json.find "moving_obstacles" scenario with Some (Json.Arr l) -> List.exists (fun m -> Json.find "max_speed" m <> None) l | _ -> false in
+  let in_steps speed a t = if movers then Float.max t (Decisions.stopping_steps speed a step *. step) else t in
   let of_robot t robot =
     let by speed a t = Float.max t (1.1 *. (speed /. a)) in
-    let t = match acceleration scenario with Some a -> by (share_of scenario *. number "max_speed" robot) a t | None -> t in
+    let t = match acceleration scenario with Some a -> let speed = share_of scenario *. number "max_speed" robot in in_steps speed a (by speed a t) | None -> t in
     match Wheels.drive robot with Some k -> let speed, a = Wheels.speed_and_acceleration k in by speed a t | None -> t in
   List.fold_left of_robot step robots
 

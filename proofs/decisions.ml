@@ -118,11 +118,22 @@ let is_best c =
   let answer = { velocity = at c.velocity; gap = q gap; violation = of_q most; pull; mu = (if optimal then multiplier "disc" else q 0.); against = pull } in
   not wrong && if optimal then Checked.nearest program answer else Checked.least program answer
 
-let choice robot speed is_disc cs =
+(* From this speed a robot stands after so many steps of [t]: a millionth of its acceleration [a] is left to roundings. *)
+let stopping_speed a t steps = steps *. ((1. -. 1e-6) *. a *. t)
+let stopping_steps speed a t =
+  let about = Float.max 1. (Float.ceil (speed /. stopping_speed a t 1.)) in
+  if speed > stopping_speed a t about then about +. 1. else about
+
+(* Among movers of bounded speed no velocity is longer than one from which it stands after the steps that it says. *)
+let stands_from scenario robot = match Json.find "stopping_steps" robot, Json.find "acceleration" scenario with
+  | Some k, Some a when a <> Json.Null -> Some (stopping_speed (number "max" a) (number "time_step" scenario) (Json.num k))
+  | _ -> None
+
+let choice robot speed is_disc within cs =
   let multiplier c = match Json.find "multiplier" c with Some m -> Json.num m | None -> 0. in
   let line c = (pair (Json.get "normal" c), number "offset" c, is "hard" c, multiplier c) in
   let bound = match Json.find "bound" robot with Some b -> Json.arr b | None -> [] in
-  is_best { lines = List.map line cs; disc = (if is_disc then Some speed else None); box = (if is_disc then None else Some (speed, speed));
+  is_best { lines = List.map line cs; disc = (match within with Some w -> Some (if is_disc then Float.min speed w else w) | None -> if is_disc then Some speed else None); box = (if is_disc then None else Some (speed, speed));
     preferred = pair (Json.get "preferred" robot); velocity = pair (Json.get "chosen" robot); status = Json.(str (get "status" robot));
     parts = List.map (fun p -> (Json.(str (get "part" p)), multiplier p)) bound }
 
@@ -135,7 +146,7 @@ let robot d scenario described r =
   (* Half-planes of a user come in stages, which change what is hard: such choices are not judged. *)
   if Json.find "status" r <> Some (Json.Str "no-interior") && Json.find "status" r <> None && Json.find "multipliers" r = None
     && Json.find "own_stage" r = None then
-    ask d.choices (choice r (number "max_speed" described) (Json.find "speed_bound" scenario <> Some (Json.Str "box")) cs)
+    ask d.choices (choice r (number "max_speed" described) (Json.find "speed_bound" scenario <> Some (Json.Str "box")) (stands_from scenario r) cs)
   else d.inexact <- d.inexact + 1
 
 let row d scenario robots =

@@ -648,7 +648,7 @@ TEST(Acceleration, ValidateSaysWhatToChange) {
                 with([](Scenario& o) {
                   o.moving_obstacles.push_back({"cart", geometry::Polygon{{{9, 9}, {10, 9}, {9, 10}}, {}}, {{{9, 9}}}});
                 }),
-                "/moving_obstacles"),
+                "/moving_obstacles/0"),
             "");
   // Heading for a wall, and for another robot, faster than it can stop.
   EXPECT_NE(problem_at(with([](Scenario& o) {

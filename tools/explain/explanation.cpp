@@ -112,6 +112,15 @@ std::string wheel_words(const Decision& d) {
       d.who().drive->reference);
 }
 
+/// A line, beside movers.
+std::string stopping_words(const Decision& d) {
+  if (!meets_movers(d.scenario)) return "";
+  const std::size_t steps = d.step.stopping_steps;
+  if (steps == 0) return "  stands     nothing is promised to it against moving obstacles\n";
+  return fmt::format("  stands     after {} s if it brakes: proven to touch no moving obstacle before\n",
+                     number(static_cast<double>(steps) * d.scenario.time_step));
+}
+
 std::string head(const Decision& d) {
   const double shift = norm(d.step.chosen - d.step.preferred);
   const std::string assumed = formation::assumed_words(d.scenario);
@@ -123,13 +132,14 @@ std::string head(const Decision& d) {
       "{}"
       "  preferred  {}\n"
       "  chosen     {}: {}\n"
+      "{}"
       "  status     {}\n"
       "{}",
       d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
       wheel_words(d), mode_words(d), d.waiting.empty() ? "" : "  waiting    " + d.waiting + "\n",
       velocity(d.step.preferred), velocity(d.step.chosen),
-      shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d),
-      assumed.empty() ? "" : "  " + assumed + "\n");
+      shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", stopping_words(d),
+      status_words(d), assumed.empty() ? "" : "  " + assumed + "\n");
 }
 
 bool takes_preferred(const Decision& d) {

@@ -81,10 +81,12 @@ void advance(formation::Scenario& scenario, double time) {
     const Vec2 before = obstacle.motion.path.front();
     obstacle.motion = advanced(obstacle.motion, time);
     const Vec2 by = obstacle.motion.path.front() - before;
-    if (obstacle.disc)
+    if (obstacle.disc) {
+      const std::optional<double> max_speed = obstacle.max_speed;
       obstacle = formation::moving_disc(obstacle.id, {obstacle.disc->center + by, obstacle.disc->radius},
                                         std::move(obstacle.motion));
-    else
+      obstacle.max_speed = max_speed;
+    } else
       geometry::shift(obstacle.shape, by);
   }
   if (scenario.formation) scenario.formation->leader = {advanced(scenario.formation->leader, time)};
@@ -183,6 +185,10 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   } else {
     problem.bound.box_x = problem.bound.box_y = max_speed;
   }
+  if (step.stopping_steps > 0)
+    problem.bound.disc =
+        std::min(problem.bound.disc,
+                 formation::stopping_speed(scenario.acceleration->max, scenario.time_step, step.stopping_steps));
   problem.constraints = problem_of(step, step.constraints);
   const lp::Proven proven = lp::solve_certified(problem);
   const lp::Solution& solution = proven.solution;

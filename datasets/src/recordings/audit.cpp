@@ -77,6 +77,7 @@ void check_header(const RecordingFile& file, const Step& first, const formation:
   const Rational tracking(formation::tracking_error_of(file.scenario));
   tally.report.has_tube = sgn(tracking) > 0;
   tally.report.has_measurements = measures_others(file.scenario);
+  tally.report.has_movers = meets_movers(file.scenario);
   for (const formation::Robot& robot : robots)  // of those on wheels `audit_kinematics` asks it
     if (tally.report.has_tube && !robot.drive)
       tally.ask(scenario, Rational(robot.radius) >= Rational(robot.body_radius) + tracking,
@@ -422,13 +423,13 @@ void add(AuditReport& sum, const AuditReport& other) {
   for (std::size_t p = 0; p < kAuditPoints; ++p) add(sum.points[p], other.points[p]);
   for (std::size_t AuditReport::*count :
        {&AuditReport::rows, &AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps,
-        &AuditReport::collisions, &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
-        &AuditReport::ends_only, &AuditReport::left_out, &AuditReport::obstacle_questions,
+        &AuditReport::collisions, &AuditReport::hits_standing, &AuditReport::unproven, &AuditReport::inconsistencies,
+        &AuditReport::curved_steps, &AuditReport::ends_only, &AuditReport::left_out, &AuditReport::obstacle_questions,
         &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
-  for (bool AuditReport::*some :
-       {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums, &AuditReport::has_tube,
-        &AuditReport::has_measurements, &AuditReport::without_pairs, &AuditReport::has_places})
+  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
+                                  &AuditReport::has_tube, &AuditReport::has_measurements, &AuditReport::has_movers,
+                                  &AuditReport::without_pairs, &AuditReport::has_places})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -478,6 +479,11 @@ std::vector<std::string> not_audited(const AuditReport& report) {
     words.emplace_back(
         "that robots of the world measure within the bounds of the scenario, as those of the rows do, which is "
         "assumed");
+  if (report.has_movers)
+    words.emplace_back(
+        "that moving obstacles of the world are no faster than their max_speed, as those of the rows are, which is "
+        "assumed; and robots that stand, which they may hit: " +
+        geometry::counted(report.hits_standing, "step") + " in which that is so");
   if (report.has_staying)
     words.emplace_back(
         "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "
@@ -498,6 +504,7 @@ std::string to_json(const AuditReport& report) {
   json.member("unsafe", report.unsafe);
   json.member("steps", report.steps);
   json.member("collisions", report.collisions);
+  json.member_if(report.has_movers, "hits_standing", report.hits_standing);
   json.member("unproven", report.unproven);
   json.member("inconsistencies", report.inconsistencies);
   json.key("points").begin_object();

@@ -51,6 +51,7 @@ class BrakingAudit : public RowAudit {
         ask(exact::dot(change, change) <= most_change_ * most_change_, at, i,
             " changes its velocity by more than A dt");
       ask(robot.status == lp::Status::optimal, at, i, " relaxes a half-plane");
+      if (meets_movers(run_.scenario)) stands_in_time(i, at);
       brakes_alone(ways[i], i, at);
       turns_alone(ways[i], i, at);
       for (std::size_t j = i + 1; j < ways.size(); ++j) {
@@ -79,6 +80,36 @@ class BrakingAudit : public RowAudit {
   void ask(bool holds, const RowInRun& at, std::size_t robot, const std::string& what) {
     if (holds) return run_.tally.proven(AuditPoint::braking);
     run_.tally.refuted(AuditPoint::braking, at_row(at.number, id(robot) + what));
+  }
+
+  /// Lemma 8: it can stand after as many steps as it says, and until then no mover reaches it: across some n it is
+  /// clear of each where that is, and its whole way leads clear of all that this may reach by then. The n of its
+  /// half-plane, or that from the mover, before or after.
+  void stands_in_time(std::size_t i, const RowInRun& at) {
+    const RobotStep& robot = at.row.robots[i];
+    const Point u = exactly(robot.chosen);
+    const Rational steps(robot.stopping_steps), most = steps * most_change_;
+    ask(exact::dot(u, u) <= most * most, at, i, " could not stand after the steps that it says");
+    if (robot.stopping_steps == 0) return;
+    const Point way = (steps + 1) / 2 * run_.duration * u;
+    for (std::size_t k = 0; k < run_.scenario.moving_obstacles.size() && k < at.row.moving.size(); ++k) {
+      const formation::MovingObstacle& mover = run_.scenario.moving_obstacles[k];
+      const Point from = exactly(robot.position) - exactly(mover.disc->center) - exactly(at.row.moving[k].displacement);
+      const Rational away = Rational(run_.scenario.robots[i].radius) + Rational(mover.disc->radius);
+      const Rational by_then = away + Rational(*mover.max_speed) * steps * run_.duration;
+      const auto keeps = [&](const Point& n) {
+        const Rational square = exact::dot(n, n), now = exact::dot(n, from), then = exact::dot(n, from + way);
+        return sgn(now) > 0 && now * now >= away * away * square && sgn(then) > 0 &&
+               then * then >= by_then * by_then * square;
+      };
+      const auto is_shown_by = [&](const formation::DecisionConstraint& c) {
+        return c.source == vo::BodyKind::moving_obstacle && c.index == k && geometry::is_finite(c.half_plane.normal) &&
+               keeps(exactly(c.half_plane.normal));
+      };
+      ask(keeps(from) || keeps(from + way) ||
+              std::any_of(robot.constraints.begin(), robot.constraints.end(), is_shown_by),
+          at, i, " could meet moving obstacle '" + mover.id + "' before it stands");
+    }
   }
 
   static Way way_of(const RobotStep& robot, const Point& velocity, const Rational& time) {

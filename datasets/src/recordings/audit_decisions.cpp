@@ -254,8 +254,16 @@ class DecisionAudit : public RowAudit {
     });
   }
 
-  /// At its present velocity.
+  /// At its present velocity; of one of which its greatest speed is known, at any, unless the robot stands.
   Verdict against_moving(const Seen& s, std::size_t k, bool& in_reach) const {
+    if (const std::optional<double>& most = run_.scenario.moving_obstacles[k].max_speed) {
+      in_reach = !stands(s) && exact::is_within(moved_[k], s.at, s.radius + s.reach + run_.duration * Rational(*most));
+      const auto excludes = [&](const DecisionConstraint& c) {
+        return c.hard && c.source == BodyKind::moving_obstacle && c.index == k && keeps_from_mover(s, c);
+      };
+      return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), excludes) ? Verdict::clear
+                                                                                             : Verdict::meets;
+    }
     const formation::MovedObstacle& moved = s.step->moving[k];
     const Point u = exactly(moved.velocity);
     const Rational reach = s.reach + run_.duration * exact::root(exact::dot(u, u)).high;
@@ -269,6 +277,27 @@ class DecisionAudit : public RowAudit {
                  vo::is_true({moved_[k], s.state->anchor, radius, step, moved.velocity, c.half_plane});
         });
     return excluded ? Verdict::clear : Verdict::meets;
+  }
+
+  /// Then nothing is promised to it against what moves in any way.
+  static bool stands(const Seen& s) { return s.state->stopping_steps == 0 && s.state->chosen == Vec2{}; }
+
+  /// Lemma 8 (accelerations): n.x >= c, and n.(x + (k + 1) / 2 T u) >= c + U k T for all u of the half-plane.
+  bool keeps_from_mover(const Seen& s, const DecisionConstraint& c) const {
+    if (!has_numbers(c.half_plane) || s.state->stopping_steps == 0) return false;
+    const auto& disc = std::get<geometry::Disc>(moved_[c.index]);
+    const Rational steps(s.state->stopping_steps), away = s.radius + Rational(disc.radius);
+    const Rational by_then =
+        away + Rational(*run_.scenario.moving_obstacles[c.index].max_speed) * steps * run_.duration;
+    const Point n = exactly(c.half_plane.normal);
+    const Rational from = exact::dot(n, s.at - exactly(disc.center)), square = exact::dot(n, n);
+    const Rational end = from + (steps + 1) / 2 * run_.duration * Rational(c.half_plane.offset);
+    return is_no_less(from, away, square) && is_no_less(end, by_then, square);
+  }
+
+  /// x >= r sqrt(square), r >= 0.
+  static bool is_no_less(const Rational& x, const Rational& r, const Rational& square) {
+    return sgn(x) >= 0 && x * x >= r * r * square;
   }
 
   /// Within the step, and one of them does something about it.
@@ -347,7 +376,8 @@ class DecisionAudit : public RowAudit {
                               c.index == s.robot && bodies[c.body].owners.front() == s.robot;
       return is_its_own && c.piece == 0 ? "" : " has the priority of another kind";
     }
-    if (c.hard != is_static(c)) return " has the priority of another kind";
+    const bool is_mover = c.source == BodyKind::moving_obstacle && meets_movers(run_.scenario);
+    if (c.hard != (is_static(c) || is_mover)) return " has the priority of another kind";
     const vo::Body& body = bodies[c.body];
     if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
       if (c.piece != 0 || c.index != body.owners.front()) return " has another index than its body";
@@ -404,6 +434,7 @@ class DecisionAudit : public RowAudit {
     if (formation::is_own_limit(c)) return leaves_its_change(s, c);
     const double radius = run_.scenario.robots[s.robot].radius;
     const Vec2 at = s.state->anchor;
+    if (c.source == BodyKind::moving_obstacle && meets_movers(run_.scenario)) return keeps_from_mover(s, c);
     if (c.source == BodyKind::moving_obstacle)
       return vo::is_true({moved_[c.index], at, radius, c.time_horizon, s.step->moving[c.index].velocity, c.half_plane});
     if (c.source != BodyKind::robot)
@@ -548,6 +579,10 @@ class DecisionAudit : public RowAudit {
       problem.bound.disc = speed;
     else
       problem.bound.box_x = problem.bound.box_y = speed;
+    if (s.state->stopping_steps > 0 && meets_movers(run_.scenario))
+      problem.bound.disc = std::min(
+          problem.bound.disc,
+          formation::stopping_speed(run_.scenario.acceleration->max, run_.scenario.time_step, s.state->stopping_steps));
     problem.preferred = s.state->preferred;
     take(s.state->constraints);
     if (holds_bodies(stage)) take(own);

@@ -302,8 +302,16 @@ class MotionAudit : public RowAudit {
     run_.tally.report.moving_questions += moving_.size();
     for (std::size_t k = 0; k < moving_.size(); ++k) {
       if (are_apart(boxes_[i], swept_[k], radius(i))) continue;
-      for (const Piece& piece : pieces_[k])
-        answer.take(meet_piece(i, k, piece), "moving obstacle", run_.scenario.moving_obstacles[k].id);
+      Answer of_this;
+      const formation::MovingObstacle& obstacle = run_.scenario.moving_obstacles[k];
+      for (const Piece& piece : pieces_[k]) of_this.take(meet_piece(i, k, piece), "moving obstacle", obstacle.id);
+      const bool stands = from_->robots[i].position == to_->robots[i].position;
+      if (obstacle.max_speed && stands) {  // to which nothing is promised
+        run_.tally.report.hits_standing += !of_this.met.empty() || !of_this.open.empty();
+        continue;
+      }
+      if (answer.met.empty()) answer.met = of_this.met;
+      if (answer.open.empty()) answer.open = of_this.open;
     }
   }
 

@@ -121,6 +121,7 @@ void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   json.member("mode", robot.mode).member_if(robot.side != 0, "side", robot.side);
   json.member_if(robot.turned_right != 0.0, "turned_right", robot.turned_right);
   json.member_if(!robot.note.empty(), "note", robot.note);
+  json.member_if(robot.stopping_steps != 0, "stopping_steps", robot.stopping_steps);
   json.member_if(robot.uncertified != 0, "uncertified", robot.uncertified);
   json.member_if(!robot.constraints.empty(), "constraints", robot.constraints);
   json.member_if(robot.own_stage != formation::OwnStage::none, "own_stage", robot.own_stage);
@@ -193,6 +194,7 @@ void members(Codec& json, For<Codec, formation::Collision>& c) {
   json.member("robot", c.robot).member("kind", c.kind).member("with", c.with);
   json.member("from", c.from).member("until", c.until).member("deepest_at", c.deepest_at).member("depth", c.depth);
   json.member("place", c.place).member("relaxed", c.relaxed);
+  json.member_if(c.standing, "standing", c.standing);
 }
 
 template <class Codec>

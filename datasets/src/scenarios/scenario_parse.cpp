@@ -129,8 +129,8 @@ class ScenarioReader {
       if (robot.drive)
         put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), scenario.time_step,
                       formation::tracking_error_of(scenario));
-    look_ahead_while_braking(tree, scenario);
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
+    look_ahead_while_braking(tree, scenario);
     refuse_repeated_ids(scenario);
     if (scenario.formation && tree.at("formation").at("leader").contains("to"))
       plan_leader_of(tree.at("formation").at("leader"), scenario, file_);
@@ -189,6 +189,8 @@ class ScenarioReader {
       formation::TimedPath motion = to_motion(list[k], pointer, scenario);
       formation::SceneObstacle o = to_obstacle(list[k], list[k].value("id", "M" + std::to_string(k + 1)), pointer);
       scenario.moving_obstacles.push_back({std::move(o.id), std::move(o.shape), std::move(motion), o.disc});
+      if (list[k].contains("max_speed"))
+        scenario.moving_obstacles.back().max_speed = list[k].at("max_speed").get<double>();
     }
   }
 

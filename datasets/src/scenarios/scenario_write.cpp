@@ -78,6 +78,7 @@ void append_scenario(JsonWriter& json, const Scenario& scenario) {
     begin_obstacle(json, obstacle);
     json.member("path", obstacle.motion.path);
     append_speed(json, obstacle.motion);
+    if (obstacle.max_speed) json.member("max_speed", *obstacle.max_speed);
     json.end_object();
   });
   if (scenario.formation) json.object("formation", [&](JsonWriter&) { append_formation(json, *scenario.formation); });

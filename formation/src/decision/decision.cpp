@@ -353,6 +353,7 @@ void Decider::limit_change(const Viewpoint& from) {
 
 void Decider::state_problem(const DecisionInput& in) {
   problem_.bound = speed_bound(rules_->speed_bound, in.from.max_speed);
+  problem_.bound.disc = std::min(problem_.bound.disc, in.from.most);
   problem_.preferred = in.preferred;
   problem_.constraints.clear();
   for (const std::vector<Constraint>* some : {in.statics, in.others})

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <variant>
 
 #include "exactvo/formation/disc_obstacle.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/obstacle_index.h"
@@ -85,6 +87,7 @@ struct Contact {
   double clearance = kInfinity;  ///< m, the least
   Moment deepest;
   bool relaxed = false;  ///< a decision of one of the two could not keep every half-plane before or meanwhile
+  bool standing = true;  ///< the robot did not move, and the other is of bounded speed
 };
 
 }  // namespace
@@ -146,7 +149,7 @@ class ClearanceSweep::Sweep {
     for (const auto& [pair, contacts] : contacts_) {
       to.fields(pair.first, static_cast<int>(pair.second.first), pair.second.second, contacts.size());
       for (const Contact& c : contacts) {
-        to.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.deepest.time);
+        to.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.standing, c.deepest.time);
         for (const Motion& m : {c.deepest.robot, c.deepest.other})
           to.fields(m.from, m.from_velocity, m.to, m.to_velocity);
       }
@@ -185,7 +188,7 @@ class ClearanceSweep::Sweep {
 
   Contact get_contact(crowd::SnapshotReader& from) const {
     Contact c;
-    from.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.deepest.time);
+    from.fields(c.last, c.from, c.until, c.clearance, c.relaxed, c.standing, c.deepest.time);
     for (Motion* m : {&c.deepest.robot, &c.deepest.other}) {
       Vec2 start, start_velocity, end, end_velocity;
       from.fields(start, start_velocity, end, end_velocity);
@@ -315,6 +318,9 @@ class ClearanceSweep::Sweep {
     now.last = step;
     now.until = end;
     now.relaxed = now.relaxed || was_relaxed(rows_.back(), robot, other);
+    now.standing = now.standing && other.first == CollisionKind::moving_obstacle &&
+                   scenario_.moving_obstacles[other.second].max_speed &&
+                   rows_.back().robots[robot].position == arrived_->robots[robot].position;
     if (!(clearance < now.clearance)) return;
     now.clearance = clearance;
     now.deepest = moment;
@@ -538,6 +544,7 @@ class ClearanceSweep::Sweep {
     c.place = contact.deepest.robot.at(share);
     c.depth = -contact.clearance;
     c.relaxed = contact.relaxed;
+    c.standing = contact.standing;
     return c;
   }
 
@@ -629,19 +636,25 @@ void write_clearances(Clearances clearances, Metrics& m) {
 }
 
 std::string collision_words(const Metrics& m) {
-  if (m.collisions.empty()) return "";
-  const auto deepest = std::max_element(m.collisions.begin(), m.collisions.end(),
+  std::vector<Collision> all;
+  std::copy_if(m.collisions.begin(), m.collisions.end(), std::back_inserter(all),
+               [](const Collision& c) { return !c.standing; });
+  const std::size_t hits = m.collisions.size() - all.size();
+  const std::string of_standing =
+      hits == 0 ? "" : "robots that stood were hit by moving obstacles " + geometry::counted(hits, "time") + "; ";
+  if (all.empty()) return of_standing;
+  const auto deepest = std::max_element(all.begin(), all.end(),
                                         [](const Collision& a, const Collision& b) { return a.depth < b.depth; });
   std::string text = "COLLISION: " + sentence(*deepest);
-  const auto relaxed = static_cast<std::size_t>(
-      std::count_if(m.collisions.begin(), m.collisions.end(), [](const Collision& c) { return c.relaxed; }));
-  const std::size_t all = m.collisions.size();
-  if (all > 1) text += ", the deepest of " + std::to_string(all) + " collisions";
+  const auto relaxed =
+      static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const Collision& c) { return c.relaxed; }));
+  if (all.size() > 1) text += ", the deepest of " + std::to_string(all.size()) + " collisions";
   if (relaxed > 0) {
-    text += all == 1 ? ", in a relaxed decision" : ", " + std::to_string(relaxed) + " of them in relaxed decisions";
+    text +=
+        all.size() == 1 ? ", in a relaxed decision" : ", " + std::to_string(relaxed) + " of them in relaxed decisions";
     text += " (no velocity kept every half-plane)";
   }
-  return text + "; ";
+  return text + "; " + of_standing;
 }
 
 }  // namespace exactvo::formation::detail

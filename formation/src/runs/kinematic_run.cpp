@@ -48,6 +48,8 @@ class KinematicSteps final : public Stepper {
         wheels_(scenario_.robots, rules_),
         ways_(robots.size()),
         steered_(robots.size()),
+        stopping_steps_(robots.size(), 0),
+        meets_movers_(meets_movers(scenario_)),
         asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
@@ -79,6 +81,7 @@ class KinematicSteps final : public Stepper {
       if (wheels_.of(i)) wheels_.drive(i, row_.robots[i].chosen);
       before_[i] = velocities_[i];
       velocities_[i] = row_.robots[i].chosen;
+      stopping_steps_[i] = row_.robots[i].stopping_steps;
       positions_[i] += scenario_.time_step * row_.robots[i].chosen;
     }
     rows_->add(std::move(row_));
@@ -225,7 +228,7 @@ class KinematicSteps final : public Stepper {
       if (guide_) journeys_.look_along(i);
       look(i);
     }
-    add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
+    if (!meets_movers_) add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
     RobotStep step = undecided_now(i);
     if (measuring_) step.measured = measuring_->measured()[i];
     step.note = journeys_.take_note(i);
@@ -266,10 +269,54 @@ class KinematicSteps final : public Stepper {
 
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, RobotStep& step) {
+    if (meets_movers_) return choose_among_movers(i, preferred, step);
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
     wheels_.choose(i, preferred, joint_.anchors[i], space(), step, [&](Vec2 wish) {
       own_.choose(wish, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
     });
+  }
+
+  /// Of what it may do if it stands after one step more than it would have, after as many, or after one less, the best.
+  /// If nothing else is left it brakes, which is always allowed (lemma 8), or stands.
+  void choose_among_movers(std::size_t i, Vec2 preferred, RobotStep& step) {
+    const std::size_t last = stopping_steps_[i];
+    const double acceleration = scenario_.acceleration->max, most = fastest(rules_.speed_bound, viewpoint(i).max_speed);
+    std::optional<RobotStep> best;
+    for (const std::size_t steps : {last + 1, last, last - 1}) {
+      if (steps == 0 || steps > last + 1) continue;
+      if (steps > stopping_steps(most, acceleration, rules_.time_step)) continue;
+      std::optional<RobotStep> found = within_steps(i, steps, velocities_[i], preferred, step);
+      const bool is_better = found && (!best || norm(found->chosen - preferred) < norm(best->chosen - preferred));
+      if (is_better) best = std::move(found);
+    }
+    if (!best) {
+      own_.look(*ways_[i].field, joint_.braked(viewpoint(i)));
+      const Vec2 braked = last > 1 ? (1.0 - 1.0 / static_cast<double>(last)) * velocities_[i] : Vec2{};
+      if (last > 1) best = within_steps(i, last - 1, braked, preferred, step);
+      if (last > 1 && !best) best = within_steps(i, last - 1, braked, braked, step);
+    }
+    if (best) {
+      step = std::move(*best);
+      return;
+    }
+    step.stopping_steps = 0;
+    own_.choose({}, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
+  }
+
+  /// The choice of a robot that is to stand after so many steps; nothing where half-planes leave it none. `from`: the
+  /// velocity that those against movers are to leave the most room.
+  std::optional<RobotStep> within_steps(std::size_t i, std::size_t steps, Vec2 from, Vec2 preferred,
+                                        const RobotStep& undecided) {
+    Viewpoint here = viewpoint(i);
+    here.most = stopping_speed(scenario_.acceleration->max, rules_.time_step, steps);
+    std::vector<Constraint> others = joint_.others[i];
+    for (std::size_t k = 0; k < scene_.moving_obstacles(); ++k)
+      if (!add_mover_constraint(rules_, here, *scenario_.moving_obstacles[k].max_speed, steps, from, scene_, k, others))
+        return std::nullopt;
+    RobotStep step = undecided;
+    step.stopping_steps = steps;
+    own_.choose(preferred, here, others, schedule_.keeps_all(now_), asked_[i], step);
+    return bodies_gave(step) ? std::nullopt : std::optional(std::move(step));
   }
 
   /// Rule R1, for robots that others may hold up.
@@ -386,6 +433,8 @@ class KinematicSteps final : public Stepper {
   WheelsOfRun wheels_;
   std::vector<OwnWay> ways_;
   std::vector<Vec2> steered_;                      ///< m/s, by the user
+  std::vector<std::size_t> stopping_steps_;        ///< `RobotStep::stopping_steps` of the last step
+  bool meets_movers_;                              ///< moving obstacles have a max_speed
   std::vector<std::vector<OwnConstraint>> asked_;  ///< by the user, of each robot
   ObstacleSpace walls_, open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off

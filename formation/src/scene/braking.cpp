@@ -72,6 +72,32 @@ vo::ProvenHalfPlane braking_half_plane(geometry::GrownShape& seen, const vo::Vel
       });
 }
 
+vo::ProvenHalfPlane mover_half_plane(double time_step, Vec2 position, Vec2 velocity, const Mover& mover) {
+  const double tau = way_time(time_step, mover.steps);
+  const double reached = mover.speed * static_cast<double>(mover.steps) * time_step;
+  const Vec2 apart = position - mover.disc.center, end = apart + tau * velocity;
+  // More than places, their ways and all that follows are off by.
+  constexpr double kRounding = 0x1p-45;
+  const double off = kRounding * (std::fabs(position.x) + std::fabs(position.y) + std::fabs(mover.disc.center.x) +
+                                  std::fabs(mover.disc.center.y) + mover.disc.radius + reached + tau * norm(velocity));
+  const auto make = [&](double room) {
+    const double from = norm(apart), kept = mover.disc.radius + room;
+    vo::ProvenHalfPlane made{{{1.0, 0.0}, 0.0}, vo::Proof::none};
+    if (!(from > kept)) return made;
+    const double most = std::acos(kept / from);
+    const double turn = std::clamp(std::atan2(cross(apart, end), dot(apart, end)), -most, most);
+    const Vec2 along = apart / from, n = std::cos(turn) * along + std::sin(turn) * Vec2{-along.y, along.x};
+    made.half_plane = {n, (kept + reached - dot(n, apart)) / tau};
+    if (dot(n, apart) >= mover.disc.radius + off && room >= off) made.proof = vo::Proof::alone;
+    return made;
+  };
+  const auto holds = [&](const vo::ProvenHalfPlane& made) {
+    return made.proof != vo::Proof::none && surely_satisfies(made.half_plane, velocity);
+  };
+  const vo::ProvenHalfPlane made = with_room_left(make, holds);
+  return holds(made) ? made : make(kContactSkin);
+}
+
 vo::ReciprocalHalfPlanes braking_half_planes(const vo::MovingDisc& a, const vo::MovingDisc& b, double braking_time) {
   vo::ReciprocalOptions options;
   options.time_horizon = options.contact_time = braking_time;

@@ -12,6 +12,15 @@
 ///
 /// Half-planes are built with `kContactSkin` of room and certified without. Roundings use the skin up; then as much
 /// room is asked for as lambda v leaves, so that it satisfies the half-plane.
+///
+/// Of what moves in any way, no faster than U, a robot keeps clear as long as it moves (passive safety). From u it
+/// stands after k steps, the first at u included, if |u| <= k A T: it drives T u, and then u (1 - j / k) T. With the
+/// way (k + 1) / 2 T u for all that, and c for how far along n the body grown by the robot reaches, the half-plane says
+///
+///     n.x >= c   and   n.(x + (k + 1) / 2 T u) >= c + U k T
+///
+/// Lemma 8: then n.x(t) >= c + U t all the while, since n.x(t) - U t falls, or is concave. So the same n shows the same
+/// for u (1 - 1 / k), k - 1 and the next step, wherever the body has gone. A robot that stands is promised nothing.
 
 #include <vector>
 
@@ -32,6 +41,22 @@ void add_acceleration_limits(const DecisionRules& rules, Vec2 velocity, std::vec
 /// the bare robot, and so again afterwards; `nearest` its `clearance_of`.
 vo::ProvenHalfPlane braking_half_plane(geometry::GrownShape& seen, const vo::VelocityObstacle::Nearest& nearest,
                                        Vec2 braked, double braking_time);
+
+/// What moves in any way, no faster than `speed` (m/s), seen by a robot that can stand after `steps` steps.
+struct Mover {
+  geometry::Disc disc;  ///< m, of both, where it is
+  double speed = 0.0;   ///< m/s
+  std::size_t steps = 1;
+};
+
+/// s: u times this is the way until the robot stands.
+inline double way_time(double time_step, std::size_t steps) {
+  return 0.5 * static_cast<double>(steps + 1) * time_step;
+}
+
+/// The half-plane of lemma 8, with the normal that leaves `velocity` the most room. Without a proof where the robot
+/// touches it. Where `velocity` satisfies one, it satisfies this one.
+vo::ProvenHalfPlane mover_half_plane(double time_step, Vec2 position, Vec2 velocity, const Mover& mover);
 
 /// Both halves of a pair, made at their braked velocities: half of the slack for each.
 vo::ReciprocalHalfPlanes braking_half_planes(const vo::MovingDisc& a, const vo::MovingDisc& b, double braking_time);

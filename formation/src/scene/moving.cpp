@@ -8,6 +8,7 @@
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/require.h"
 #include "motion/leader.h"
+#include "scene/braking.h"
 #include "scene/static_field.h"
 #include "scene/step_limits.h"
 
@@ -51,6 +52,31 @@ void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, S
     add_moving_constraint(rules, from, scene.bodies(), scene.moving_obstacle(k), k, out);
 }
 
+bool add_mover_constraint(const DecisionRules& rules, const Viewpoint& from, double speed, std::size_t steps,
+                          Vec2 velocity, Scene& scene, std::size_t index, std::vector<Constraint>& out) {
+  const vo::BodyTable::Number body = scene.moving_obstacle(index);
+  const geometry::Disc disc = std::get<geometry::Disc>(scene.bodies()[body].shape);
+  const double tau = way_time(rules.time_step, steps), most = kBoxDiagonal * from.max_speed;
+  const double reached = speed * static_cast<double>(steps) * rules.time_step;
+  const Vec2 apart = from.position - disc.center;
+  const double clearance = norm(apart) - disc.radius - from.radius;
+  constexpr double kSpare = 1.001;
+  if (clearance > kSpare * (reached + tau * most) + kContactSkin) return true;
+  const Mover mover{{disc.center, disc.radius + from.radius}, speed, steps};
+  const vo::ProvenHalfPlane found = mover_half_plane(rules.time_step, from.position, velocity, mover);
+  if (found.proof == vo::Proof::none) return false;
+  Constraint& c = out.emplace_back();
+  c.half_plane = found.half_plane;
+  c.proof = found.proof;
+  c.body = body;
+  c.clearance = clearance;
+  c.normal = geometry::normalized(apart);
+  c.time_horizon = tau;
+  c.index = index;
+  c.speed = kSpare * (reached + tau * most) / rules.time_step;  // recorded wherever it was needed
+  return true;
+}
+
 }  // namespace exactvo::formation::detail
 
 namespace exactvo::formation {
@@ -75,8 +101,12 @@ SeenBody seen_body(const Scenario& scenario, const std::vector<vo::Body>& bodies
   } else if (body.kind == vo::BodyKind::moving_obstacle) {
     EXACTVO_REQUIRE(body.owners.front() < row.moving.size(), "a row with the places of moving obstacles");
     const MovedObstacle& moved = row.moving[body.owners.front()];
-    seen.shape = hull_of(scenario.moving_obstacles[body.owners.front()], moved.displacement);
-    seen.velocity = moved.velocity;
+    const MovingObstacle& obstacle = scenario.moving_obstacles[body.owners.front()];
+    seen.shape = hull_of(obstacle, moved.displacement);
+    if (obstacle.max_speed)
+      seen.radius += *obstacle.max_speed * static_cast<double>(row.robots[robot].stopping_steps) * scenario.time_step;
+    else
+      seen.velocity = moved.velocity;
   }
   return seen;
 }

@@ -32,4 +32,9 @@ void add_moving_constraint(const DecisionRules& rules, const Viewpoint& from, vo
 void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out);
 
+/// The half-plane against moving obstacle `index`, of which it is known that it is no faster than `speed` (m/s), of a
+/// robot that stands after `steps` steps (braking.h, lemma 8): hard. Whether there is one, or none is needed.
+bool add_mover_constraint(const DecisionRules& rules, const Viewpoint& from, double speed, std::size_t steps,
+                          Vec2 velocity, Scene& scene, std::size_t index, std::vector<Constraint>& out);
+
 }  // namespace exactvo::formation::detail

@@ -188,6 +188,21 @@ void check_disc(const Obstacle& o, const std::string& at, Checker& c) {
             geometry::to_string(geometry::ConvexShape{*o.disc}), "a disc in the polygon round it (disc_obstacle.h)");
 }
 
+/// What a robot can keep clear of that knows its greatest speed only.
+void check_mover(const Scenario& s, const MovingObstacle& o, const std::string& at, Checker& c) {
+  c.not_negative(*o.max_speed, at + "/max_speed", "m/s");
+  c.require(o.disc.has_value(), at + "/max_speed", "a moving obstacle that is no disc",
+            "a disc that holds it: what moves in any way may turn, too");
+  c.require(s.acceleration.has_value(), at + "/max_speed", "robots without /acceleration",
+            "an /acceleration, which says how soon a robot can stand, or no max_speed");
+  c.require(!(o.motion.speed > *o.max_speed), at + "/speed", show(o.motion.speed),
+            "at most its max_speed, " + show(*o.max_speed) + " m/s");
+  for (std::size_t k = 0; k < o.motion.profile.size(); ++k)
+    if (o.motion.profile[k].speed > *o.max_speed)
+      c.require(false, at + "/profile/" + std::to_string(k) + "/1", show(o.motion.profile[k].speed),
+                "at most its max_speed, " + show(*o.max_speed) + " m/s");
+}
+
 void check_moving(const Scenario& s, Checker& c) {
   for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k) {
     const MovingObstacle& o = s.moving_obstacles[k];
@@ -199,6 +214,7 @@ void check_moving(const Scenario& s, Checker& c) {
     for (Vec2 p : o.motion.path) c.finite(p, at + "/path");
     c.not_negative(o.motion.speed, at + "/speed", "m/s");
     check_profile(o.motion, at, c);
+    if (o.max_speed) check_mover(s, o, at, c);
   }
 }
 
@@ -359,6 +375,24 @@ void check_formation_on_wheels(const Scenario& s, Checker& c) {
                      : "true with robots on wheels, which drive at what they choose");
 }
 
+/// Robots that brake evade what moves by itself only by standing in time, all by themselves (braking.h, lemma 8).
+void check_movers_beside_brakes(const Scenario& s, bool has_wheels, Checker& c) {
+  if (s.moving_obstacles.empty()) return;
+  if (has_wheels)
+    return c.require(false, "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
+                     "none with robots on wheels: no braking of wheels is proven to evade what moves by itself");
+  for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k)
+    c.require(s.moving_obstacles[k].max_speed.has_value(), "/moving_obstacles/" + std::to_string(k),
+              "no max_speed, with /acceleration",
+              "a max_speed (m/s): no braking evades what moves by itself, but a robot can stand before it is met");
+  c.require(s.robots.size() == 1 || measures_others(s), "/moving_obstacles",
+            geometry::counted(s.robots.size(), "robot") + " that rely on each other, beside movers",
+            "one robot, or /uncertainty/measurements, with which each may stand when it wants");
+  for (std::size_t i = 0; i < s.robots.size(); ++i)
+    c.require(s.robots[i].velocity == Vec2{}, "/robots/" + std::to_string(i) + "/velocity", show(s.robots[i].velocity),
+              "none: robots beside movers start at rest");
+}
+
 /// Robots with an acceleration, of their velocity or of their wheels.
 void check_acceleration(const Scenario& s, Checker& c) {
   const std::optional<std::size_t> driven = first_drive(s);
@@ -376,8 +410,7 @@ void check_acceleration(const Scenario& s, Checker& c) {
   c.require(!s.formation || !s.acceleration, "/acceleration", "an acceleration of robots of a formation",
             driven ? "none: wheels have their own, max_wheel_acceleration"
                    : "robots with goals; a formation has /formation/controller_options/acceleration_bound");
-  c.require(s.moving_obstacles.empty(), "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
-            "none" + with_it + ": no braking is proven to evade what moves by itself");
+  check_movers_beside_brakes(s, driven.has_value(), c);
   c.require(!s.separate, "/separate", "true",
             "false" + with_it + ": robots that overlap cannot brake clear of each other");
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
@@ -392,6 +425,15 @@ void check_acceleration(const Scenario& s, Checker& c) {
     if (s.acceleration && (!r.drive || measures_others(s)))
       stops = std::max(stops, fastest(s.speed_bound, r.max_speed) / s.acceleration->max);
     if (r.drive) stops = std::max(stops, r.drive->max_wheel_speed / r.drive->max_wheel_acceleration);
+  }
+  if (meets_movers(s)) {
+    double steps = 0.0;
+    for (const Robot& r : s.robots)
+      steps = std::max(steps, static_cast<double>(stopping_steps(fastest(s.speed_bound, r.max_speed),
+                                                                 s.acceleration->max, s.time_step)));
+    c.require(braking_time_of(s) >= steps * s.time_step, "/braking_time", show(braking_time_of(s)),
+              "the " + geometry::counted(static_cast<std::size_t>(steps), "time step") +
+                  " that the fastest robot needs to stand, " + show(steps * s.time_step) + " (s), or more");
   }
   check_brakes(detail::rules_of(s, {}), stops, s.braking_time.has_value(), c);
   const double tau = braking_time_of(s);
@@ -496,6 +538,13 @@ std::string assumed_words(const Scenario& scenario) {
     words += (words.empty() ? "" : ", ") + std::string("robots measure others ") + detail::number_text(m.age, 6) +
              " s ago at most, within " + detail::metres(m.position) + " and " + detail::number_text(m.velocity, 6) +
              " m/s";
+  }
+  if (meets_movers(scenario)) {
+    double fastest = 0.0;
+    for (const MovingObstacle& o : scenario.moving_obstacles) fastest = std::max(fastest, *o.max_speed);
+    words += (words.empty() ? "" : ", ") + std::string("no moving obstacle is faster than its max_speed, ") +
+             detail::number_text(fastest, 6) +
+             " m/s at most: then no robot that moves touches one, and nothing is promised to a robot that stands";
   }
   return words.empty() ? "" : "assumed: " + words;
 }

@@ -34,11 +34,12 @@ struct WheelsNow;
 
 /// How a half-plane is asked for: the point it is built at and the velocity it is built round.
 struct Viewpoint {
-  Vec2 position;         ///< m
-  Vec2 velocity;         ///< m/s, v_opt
-  double radius = 0.0;   ///< m
-  double max_speed = 0;  ///< m/s
-  double horizon = 0.0;  ///< s: instead of what the rules say; 0: none
+  Vec2 position;                      ///< m
+  Vec2 velocity;                      ///< m/s, v_opt
+  double radius = 0.0;                ///< m
+  double max_speed = 0;               ///< m/s
+  double most = geometry::kInfinity;  ///< m/s: no velocity is longer, whatever max_speed
+  double horizon = 0.0;               ///< s: instead of what the rules say; 0: none
   /// `velocity` is the one after a step of braking, and half-planes are those that it satisfies (braking.h): against
   /// pieces alone, as enclosures are fitted anew for each goal and may hold the way of a robot that brakes. There are
   /// only `StaticField::constraints` of these.

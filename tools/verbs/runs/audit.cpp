@@ -88,6 +88,9 @@ std::string summary(const datasets::AuditReport& report) {
   }
   text += fmt::format("{} of obstacles, {} unsafe; {}, {}\n", counted(report.half_planes, "half-plane"), report.unsafe,
                       counted(report.steps, "step"), counted(report.collisions, "collision"));
+  if (report.has_movers)
+    text += fmt::format("robots that stood were hit in {}, which nothing promises against\n",
+                        counted(report.hits_standing, "step"));
   for (const std::string& pair : report.started_overlapping) text += fmt::format("started in overlap: {}\n", pair);
   if (report.largest_violation > 0.0)
     text += fmt::format("largest violation of a half-plane: {:.3g} m/s\n", report.largest_violation);

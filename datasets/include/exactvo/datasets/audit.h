@@ -103,8 +103,10 @@ struct AuditReport {
   /// Of (7): a robot's motion from one row to the next; in a recording of a crowd also a robot's place in the first
   /// row.
   std::size_t steps = 0;
-  std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
-  std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
+  std::size_t collisions = 0;  ///< of these, nearer to an obstacle or another robot than the radii allow
+  std::size_t hits_standing =
+      0;                     ///< of these, a robot that stands and a moving obstacle with a max_speed that meets it
+  std::size_t unproven = 0;  ///< of these, neither a collision nor proven to be none
   std::size_t inconsistencies = 0;    ///< refuted of (1) and (6)
   std::vector<std::string> findings;  ///< in words: the first refuted and the first open ones of each point
 
@@ -127,6 +129,7 @@ struct AuditReport {
   bool has_places = false;          ///< a crowd's recording, which has no decisions
   bool has_measurements = false;    ///< robots measure each other, within bounds that rows keep
   bool has_tube = false;            ///< radii have a tracking error, up to which bodies are where rows have them
+  bool has_movers = false;          ///< moving obstacles are assumed to be no faster than their max_speed
   bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
 
   /// Something is refuted, or a motion open.

@@ -45,6 +45,8 @@ struct Collision {
   double depth = 0.0;                            ///< m, how far the rims overlap then
   Vec2 place;                                    ///< m, where the robot is then
   bool relaxed = false;  ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
+  /// The robot stood all the while, and a moving obstacle with a max_speed hit it: nothing promises against that.
+  bool standing = false;
 };
 
 /// The results of one robot.
@@ -141,8 +143,8 @@ inline constexpr std::size_t kMostClearances = 2000;
 
 /// The same for a run as it is made, in memory that does not grow with the run: takes its rows, or, where decisions are
 /// not recorded, its states (crowd_run.h). For states nothing is measured that needs half-planes: margins between
-/// robots, `active_set_switches`, `uncertified_half_planes`; and clearances and collisions for at most `kMostClearances`
-/// robots.
+/// robots, `active_set_switches`, `uncertified_half_planes`; and clearances and collisions for at most
+/// `kMostClearances` robots.
 class Evaluator : public RunSink {
  public:
   /// Called once per row, in order, when the next row or the end is known. `lyapunov` holds the values at that row, and

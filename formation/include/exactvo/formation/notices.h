@@ -20,7 +20,8 @@ std::string arrived_at_start(const Scenario& scenario);
 /// equation (4) needs it.
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options = {});
 
-/// What a run assumes and cannot check; empty without `Scenario::uncertainty`. Part of its outcome.
+/// What a run assumes and cannot check; empty without `Scenario::uncertainty` and moving obstacles with a `max_speed`.
+/// Part of its outcome.
 std::string assumed_words(const Scenario& scenario);
 
 }  // namespace exactvo::formation

@@ -176,6 +176,9 @@ struct MovingObstacle {
   geometry::Obstacle shape;                 ///< m, at t = 0
   TimedPath motion;                         ///< its path's first point is the origin of the displacement
   std::optional<geometry::Disc> disc = {};  ///< m, at t = 0; as of `SceneObstacle`
+  /// m/s, >= 0, of a disc: robots with an acceleration know no more of its motion than that it is no faster. None: they
+  /// take it to keep its velocity.
+  std::optional<double> max_speed = {};
 };
 
 /// Gains of equations (14), (15) and (17).
@@ -245,6 +248,29 @@ inline double usual_braking_time(double fastest, double acceleration, double tim
   return std::max(kSpare * (fastest / acceleration), time_step);
 }
 
+/// m/s: from this speed a robot that brakes stands after so many steps. A millionth of its acceleration is left to
+/// roundings.
+inline double stopping_speed(double acceleration, double time_step, std::size_t steps) {
+  constexpr double kShare = 1.0 - 1e-6;
+  return static_cast<double>(steps) * (kShare * acceleration * time_step);
+}
+
+/// The least number of steps, 1 or more, after which a robot of that speed (m/s) stands; no more than 10^15.
+inline std::size_t stopping_steps(double speed, double acceleration, double time_step) {
+  constexpr double kMost = 1e15;
+  const double about = std::ceil(speed / stopping_speed(acceleration, time_step, 1));
+  if (!(about < kMost)) return static_cast<std::size_t>(kMost);
+  auto steps = static_cast<std::size_t>(std::max(1.0, about));
+  if (speed > stopping_speed(acceleration, time_step, steps)) ++steps;  // rounded
+  return steps;
+}
+
+/// Whether something moves of which robots know the greatest speed only.
+inline bool meets_movers(const Scenario& scenario) {
+  return std::any_of(scenario.moving_obstacles.begin(), scenario.moving_obstacles.end(),
+                     [](const MovingObstacle& o) { return o.max_speed.has_value(); });
+}
+
 /// The unit vector of a heading (degrees); exact for multiples of 90.
 Vec2 heading_vector(double degrees);
 
@@ -279,6 +305,10 @@ inline double braking_time_of(const Scenario& scenario) {
     const double speed = fastest(scenario.speed_bound, robot.max_speed);
     if (scenario.acceleration)
       usual = std::max(usual, usual_braking_time(speed, scenario.acceleration->max, scenario.time_step));
+    if (scenario.acceleration && meets_movers(scenario))  // where it stands in the end, it does so in time
+      usual =
+          std::max(usual, static_cast<double>(stopping_steps(speed, scenario.acceleration->max, scenario.time_step)) *
+                              scenario.time_step);
     if (robot.drive)
       usual = std::max(usual, usual_braking_time(robot.drive->max_wheel_speed, robot.drive->max_wheel_acceleration,
                                                  scenario.time_step));
