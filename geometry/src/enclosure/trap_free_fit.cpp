@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kBeyond = 1.0 + 1e-14;  // a few roundings beyond a root
 constexpr int kBisections = 40;          // leaves 2^-40 of the extent, far below any margin
+constexpr double kFinest = 0x1p-40;
 
 /// The centres x for which all points lie in the ellipse, and the points that bound them.
 struct Centres {
@@ -100,7 +101,9 @@ double LeastMajor::least_of_pair() const {
 bool LeastMajor::has_centre(double major) {
   const Centres c = centres_for(f_, width_, major);
   pair_ = c.at;
-  return !c.is_empty();
+  if (c.is_empty()) return false;
+  about_ = {major, 0.5 * (c.low + c.high)};
+  return true;
 }
 
 bool LeastMajor::is_long_enough(double major) {
@@ -117,10 +120,13 @@ bool LeastMajor::is_long_enough(double major) {
 /// of what the bisection stops at.
 void LeastMajor::approach(double at) {
   constexpr int kSteps = 8;
+  constexpr double kRounding = 1e-13;
   at = std::max({too_short_, at, 0.0, least_of_pair()});
   for (int i = 0; i < kSteps && at < long_enough_; ++i) {
     if (has_centre(at)) {
       long_enough_ = at;
+      const double chords = width_[pair_.right] + width_[pair_.left];
+      doubt_ = kRounding * (1.0 + f_.extent / (at * chords)) + kFinest * high_ / at;
       return;
     }
     too_short_ = std::max(too_short_, at);

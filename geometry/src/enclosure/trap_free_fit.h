@@ -92,8 +92,11 @@ class LeastMajor {
   LeastMajor(const TurnedPoints& f, double centre_y, double minor, std::vector<double>& width)
       : f_(f), centre_y_(centre_y), minor_(minor), pair_{f.rightmost, f.leftmost}, width_(width) {}
 
-  /// Whether it fits.
+  /// Whether it fits, and about how.
   AxisAnswer bracket(const AreaLimit& limit);
+  /// After `fits`: about what `exact` is. Axis and centre are off by `doubt()` of the axis at most.
+  MajorFit about() const { return about_; }
+  double doubt() const { return doubt_; }
   /// After `fits`: the axis by bisection.
   MajorFit exact();
 
@@ -111,6 +114,8 @@ class LeastMajor {
   double high_ = 0.0;  ///< m, where the bisection begins
   double too_short_ = -1.0;
   double long_enough_ = std::numeric_limits<double>::infinity();
+  MajorFit about_;  ///< of the axis that was long enough last
+  double doubt_ = std::numeric_limits<double>::infinity();
 };
 
 struct FitGoal {
@@ -150,8 +155,9 @@ inline constexpr std::size_t kMinors = std::size(kMinorShares), kOffsets = std::
 struct Known {
   enum class State : unsigned char {
     nothing,
-    fitted,   ///< `major` is known
-    hopeless  ///< no ellipse
+    estimated,  ///< `major` is known to kEstimate
+    fitted,     ///< `major` is known
+    hopeless    ///< no ellipse
   };
   State& state;
   MajorFit& major;
@@ -182,8 +188,8 @@ inline bool surely_holds(Vec2 centre, double major, double minor, Vec2 place) {
   return x * x + y * y < 1.0 - kDoubt;
 }
 
-/// Share of an axis, for all rounding.
-inline constexpr double kAllowance = 1e-7;
+/// Shares of an axis: by which estimates may be off, and what is allowed for that and for all rounding.
+inline constexpr double kEstimate = 1e-9, kAllowance = 1e-7;
 
 /// Whether a place lies inside the evolute beyond doubt, in the ellipse's frame. With A = a^2 x^2, B = b^2 y^2 and C =
 /// factor (a^2 - b^2)^2 it does where (A + B - C)^3 + 27 A B C < 0 (predicates.cpp), so that larger A and B and a
@@ -216,6 +222,7 @@ class CandidateSearch {
   bool improves(const Orientation& o, const Candidate& c, bool or_equal, const Known& known) {
     if (known.state == Known::State::hopeless) return false;
     const AreaLimit area = limit(c.minor, or_equal);
+    if (known.state == Known::State::estimated && is_surely_refused(o, c, area, known.major)) return false;
     if (known.state != Known::State::fitted && !is_fitted(o, c, area, known)) return false;
     if (area.is_too_long(known.major.major) || is_refused(o, c, area, known.major)) return false;
     const double a = known.major.major + want_.margin, b = area.minor;
@@ -244,12 +251,22 @@ class CandidateSearch {
            surely_holds(centre, a, b, o.ends.start) || surely_holds(centre, a, b, o.ends.goal);
   }
 
+  /// The same from an estimate.
+  bool is_surely_refused(const Orientation& o, const Candidate& c, const AreaLimit& area, const MajorFit& major) const {
+    return area.is_too_long((1.0 - 2.0 * kEstimate) * major.major) || is_refused(o, c, area, major);
+  }
+
   bool is_fitted(const Orientation& o, const Candidate& c, const AreaLimit& area, const Known& known) {
     if (area.is_too_long(o.frame.half_width)) return false;
     LeastMajor least(o.frame, o.frame.middle + c.offset, c.minor, width_);
     const AxisAnswer answer = least.bracket(area);
     if (answer == AxisAnswer::never) known.state = Known::State::hopeless;
     if (answer != AxisAnswer::fits) return false;
+    if (least.doubt() <= kEstimate) {
+      known.state = Known::State::estimated;
+      known.major = least.about();
+      if (is_surely_refused(o, c, area, known.major)) return false;
+    }
     known.state = Known::State::fitted;
     known.major = least.exact();
     return true;
