@@ -209,6 +209,15 @@ TEST(TrajectoryFile, QuotedFieldsMayHaveTheirSeparatorInside) {
   expect_row(c.rows[1], 1, 1.0, 3.0, 4.0, 3);
 }
 
+TEST(TrajectoryFile, QuotedFieldsMayBeSeparatedByTabs) {
+  const Content c = content_of("\"t\"\t\"note\"\t\"id\"\t\"x\"\t\"y\"\n0\t\t\"a\tb\"\t1\t2\n1\t\tc\t3\t\"4\"\n");
+  EXPECT_EQ(c.file.format, "csv");
+  EXPECT_THAT(c.file.agents, ElementsAre("a\tb", "c"));
+  ASSERT_EQ(c.rows.size(), 2u);
+  expect_row(c.rows[0], 0, 0.0, 1.0, 2.0, 2);
+  expect_row(c.rows[1], 1, 1.0, 3.0, 4.0, 3);
+}
+
 TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   const Content c = content_of(
       "statistics:\n  cost: 3\nschedule:\n  agent0:\n    - x: 0\n      y: 1\n      t: 0\n    - x: 0\n      y: 2\n      "

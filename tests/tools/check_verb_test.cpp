@@ -378,7 +378,7 @@ TEST(CheckVerb, PairsWithoutAProofSayWhetherTheyTouch) {
   here.write("straight.csv", "t,id,x,y,theta\n0,A,0,0,0\n0,B,6,0,0\n1,A,0,0,0\n1,B,6,0,0\n");
   const std::string diamond = " --footprint 'POLYGON ((-3 0, 0 -3, 3 0, 0 3))' --certificates proofs.jsonl";
   EXPECT_THAT(here.run("check t.csv" + diamond).err,
-              HasSubstr("none for 0 that touch, none for 1 too near for a proof"));
+              HasSubstr("0 certificates for motions that come near and stay clear, none for 1 too near for a proof"));
   const json open = json_lines(here.read("proofs.jsonl")).front();
   EXPECT_TRUE(open["certificate"].is_null());
   EXPECT_EQ(open["why"], "too near");

@@ -72,9 +72,8 @@ void CheckCertificates::add_to_body(const MetPair& pair, const RigidBody& body, 
 std::string CheckCertificates::finish() {
   put({{"summary", {{"certificates", count_}, {"without", touching_ + unproven_}, {"unproven", unproven_}}}});
   out_.commit();
-  std::string words =
-      fmt::format("{} for motions that come near and stay clear, none for {} that {}",
-                  geometry::counted(count_, "certificate"), touching_, touching_ == 1 ? "touches" : "touch");
+  std::string words = geometry::counted(count_, "certificate") + " for motions that come near and stay clear";
+  if (touching_ > 0) words += fmt::format(", none for {} that {}", touching_, touching_ == 1 ? "touches" : "touch");
   if (unproven_ > 0) words += fmt::format(", none for {} too near for a proof", unproven_);
   return words;
 }

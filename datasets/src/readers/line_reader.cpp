@@ -113,7 +113,8 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
 std::optional<std::vector<std::string>> csv_fields_of(std::string_view line, char separator) {
   std::vector<std::string> fields;
   for (;;) {
-    const std::string_view rest = line.substr(std::min(line.find_first_not_of(kBlanks), line.size()));
+    const std::string_view rest =
+        line.substr(std::min({line.find_first_not_of(kBlanks), line.find(separator), line.size()}));
     std::string field;
     if (!rest.empty() && rest.front() == '"') {
       std::size_t at = 1;

@@ -193,7 +193,7 @@ void read_numbers(const std::filesystem::path& path, const Columns& columns, std
 /// The fields of a line of CSV; the quoted ones are kept in `quoted`. False where a quotation mark is not closed.
 bool split_csv(std::string_view line, char separator, std::vector<std::string_view>& fields,
                std::optional<std::vector<std::string>>& quoted) {
-  if ((separator != ',' && separator != ';') || line.find('"') == std::string_view::npos) {
+  if (separator == ' ' || line.find('"') == std::string_view::npos) {
     split(line, separator, fields);
     return true;
   }

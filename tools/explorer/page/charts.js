@@ -126,7 +126,9 @@ const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collisi
 
 function collisionWords(c) {
   const depth = c.depth === null ? '' : `, ${c.depth.toPrecision(2)} m deep`;
-  return `collision with ${c.kind} ${c.with}${depth} at ${c.at.toFixed(2)} s`;
+  const isNumbered = /^(polygon|wall) [-\d]/.test(c.with);
+  const other = c.kind === 'robot' ? c.with : isNumbered ? `the ${c.with} of the map` : `${c.kind} ${c.with}`;
+  return `collision with ${other}${depth} at ${c.at.toFixed(2)} s`;
 }
 
 // Events of the run as {time, robot, kind, text}; collisions among them.

@@ -72,6 +72,7 @@ function fillRun() {
     return item;
   }));
   $('warnings').replaceChildren(...[...about.warnings, ...about.stuck.map((s) => s.text)].map((w) => element('li', shortName(w, 1000))));
+  $('moment').textContent = about.method === 'check' ? 'Moment' : 'Decision';
   const partial = [];
   const hasDecisions = run.decisionTime.length > 0;
   $('main').classList.toggle('positions-only', !hasDecisions);
