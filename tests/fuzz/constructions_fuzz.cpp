@@ -104,7 +104,7 @@ void examine_encounter(Bytes& bytes) {
   const double speed = length > 0.0 ? length : 1.0;
   const std::string text = to_string(e.obstacle);
   guarded(true, text, [&] {
-    for (const vo::Variant v : vo::kVariants) {
+    for (const vo::Variant v : {vo::Variant::vo, vo::Variant::rvo, vo::Variant::hrvo, vo::Variant::orca}) {
       const vo::Member member = vo::family_member(v, e);
       if (member.cone) examine_free(*member.cone, e.velocity, speed, text);
       if (v != vo::Variant::orca || !member.half_plane || e.robot) continue;

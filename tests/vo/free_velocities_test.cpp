@@ -61,7 +61,7 @@ TEST(FreeVelocities, NothingForbidsTheDisc) {
 
 TEST(FreeVelocities, AWedgeOfKnownArea) {
   // A disc of radius 1 at distance 2 for ever: a wedge of 60 degrees with its corner at 0.
-  const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, kInfinity, 0.5, {}};
+  const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, kInfinity, 0.5};
   const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
   const double expected = kPi * 5.0 / 6.0;
   EXPECT_LE(free.area().low, expected);
@@ -71,7 +71,7 @@ TEST(FreeVelocities, AWedgeOfKnownArea) {
 
 TEST(FreeVelocities, ACutOffOfKnownArea) {
   // With a horizon the wedge begins at the disc scaled by 1/tau: sector minus the two triangles plus the disc's part.
-  const Encounter e{Disc{{2.0, 0.0}, 1.0}, {}, {}, {}, 0.0, {}, 4.0, 0.5, {}};
+  const Encounter e{Disc{{2.0, 0.0}, 1.0}, {}, {}, {}, 0.0, {}, 4.0, 0.5};
   const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
   const double r = 0.25, leg = std::sqrt(0.25 - r * r);
   const double before = leg * r - r * r * kPi / 3.0;  // the kite to the tangent points minus its sector of 120 deg
@@ -232,7 +232,7 @@ TEST(FreeVelocities, AlmostInContactHalfTheDiscIsFree) {
 
 TEST(FreeVelocities, WhatNeitherBoundTellsIsUndecided) {
   // Half-planes across the cut-off, a circle of radius 1 round (2, 0), at a normal that is no contact of the polygons.
-  const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, 1.0, 0.5, {}};
+  const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, 1.0, 0.5};
   const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.5, 1e-2});
   const Vec2 n{-std::cos(0.1), -std::sin(0.1)};
   const double touching = 2.0 * n.x + 1.0;
@@ -322,15 +322,8 @@ TEST(FreeVelocities, AWallOfConesSplitsTheDisc) {
   // Two walls ahead and behind that come nearer: what is left lies to the left and to the right.
   std::vector<ShiftedCone> cones;
   for (const double side : {1.0, -1.0}) {
-    const Encounter e{geometry::Segment{{2.0 * side, -2.0}, {2.0 * side, 2.0}},
-                      {-0.1 * side, 0.0},
-                      {},
-                      {},
-                      0.3,
-                      {},
-                      kInfinity,
-                      0.5,
-                      {}};
+    const Encounter e{
+        geometry::Segment{{2.0 * side, -2.0}, {2.0 * side, 2.0}}, {-0.1 * side, 0.0}, {}, {}, 0.3, {}, kInfinity, 0.5};
     cones.push_back(*vo::family_member(Variant::vo, e).cone);
   }
   const FreeVelocities free(cones, {1.0, 1e-3});

@@ -102,12 +102,8 @@ void require_crowd(const std::string& file, const formation::Scenario& scenario,
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method =
-      app.add_option(
-             "--method,-m", flags.method,
-             help(
-                 "Avoidance method (ivo: a way to drive, not the half-plane of vo --variant ivo; with --decisions none "
-                 "always orca)",
-                 formation::method_names()))
+      app.add_option("--method,-m", flags.method,
+                     help("Avoidance method (with --decisions none always orca)", formation::method_names()))
           ->capture_default_str();
   flags.method_option = method;
   flags.of_goals = {

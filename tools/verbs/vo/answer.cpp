@@ -335,14 +335,6 @@ std::string single_words(const VoAnswer& a) {
                             : "No velocity is proven safe: a piece has no half-plane.\n");
 }
 
-/// IVO's ellipse reaches beyond the obstacle, so that the robot may be in contact with it alone.
-std::string member_words(const vo::Member& m, bool overlaps, Vec2 velocity) {
-  const auto answer = m.allows(velocity);
-  if (answer) return fmt::format("{:<17} {} the velocity\n", name(m.variant), word_of_allowed(answer));
-  const char* ellipse = m.variant == vo::Variant::ivo ? "in contact with its ellipse, or rounding" : "rounding";
-  return fmt::format("{:<17} {}: {}\n", name(m.variant), word_of_allowed(answer), overlaps ? "in contact" : ellipse);
-}
-
 std::string region_words(const VoAnswer& a) {
   const vo::RegionReport& report = *a.free->report;
   std::string text = fmt::format("half-planes       allow an area of {:.6g} to {:.6g} (m/s)^2; all of it is free: {}\n",
@@ -413,16 +405,6 @@ void add_shared(const ConeAnswer& a, Json& json) {
                                {"holds", "only if the other side takes the rest"}};
 }
 
-Json member_json(const vo::Member& m, Vec2 velocity) {
-  Json json{{"variant", name(m.variant)}, {"allows_velocity", json_or_null(m.allows(velocity))}};
-  if (m.cone) {
-    json["apex"] = json_point(m.cone->apex);
-    json["time_horizon"] = m.cone->cone.time_horizon();
-  }
-  if (m.half_plane) json["half_plane"] = json_of(m.half_plane);
-  return json;
-}
-
 /// What the certificate is about: the obstacle's convex shape, and a robot that is no disc.
 void add_shape(const ConeAnswer& a, Json& json) {
   json["shape"] = to_string(a.encounter.obstacle);
@@ -486,7 +468,6 @@ Json single_json(const VoAnswer& a) {
       add_bounds(cone, one);
     }
   }
-  for (const vo::Member& m : a.members) json["variants"].push_back(member_json(m, a.question.velocity));
   add_stages(json);
   return json;
 }
@@ -597,18 +578,12 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
 
 }  // namespace
 
-const char* word_of_allowed(const std::optional<bool>& allowed) {
-  if (!allowed) return "no cone";
-  return *allowed ? "allows" : "forbids";
-}
-
 VoAnswer answer_of(const VoQuestion& question) {
-  VoAnswer a{question, {}, {}, {}};
+  VoAnswer a{question, {}, {}};
   for (const vo::Encounter& e : question.encounters) {
     a.cones.push_back(answer_of(e, question.responsibility));
     if (question.exact_legs) a.cones.back().exact_legs = a.cones.back().cone.exact_legs();
   }
-  for (const vo::Variant v : question.variants) a.members.push_back(family_member(v, question.encounters.front()));
   if (question.free) a.free = free_answer_of(a.cones, question);
   return a;
 }
@@ -618,11 +593,7 @@ std::string to_json(const VoAnswer& a) {
 }
 
 std::string in_words(const VoAnswer& a) {
-  if (!a.free) {
-    std::string text = single_words(a);
-    for (const vo::Member& m : a.members) text += member_words(m, any_overlaps(a), a.question.velocity);
-    return text;
-  }
+  if (!a.free) return single_words(a);
   std::string text = free_words(a);
   for (const ConeAnswer& cone : a.cones)
     if (cone.exact_legs) text += exact_legs_words(*cone.exact_legs);

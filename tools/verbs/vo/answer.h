@@ -64,18 +64,14 @@ struct Enclosed {
 struct VoAnswer {
   VoQuestion question;
   std::vector<ConeAnswer> cones;
-  std::vector<vo::Member> members;  ///< the variants asked for
   std::optional<FreeAnswer> free;
 };
 
 VoAnswer answer_of(const VoQuestion& question);
 
-/// What a rule says of a velocity (`Member::allows`): "allows", "forbids" or "no cone".
-const char* word_of_allowed(const std::optional<bool>& allowed);
-
 std::string to_json(const VoAnswer& answer);
 std::string in_words(const VoAnswer& answer);
-/// One cone with its half-plane; or the family side by side; or the free velocities.
+/// One cone with its half-plane, or the free velocities.
 Figure vo_figure(const VoAnswer& answer);
 
 }  // namespace exactvo::tools

@@ -21,7 +21,6 @@ constexpr const char* kLost = "with filledcurves closed fc rgb '#E69F00' fs soli
 constexpr const char* kBoundary = "with lines lw 2.5 lc rgb '#009E73'";
 constexpr const char* kHatches = "with lines lw 1 lc rgb '#009E73'";
 constexpr const char* kShared = "with lines lw 2 dt (6,4) lc rgb '#009E73'";
-constexpr const char* kApex = "with points pt 7 ps 1 lc rgb '#D55E00'";
 constexpr const char* kGiven = "with lines lw 1.5 lc rgb '#0072B2'";
 constexpr const char* kScaled = "with lines lw 1.5 dt (2,3) lc rgb '#3f444d'";
 
@@ -172,58 +171,6 @@ Figure cone_figure(const VoAnswer& answer) {
   return {"cone", data.text(), title + ".", {940, 640}, body_of(title, panel)};
 }
 
-// --- The family ---
-
-void draw_member(const vo::Member& m, const ConeAnswer& a, Panel& panel) {
-  if (m.cone) panel.rings("forbidden", {cone_in(panel.view, m.cone->cone, m.cone->apex)}, kForbidden);
-  if (m.half_plane) {
-    const HalfPlane beyond{-m.half_plane->normal, -m.half_plane->offset};
-    panel.rings("forbidden", {clipped(corners(panel.view), beyond)}, kForbidden);
-    panel.half_planes("boundary", {*m.half_plane}, kBoundary, kHatches);
-  }
-  draw_arrow("robot's velocity", {}, a.encounter.velocity, "#444444", panel);
-  draw_arrow("obstacle's velocity", {}, a.encounter.obstacle_velocity, "#CC79A7", panel);
-  if (m.cone) panel.points("apex", {m.cone->apex}, kApex);
-}
-
-std::string member_title(const vo::Member& m, Vec2 velocity) {
-  const auto answer = m.allows(velocity);
-  return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " {/:Italic v}" : "");
-}
-
-std::vector<std::pair<std::string, std::string>> family_legend(const VoAnswer& answer) {
-  bool cones = false, half_planes = false;
-  for (const vo::Member& m : answer.members) {
-    cones = cones || m.cone;
-    half_planes = half_planes || m.half_plane;
-  }
-  std::vector<std::pair<std::string, std::string>> all{{std::string("keyentry ") + kForbidden, "forbidden"}};
-  if (cones) all.emplace_back(std::string("keyentry ") + kApex, "apex of the cone");
-  if (half_planes) all.emplace_back(std::string("keyentry ") + kBoundary, "half-plane, hatched where it forbids");
-  all.emplace_back("keyentry with vectors head filled lw 2.5 lc rgb '#444444'", "velocity v of the robot");
-  all.emplace_back("keyentry with vectors head filled lw 2.5 lc rgb '#CC79A7'", "velocity of the obstacle");
-  return all;
-}
-
-Figure family_figure(const VoAnswer& answer) {
-  const ConeAnswer& a = answer.cones.front();
-  Sheet sheet;
-  sheet.title = markup("What different rules forbid in one encounter, " + horizon_text(a.encounter.time_horizon));
-  sheet.x_label = markup("{/:Italic v}_x [m/s]");
-  sheet.y_label = markup("{/:Italic v}_y [m/s]");
-  sheet.columns = static_cast<int>(std::min<std::size_t>(answer.members.size(), 3));
-  sheet.panel_width = sheet.panel_height = 300.0;
-  sheet.legend = family_legend(answer);
-  DataFile data;
-  for (std::size_t k = 0; k < answer.members.size(); ++k) {
-    Panel panel = Panel::of_velocities(square_round(view_of(answer.cones), 0.7), data);
-    draw_member(answer.members[k], a, panel);
-    sheet.panels.push_back(
-        panel.on_sheet(markup(letter_of(k) + " " + member_title(answer.members[k], a.encounter.velocity))));
-  }
-  return sheet_figure("family", data.text(), "What different rules forbid in one encounter.", sheet);
-}
-
 // --- The free velocities ---
 
 std::vector<Points> pieces_of(const geometry::Region& region) {
@@ -259,9 +206,7 @@ Figure free_figure(const VoAnswer& answer) {
 }  // namespace
 
 Figure vo_figure(const VoAnswer& answer) {
-  if (answer.free) return free_figure(answer);
-  if (!answer.members.empty()) return family_figure(answer);
-  return cone_figure(answer);
+  return answer.free ? free_figure(answer) : cone_figure(answer);
 }
 
 }  // namespace exactvo::tools

@@ -218,23 +218,6 @@ std::optional<double> horizon_of(const std::string& text, const vo::Encounter& e
   return horizon_in_seconds(text);
 }
 
-std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
-  std::vector<vo::Variant> variants;
-  for (const std::string& word : names) {
-    const std::string upper = boost::to_upper_copy(word, std::locale::classic());
-    const auto* found = std::find_if(std::begin(vo::kVariants), std::end(vo::kVariants),
-                                     [&](vo::Variant v) { return upper == name(v); });
-    if (upper == "ALL") {
-      variants.assign(std::begin(vo::kVariants), std::end(vo::kVariants));
-    } else if (found != std::end(vo::kVariants)) {
-      variants.push_back(*found);
-    } else {
-      throw unknown_word("--variant", word, {"vo", "rvo", "hrvo", "orca", "ivo", "all"});
-    }
-  }
-  return variants;
-}
-
 /// What goes with what, and what would be ignored.
 void check_option_conflicts(const VoFlags& flags) {
   require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
@@ -245,7 +228,6 @@ void check_option_conflicts(const VoFlags& flags) {
   refuse_both(flags.enclose == "trap-free" && !flags.robot.empty(), "--robot", "--enclose trap-free",
               "the ellipse is fitted for a disc; give --radius");
   refuse_both(flags.responsibility != 1.0 && flags.free, "--responsibility", "--free");
-  refuse_both(!flags.variants.empty() && flags.free, "--variant", "--free");
 }
 
 /// The files among the obstacles and the robot, with what is read with them.
@@ -303,9 +285,6 @@ void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
   if (q.obstacles.size() != 1 && !q.free)
     throw UsageError("--obstacle", geometry::counted(q.obstacles.size(), "obstacle"),
                      "one obstacle (several go with --free)");
-  if (q.encounters.size() != 1 && !q.variants.empty())
-    throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
-                     "a convex shape: add --pieces hull or --enclose ellipse");
   if (flags.obstacle_velocities.size() > flags.obstacles.size())
     throw UsageError("--obstacle-velocity",
                      geometry::counted(flags.obstacle_velocities.size(), "velocity", "velocities"),
@@ -326,7 +305,6 @@ VoQuestion question_of(const VoFlags& flags) {
   check_words(flags);
   check_numbers(flags);
   VoQuestion q;
-  q.variants = variants_of(flags.variants);
   q.responsibility = flags.responsibility;
   q.exact_legs = flags.exact_legs;
   q.free = flags.free;
@@ -370,11 +348,6 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "Share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is printed, which "
                  "holds only if the other side takes the rest");
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
-  app.add_option(
-         "--variant", flags.variants,
-         "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure. Here ivo is one half-plane, not a "
-         "method of simulate")
-      ->allow_extra_args(false);
   app.add_flag("--exact-legs", flags.exact_legs,
                "The legs as algebraic numbers: polynomial, interval; with --free also which cones share one");
   app.add_flag(

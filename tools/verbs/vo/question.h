@@ -47,7 +47,6 @@ struct VoFlags {
   std::optional<double> radius;
   std::string time_horizon;
   double responsibility = 1.0;
-  std::vector<std::string> variants;
   bool exact_legs = false;
   bool free = false;
   std::optional<double> max_speed;
@@ -79,7 +78,6 @@ struct AskedObstacle {
 struct VoQuestion {
   std::vector<AskedObstacle> obstacles;
   std::vector<vo::Encounter> encounters;
-  std::vector<vo::Variant> variants;
   double responsibility = 1.0;
   bool exact_legs = false;
   bool free = false;

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vector>
 
-#include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/rounding.h"
 
@@ -59,27 +57,15 @@ std::optional<ShiftedCone> cone_of_hrvo(const Encounter& e) {
 }
 
 /// n.v' >= n.v + responsibility (c - n.(v - u)), rounded up: a term passes at most 8 roundings.
-HalfPlane shared(const HalfPlane& relative, const Encounter& e, double responsibility) {
-  const Vec2 n = relative.normal;
-  if (e.obstacle_velocity == Vec2{} && responsibility == 1.0) return relative;
-  const double at_v = dot(n, e.velocity), at_u = dot(n, e.obstacle_velocity);
-  const double value = (1.0 - responsibility) * at_v + responsibility * (relative.offset + at_u);
-  const double magnitude = geometry::dot_magnitude(n, e.velocity) + geometry::dot_magnitude(n, e.obstacle_velocity) +
-                           geometry::product_magnitude(1.0, relative.offset);
-  return {n, geometry::rounded_up_sum(value, magnitude, 8.0)};
-}
-
-std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e, double responsibility) {
-  if (obstacle.overlaps()) return std::nullopt;
+std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e) {
   const std::optional<HalfPlane> relative = obstacle.half_plane(e.velocity - e.obstacle_velocity);
-  if (!relative) return std::nullopt;
-  return shared(*relative, e, responsibility);
-}
-
-ConvexShape enclosure_of(const Encounter& e) {
-  if (e.enclosure) return *e.enclosure;
-  const std::vector<Vec2> corners = corners_of(e.obstacle);
-  return corners.empty() ? e.obstacle : geometry::fast_smallest_ellipse(corners).ellipse;
+  if (!relative || (e.obstacle_velocity == Vec2{} && e.responsibility == 1.0)) return relative;
+  const Vec2 n = relative->normal;
+  const double at_v = dot(n, e.velocity), at_u = dot(n, e.obstacle_velocity);
+  const double value = (1.0 - e.responsibility) * at_v + e.responsibility * (relative->offset + at_u);
+  const double magnitude = geometry::dot_magnitude(n, e.velocity) + geometry::dot_magnitude(n, e.obstacle_velocity) +
+                           geometry::product_magnitude(1.0, relative->offset);
+  return HalfPlane{n, geometry::rounded_up_sum(value, magnitude, 8.0)};
 }
 
 double distance_ahead(const VelocityObstacle& obstacle) {
@@ -87,11 +73,6 @@ double distance_ahead(const VelocityObstacle& obstacle) {
 }
 
 }  // namespace
-
-const char* name(Variant variant) {
-  constexpr const char* kNames[] = {"VO", "RVO", "HRVO", "ORCA", "IVO"};
-  return kNames[static_cast<int>(variant)];
-}
 
 VelocityObstacle cone_of(const Encounter& e) {
   return cone_round(e.obstacle, e, e.time_horizon);
@@ -101,27 +82,17 @@ bool ShiftedCone::contains(Vec2 v) const {
   return cone.contains_sum(VectorSum{{v, minus_apex.terms[0], minus_apex.terms[1]}});
 }
 
-std::optional<bool> Member::allows(Vec2 v) const {
-  if (cone) return !cone->contains(v);
-  if (half_plane) return violation(*half_plane, v) <= 0.0;
-  return std::nullopt;
-}
-
 Member family_member(Variant variant, const Encounter& e) {
   EXACTVO_REQUIRE(geometry::is_finite(e.velocity) && geometry::is_finite(e.obstacle_velocity),
                   "a velocity that is not finite");
   EXACTVO_REQUIRE(e.responsibility >= 0.0 && e.responsibility <= 1.0, std::to_string(e.responsibility));
   Member member{variant, std::nullopt, std::nullopt};
-  if (variant == Variant::ivo) {
-    member.half_plane = half_plane_of(cone_round(enclosure_of(e), e, e.time_horizon), e, 1.0);
-    return member;
-  }
   const VelocityObstacle obstacle = cone_of(e);
   if (obstacle.overlaps()) return member;
   if (variant == Variant::vo) member.cone = cone_of_vo(e);
   if (variant == Variant::rvo) member.cone = cone_of_rvo(e);
   if (variant == Variant::hrvo) member.cone = cone_of_hrvo(e);
-  if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e, e.responsibility);
+  if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e);
   return member;
 }
 

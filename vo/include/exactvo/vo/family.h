@@ -2,13 +2,12 @@
 #pragma once
 
 /// \file
-/// The family: velocity obstacles of different papers for one encounter, as values to query, draw and compare.
+/// The family: velocity obstacles of different papers for one encounter, as values.
 ///
 ///   VO    u + C(tau)              velocities that collide if the obstacle keeps u      Fiorini and Shiller 1998
 ///   RVO   (v + u)/2 + C(2 tau)    the obstacle does half: 2 v' - v lies in the VO      van den Berg, Lin, Manocha 2008
 ///   HRVO  apex + C(2 tau)         RVO's leg on the robot's own side, VO's on the other   Snape et al. 2011
 ///   ORCA  one half-plane          v + a share (least change), on the shape as it stands  van den Berg et al. 2011
-///   IVO   one half-plane          the whole change, on an ellipse round the shape      the paper, equation (10)
 ///
 /// u is the obstacle's velocity, v the robot's, v' the asked one; C(tau) is the velocity obstacle of a robot and an
 /// obstacle with relative velocity (velocity_obstacle.h). The three cones are one cone with different apices. A paper
@@ -16,9 +15,8 @@
 /// offset.
 ///
 /// Exact: `ShiftedCone::contains` for the apex that is stated; VO's and RVO's apices are exact sums, HRVO's is the
-/// intersection of two legs, rounded. Certified: IVO's half-plane, and ORCA's with responsibility 1, against the
-/// obstacle that keeps its velocity; ORCA's with a smaller one only together with the obstacle's (see reciprocal.h,
-/// which gives both).
+/// intersection of two legs, rounded. Certified: ORCA's half-plane with responsibility 1, against the obstacle that
+/// keeps its velocity; with a smaller one only together with the obstacle's (see reciprocal.h, which gives both).
 ///
 /// Properties (tests quote the numbers):
 ///  (1) VO, RVO and HRVO of an obstacle at rest as seen by a robot at rest have the apex 0;
@@ -39,14 +37,8 @@ enum class Variant {
   vo,    ///< Fiorini and Shiller 1998
   rvo,   ///< van den Berg, Lin and Manocha 2008
   hrvo,  ///< Snape et al. 2011
-  orca,  ///< van den Berg et al. 2011
-  ivo    ///< the paper
+  orca   ///< van den Berg et al. 2011
 };
-/// All of them.
-inline constexpr Variant kVariants[] = {Variant::vo, Variant::rvo, Variant::hrvo, Variant::orca, Variant::ivo};
-
-/// "VO", "RVO", "HRVO", "ORCA", "IVO".
-const char* name(Variant variant);
 
 /// One robot and one obstacle, both with a velocity.
 struct Encounter {
@@ -58,8 +50,6 @@ struct Encounter {
   std::optional<geometry::ConvexPolygon> robot;  ///< vertices relative to `position`; nothing for a disc
   double time_horizon = 3.0;                     ///< s, > 0, may be infinite
   double responsibility = 0.5;                   ///< in [0, 1]: how much of the change ORCA's robot takes
-  /// IVO's ellipse; where it is missing: the smallest round a polygon, a segment or a disc as they are.
-  std::optional<geometry::Ellipse> enclosure;
 };
 
 /// The velocity obstacle of the obstacle as the robot sees it, for relative velocities. REQUIRES: see its constructor.
@@ -79,15 +69,11 @@ struct ShiftedCone {
 struct Member {
   Variant variant = Variant::vo;        ///< whose rule
   std::optional<ShiftedCone> cone;      ///< VO, RVO, HRVO: forbidden
-  std::optional<HalfPlane> half_plane;  ///< ORCA, IVO: allowed
-
-  /// Whether the rule allows v. Exact for cones; rounded for half-planes. Nothing where there is neither: in contact no
-  /// rule says anything.
-  std::optional<bool> allows(Vec2 v) const;
+  std::optional<HalfPlane> half_plane;  ///< ORCA: allowed
 };
 
-/// Neither cone nor half-plane where the robot touches or overlaps the obstacle (IVO: its ellipse). REQUIRES: see
-/// `cone_of`; velocities finite; responsibility in [0, 1].
+/// Neither cone nor half-plane where the robot touches or overlaps the obstacle. REQUIRES: see `cone_of`; velocities
+/// finite; responsibility in [0, 1].
 Member family_member(Variant variant, const Encounter& encounter);
 
 /// The paper's horizon (equation (9)): distance to S over speed; infinite at rest, 0 in contact. Rounded.
