@@ -93,6 +93,16 @@ TEST_F(MovedProgram, NamesTheModuleThatIsMissing) {
   EXPECT_FALSE(here_.has("square.gpkg"));
 }
 
+TEST_F(MovedProgram, RefusesABatchWithoutItsModuleBeforeTheWork) {
+  if (!datasets::built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+  fs::create_directories(here_.path() / "in");
+  here_.write("in/square.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))");
+  const Outcome refused = run("batch in --out out --write measurements,geopackage");
+  EXPECT_EQ(refused.status, 2) << refused.out << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr(module().string()));
+  EXPECT_FALSE(here_.has("out/.parts"));
+}
+
 TEST_F(MovedProgram, RefusesALibraryThatIsNotItsModule) {
   if (!datasets::built_with_gdal()) GTEST_SKIP() << "built without GDAL";
   fs::create_directories(module().parent_path());

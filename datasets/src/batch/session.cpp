@@ -11,6 +11,7 @@
 #include "batch/work/coroutine.h"
 #include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/provenance.h"
+#include "gdal/vector_library.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
@@ -60,7 +61,11 @@ Identity identity_of(const BatchConfiguration& configuration, std::vector<Input>
 /// Said before the work, not after.
 void refuse_the_unavailable(const BatchConfiguration& configuration, const BatchRun& run) {
   const bool in_degrees = configuration.geojson && !configuration.geojson_in_metres;
-  if (built_with_gdal() || !(configuration.geopackage || in_degrees)) return;
+  if (!(configuration.geopackage || in_degrees)) return;
+  if (built_with_gdal()) {
+    vector_library();  // throws where its module is not installed
+    return;
+  }
   throw DataError(DataCode::format_unavailable, run.out.string(), "",
                   "a GeoPackage or GeoJSON in degrees to write, and a build without GDAL",
                   "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON in metres");
