@@ -194,6 +194,16 @@ TEST(LpCheck, TheDecisionsOfARunAreItsProblems) {
   EXPECT_GT(compared, 300u);
 }
 
+TEST(Lp, ARunWithoutDecisionsHasNoProblems) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A2.json") + " --decisions none --no-figures --out out").status, 0);
+  for (const char* run : {"lp out", "lp out/recording.evr"}) {
+    const Outcome refused = here.run(run);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("a recording without decisions"), HasSubstr("[E_FORMAT_UNKNOWN]")));
+  }
+}
+
 TEST(LpCheck, WhatIsNoAnswerIsRefusedWithItsLine) {
   const Workplace here;
   here.write("p.jsonl", kThree);

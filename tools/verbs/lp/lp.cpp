@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/lp_problems.h"
@@ -585,8 +586,13 @@ ExitCode check_answers(const std::vector<lp::Problem>& problems, const ProblemNa
 /// The recording that is meant: a folder of a run, or a file that begins as one.
 std::optional<std::filesystem::path> recording_meant(const std::string& file) {
   std::error_code unknown;
-  if (std::filesystem::exists(std::filesystem::path(file) / "recording.jsonl", unknown)) return recording_at(file);
-  if (!std::filesystem::is_regular_file(file, unknown)) return std::nullopt;
+  const bool is_folder = std::filesystem::is_directory(file, unknown);
+  const std::filesystem::path meant = is_folder ? *recording_at(file) : std::filesystem::path(file);
+  if (!std::filesystem::is_regular_file(meant, unknown)) return std::nullopt;
+  if (datasets::is_crowd_recording(meant))
+    throw datasets::DataError(datasets::DataCode::format_unknown, meant.string(), "", "a recording without decisions",
+                              "the recording.jsonl of a run with --decisions binding or all");
+  if (is_folder) return meant;
   std::ifstream in(file, std::ios::binary);
   std::string beginning(200, '\0');
   in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
