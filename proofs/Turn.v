@@ -497,42 +497,49 @@ Proof.
   intros m [em|em]; subst m; apply scaled; assumption.
 Qed.
 
-(* --- The places at all moments, of which most are those of a moment before --- *)
+(* --- The places at all moments, of which most are among the latest before --- *)
 Record sided := { its : separation; here : place_at; there : place_at }.
-Fixpoint recall (at_ : Q -> place_at) (known : list (Q * place_at)) (t : Q) : place_at :=
-  match known with
-  | [] => at_ t
-  | (u, p) :: r => if qeq u t then p else recall at_ r t
-  end.
-Fixpoint places (at_ : Q -> place_at) (first last before : Q * place_at) (l : list separation) : list sided :=
+Definition same_moment (a b : Q) : bool := Z.eqb (Qnum a) (Qnum b) && Pos.eqb (Qden a) (Qden b).
+Fixpoint known_at (known : list (Q * place_at)) (t : Q) : option place_at :=
+  match known with [] => None | (u, p) :: r => if same_moment u t then Some p else known_at r t end.
+Definition recall (at_ : Q -> place_at) (known : list (Q * place_at)) (t : Q) : place_at * list (Q * place_at) :=
+  match known_at known t with Some p => (p, known) | None => let p := at_ t in (p, (t, p) :: firstn 15 known) end.
+Fixpoint places (at_ : Q -> place_at) (known : list (Q * place_at)) (l : list separation) : list sided :=
   match l with
   | [] => []
-  | s :: r => let a := recall at_ [before; first] (since s) in let b := recall at_ [last; (since s, a)] (until s) in
-      {| its := s; here := a; there := b |} :: places at_ first last (until s, b) r
+  | s :: r => let (a, k) := recall at_ known (since s) in let (b, k) := recall at_ k (until s) in
+      {| its := s; here := a; there := b |} :: places at_ k r
   end.
-Definition all_places (g : positive) (d : drive) (l : list separation) : list sided :=
-  let after := pose g d in let at_ t := after (qsub t (sets_out d)) in
-  let first := (sets_out d, at_ (sets_out d)) in places at_ first (halts d, at_ (halts d)) first l.
+Definition all_places (g : positive) (d : drive) : list separation -> list sided :=
+  let after := pose g d in places (fun t => after (qsub t (sets_out d))) [].
 
 Definition known_place (g : positive) (d : drive) (k : Q * place_at) := placed g d (Q2R (fst k) - Q2R (sets_out d)) (snd k).
-Lemma recall_ok g d at_ known t : (forall t, known_place g d (t, at_ t)) -> Forall (known_place g d) known -> known_place g d (t, recall at_ known t).
+Lemma known_at_ok g d known t p : Forall (known_place g d) known -> known_at known t = Some p -> known_place g d (t, p).
 Proof.
-  intros ha h. induction h as [|[u p] r hu hr ih]; cbn [recall]; [apply ha|].
-  destruct (qeq u t) eqn:e; [|exact ih]. apply qeq_R in e. unfold known_place in *; cbn [fst snd] in *. rewrite <- e. exact hu.
+  intro h. induction h as [|[u q] r hu hr ih]; cbn [known_at]; [discriminate|]. unfold same_moment.
+  destruct (Z.eqb_spec (Qnum u) (Qnum t)) as [en|_]; [|exact ih]. destruct (Pos.eqb_spec (Qden u) (Qden t)) as [ed|_]; [|exact ih].
+  cbn [andb]. intro e. injection e as e. destruct u as [un ud], t as [tn td]; cbn [Qnum Qden] in *. subst. exact hu.
 Qed.
-Lemma places_ok g d at_ first last l : (forall t, known_place g d (t, at_ t)) -> known_place g d first -> known_place g d last -> forall before, known_place g d before ->
-  forall x, In x (places at_ first last before l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
+Lemma recall_ok g d at_ known t : (forall t, known_place g d (t, at_ t)) -> Forall (known_place g d) known ->
+  known_place g d (t, fst (recall at_ known t)) /\ Forall (known_place g d) (snd (recall at_ known t)).
 Proof.
-  intros ha hf hl. induction l as [|s r ih]; intros before hb x hx; [destruct hx|]. cbn [places] in hx.
-  set (a := recall at_ [before; first] (since s)) in *. assert (k : known_place g d (since s, a)) by (apply recall_ok; auto).
-  set (b := recall at_ [last; (since s, a)] (until s)) in *. assert (hb' : known_place g d (until s, b)) by (apply recall_ok; auto).
-  destruct hx as [hx|hx]; [subst x; now split|]. now apply (ih (until s, b)).
+  intros ha h. unfold recall. destruct (known_at known t) as [p|] eqn:e; cbn [fst snd].
+  - split; [now apply (known_at_ok g d known)|assumption].
+  - split; [apply ha|]. constructor; [apply ha|]. rewrite <- (firstn_skipn 15 known) in h. now apply Forall_app in h.
+Qed.
+Lemma places_ok g d at_ l : (forall t, known_place g d (t, at_ t)) -> forall known, Forall (known_place g d) known ->
+  forall x, In x (places at_ known l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
+Proof.
+  intro ha. induction l as [|s r ih]; intros known hk x hx; [destruct hx|]. cbn [places] in hx.
+  pose proof (recall_ok g d at_ known (since s) ha hk) as [ka h1]. destruct (recall at_ known (since s)) as [a k1].
+  pose proof (recall_ok g d at_ k1 (until s) ha h1) as [kb h2]. destruct (recall at_ k1 (until s)) as [b k2].
+  destruct hx as [hx|hx]; [subst x; now split|]. now apply (ih k2).
 Qed.
 Lemma all_places_ok g d l : apt g (terms g) -> forall x, In x (all_places g d l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
 Proof.
   intros ap. assert (ha : forall t, known_place g d (t, pose g d (qsub t (sets_out d)))).
   { intros t z c e. apply (pose_ok _ _ _ _ _ ap) in e. now rewrite Q2R_sub in e. }
-  unfold all_places. cbv zeta. apply places_ok; auto.
+  now apply places_ok.
 Qed.
 
 (* --- A part and an edge, prepared for many separations --- *)

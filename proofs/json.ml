@@ -6,14 +6,25 @@ exception Bad
 
 let deepest = 100
 
-(* Up to 15 digits are a whole number that doubles have, and so are these powers, so that their quotient is rounded once. *)
-let powers = Array.init 16 (fun k -> float_of_string (Printf.sprintf "1e%d" k))
-let short_number s first stop =
-  let rec go m behind has_point k =
-    if k = stop then float_of_int m /. powers.(behind)
-    else if s.[k] = '.' then go m 0 true (k + 1)
-    else go (10 * m + Char.code s.[k] - Char.code '0') (if has_point then behind + 1 else 0) has_point (k + 1) in
-  if s.[first] = '-' then -. (go 0 0 false (first + 1)) else go 0 0 false first
+(* The digits from k on, read behind those of m; ends up behind them, with the number in `digits_read`. *)
+let digits_read = ref 0
+let rec digits s n k m =
+  if k < n && (let c = String.unsafe_get s k in c >= '0' && c <= '9') then digits s n (k + 1) (10 * m + Char.code (String.unsafe_get s k) - 48)
+  else (digits_read := m; k)
+
+(* The double nearest m / 10^k, for 0 <= m < 10^18, or nan where this does not decide. These powers are doubles, so that up to 2^53
+   the quotient is rounded once. Beyond, q and `rest` add up to m / 10^k but for the two roundings of `rest`: what is subtracted
+   and `low` are exact. As sums are rounded monotonically, m / 10^k is rounded as both of its bounds, where these agree. *)
+let powers = Array.init 23 (fun k -> float_of_string (Printf.sprintf "1e%d" k))
+let nearest m k =
+  let p = powers.(k) and high = float_of_int m in
+  let q = high /. p in
+  if m < 1 lsl 53 then q else begin
+    let low = float_of_int (m - int_of_float high) in
+    let rest = (Float.fma (-. q) p high +. low) /. p in
+    let x = q +. rest *. (1. -. 0x1p-50) in
+    if x = q +. rest *. (1. +. 0x1p-50) then x else nan
+  end
 
 (* Names that were read before, so that most are no new strings. *)
 let names = Array.make 256 ""
@@ -53,15 +64,18 @@ let parse_part s (first, n) =
     if k > !i && s.[k] = '"' then (let t = name_at s !i (k - !i) in i := k + 1; t)
     else (let b = Buffer.create 16 in go b; Buffer.contents b) in
   let number () =
-    let k = !i in
-    let rec beyond a = if a < n && (let c = s.[a] in c >= '0' && c <= '9') then beyond (a + 1) else a in
-    let digits () = let a = beyond !i in if !i = a then raise Bad else i := a in
-    if peek () = '-' then incr i;
-    if peek () = '0' then incr i else digits ();
-    if !i < n && s.[!i] = '.' then (incr i; digits ());
-    let is_short = !i - k <= 15 and stop = !i in
-    if !i < n && (s.[!i] = 'e' || s.[!i] = 'E') then (incr i; if peek () = '-' || peek () = '+' then incr i; digits ());
-    let x = if is_short && !i = stop then short_number s k stop else float_of_string (String.sub s k (!i - k)) in
+    let start = !i in
+    let first = if peek () = '-' then start + 1 else start in
+    let more k m = let stop = digits s n k m in if stop = k then raise Bad else stop in
+    let leading = first < n && s.[first] = '0' in
+    let point = if leading then (digits_read := 0; first + 1) else more first 0 in
+    let stop = if point < n && s.[point] = '.' then more (point + 1) !digits_read else point in
+    let m = !digits_read and behind = if stop > point then stop - point - 1 else 0 in
+    i := stop;
+    if stop < n && (s.[stop] = 'e' || s.[stop] = 'E') then (incr i; if peek () = '-' || peek () = '+' then incr i; i := more !i 0);
+    let few = behind + (if leading then 0 else point - first) <= 18 in
+    let x = if few && !i = stop then nearest m behind else nan in
+    let x = if Float.is_nan x then float_of_string (String.sub s start (!i - start)) else if first > start then -. x else x in
     if Float.is_finite x then Num x else raise Bad in
   let rec value depth =
     if depth > deepest then raise Bad;

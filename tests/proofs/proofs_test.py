@@ -8,6 +8,7 @@ axioms        the theorems of Theorems.v rest on the axioms that the guide lists
 coqchk        Coq's own checker accepts every compiled theory
 certificates  what the program writes is verified; each number of it changed is refused
 recordings    of runs and crowds likewise; of random crowds the verdict on pairs of robots is that of `audit`
+numbers       10 COUNT decimal numbers, many of them half-way between doubles or next to that, are read as the nearest double
 command       files, folders, options and exit statuses of exactvo-verify
 scenes        recordings of scenes in datasets/data and edited copies: what one of both refutes the other does. From
               `--count 100000` on of all scenes
@@ -661,6 +662,43 @@ def differential(tools):
         print(f"{name}: {len(expected)} certificates, {sum(expected)} valid, one verdict; seed {tools.flags.seed}")
 
 
+def decimals(rng):
+    """A number as JSON has it: of random digits, of a double, or (nearly) half-way between two doubles."""
+    kind = rng.randrange(5)
+    if kind == 0:
+        digits = str(rng.randrange(10 ** rng.randint(1, 20)))
+        behind = rng.randint(0, 25)
+        text = digits if behind == 0 else digits[:-behind].lstrip("0").rjust(1, "0") + "." + digits.rjust(behind, "0")[-behind:]
+        return text + rng.choice(["", "", "", f"e{rng.randint(-30, 30)}", f"E+{rng.randint(0, 9)}"])
+    if kind == 1:
+        return repr(rng.uniform(-10, 10) * 10.0 ** rng.randint(-12, 12)) if rng.randrange(2) else repr(rng.uniform(-10, 10))
+    if kind == 2:  # in whole ulps, exactly between two doubles, or beside that by the last digit
+        twice = rng.randrange(2**53, 2**54) | 1
+        return f"{twice // 2}.{rng.choice(['5', '5', '49', '51', '499', '501'])}"
+    if kind == 3:
+        return f"{rng.choice(['', '-'])}{rng.randrange(2**53, 10**18)}"
+    x = rng.uniform(0.001, 100)
+    half = (Fraction(x) + Fraction(math.nextafter(x, 1e9))) / 2
+    behind = rng.randint(14, 18)
+    number = round(half * 10**behind) + rng.randint(-1, 1)
+    return f"{rng.choice(['', '-'])}{number // 10**behind}.{number % 10**behind:0{behind}d}"
+
+
+def numbers(tools):
+    claims = tools.theories / "claims"
+    if not claims.exists():
+        print("skipped: the target exactvo_claims is not built")
+        sys.exit(SKIPPED)
+    rng = random.Random(tools.flags.seed)
+    texts = [decimals(rng) for _ in range(10 * tools.flags.count)]
+    done = run(claims, input="\n".join(texts) + "\n")
+    read = done.stdout.split()
+    require(done.returncode == 0 and len(read) == len(texts), len(read), "of", len(texts), "numbers read:", done.stderr)
+    for text, x in zip(texts, read):
+        require(float.fromhex(x).hex() == float(text).hex(), "seed", tools.flags.seed, text, "read as", x, "expected", float(text).hex())
+    print(len(texts), "numbers, seed", tools.flags.seed)
+
+
 def page(tools):
     node, claims = shutil.which("node") or shutil.which("nodejs"), tools.theories / "claims"
     if not node or not claims.exists():
@@ -694,7 +732,7 @@ def page(tools):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", choices=["axioms", "coqchk", "certificates", "command", "recordings", "scenes", "page", "differential"])
+    parser.add_argument("part", choices=["axioms", "coqchk", "numbers", "certificates", "command", "recordings", "scenes", "page", "differential"])
     for name in ("program", "cases", "claims", "build", "source"):
         parser.add_argument("--" + name, required=True)
     parser.add_argument("--count", type=int, default=10000)
