@@ -27,6 +27,30 @@ Proof.
   - unfold grain. rewrite Pos2Z.inj_pow. now apply Z.shiftr_div_pow2.
 Qed.
 
+(* Products in these units, at most two below: of coarse ones in parts of 30 bits, as then every number fits a machine word. *)
+Definition part_bits : Z := 30.
+Definition part_units : Z := 2 ^ 30.
+Definition times_over (g : positive) (x y : Z) : Z :=
+  if Pos.eqb g coarse then
+    let u := Z.shiftr x part_bits in let v := Z.shiftr y part_bits in
+    (u * v + Z.shiftr (u * (y - v * part_units) + (x - u * part_units) * v) part_bits)%Z
+  else over g (x * y).
+Lemma times_over_ok g x y : (times_over g x y * Zpos g <= x * y <= (times_over g x y + 2) * Zpos g)%Z.
+Proof.
+  assert (parts : forall a b, (0 < b)%Z -> (0 <= a - a / b * b < b)%Z).
+  { intros a b h. pose proof (Z.mul_div_le a b h). pose proof (Z.mul_succ_div_gt a b h). lia. }
+  unfold times_over. destruct (Pos.eqb_spec g coarse) as [e|_].
+  - subst g. cbv zeta. change (Zpos coarse) with (2 ^ 30 * 2 ^ 30)%Z. unfold part_bits, part_units. rewrite !Z.shiftr_div_pow2 by discriminate.
+    set (b := (2 ^ 30)%Z). assert (b0 : (0 < b)%Z) by reflexivity. clearbody b.
+    pose proof (parts x b b0) as hx. pose proof (parts y b b0) as hy. set (u := (x / b)%Z) in *. set (v := (y / b)%Z) in *. clearbody u v.
+    set (x0 := (x - u * b)%Z) in *. set (y0 := (y - v * b)%Z) in *. assert (ex : x = (u * b + x0)%Z) by (unfold x0; ring). assert (ey : y = (v * b + y0)%Z) by (unfold y0; ring).
+    clearbody x0 y0. pose proof (parts (u * y0 + x0 * v)%Z b b0) as hm. set (m := ((u * y0 + x0 * v) / b)%Z) in *. clearbody m. subst x y.
+    assert (low : (0 <= x0 * y0 <= b * b)%Z) by (split; [apply Z.mul_nonneg_nonneg|apply Z.mul_le_mono_nonneg]; lia).
+    set (r := (u * y0 + x0 * v - m * b)%Z) in *. assert (br : (0 <= b * r <= b * b)%Z) by (split; [apply Z.mul_nonneg_nonneg|apply Z.mul_le_mono_nonneg_l]; lia).
+    assert (all : ((u * b + x0) * (v * b + y0) = (u * v + m) * (b * b) + b * r + x0 * y0)%Z) by (unfold r; ring). rewrite all. lia.
+  - rewrite over_ok. pose proof (parts (x * y)%Z (Zpos g) eq_refl). lia.
+Qed.
+
 (* --- The series: 1 - x / ((j + 1) (j + 2)) (1 - x / ((j + 3) (j + 4)) ...), for x the square of the angle --- *)
 Fixpoint tail (x : R) (j : Z) (m : nat) : R :=
   match m with O => 1 | S m => 1 - x / IZR ((j + 1) * (j + 2)) * tail x (j + 2) m end.
@@ -84,16 +108,21 @@ Proof. intro h. unfold Rabs in h. destruct (Rcase_abs x); lra. Qed.
 (* In whole numbers of 1/g, for x up to 1/4. What has a name is computed once. *)
 Definition two : Z := 2.
 Fixpoint series (g : positive) (x j : Z) (m : nat) : Z :=
-  match m with O => Zpos g | S m => let k := Z.add j two in Zpos g - over g (x * series g x k m) / (Z.pred k * k) end.
+  match m with O => Zpos g | S m => let k := Z.add j two in Zpos g - times_over g x (series g x k m) / (Z.pred k * k) end.
 Lemma series_ok g X x : 8 <= IZR (Zpos g) -> 0 <= x <= / 4 -> Rabs (x * IZR (Zpos g) - IZR X) <= 2 -> forall m j, (0 <= j)%Z ->
   0 <= tail x j m <= 1 /\ Rabs (tail x j m * IZR (Zpos g) - IZR (series g X j m)) <= 4.
 Proof.
   intros g8 hx hX. induction m as [|m ih]; intros j j0.
   - cbn [tail series]. rewrite Rmult_1_l, Rminus_diag_eq, Rabs_R0 by reflexivity. lra.
-  - specialize (ih (j + 2)%Z ltac:(lia)). cbn [tail series]. unfold two. cbv zeta. replace (Z.pred (j + 2)) with (j + 1)%Z by lia. rewrite over_ok, Z.div_div by nia.
+  - specialize (ih (j + 2)%Z ltac:(lia)). cbn [tail series]. unfold two. cbv zeta. replace (Z.pred (j + 2)) with (j + 1)%Z by lia.
     set (V := series g X (j + 2) m) in *. set (t := tail x (j + 2) m) in *. set (k := ((j + 1) * (j + 2))%Z).
     assert (k2 : (2 <= k)%Z) by (unfold k; nia). assert (q0 : (0 < Zpos g * k)%Z) by lia.
-    pose proof (div_low (X * V) _ q0) as lo. pose proof (div_high (X * V) _ q0) as hi. set (u := (X * V / (Zpos g * k))%Z) in *. clearbody u k V t.
+    destruct (times_over_ok g X V) as [p1 p2]. set (p := times_over g X V) in *. clearbody p.
+    pose proof (Z.mul_div_le p k ltac:(lia)) as u1. pose proof (Z.mul_succ_div_gt p k ltac:(lia)) as u2. set (u := (p / k)%Z) in *. clearbody u k V t.
+    assert (lo : (u * (Zpos g * k) <= X * V)%Z) by (apply Z.le_trans with (2 := p1); replace (u * (Zpos g * k))%Z with (k * u * Zpos g)%Z by ring; apply Z.mul_le_mono_nonneg_r; lia).
+    assert (hi : (X * V <= (u + 2) * (Zpos g * k))%Z)
+      by (apply Z.le_trans with (1 := p2); replace ((u + 2) * (Zpos g * k))%Z with (k * (u + 2) * Zpos g)%Z by ring; apply Z.mul_le_mono_nonneg_r; lia).
+    apply IZR_le in lo, hi. rewrite (mult_IZR X) in lo. rewrite (mult_IZR (u + 2)), plus_IZR in hi.
     rewrite !mult_IZR in lo, hi. rewrite minus_IZR. apply IZR_le in k2. set (G := IZR (Zpos g)) in *. set (K := IZR k) in *. set (Y := IZR X) in *. set (W := IZR V) in *.
     destruct ih as [[t0 t1] hV]. apply within in hX, hV.
     assert (v : 0 <= x / K * t <= 1).

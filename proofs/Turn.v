@@ -503,7 +503,7 @@ Definition same_moment (a b : Q) : bool := Z.eqb (Qnum a) (Qnum b) && Pos.eqb (Q
 Fixpoint known_at (known : list (Q * place_at)) (t : Q) : option place_at :=
   match known with [] => None | (u, p) :: r => if same_moment u t then Some p else known_at r t end.
 Definition recall (at_ : Q -> place_at) (known : list (Q * place_at)) (t : Q) : place_at * list (Q * place_at) :=
-  match known_at known t with Some p => (p, known) | None => let p := at_ t in (p, (t, p) :: firstn 15 known) end.
+  match known_at known t with Some p => (p, known) | None => let p := at_ t in (p, (t, p) :: firstn 7 known) end.
 Fixpoint places (at_ : Q -> place_at) (known : list (Q * place_at)) (l : list separation) : list sided :=
   match l with
   | [] => []
@@ -525,7 +525,7 @@ Lemma recall_ok g d at_ known t : (forall t, known_place g d (t, at_ t)) -> Fora
 Proof.
   intros ha h. unfold recall. destruct (known_at known t) as [p|] eqn:e; cbn [fst snd].
   - split; [now apply (known_at_ok g d known)|assumption].
-  - split; [apply ha|]. constructor; [apply ha|]. rewrite <- (firstn_skipn 15 known) in h. now apply Forall_app in h.
+  - split; [apply ha|]. constructor; [apply ha|]. rewrite <- (firstn_skipn 7 known) in h. now apply Forall_app in h.
 Qed.
 Lemma places_ok g d at_ l : (forall t, known_place g d (t, at_ t)) -> forall known, Forall (known_place g d) known ->
   forall x, In x (places at_ known l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
