@@ -235,6 +235,27 @@ TEST(Motions, BoxesSlideAlongEachOther) {
       << "inside, touching an edge";
 }
 
+TEST(Motions, TheMomentShownOfAnOverlapIsNoneAtWhichBoxesOnlyTouch) {
+  const RigidBody box{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 0.0}};
+  const Vec2 place{2, 0};
+  const Polygon block{{{1, -1}, {3, -1}, {3, 1}, {1, 1}}, {}};
+  const auto overlap_there = [&](const Motion& motion, const MotionVerdict& verdict) {
+    const Vec2 at = position_at(motion, verdict.nearest_time);
+    return verdict.encounter == Encounter::overlap &&
+           encounter(held({0, at}, 1), box, held({0, place}, 1), box) == Encounter::overlap;
+  };
+  const Motion rest = held({0, place}, 1);
+  const Motion deeper = straight({0, 0}, {1, 0}), out = straight({1, 0}, {0, 0});
+  const Motion soon_out{geometry::CurvedMotion{geometry::CurveBasis::powers, 0, 1, {{0, 0}, {0.125, 0}, {-1, 0}}}};
+  for (const Motion& motion : {deeper, out, soon_out}) {
+    const MotionVerdict beside = examine(motion, box, rest, box), in_block = examine(motion, box, block);
+    EXPECT_TRUE(overlap_there(motion, beside)) << beside.nearest_time;
+    EXPECT_TRUE(overlap_there(motion, in_block)) << in_block.nearest_time;
+    const Vec2 from_mover = beside.place - position_at(motion, beside.nearest_time), from_other = beside.place - place;
+    for (const Vec2 d : {from_mover, from_other}) EXPECT_LE(std::max(std::fabs(d.x), std::fabs(d.y)), 1.0);
+  }
+}
+
 TEST(Motions, AChainOfDiscsPassesWhereOneDiscDoesNot) {
   const RigidBody chain{{{{-0.3, 0}}, 0.2}, {{{0, 0}}, 0.2}, {{{0.3, 0}}, 0.2}};
   const Obstacle wall = Polyline{{{-9, 0.25}, {9, 0.25}}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pieces.h"
@@ -62,6 +63,18 @@ Bounds last_moment(const Meets& meets, double met) {
   return {low, high};
 }
 
+/// A moment that meets, found by halving. Nothing where only single moments meet, between the doubles.
+std::optional<double> some_moment(const Meets& meets) {
+  Window w = meets.question.window();
+  const double fine = kMomentShare * (w.to - w.from);
+  for (;;) {
+    const double middle = middle_of(w.from, w.to);
+    if (meets({middle, middle})) return middle;
+    if (!(w.to - w.from > fine && w.from < middle && middle < w.to)) return std::nullopt;
+    (meets({w.from, middle}) ? w.to : w.from) = middle;
+  }
+}
+
 /// Encloses the clearance: `guess` comes first, each bound is confirmed exactly. No clearance is below -`reach`.
 Bounds clearance_of(const Question& q, double guess, double size, double reach) {
   const Window whole = q.window();
@@ -92,7 +105,7 @@ MotionVerdict examined(const Question& q) {
     return verdict;
   }
   verdict.encounter = q.verdict();
-  const motions::Nearest nearest = motions::nearest_of(q);
+  const motions::Nearest nearest = motions::nearest_of(q, whole);
   verdict.nearest_time = nearest.time;
   verdict.place = nearest.place;
   if (verdict.encounter != Encounter::contact)
@@ -107,6 +120,12 @@ MotionVerdict examined(const Question& q) {
   const bool there = meets({t, t});
   verdict.first = first_moment(meets, there || meets({whole.from, t}) ? t : whole.to);
   verdict.last = last_moment(meets, there || meets({t, whole.to}) ? t : whole.from);
+  if (there || verdict.encounter == Encounter::contact) return verdict;
+  // Polygons that touch are as near as those that overlap: they may only touch at `t`.
+  if (const std::optional<double> moment = some_moment(meets)) {
+    verdict.nearest_time = *moment;
+    verdict.place = motions::nearest_of(q, {*moment, *moment}).place;
+  }
   return verdict;
 }
 

@@ -87,8 +87,8 @@ struct WayPiece {
 
 class Search {
  public:
-  explicit Search(const Question& q) : q_(q) {
-    Path<RunningError> path = relative_path<RunningError>(q.motion(), q.other(), q.window());
+  Search(const Question& q, Window over) : q_(q), over_(over) {
+    Path<RunningError> path = relative_path<RunningError>(q.motion(), q.other(), over);
     if (path.c.size() == 1) path.c.push_back({RunningError(0.0), RunningError(0.0)});
     to_control_points(path);
     const double scale = path.scale.value;
@@ -188,9 +188,8 @@ class Search {
     Nearest nearest = best_;
     nearest.size = size_;
     nearest.reach = reach_;
-    const Window w = q_.window();
-    const double time = w.from + best_share_ * (w.to - w.from);
-    nearest.time = std::isfinite(time) ? std::clamp(time, w.from, w.to) : w.from;
+    const double time = over_.from + best_share_ * (over_.to - over_.from);
+    nearest.time = std::isfinite(time) ? std::clamp(time, over_.from, over_.to) : over_.from;
     nearest.place = position_at(q_.motion(), nearest.time);
     if (!best_hull_) return nearest;
     // From the body's own nearest corner on, halfway into the gap or the overlap.
@@ -207,6 +206,7 @@ class Search {
   }
 
   const Question& q_;
+  const Window over_;
   std::vector<Hull> hulls_;
   WayPiece whole_;
   Nearest best_;
@@ -217,8 +217,8 @@ class Search {
 
 }  // namespace
 
-Nearest nearest_of(const Question& q) {
-  return Search(q)();
+Nearest nearest_of(const Question& q, Window over) {
+  return Search(q, over)();
 }
 
 }  // namespace exactvo::geometry::motions

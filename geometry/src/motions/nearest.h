@@ -16,7 +16,7 @@ struct Nearest {
   double reach = 0.0;      ///< m, the largest reach, rounded up: no clearance is below its negative
 };
 
-/// REQUIRES: the window is not empty.
-Nearest nearest_of(const Question& q);
+/// REQUIRES: `over` is a part of the question's window.
+Nearest nearest_of(const Question& q, Window over);
 
 }  // namespace exactvo::geometry::motions
