@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/input_text.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/motions.h"
 #include "formation/moving_scenes.h"
 #include "recordings/exact_motion.h"
 
@@ -401,6 +405,98 @@ TEST(AuditMotion, AgreesWithSamplesOverRandomPathsProfilesAndCurves) {
   }
   EXPECT_GT(clear, 30);
   EXPECT_GT(meets, 30);
+}
+
+/// A number of 2^-3 m, so that bodies often touch exactly.
+double on_grid(double x) {
+  return std::round(8.0 * x) / 8.0;
+}
+Vec2 on_grid(Vec2 p) {
+  return {on_grid(p.x), on_grid(p.y)};
+}
+
+/// Two robots and an obstacle, one step of a motion that geometry/motions.h has too: all its numbers are exact there.
+struct Shared {
+  RecordingFile file;
+  std::vector<geometry::Motion> motions;
+};
+
+Shared random_shared(SeededRandom& random, bool is_curved) {
+  const double duration = 0.75;  // a third of it is a double
+  const auto place = [&] { return on_grid(random.in_box(1.5)); };
+  const Vec2 first = place();
+  Vec2 second = place();
+  Shared out{curve(2.0, duration, first, {}, {}), {}};
+  formation::Scenario& s = out.file.scenario;
+  s.robots.push_back(s.robots[0]);
+  s.robots[1].id = "R2";
+  s.formation->topology = formation::Topology{{{0, 1}, {1, 0}}, {1, 1}};
+  out.file.recording.offsets = s.formation->offsets = {{0, 0}, {0, 0}};
+  for (Robot& r : s.robots) r.radius = on_grid(random.uniform(0.125, 0.5));
+  while (norm(first - second) < s.robots[0].radius + s.robots[1].radius) second = place();
+  const Vec2 corner = place(), side{on_grid(random.uniform(0.25, 1.0)), 0.0}, up = on_grid(random.in_box(0.5));
+  const bool is_solid = up.y > 0.0 && random.integer(0, 1) == 1;
+  geometry::Obstacle shape = geometry::Polyline{{corner, corner + side}};
+  if (is_solid) shape = geometry::Polygon{{corner, corner + side, corner + side + up, corner + up}, {}};
+  s.obstacles = {{"block", shape}};
+  out.file.recording.motion = is_curved ? MotionLaw::hermite : MotionLaw::straight;
+  if (is_curved) out.file.info.integrator = "rk4";
+  for (const Vec2 from : {first, second}) {
+    const std::size_t i = out.motions.size();
+    const Vec2 to = place(), v0 = on_grid(random.in_box(4.0)), v1 = on_grid(random.in_box(4.0));
+    for (formation::Step& row : out.file.recording.steps) row.robots.resize(2);
+    formation::RobotStep &start = out.file.recording.steps[0].robots[i], &end = out.file.recording.steps[1].robots[i];
+    start.position = start.anchor = from;
+    end.position = end.anchor = to;
+    if (is_curved) {
+      start.velocity = v0;
+      end.velocity = v1;
+      out.motions.emplace_back(geometry::hermite_cubic({0.0, from}, v0, {duration, to}, v1));
+    } else {
+      out.motions.emplace_back(geometry::StraightMotion{{0.0, from}, {duration, to}});
+    }
+  }
+  return out;
+}
+
+// The audit, the metrics and `check` decide motions each by themselves
+// (docs/adr/0023-the-audit-decides-motions-itself.md).
+TEST(AuditMotion, TheAuditTheMetricsAndTheRoomOfMotionsSayTheSame) {
+  SeededRandom random(exactvo::test::seed_of_run(42));
+  int counts[3] = {}, in_contact_open = 0, distances = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const bool is_curved = round % 2 == 1;
+    const Shared x = random_shared(random, is_curved);
+    const std::vector<Robot>& robots = x.file.scenario.robots;
+    const geometry::RigidBody one = geometry::disc_body(robots[0].radius), two = geometry::disc_body(robots[1].radius);
+    const geometry::Obstacle& block = x.file.scenario.obstacles[0].shape;
+    const geometry::MotionVerdict pair = examine(x.motions[0], one, x.motions[1], two);
+    const geometry::MotionVerdict walls[] = {examine(x.motions[0], one, block), examine(x.motions[1], two, block)};
+    const geometry::Encounter all[] = {pair.encounter, walls[0].encounter, walls[1].encounter};
+    const geometry::Encounter worst = *std::max_element(std::begin(all), std::end(all));
+    ++counts[static_cast<int>(worst)];
+    const AuditReport report = audit(x.file);
+    EXPECT_EQ(report.collisions > 0, worst == geometry::Encounter::overlap) << round << ' ' << to_json(report);
+    const bool touches =
+        std::any_of(std::begin(all), std::end(all), [](auto e) { return e == geometry::Encounter::contact; });
+    EXPECT_TRUE(report.unproven == 0 || (is_curved && touches)) << round << ' ' << to_json(report);
+    in_contact_open += report.unproven > 0 && worst == geometry::Encounter::contact ? 1 : 0;
+    const formation::Metrics metrics = measure(x.file.scenario, x.file.recording);
+    const auto agrees = [&](const std::optional<double>& measured, const geometry::MotionVerdict& v) {
+      EXPECT_EQ(formation::touched(measured), v.encounter == geometry::Encounter::overlap) << round;
+      if (v.encounter == geometry::Encounter::overlap) return;  // depths in polygons are measured otherwise
+      EXPECT_TRUE(measured && *measured <= v.clearance.high && v.clearance.low - *measured < 1e-4) << round;
+      ++distances;
+    };
+    agrees(metrics.min_robot_clearance, pair);
+    for (const std::size_t i : {0, 1}) agrees(metrics.robots[i].min_obstacle_clearance, walls[i]);
+  }
+  std::printf("%d clear, %d in contact (%d of them open), %d overlap; %d distances\n", counts[0], counts[1],
+              in_contact_open, counts[2], distances);
+  EXPECT_GT(counts[0], 300);
+  EXPECT_GT(counts[1], 20);
+  EXPECT_GT(counts[2], 300);
+  EXPECT_GT(distances, 1000);
 }
 
 /// `decide` over [0, 1], where parts longer than 2^-depth round `where` are not told, and how many parts it asks for.

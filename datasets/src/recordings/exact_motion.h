@@ -128,11 +128,14 @@ class ExactWay {
 
 enum class Verdict { clear, meets, unknown };
 
-/// The most chords that one question is cut into, and how often one part is halved, before it is given up as unknown.
+/// The most chords that one question is cut into, and how often one part is halved, before it is given up as unknown;
+/// and how many parts are, before the whole is: at a moment of contact it is a few.
 inline constexpr int kMostChords = 4096;
 inline constexpr int kMostHalvings = 48;
+inline constexpr int kMostGivenUp = 16;
 
-/// Halves [start, end] until `test(chord)` has answered for every part. `over(start, end)` gives the chords.
+/// Halves [start, end] until `test(chord)` has answered for every part. `over(start, end)` gives the chords. A part
+/// that is given up hides no other one that meets.
 template <typename Over, typename Test>
 Verdict decide(const Over& over, const Test& test, const Rational& start, const Rational& end) {
   struct Part {
@@ -140,18 +143,21 @@ Verdict decide(const Over& over, const Test& test, const Rational& start, const 
     int halvings;
   };
   std::vector<Part> open{{start, end, 0}};
+  int given_up = 0;
   for (int used = 0; !open.empty(); ++used) {
     const Part part = open.back();
     open.pop_back();
     const Verdict verdict = test(over(part.from, part.to));
     if (verdict == Verdict::meets) return verdict;
     if (verdict == Verdict::clear) continue;
-    if (used >= kMostChords || part.halvings == kMostHalvings) return Verdict::unknown;
+    if (part.halvings == kMostHalvings) ++given_up;
+    if (used >= kMostChords || given_up == kMostGivenUp) return Verdict::unknown;
+    if (part.halvings == kMostHalvings) continue;
     const Rational middle = (part.from + part.to) / 2;
     open.push_back({middle, part.to, part.halvings + 1});
     open.push_back({part.from, middle, part.halvings + 1});
   }
-  return Verdict::clear;
+  return given_up > 0 ? Verdict::unknown : Verdict::clear;
 }
 
 }  // namespace exactvo::datasets::exact
