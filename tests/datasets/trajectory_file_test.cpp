@@ -105,6 +105,28 @@ TEST(TrajectoryFile, ReadsTheTableOfARun) {
   EXPECT_TRUE(std::isnan(c.rows[1].heading));
 }
 
+TEST(TrajectoryFile, ReadsPosesOfRosBags) {
+  const std::string pose = "pose.pose.position.x,field.pose.pose.position.y,field.pose.pose.position.z";
+  const std::string turn =
+      "field.pose.pose.orientation.x,field.pose.pose.orientation.y,field.pose.pose.orientation.z,"
+      "field.pose.pose.orientation.w";
+  const Content echoed = content_of("%time,field.header.seq,field.header.frame_id,field." + pose + "," + turn +
+                                    ",field.twist.twist.linear.x\n" +
+                                    "1500000000,1,odom,1,2,0,0,0,0.6,0.8,5\n1600000000,2,odom,3,4,0,0,0,0,0,5\n");
+  ASSERT_EQ(echoed.rows.size(), 2u);
+  expect_row(echoed.rows[0], 0, 1.5, 1, 2, 2);
+  expect_row(echoed.rows[1], 0, 1.6, 3, 4, 3);
+  EXPECT_DOUBLE_EQ(echoed.rows[0].heading, 2.0 * std::atan2(0.6, 0.8));
+  EXPECT_TRUE(std::isnan(echoed.rows[1].heading)) << "0 0 0 0 is no orientation";
+  EXPECT_TRUE(std::isnan(echoed.rows[0].velocity.x)) << "a twist is in the axes of the robot";
+  const Content plotted = content_of("__time,/odom/pose/pose/position/x,/odom/pose/pose/position/y\n7.5,1,2\n8,1,2\n");
+  expect_row(plotted.rows.at(0), 0, 7.5, 1, 2, 2);
+  const Content tilted = content_of("timestamp,tx,x,y,qx,qy,qz,qw\n0,0,1,2,0.5,0.5,0.5,0.5\n");
+  EXPECT_DOUBLE_EQ(tilted.rows.at(0).heading, 2.0 * std::atan2(1.0, 1.0));
+  const DataError two = refusal_of("__time,/a/position/x,/a/position/y,/b/position/x,/b/position/y\n7,1,2,3,4\n");
+  EXPECT_EQ(two.code(), DataCode::format_unknown) << "two topics: which one is meant is not known";
+}
+
 TEST(TrajectoryFile, ReadsJuPedSimAndPedPy) {
   const Content c = content_of(
       "#framerate: "

@@ -61,24 +61,43 @@ enum Column : std::size_t {
   kHeadingColumn,
   kVxColumn,
   kVyColumn,
+  kQxColumn,  // of a quaternion, which has the heading
+  kQyColumn,
+  kQzColumn,
+  kQwColumn,
   kColumnKinds
 };
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 using Columns = std::array<std::size_t, kColumnKinds>;
 
-/// The names by which columns are known, the best first.
+/// The column of times that rostopic writes.
+constexpr const char* kNanoseconds = "%time";
+
+/// The names by which columns are known, the best first. A name with a dot is also the end of a longer one, if of one
+/// column alone: exports of ROS bags have the topic and the message's parts before it, parted by dots or slashes.
 const std::array<std::vector<std::string>, kColumnKinds> kColumnNames{
-    {{"t", "time", "time_s", "timestamp", "timestamp_s", "t_s", "time/s", "t/s"},
+    {{"t", "time", "time_s", "timestamp", "timestamp_s", "t_s", "time/s", "t/s", "__time", kNanoseconds},
      {"frame", "frame_id", "fr", "f"},
      {"id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"},
-     {"x", "x_m", "x/m", "pos_x", "position_x", "x/cm"},
-     {"y", "y_m", "y/m", "pos_y", "position_y", "y/cm"},
+     {"x", "x_m", "x/m", "pos_x", "position_x", "x/cm", "position.x", "translation.x"},
+     {"y", "y_m", "y/m", "pos_y", "position_y", "y/cm", "position.y", "translation.y"},
      {"theta", "heading", "yaw", "theta_rad", "heading_rad", "yaw_rad", "psi_rad"},
      {"vx", "v_x", "vx_m_s", "vel_x", "velocity_x"},
-     {"vy", "v_y", "vy_m_s", "vel_y", "velocity_y"}}};
+     {"vy", "v_y", "vy_m_s", "vel_y", "velocity_y"},
+     {"qx", "orientation.x", "rotation.x"},
+     {"qy", "orientation.y", "rotation.y"},
+     {"qz", "orientation.z", "rotation.z"},
+     {"qw", "orientation.w", "rotation.w"}}};
 
 /// In names of columns that are no heading in radians, and may be meant as one.
 constexpr std::array<std::string_view, 6> kHeadingWords{"theta", "heading", "yaw", "angle", "orient", "bearing"};
+
+bool ends_in_part(const std::string& name, const std::string& end) {
+  if (name.size() <= end.size() || end.find('.') == std::string::npos) return false;
+  std::string last = name.substr(name.size() - end.size() - 1);
+  std::replace(last.begin(), last.end(), '/', '.');
+  return last == "." + end;
+}
 
 /// Where each column stands; a name of `kColumnNames` that comes twice counts the first time.
 Columns columns_in(const std::vector<std::string_view>& header) {
@@ -88,12 +107,20 @@ Columns columns_in(const std::vector<std::string_view>& header) {
   for (const std::string_view field : header) names.push_back(lower_case(std::string(field)));
   for (std::size_t c = 0; c < kColumnKinds; ++c)
     for (const std::string& name : kColumnNames[c]) {
-      const auto at = std::find(names.begin(), names.end(), name);
+      auto at = std::find(names.begin(), names.end(), name);
+      const auto is_long = [&](const std::string& one) { return ends_in_part(one, name); };
+      if (at == names.end() && std::count_if(names.begin(), names.end(), is_long) == 1)
+        at = std::find_if(names.begin(), names.end(), is_long);
       if (at == names.end()) continue;
       columns[c] = static_cast<std::size_t>(at - names.begin());
       break;
     }
   return columns;
+}
+
+bool has_quaternion(const Columns& columns) {
+  return std::all_of(columns.begin() + kQxColumn, columns.begin() + kQwColumn + 1,
+                     [](std::size_t column) { return column != kNoColumn; });
 }
 
 /// The columns of rows without a header: frames, ids and places alone.
@@ -109,7 +136,7 @@ Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y
 
 /// A name that may mean a heading, of a table that has none that is known: in another unit, or half a quaternion.
 void note_headings_left_out(const std::vector<std::string_view>& header, const Columns& columns, TrajectoryFile& file) {
-  if (columns[kHeadingColumn] != kNoColumn) return;
+  if (columns[kHeadingColumn] != kNoColumn || has_quaternion(columns)) return;
   for (const std::string_view field : header) {
     const std::string name = lower_case(std::string(field));
     const bool is_like_one = std::any_of(kHeadingWords.begin(), kHeadingWords.end(),
@@ -145,6 +172,7 @@ class TableRows {
 
   /// Frames a second, where the file says; units of length in m.
   double frame_rate = 0.0, unit = 1.0;
+  double time_unit = 1.0;  ///< s
   bool has_names = false;  ///< a row has no more fields than the header; an empty one may follow
 
   void add(const std::vector<std::string_view>& fields, std::uint64_t line) {
@@ -154,11 +182,19 @@ class TableRows {
                   std::to_string(count_) + " fields, as the header has");
     const auto number = [&](Column c, const char* what) { return out_.number(fields[columns_[c]], what, line); };
     const double time = columns_[kTimeColumn] != kNoColumn
-                            ? number(kTimeColumn, "a time")
+                            ? time_unit * number(kTimeColumn, "a time")
                             : out_.time_of_frame(number(kFrameColumn, "a frame"), frame_rate);
-    const bool has_heading =
-        columns_[kHeadingColumn] != kNoColumn && !trimmed(fields[columns_[kHeadingColumn]]).empty();
-    const double heading = has_heading ? number(kHeadingColumn, "a heading") : std::numeric_limits<double>::quiet_NaN();
+    const auto has = [&](Column c) { return columns_[c] != kNoColumn && !trimmed(fields[columns_[c]]).empty(); };
+    double heading = std::numeric_limits<double>::quiet_NaN();
+    if (has(kHeadingColumn)) {
+      heading = number(kHeadingColumn, "a heading");
+    } else if (has(kQxColumn) && has(kQyColumn) && has(kQzColumn) && has(kQwColumn)) {
+      const char* what = "a part of a quaternion";
+      const double x = number(kQxColumn, what), y = number(kQyColumn, what);
+      const double z = number(kQzColumn, what), w = number(kQwColumn, what);
+      if (x != 0.0 || y != 0.0 || z != 0.0 || w != 0.0)  // 0 0 0 0 stands in messages without an orientation
+        heading = std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
+    }
     std::string_view id = columns_[kIdColumn] == kNoColumn ? std::string_view("agent") : fields[columns_[kIdColumn]];
     if (ids_ == Ids::numbers) id = plain_id(id, memory_);
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
@@ -235,6 +271,7 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
     note_headings_left_out(fields, columns, out.file());
     rows.emplace(columns, fields.size(), Ids::texts, out);
     rows->has_names = true;
+    if (columns[kTimeColumn] != kNoColumn && fields[columns[kTimeColumn]] == kNanoseconds) rows->time_unit = 1e-9;
   }
 }
 
@@ -282,7 +319,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     if (!has_place_and_time(named) || named[kIdColumn] == kNoColumn) continue;
     columns = named;
     columns[kHeadingColumn] = kNoColumn;  // JuPedSim's ANGLE is that of an ellipse of its model
-    columns[kVxColumn] = columns[kVyColumn] = kNoColumn;
+    std::fill(columns.begin() + kVxColumn, columns.end(), kNoColumn);
     count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
                           named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
     if (lower_case(std::string(fields[named[kXColumn]])) == "x/cm") unit = kMetresOfCentimetre;
