@@ -25,11 +25,10 @@ namespace {
 using formation::Scenario;
 using geometry::Vec2;
 
-/// By the rules alone, since the whole schema takes twice as long to parse; it is for the words of a refusal.
+/// By the rules alone, since the whole schema takes several times as long to parse; it is for the words of a refusal.
 void check_by_schema(const Json& tree, const std::string& file) {
-  static const Json rules = parse_json(scenario_rules(), "scenario.schema.json");
   try {
-    check_against_schema(tree, rules, file);
+    check_against_scenario_rules(tree, file);
   } catch (const DataError&) {
     check_against_schema(tree, parse_json(scenario_schema(), "scenario.schema.json"), file);
     throw;

@@ -2,6 +2,7 @@
 #include "scenarios/schema_check.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -15,8 +16,12 @@ namespace {
 
 class Checker {
  public:
+  /// What a reference of the schema, "#/definitions/point", stands for.
+  using Definitions = std::function<const Json&(const std::string& reference)>;
+
   /// Of `all`, whose parts are checked.
-  Checker(const Json& schema, const Json& all, const std::string& file) : root_(schema), all_(all), file_(file) {}
+  Checker(const Definitions& definitions, const Json& all, const std::string& file)
+      : definitions_(definitions), all_(all), file_(file) {}
 
   void check(const Json& value, const Json& schema) const {
     const Json& rules = resolved(schema);
@@ -41,7 +46,7 @@ class Checker {
     const auto reference = schema.find("$ref");
     if (reference == schema.end()) return schema;
     const Json*& known = resolved_[&*reference];
-    if (known == nullptr) known = &root_.at(Json::json_pointer(reference->get<std::string>().substr(1)));
+    if (known == nullptr) known = &definitions_(reference->get_ref<const std::string&>());
     return *known;
   }
 
@@ -331,7 +336,8 @@ class Checker {
                        [&](const Json& key) { return value.contains(key.get<std::string>()); });
   }
 
-  const Json &root_, &all_;
+  const Definitions& definitions_;
+  const Json& all_;
   const std::string& file_;
   mutable std::map<const Json*, const Json*> resolved_;  ///< by the reference
 };
@@ -363,10 +369,53 @@ const std::vector<Checker::Keyword>& Checker::keywords() {
   return kKeywords;
 }
 
+/// The rules of scenarios, of which most need few: a definition is parsed where it is first referred to.
+class RulesInParts {
+ public:
+  RulesInParts() {
+    const std::string_view text = scenario_rules();
+    const std::string before = R"(,"definitions": {)";
+    const std::size_t end = text.find(before);
+    root_ = parse_json(std::string(text.substr(0, end)) + "}", kName);
+    for (std::size_t at = end + before.size(); text.at(at) != '}';) {
+      const std::size_t name = text.find('"', at) + 1, after = text.find('"', name), from = text.find('{', after);
+      int depth = 0;
+      at = from;
+      do depth += text[at] == '{' ? 1 : text[at] == '}' ? -1 : 0;  // no text of the rules has a brace
+      while (depth > 0 && ++at);
+      texts_["#/definitions/" + std::string(text.substr(name, after - name))] = text.substr(from, ++at - from);
+    }
+  }
+
+  const Json& root() const { return root_; }
+  const Json& definition(const std::string& reference) {
+    const auto [known, is_new] = parsed_.try_emplace(reference);
+    if (is_new) known->second = parse_json(texts_.at(reference), kName);
+    return known->second;
+  }
+
+ private:
+  static constexpr const char* kName = "scenario.schema.json";
+  Json root_;
+  std::map<std::string, std::string_view> texts_;
+  std::map<std::string, Json> parsed_;
+};
+
 }  // namespace
 
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name) {
-  Checker(schema, value, file_name).check(value, schema);
+  const Checker::Definitions within = [&](const std::string& reference) -> const Json& {
+    return schema.at(Json::json_pointer(reference.substr(1)));
+  };
+  Checker(within, value, file_name).check(value, schema);
+}
+
+void check_against_scenario_rules(const Json& value, const std::string& file_name) {
+  static thread_local RulesInParts rules;
+  const Checker::Definitions parts = [](const std::string& reference) -> const Json& {
+    return rules.definition(reference);
+  };
+  Checker(parts, value, file_name).check(value, rules.root());
 }
 
 }  // namespace exactvo::datasets

@@ -18,6 +18,9 @@ namespace exactvo::datasets {
 /// Throws DataError for the first misfit in the order of the text.
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name);
 
+/// The same by `scenario_rules()`.
+void check_against_scenario_rules(const Json& value, const std::string& file_name);
+
 /// `scenario_schema()` without its descriptions: the same verdicts in fewer words.
 std::string_view scenario_rules();
 

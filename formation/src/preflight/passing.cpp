@@ -166,7 +166,7 @@ class Proofs {
            reach_.is_proven_out_of_reach(r.radius, r.position, goal);
   }
 
-  static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsestSquare * radius))); }
+  static double coarsest_side(double radius) { return std::ldexp(1.0, std::ilogb(kCoarsestSquare * radius)); }
 
   /// Such robots push each other apart, to any side.
   bool overlap_at_start(std::size_t i, std::size_t j) const {

@@ -43,11 +43,16 @@ geometry::Box places_of(const Scenario& scenario) {
   return box;
 }
 
-/// Starts, goals and their surroundings, where robots may be pushed.
-geometry::RouteMapOptions options_for(const Terrain& terrain, double extra, bool routes) {
-  geometry::Box box = terrain.places;
-  for (const SceneObstacle& o : terrain.obstacles)
+geometry::Box box_of(const std::vector<SceneObstacle>& obstacles) {
+  geometry::Box box;
+  for (const SceneObstacle& o : obstacles)
     for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+  return box;
+}
+
+/// Starts, goals and their surroundings, where robots may be pushed.
+geometry::RouteMapOptions options_for(const Terrain& terrain, geometry::Box box, double extra, bool routes) {
+  box.add(terrain.places);
   geometry::RouteMapOptions options;
   options.chains_only = !routes;
   options.largest_radius = std::max(kLeastPlanned, terrain.largest_radius + extra);
@@ -100,10 +105,10 @@ Terrain terrain_of(const Scenario& scenario) {
 }
 
 Reachability::Reachability(const Terrain& terrain, double most_extra, bool routes)
-    : terrain_(terrain), most_extra_(most_extra), routes_(routes) {}
+    : terrain_(terrain), walls_(box_of(terrain.obstacles)), most_extra_(most_extra), routes_(routes) {}
 
 const geometry::RouteMap& Reachability::map() {
-  if (!map_) map_.emplace(shapes_of(terrain_.obstacles), options_for(terrain_, most_extra_, routes_));
+  if (!map_) map_.emplace(shapes_of(terrain_.obstacles), options_for(terrain_, walls_, most_extra_, routes_));
   return *map_;
 }
 
@@ -113,7 +118,11 @@ const geometry::RoutePlan& Reachability::plan(double radius) {
 }
 
 std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, const Destination& to) {
-  if (terrain_.obstacles.empty()) return to.place;
+  // Outside of the box of all obstacles one can go round it: no map is needed.
+  const auto is_outside = [&](Vec2 p) {
+    return terrain_.places.contains(p) && geometry::distance_below(walls_, p) > std::max(radius, kLeastPlanned);
+  };
+  if (terrain_.obstacles.empty() || (is_outside(from) && is_outside(to.place))) return to.place;
   if (!map().covers(from) || !map().covers(to.place)) return std::nullopt;
   const geometry::RoutePlan& of_robot = plan(radius);
   if (of_robot.is_reachable(from, to.place)) return to.place;

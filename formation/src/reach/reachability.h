@@ -97,7 +97,8 @@ class Reachability {
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;
 
   Terrain terrain_;
-  double most_extra_;  ///< m
+  geometry::Box walls_;  ///< round all obstacles
+  double most_extra_;    ///< m
   bool routes_;
   std::optional<geometry::RouteMap> map_;
   std::map<double, geometry::RoutePlan> plans_;  ///< by radius

@@ -234,6 +234,7 @@ class Clustering {
   }
 
   std::vector<std::size_t> newly_met() {
+    if (std::find(taken_.begin(), taken_.end(), false) == taken_.end()) return {};
     // Each side of `may_meet` is grown by half of what the robot keeps clear of the obstacle itself.
     const double clearance = 0.5 * (robot_radius_ + options_.margin);
     const Silhouette way(passage(), clearance);

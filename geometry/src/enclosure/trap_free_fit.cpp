@@ -233,6 +233,7 @@ class CoarseSearch {
       const double minor = coarse_candidate(o.frame, size_, m, 0).minor;
       const bool or_equal = number + first_offset < best_;
       if (search.is_too_large(o.frame, minor, or_equal)) return;
+      if (search.is_row_too_large(o.frame, minor, or_equal)) continue;
       for (std::size_t i = first_offset; i < last_offset; ++i) {
         const Candidate c = coarse_candidate(o.frame, size_, m, i);
         if (search.improves(o, c, number + i < best_, known(number + i))) best_ = number + i;

@@ -218,6 +218,16 @@ class CandidateSearch {
     return limit(minor, or_equal).is_too_long(f.half_width);
   }
 
+  /// The same by two points, d apart in height: whatever the offset, the sum of their half chords is no more than it is
+  /// midway between them, 2 sqrt(1 - (d / 2b)^2).
+  bool is_row_too_large(const TurnedPoints& f, double minor, bool or_equal) const {
+    constexpr double kRounding = 4e-12;
+    const AreaLimit area = limit(minor, or_equal);
+    const double longest = area.longest(), t = 0.5 * (f.y[f.rightmost] - f.y[f.leftmost]) / minor;
+    const double most = 2.0 * longest * std::sqrt(1.0 - t * t);
+    return area.is_too_long(longest) && f.x[f.rightmost] - f.x[f.leftmost] > most + kRounding * f.extent;
+  }
+
   /// Whether it is smaller than the best so far (`or_equal`: or as large) and will do: then it is the best.
   bool improves(const Orientation& o, const Candidate& c, bool or_equal, const Known& known) {
     if (known.state == Known::State::hopeless) return false;

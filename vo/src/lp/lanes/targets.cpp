@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which SIMD targets this processor has. Compiled with Highway's headers under another name
-// (cmake/ExactVOHighway.cmake), in place of its library; nothing where that is linked.
+// Which SIMD targets this processor has, as the GNU C library found it. Compiled with Highway's headers under another
+// name (cmake/ExactVOHighway.cmake), in place of its library; nothing where that is linked.
 #ifdef hwy
 #include <hwy/highway.h>
 
-#include <cpuid.h>
+#include <sys/platform/x86.h>
 
 #include <atomic>
 #include <cstdarg>
@@ -17,35 +17,27 @@ namespace {
 
 std::atomic<std::int64_t> targets_for_test{0};
 
-/// What __builtin_cpu_supports does not know in every compiler. Registers that the operating system keeps are not among
-/// it: those of AVX2 and AVX-512 have been asked for.
-bool has_feature(unsigned leaf, unsigned bit_of_ecx) {
-  unsigned a = 0, b = 0, c = 0, d = 0;
-  return __get_cpuid_count(leaf, 0, &a, &b, &c, &d) != 0 && (c >> bit_of_ecx & 1U) != 0;
+/// Whether the C library found all of these usable when the program was loaded: another CPUID would leave a virtual
+/// machine each time.
+template <class... Features>
+bool has(Features... features) {
+  return (x86_cpu_active(features) && ...);
 }
 
 /// As Highway groups them: a target has all that the ones before it have.
 std::int64_t detected_targets() {
-  constexpr unsigned kBasic = 1, kExtended = 7, kOfAmd = 0x80000001;
-  __builtin_cpu_init();
   std::int64_t targets = HWY_SCALAR | HWY_EMU128;
-  if (!__builtin_cpu_supports("ssse3")) return targets;
+  if (!has(x86_cpu_SSSE3)) return targets;
   targets |= HWY_SSSE3;
-  if (!(__builtin_cpu_supports("sse4.1") && __builtin_cpu_supports("sse4.2") && has_feature(kBasic, 1) &&
-        has_feature(kBasic, 25)))  // carry-less products, AES
-    return targets;
+  if (!has(x86_cpu_SSE4_1, x86_cpu_SSE4_2, x86_cpu_PCLMULQDQ, x86_cpu_AES)) return targets;
   targets |= HWY_SSE4;
-  if (!(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-        __builtin_cpu_supports("bmi2") && has_feature(kOfAmd, 5) && has_feature(kBasic, 29)))  // LZCNT, F16C
-    return targets;
+  if (!has(x86_cpu_AVX2, x86_cpu_FMA, x86_cpu_BMI1, x86_cpu_BMI2, x86_cpu_LZCNT, x86_cpu_F16C)) return targets;
   targets |= HWY_AVX2;
-  if (!(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw")))
-    return targets;
+  if (!has(x86_cpu_AVX512F, x86_cpu_AVX512VL, x86_cpu_AVX512DQ, x86_cpu_AVX512BW)) return targets;
   targets |= HWY_AVX3;
-  // VBMI, VBMI2, GFNI, VAES, VPCLMULQDQ, VNNI, BITALG, VPOPCNTDQ
-  for (const unsigned bit : {1U, 6U, 8U, 9U, 10U, 11U, 12U, 14U})
-    if (!has_feature(kExtended, bit)) return targets;
+  if (!has(x86_cpu_AVX512_VBMI, x86_cpu_AVX512_VBMI2, x86_cpu_GFNI, x86_cpu_VAES, x86_cpu_VPCLMULQDQ,
+           x86_cpu_AVX512_VNNI, x86_cpu_AVX512_BITALG, x86_cpu_AVX512_VPOPCNTDQ))
+    return targets;
   return targets | HWY_AVX3_DL;
 }
 
