@@ -27,7 +27,7 @@ constexpr double kFirstGuess = 1.1;
 /// At least the corners of a polygon round an ellipse.
 constexpr std::size_t kMostCornersRound = 32;
 
-/// Robots on wheels, of a task.
+/// Robots on wheels, of a task: whole packs.
 constexpr std::size_t kDrivenTogether = 4096;
 
 std::string number(double x) {
@@ -223,11 +223,9 @@ void CrowdBody::set_heading(RobotId robot, double degrees) {
 
 /// As robots are about to move.
 void CrowdBody::drive_wheels() {
-  Robots& r = core->robots;
   if (core->wheels.empty()) return;
-  core->tasks.for_ranges(r.size(), kDrivenTogether, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i)
-      if (core->wheels.has(r.kind(i))) core->wheels.drive(r.kind(i), r.id[i], {r.next_mx[i], r.next_my[i]});
+  core->tasks.for_ranges(core->robots.size(), kDrivenTogether, [&](std::size_t first, std::size_t last, int) {
+    core->wheels.drive(core->robots, first, last);
   });
 }
 

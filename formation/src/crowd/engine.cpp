@@ -40,7 +40,7 @@ void add(CrowdPhases& sum, const CrowdPhases& more) {
 /// that move.
 constexpr std::size_t kMostHard = kMostEdges + kMostWheelRows;
 constexpr std::size_t kRows = kMostHard + kMostNeighbours + kMostMoving;
-constexpr std::size_t kRobotRows = kMostHard * kSlots;
+constexpr std::size_t kRobotRows = kMostHard * kSlots, kEdgeRows = kMostEdges * kSlots;
 
 /// Buffers of a thread.
 template <class T>
@@ -53,7 +53,7 @@ struct CrowdScratch {
   std::int32_t hard[kSlots];    ///< lines that are never relaxed
   std::int32_t moving[kSlots];  ///< lines against bodies that move
   OneRobotBuffers<T> one;
-  alignas(64) T edge_x[kRobotRows], edge_y[kRobotRows], edge_c[kRobotRows];  ///< of a group, by number and slot
+  alignas(64) T edge_x[kEdgeRows], edge_y[kEdgeRows], edge_c[kEdgeRows];  ///< of a group, by number and slot
   alignas(64) T moving_x[kMostMoving * kSlots], moving_y[kMostMoving * kSlots], moving_c[kMostMoving * kSlots];
   HardBuffers hard_level;
   StepReport counts;
@@ -69,10 +69,16 @@ class CrowdEngine final : public CrowdCore {
     table_ = kind_table<T>(options, kinds);
     hard_.take_kinds();
     wheels.take_kinds(kinds, options);
-    wheel_offsets_.assign(kinds.size() * kMostWheelRows, T(0));
+    for (auto* column : {&polygon_x_, &polygon_y_, &polygon_c_})
+      column->assign(wheels.most_rows() * kinds.size(), column == &polygon_c_ ? kNever : 0.0);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind)
-      for (std::size_t k = 0; k < wheels.polygon(kind).size(); ++k)
-        wheel_offsets_[kind * kMostWheelRows + k] = one_.row_offset(wheels.polygon(kind)[k].offset, kind);
+      for (std::size_t k = 0; k < wheels.polygon(kind).size(); ++k) {
+        const geometry::HalfPlane& edge = wheels.polygon(kind)[k];
+        const std::size_t at = k * kinds.size() + kind;
+        polygon_x_[at] = edge.normal.x;
+        polygon_y_[at] = edge.normal.y;
+        polygon_c_[at] = static_cast<double>(one_.row_offset(edge.offset, kind));
+      }
   }
 
   void set_preferred(const std::vector<Vec2>& by_id) override {
@@ -306,6 +312,7 @@ class CrowdEngine final : public CrowdCore {
   void find(std::size_t begin, std::size_t last, Pack& pack, Scratch& s) {
     const Timed timed(options.time_phases, s.phases.search);
     find_pack(robots, table_, begin, last, pack, s.found);
+    wheels.fetch(robots, pack.begin, pack.end);
   }
 
   /// Who stands so near to the robots of a pack that the second level looks at the pair.
@@ -373,63 +380,41 @@ class CrowdEngine final : public CrowdCore {
     }
   }
 
-  /// The half-planes of a group against edges and bodies at rest and those of wheels, in the last rows before those of
-  /// robots; how many rows.
+  /// The half-planes of a group against edges and bodies at rest, then those of wheels, in the last rows before those
+  /// of robots; how many rows.
   std::size_t hard_of(Pack* packs, std::size_t count, Scratch& s) {
     const bool has_obstacles = !edges.empty() || one_.has_bodies();
     if (!has_obstacles && wheels.empty()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
+    const std::size_t of_wheels = wheels.most_rows();
     std::fill(s.hard, s.hard + count * kPack, 0);
-    if (!has_obstacles) return wheels_alone(packs, count, s);
     if (!edges.empty())
       for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
     if (one_.has_bodies())
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
-    if (!wheels.empty())
-      for (std::size_t p = 0; p < count; ++p)
-        for (std::size_t lane = 0; lane < packs[p].size(); ++lane) wheels_of_lane(packs[p], lane, p * kPack + lane, s);
-    const std::size_t rows = most_of(s.hard, count);
-    put_rows({s.edge_x, s.edge_y, s.edge_c, kSlots}, s.hard, rows, kRobotRows - rows * kSlots, count, s);
-    return rows;
+    const std::size_t rows = has_obstacles ? most_of(s.hard, count) : 0;
+    const std::size_t first = kRobotRows - (rows + of_wheels) * kSlots;
+    put_rows({s.edge_x, s.edge_y, s.edge_c, kSlots}, s.hard, rows, first, count, s);
+    if (of_wheels == 0) return rows;
+    for (std::size_t p = 0; p < count; ++p) put_wheels(packs[p], first + rows * kSlots + p * kPack, s);
+    std::fill(s.hard, s.hard + count * kPack, static_cast<std::int32_t>(rows + of_wheels));
+    return rows + of_wheels;
   }
 
-  /// Behind the lines of edges and bodies at rest in s.edge_x and so on.
-  void wheels_of_lane(const Pack& pack, std::size_t lane, std::size_t slot, Scratch& s) const {
-    if (pack.alone >> lane & 1U) return;
-    const std::size_t robot = pack.begin + lane;
-    const std::size_t to = static_cast<std::size_t>(s.hard[slot]) * kSlots + slot;
-    s.hard[slot] += put_wheels(robot, s.edge_x + to, s.edge_y + to, s.edge_c + to);
-  }
-
-  /// Every kSlots-th entry; how many.
-  std::int32_t put_wheels(std::size_t robot, T* x, T* y, T* c) const {
-    const std::size_t kind = robots.kind(robot);
-    geometry::HalfPlane lines[kMostWheelRows];
-    const std::size_t count = wheels.rows(kind, robots.id[robot], lines);
-    for (std::size_t k = 0; k < count; ++k) {
-      x[k * kSlots] = static_cast<T>(lines[k].normal.x);
-      y[k * kSlots] = static_cast<T>(lines[k].normal.y);
-      c[k * kSlots] = wheel_offsets_[kind * kMostWheelRows + k];
+  void put_wheels(const Pack& pack, std::size_t at, Scratch& s) const {
+    alignas(64) double ahead_x[kPack], ahead_y[kPack];
+    alignas(64) std::int32_t kind[kPack];
+    for (std::size_t lane = 0; lane < kPack; ++lane) {
+      const std::size_t robot = pack.begin + std::min(lane, pack.size() - 1), its = robots.kind(robot);
+      const Vec2 ahead = wheels.has(its) ? wheels.state(robots.id[robot]).ahead : Vec2{1.0, 0.0};
+      ahead_x[lane] = ahead.x;
+      ahead_y[lane] = ahead.y;
+      kind[lane] = static_cast<std::int32_t>(its);
     }
-    return static_cast<std::int32_t>(count);
-  }
-
-  /// Where there is nothing else: straight into their rows.
-  std::size_t wheels_alone(const Pack* packs, std::size_t count, Scratch& s) const {
-    const std::size_t rows = wheels.most_rows(), first = kRobotRows - rows * kSlots;
-    for (std::size_t at = first; at < kRobotRows; at += kSlots) {
-      std::fill(s.x + at, s.x + at + count * kPack, T(1));
-      std::fill(s.y + at, s.y + at + count * kPack, T(0));
-      std::fill(s.c + at, s.c + at + count * kPack, static_cast<T>(kNever));
-    }
-    for (std::size_t p = 0; p < count; ++p)
-      for (std::size_t lane = 0; lane < packs[p].size(); ++lane) {
-        const std::size_t slot = p * kPack + lane, to = first + slot;
-        if (packs[p].alone >> lane & 1U) continue;
-        s.hard[slot] = put_wheels(packs[p].begin + lane, s.x + to, s.y + to, s.c + to);
-      }
-    return rows;
+    put_polygons({wheels.most_rows(), kinds.size(), polygon_x_.data(), polygon_y_.data(), polygon_c_.data(), ahead_x,
+                  ahead_y, kind},
+                 LineRows<T>{s.x + at, s.y + at, s.c + at, kSlots});
   }
 
   /// Into s.edge_x and so on, their number into s.hard.
@@ -578,10 +563,8 @@ class CrowdEngine final : public CrowdCore {
 
   /// Bit `lane`: its wheels allow the motion.
   std::uint32_t driven(const Pack& pack, const Rounded& motions) const {
-    std::uint32_t lanes = pack.lanes();
-    for (std::size_t lane = 0; !wheels.empty() && lane < pack.size(); ++lane)
-      if (!one_.can_drive(pack.begin + lane, {motions.mx[lane], motions.my[lane]})) lanes &= ~(1U << lane);
-    return lanes;
+    if (wheels.empty()) return pack.lanes();
+    return pack.lanes() & wheels.allow(robots, pack.begin, pack.size(), motions.mx, motions.my);
   }
 
   /// Bit `lane`: drives straight to a reserved place.
@@ -626,8 +609,8 @@ class CrowdEngine final : public CrowdCore {
   const OneRobot<T> one_{*this, table_};
   HardLevel<T> hard_{*this, table_, one_};
   Array<T> preferred_;
-  std::vector<T> wheel_offsets_;       ///< m/s, of kind and edge of its polygon, as rows have them
-  std::vector<NearLists> near_lists_;  ///< of each range of robots
+  std::vector<double> polygon_x_, polygon_y_, polygon_c_;  ///< m/s, of edge and kind, offsets as rows have them
+  std::vector<NearLists> near_lists_;                      ///< of each range of robots
   std::vector<std::unique_ptr<Scratch>> scratch_;
 };
 

@@ -25,70 +25,50 @@ Vec2 half_heading_of(double degrees) {
 }
 
 namespace crowd {
-namespace {
 
-/// What a step adds to the unknown angle: rounding K w + m conj(w), for K >= 2 |m|.
-constexpr double kNewDoubt = 0x1p-46;
-/// What (2) leaves out at kMostDoubt, and rounding.
-constexpr double kSecondOrder = 1.0 + 0x1p-21;
-
-/// atan(t) / t for t^2 = s <= 1/3, up to 2^-25 of it: the seventh convergent of Gauss's continued fraction, 1 / (1 + s
-/// / (3 + 4 s / (5 + 9 s / (7 + ...)))). No call of a library: the same bits everywhere.
-double arc_of(double s) {
-  const double above = 135135.0 + s * (173250.0 + s * (53487.0 + s * 2304.0));
-  const double below = 135135.0 + s * (218295.0 + s * (99225.0 + s * 11025.0));
-  return above / below;
+bool Wheels::is_driven(const WheelLimits& limits, const WheelState& from, Motion m) {
+  TwistLanes lanes;
+  lanes.put(0, limits, from, m.x, m.y);
+  return drivable(lanes, 1) == 1;
 }
 
-/// The heading of a half-heading, of unit length.
-Vec2 ahead_of(double a, double b) {
-  const double shorter = 1.0 / (a * a + b * b);
-  return {(a * a - b * b) * shorter, 2.0 * a * b * shorter};
-}
-
-}  // namespace
-
-struct Wheels::Twist {
-  double left, right;   ///< ways of the wheels, lattice steps
-  double room, growth;  ///< what is unknown of the heading grows by growth / room
-};
-
-Wheels::Twist Wheels::twist_of(const Limits& limits, const WheelState& from, Motion m) {
-  const double mx = m.x, my = m.y, ex = from.ahead.x, ey = from.ahead.y;
-  const double x = mx * ex + my * ey, y = my * ex - mx * ey, ahead = limits.ahead + x;
-  const double t = y / ahead, arc = arc_of(t * t), middle = x + y * t, across = limits.across * t;
-  return {(middle - across) * arc, (middle + across) * arc, ahead * ahead + y * y,
-          limits.ahead * limits.ahead - (mx * mx + my * my)};
-}
-
-bool Wheels::is_driven(const Limits& limits, const WheelState& from, Motion m) {
-  const Twist twist = twist_of(limits, from, m);
-  return std::fabs(twist.left) <= limits.most && std::fabs(twist.right) <= limits.most &&
-         std::fabs(twist.left - from.left) <= limits.change && std::fabs(twist.right - from.right) <= limits.change &&
-         std::fabs(twist.right - twist.left) <= limits.turn &&
-         twist.left + twist.right >= limits.open - 2.0 * limits.back &&
-         from.doubt * twist.growth * kSecondOrder <= (kMostDoubt - kNewDoubt) * twist.room;
-}
-
-void Wheels::drive(std::size_t kind, std::int32_t id, Motion m) {
-  WheelState& s = states_[static_cast<std::size_t>(id)];
-  if (m == Motion{}) {
-    s.left = s.right = 0.0;  // and it heads exactly where it did
-    return;
+/// Lanes without a robot, or one without wheels, stand.
+void Wheels::put_lanes(const Robots& robots, std::size_t first, std::size_t count, const std::int32_t* mx,
+                       const std::int32_t* my, TwistLanes& lanes) const {
+  for (std::size_t lane = 0; lane < kPack; ++lane) {
+    const std::size_t kind = lane < count ? robots.kind(first + lane) : 0;
+    if (lane < count && has(kind))
+      lanes.put(lane, limits_[kind], state(robots.id[first + lane]), mx[lane], my[lane]);
+    else
+      lanes.put(lane, {}, {}, 0.0, 0.0);
   }
-  const Twist twist = twist_of(limits_[kind], s, m);
-  const double k = limits_[kind].ahead, a = (k + m.x) * s.a + m.y * s.b, b = (k - m.x) * s.b + m.y * s.a;
-  const double longer = 1.0 / std::sqrt(a * a + b * b), doubt = s.doubt * twist.growth * kSecondOrder / twist.room;
-  s = {longer * a, longer * b, {}, std::min(doubt + kNewDoubt, kMostDoubt), twist.left, twist.right};
-  s.ahead = ahead_of(s.a, s.b);
+}
+
+std::uint32_t Wheels::allow(const Robots& robots, std::size_t first, std::size_t count, const std::int32_t* mx,
+                            const std::int32_t* my) const {
+  TwistLanes lanes;
+  put_lanes(robots, first, count, mx, my, lanes);
+  return drivable(lanes, kPack);
+}
+
+void Wheels::drive(const Robots& robots, std::size_t first, std::size_t last) {
+  TwistLanes lanes;
+  for (; first < last; first += kPack) {
+    const std::size_t count = std::min(kPack, last - first);
+    fetch(robots, first + kPack, first + 2 * kPack);
+    put_lanes(robots, first, count, &robots.next_mx[first], &robots.next_my[first], lanes);
+    crowd::drive(lanes, count);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      if (has(robots.kind(first + lane)))
+        states_[static_cast<std::size_t>(robots.id[first + lane])] = lanes.taken(lane);
+  }
 }
 
 std::size_t Wheels::rows(std::size_t kind, std::int32_t id, geometry::HalfPlane* out) const {
   if (!has(kind)) return 0;
   const Vec2 e = state(id).ahead, left{-e.y, e.x};
   std::size_t count = 0;
-  for (const geometry::HalfPlane& h : limits_[kind].polygon)
-    out[count++] = {h.normal.x * e + h.normal.y * left, h.offset};
+  for (const geometry::HalfPlane& h : polygons_[kind]) out[count++] = {h.normal.x * e + h.normal.y * left, h.offset};
   return count;
 }
 
@@ -114,21 +94,22 @@ bool Wheels::set_states(std::vector<WheelState> states) {
 void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions& options) {
   const double q = options.position_step, per_speed = options.time_step / q;
   limits_.assign(kinds.size(), {});
+  polygons_.assign(kinds.size(), {});
   has_some_ = false;
   most_rows_ = 0;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     if (!kinds[k].wheels) continue;
     const CrowdWheels& wheels = *kinds[k].wheels;
     const double fastest = kinds[k].max_speed;
-    Limits& limits = limits_[k];
+    WheelLimits& limits = limits_[k];
+    std::vector<geometry::HalfPlane>& polygon = polygons_[k];
     has_some_ = true;
     limits.ahead = 2.0 * wheels.reference / q;
     limits.across = wheels.wheel_separation / q;
     limits.most = kSpare * fastest * per_speed;
     limits.change = kSpare * wheels.max_wheel_acceleration * options.time_step * per_speed;
     limits.turn = limits.across * (kSpare * wheels.max_angular_speed * options.time_step - 4.0 * kMostDoubt);
-    limits.back = wheels.max_backward_speed * per_speed;
-    limits.open = (1.0 - kSpare) * fastest * per_speed;
+    limits.back = (1.0 - kSpare) * fastest * per_speed - 2.0 * (wheels.max_backward_speed * per_speed);
     // Theorem 1, for twists: their ways are longer than chords.
     const double sine = fastest * options.time_step / (2.0 * wheels.reference), squared = 1.0 - sine * sine;
     const double longer = arc_of(sine * sine / squared) / std::sqrt(squared);  // asin(sine) / sine
@@ -147,10 +128,10 @@ void Wheels::take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions&
       const Vec2 from = corners[c], along = corners[(c + 1) % corners.size()] - from;
       if (!(geometry::norm(along) > 0x1p-20 * apex)) continue;
       const Vec2 inward = geometry::normalized(Vec2{-along.y, along.x});
-      limits.polygon.push_back({inward, geometry::dot(inward, from)});
+      polygon.push_back({inward, geometry::dot(inward, from)});
     }
-    if (wheels.max_backward_speed < side) limits.polygon.push_back({{1.0, 0.0}, -wheels.max_backward_speed});
-    most_rows_ = std::max(most_rows_, limits.polygon.size());
+    if (wheels.max_backward_speed < side) polygon.push_back({{1.0, 0.0}, -wheels.max_backward_speed});
+    most_rows_ = std::max(most_rows_, polygon.size());
   }
 }
 

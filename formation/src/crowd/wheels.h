@@ -27,25 +27,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "crowd/layout.h"
 #include "crowd/pair_row.h"
+#include "crowd/robots.h"
+#include "crowd/twists.h"
 #include "exactvo/formation/crowd.h"
 
 namespace exactvo::formation::crowd {
 
 /// Half-planes of the first level: two from the greatest speed ahead, chords of the disc about 0, the speed back.
 inline constexpr std::size_t kChordsOfWheels = 5, kMostWheelRows = kChordsOfWheels + 3;
-
-/// Radians of the heading that may be unknown (2), and the share of limits that is not used, for it and for rounding.
-inline constexpr double kMostDoubt = 0x1p-24, kSpare = 1.0 - 0x1p-16;
-
-/// A robot on wheels between two steps.
-struct WheelState {
-  double a = 1.0, b = 0.0;         ///< half-heading, up to a positive factor
-  Vec2 ahead{1.0, 0.0};            ///< the heading, a unit vector, rounded
-  double doubt = 0.0;              ///< radians, by how much its heading may differ from the exact one at most
-  double left = 0.0, right = 0.0;  ///< ways of the wheels in the last step, lattice steps
-};
 
 class Wheels {
  public:
@@ -59,16 +49,28 @@ class Wheels {
   bool allow(std::size_t kind, std::int32_t id, Motion m) const {
     return !has(kind) || m == Motion{} || is_driven(limits_[kind], state(id), m);
   }
-  /// Drives it. REQUIRES: it is allowed; no two threads drive one robot.
-  void drive(std::size_t kind, std::int32_t id, Motion m);
+  /// The same of motions of at most kPack robots from the `first` on: bit `lane`.
+  std::uint32_t allow(const Robots& robots, std::size_t first, std::size_t count, const std::int32_t* mx,
+                      const std::int32_t* my) const;
+  /// Drives the next motions of robots. REQUIRES: they are allowed; no two threads drive one robot.
+  void drive(const Robots& robots, std::size_t first, std::size_t last);
   /// Half-planes (m/s) of what the robot may wish, at most kMostWheelRows; how many.
   std::size_t rows(std::size_t kind, std::int32_t id, geometry::HalfPlane* out) const;
 
   /// The edges of the set of velocities (m/s) in the frame of the heading; as `rows` has them.
-  const std::vector<geometry::HalfPlane>& polygon(std::size_t kind) const { return limits_[kind].polygon; }
+  const std::vector<geometry::HalfPlane>& polygon(std::size_t kind) const { return polygons_[kind]; }
   std::size_t most_rows() const { return most_rows_; }
 
   const WheelState& state(std::int32_t id) const { return states_[static_cast<std::size_t>(id)]; }
+  /// Fetches the states of robots, which will be looked at soon: they stand by id, anywhere in memory.
+  void fetch(const Robots& robots, std::size_t first, std::size_t last) const {
+    for (std::size_t i = first; has_some_ && i < std::min(last, robots.size()); ++i) {
+      const auto at = reinterpret_cast<std::uintptr_t>(states_.data()) +
+                      static_cast<std::size_t>(robots.id[i]) * sizeof(WheelState);
+      __builtin_prefetch(reinterpret_cast<const void*>(at));
+      __builtin_prefetch(reinterpret_cast<const void*>(at + sizeof(WheelState) - 1));
+    }
+  }
   /// At rest. Makes room for all ids up to this one.
   void put(std::int32_t id, Vec2 half_heading);
   const std::vector<WheelState>& states() const { return states_; }
@@ -77,22 +79,15 @@ class Wheels {
   std::size_t bytes() const { return states_.capacity() * sizeof(WheelState); }
 
  private:
-  /// Lattice steps, those of wheels less what (3) asks for.
-  struct Limits {
-    double ahead = 0.0;   ///< K, exact; 0: no wheels
-    double across = 0.0;  ///< b, exact
-    double most = 0.0, change = 0.0, turn = 0.0, back = 0.0, open = 0.0;
-    std::vector<geometry::HalfPlane> polygon;  ///< m/s, in the frame of the heading
-  };
-  struct Twist;
-
-  static Twist twist_of(const Limits& limits, const WheelState& from, Motion m);
-  static bool is_driven(const Limits& limits, const WheelState& from, Motion m);
+  static bool is_driven(const WheelLimits& limits, const WheelState& from, Motion m);
+  void put_lanes(const Robots& robots, std::size_t first, std::size_t count, const std::int32_t* mx,
+                 const std::int32_t* my, TwistLanes& lanes) const;
 
   bool has_some_ = false;
-  std::size_t most_rows_ = 0;       ///< of any kind
-  std::vector<Limits> limits_;      ///< by kind
-  std::vector<WheelState> states_;  ///< by id
+  std::size_t most_rows_ = 0;                               ///< of any kind
+  std::vector<WheelLimits> limits_;                         ///< by kind
+  std::vector<std::vector<geometry::HalfPlane>> polygons_;  ///< m/s, by kind, in the frame of the heading
+  std::vector<WheelState> states_;                          ///< by id
 };
 
 }  // namespace exactvo::formation::crowd

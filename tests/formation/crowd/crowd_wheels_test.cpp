@@ -157,7 +157,11 @@ TEST(CrowdWheels, Lemma4_RestIsAlwaysAllowed) {
   CrowdOptions options;
   wheels.take_kinds({burger()}, options);
   wheels.put(0, {1.0, 0.0});
-  wheels.drive(0, 0, {14000, 0});
+  crowd::Robots robots;
+  robots.append(0, 0, 0, 0);
+  robots.next_mx[0] = 14000;
+  robots.next_my[0] = 0;
+  wheels.drive(robots, 0, 1);
   EXPECT_GT(wheels.state(0).left, 13999.0);
   EXPECT_TRUE(wheels.allow(0, 0, {}));
   EXPECT_FALSE(wheels.allow(0, 0, {14500, 0})) << "faster than 0.22 m/s";
@@ -311,6 +315,39 @@ TEST(CrowdWheels, OneRobotAndSixteenGetTheSameBitsAndHalfPlanesAreTrue) {
   EXPECT_GT(audit.pairs, 1000U);
   EXPECT_GT(audit.edges, 100U);
   EXPECT_FALSE(room.crowd.explain(0).wheels.empty());
+}
+
+/// Some lanes of a pack have other limits than the next, or no wheels.
+TEST(CrowdWheels, OneRobotAndSixteenGetTheSameBitsWhereKindsAreMixed) {
+  for (const bool has_wall : {false, true}) {
+    CrowdKind slow = burger(), free = burger();
+    slow.wheels->max_angular_speed = 1.2;
+    slow.wheels->max_backward_speed = 0.05;
+    free.wheels.reset();
+    Crowd crowd;
+    for (const CrowdKind& kind : {burger(), slow, free}) crowd.add_kind(kind);
+    SceneRandom random;
+    std::vector<Vec2> at, goals;
+    for (int k = 0; k < 49; ++k) {
+      const auto kind = static_cast<KindId>(k % 3);
+      const RobotId id = crowd.add_robot({0.45 * (k % 7), 0.45 * (k / 7)}, kind);
+      if (kind != 2) crowd.set_heading(id, 360.0 * random());
+      goals.push_back({3.0 * random(), 3.0 * random()});
+    }
+    std::vector<geometry::Obstacle> walls;
+    if (has_wall) walls.push_back(geometry::Polyline{{{-0.4, -0.4}, {3.4, -0.4}, {3.4, 3.4}}});
+    for (const geometry::Obstacle& wall : walls) crowd.add_obstacle(wall);
+    CrowdAuditor auditor(crowd, walls);
+    CrowdAudit audit;
+    for (int step = 0; step < 40; ++step) {
+      crowd.positions(at);
+      for (std::size_t i = 0; i < at.size(); ++i) at[i] = goals[i] - at[i];
+      crowd.set_preferred(at);
+      auditor.step(audit);
+    }
+    EXPECT_EQ(audit.failures(), 0U) << audit.first;
+    EXPECT_GT(audit.pairs, 1000U);
+  }
 }
 
 TEST(CrowdWheels, RobotsWithAndWithoutWheelsKeepClearOfEachOther) {
