@@ -48,6 +48,46 @@ TEST(ScenarioRobots, ACircleOfRobotsHasTheOppositePlacesAsGoals) {
   EXPECT_EQ(s.robots[7].id, "ring/8");
 }
 
+const char kBurger[] = R"("radius": 0.105, "kinematics": {"type": "differential", "wheel_separation": 0.16,
+                          "max_wheel_speed": 0.22, "max_wheel_acceleration": 1})";
+
+TEST(ScenarioRobots, RobotsOfAGeneratorDriveOnWheelsAndLookTowardsTheirGoals) {
+  const Scenario s = read(R"({"circle": {"count": 12, "radius": 2.2}, )" + std::string(kBurger) + "}");
+  ASSERT_EQ(s.robots.size(), 12U);
+  for (const Robot& r : s.robots) {
+    ASSERT_TRUE(r.drive);
+    EXPECT_NEAR(norm(r.position), 2.2, 1e-12) << "the reference point";
+    EXPECT_NEAR(norm(r.drive->axle), 2.28, 1e-12) << "D behind it";
+    EXPECT_NEAR(norm(formation::heading_vector(r.drive->heading) + r.position / 2.2), 0.0, 1e-12);
+    EXPECT_EQ(r.max_speed, 0.22);
+    EXPECT_GT(r.radius, 0.185);
+    EXPECT_LT(r.radius, 0.186);
+  }
+  const Scenario same = read(R"({"grid": {"columns": 2, "rows": 1, "spacing": 1, "goal": [5, 0]}, "heading": 90, )" +
+                             std::string(kBurger) + "}");
+  EXPECT_EQ(same.robots[1].drive->axle, (Vec2{1.0, -0.08}));
+}
+
+TEST(ScenarioRobots, PlacesThatAreDrawnKeepClearOfDiscsAboutReferencePoints) {
+  const std::string alone = R"({"id": "R", "position": [0, 0], "heading": 90, "goal": [0, 3], )" + std::string(kBurger);
+  for (int seed = 0; seed < 20; ++seed) {
+    const Scenario s = read(alone + R"(}, {"random": {"count": 12, "seed": )" + std::to_string(seed) +
+                            R"(, "low": [-1, -1], "high": [1, 1], "apart": 0.01}, )" + kBurger + "}");
+    ASSERT_EQ(s.robots.size(), 13U);
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GE(norm(s.robots[i].position - s.robots[j].position), s.robots[i].radius + s.robots[j].radius + 0.009);
+  }
+}
+
+TEST(ScenarioRobots, WheelsOfAGeneratorThatCannotBeAreRefusedAtItsEntry) {
+  const std::string circle = R"({"circle": {"count": 3, "radius": 3}, )";
+  expect_refusal(refused(circle + R"("heading": 90})"), DataCode::scenario, "/robots/0/heading");
+  expect_refusal(refused(circle + R"("max_speed": 1, )" + kBurger + "}"), DataCode::scenario, "/robots/0/max_speed");
+  expect_refusal(refused(circle + R"("kinematics": {"type": "differential", "wheel_separation": 0.16}})"),
+                 DataCode::key_missing, "/robots/0/kinematics");
+}
+
 TEST(ScenarioRobots, EntriesOfAllKindsStandBesideEachOther) {
   const Scenario s = read(R"({"id": "R", "position": [0, 0], "goal": [9, 0]},
       {"grid": {"columns": 3, "rows": 2, "spacing": 1.5, "corner": [20, 0], "goal": [0, 30]}},
@@ -175,6 +215,19 @@ TEST_F(ScenarioRobotTables, ATableAloneIsAmongTheFilesOfTheScenario) {
   std::ofstream(folder_ / "s.json") << R"({"name": "n", "robots": {"file": "robots.csv"}})";
   EXPECT_EQ(load_scenario(folder_ / "s.json").robots.size(), 1U);
   EXPECT_EQ(files_of_scenario(folder_ / "s.json"), (std::vector{folder_ / "s.json", folder_ / "robots.csv"}));
+}
+
+TEST_F(ScenarioRobotTables, RobotsOnWheelsStandByTheirAxles) {
+  std::ofstream(folder_ / "robots.csv") << "x,y,goal_x,goal_y,heading\n1,2,3,4,90\n5,2,3,4,0\n";
+  const std::string entry = R"({"file": "robots.csv")";
+  const Scenario s = read(entry + ", " + kBurger + "}", "", folder_);
+  ASSERT_EQ(s.robots.size(), 2U);
+  EXPECT_EQ(s.robots[0].drive->axle, (Vec2{1, 2}));
+  EXPECT_EQ(s.robots[0].position, (Vec2{1, 2.08}));
+  EXPECT_EQ(s.robots[1].position, (Vec2{5.08, 2}));
+  expect_refusal(refused(entry + "}", "", folder_), DataCode::scenario, "line 1");
+  std::ofstream(folder_ / "robots.csv") << "x,y,goal_x,goal_y,max_speed\n1,2,3,4,1\n";
+  expect_refusal(refused(entry + ", " + kBurger + "}", "", folder_), DataCode::scenario, "line 1");
 }
 
 TEST_F(ScenarioRobotTables, AByteOrderMarkIsLeftOut) {

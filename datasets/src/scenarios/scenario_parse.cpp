@@ -124,10 +124,6 @@ class ScenarioReader {
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
     if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
-    for (formation::Robot& robot : scenario.robots)
-      if (robot.drive)
-        put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), scenario.time_step,
-                      formation::tracking_error_of(scenario));
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);  // velocities end with the run
     look_ahead_while_braking(tree, scenario);
     refuse_repeated_ids(scenario);
@@ -163,7 +159,7 @@ class ScenarioReader {
   }
 
   void read_robot_list(const Json& list, Scenario& scenario) {
-    RobotList read = read_robots(list, scenario.obstacles, file_, base_dir_, formation::tracking_error_of(scenario));
+    RobotList read = read_robots(list, scenario, file_, base_dir_);
     robots_are_one_entry_ = list.is_object();
     scenario.robots = std::move(read.robots);
     origin_of_robot_ = std::move(read.origins);

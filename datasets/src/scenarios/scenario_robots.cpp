@@ -114,9 +114,12 @@ class FreeRoom {
 
 class RobotsReader {
  public:
-  RobotsReader(const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
-               const std::filesystem::path& base_dir, double tracking)
-      : obstacles_(obstacles), file_(file), base_dir_(base_dir), tracking_(tracking) {}
+  RobotsReader(const formation::Scenario& scenario, const std::string& file, const std::filesystem::path& base_dir)
+      : obstacles_(scenario.obstacles),
+        file_(file),
+        base_dir_(base_dir),
+        time_step_(scenario.time_step),
+        tracking_(formation::tracking_error_of(scenario)) {}
 
   RobotList read(const Json& list) {
     if (list.is_object()) {
@@ -137,7 +140,6 @@ class RobotsReader {
       members(at, robot);
       if (entry.contains("goal")) robot.goals = {entry.at("goal").get<Vec2>()};
       read_drive(entry, robot);
-      if (!robot.drive) keep_within_tube(robot, robot.radius, tracking_);
       out_.origins.push_back({k, false});
       return;
     }
@@ -145,7 +147,9 @@ class RobotsReader {
     pattern_ = Robot{};
     at.optional("radius", pattern_.radius).optional("max_speed", pattern_.max_speed);
     at.optional("cooperates", pattern_.cooperates);
-    keep_within_tube(pattern_, pattern_.radius, tracking_);
+    read_drive(entry, pattern_);
+    heading_.reset();
+    if (entry.contains("heading")) heading_ = pattern_.drive->heading;
     made_ = 0;
     if (entry.contains("circle")) make_circle(entry.at("circle"));
     if (entry.contains("grid")) make_grid(entry.at("grid"));
@@ -153,7 +157,7 @@ class RobotsReader {
     if (entry.contains("file")) read_table(entry.at("file").get<std::string>());
   }
 
-  /// Its axle and body; where the reference point is depends on the time step (`put_on_wheels`).
+  /// Where it has wheels its drive, and the disc that it has.
   void read_drive(const Json& entry, Robot& robot) const {
     const bool has_wheels = entry.contains("kinematics") && entry["kinematics"].value("type", "") == "differential";
     for (const char* key : {"heading", "footprint"})
@@ -164,6 +168,7 @@ class RobotsReader {
       if (entry.contains("kinematics") && entry["kinematics"].size() > 1)
         refuse(DataCode::scenario, "kinematics", "wheels of a robot that moves in any direction",
                "\"type\": \"differential\", or no other key");
+      keep_within_tube(robot, robot.radius, tracking_);
       return;
     }
     for (const char* key : {"wheel_separation", "max_wheel_speed", "max_wheel_acceleration"})
@@ -180,6 +185,13 @@ class RobotsReader {
     drive.body_radius = robot.radius;
     read_footprint(entry, drive);
     if (!(drive.reference > 0.0)) drive.reference = 0.5 * drive.wheel_separation;
+    take_wheels(robot);
+  }
+
+  /// The reference point and the disc about it. A drive that is refused later has none.
+  void take_wheels(Robot& robot) const {
+    if (robot.drive->max_wheel_speed * time_step_ < robot.drive->reference)
+      put_on_wheels(robot, formation::DifferentialDrive(*robot.drive), time_step_, tracking_);
   }
 
   void read_footprint(const Json& entry, formation::DifferentialDrive& drive) const {
@@ -202,12 +214,18 @@ class RobotsReader {
       refuse(DataCode::size, key, std::to_string(more + out_.robots.size()) + " robots so far", "at most 10^7");
   }
 
+  /// On wheels `position` is that of the reference point, as `goal` is.
   Robot& add(Vec2 position, Vec2 goal) {
     Robot& robot = out_.robots.emplace_back(pattern_);
     robot.id = prefix_ + std::to_string(++made_);
     robot.position = position;
     robot.goals = {goal};
     out_.origins.push_back({entry_, true});
+    if (!robot.drive) return robot;
+    const Vec2 way = goal - position;
+    robot.drive->heading = heading_ ? *heading_ : std::atan2(way.y, way.x) * (180.0 / geometry::kPi);
+    robot.drive->axle = position - robot.drive->reference * formation::heading_vector(robot.drive->heading);
+    take_wheels(robot);
     return robot;
   }
 
@@ -316,8 +334,14 @@ class RobotsReader {
     const std::string text = text_of(path), shown = path.string();
     if (std::find(out_.tables.begin(), out_.tables.end(), path) == out_.tables.end()) out_.tables.push_back(path);
     CsvTable table(text, shown);
-    table.read_header({"x", "y", "goal_x", "goal_y", "id", "vx", "vy", "radius", "max_speed"}, 4,
-                      "a header with x, y, goal_x and goal_y, and where wanted id, vx, vy, radius, max_speed");
+    table.read_header({"x", "y", "goal_x", "goal_y", "id", "vx", "vy", "radius", "max_speed", "heading"}, 4,
+                      "a header with x, y, goal_x and goal_y, and where wanted id, vx, vy, radius, max_speed, heading");
+    const auto refuse_column = [&](const char* name, bool has_no_use, const char* expected) {
+      if (has_no_use && table.has(name)) table.refuse(DataCode::scenario, std::string("the column ") + name, expected);
+    };
+    refuse_column("max_speed", pattern_.drive.has_value(), "max_wheel_speed in kinematics alone, for robots on wheels");
+    refuse_column("radius", pattern_.drive && !pattern_.drive->footprint.empty(), "the footprint alone");
+    refuse_column("heading", !pattern_.drive, "none without \"kinematics\" of the type \"differential\"");
     const std::size_t before = out_.robots.size();
     while (table.next_row()) {
       require_room_for(1, "file");
@@ -339,8 +363,15 @@ class RobotsReader {
     const auto coordinate = [&](const char* name) { return number(name, 0.0, -kFarthest, kFarthest); };
     Robot& robot = add({coordinate("x"), coordinate("y")}, {coordinate("goal_x"), coordinate("goal_y")});
     robot.velocity = {number("vx", 0.0, -kLargest, kLargest), number("vy", 0.0, -kLargest, kLargest)};
-    keep_within_tube(robot, number("radius", body_radius_of(robot), 1e-300, kLargest), tracking_);
-    robot.max_speed = number("max_speed", robot.max_speed, 1e-300, kLargest);
+    if (robot.drive) {  // the place is that of the axle, as for a single robot
+      robot.drive->axle = {coordinate("x"), coordinate("y")};
+      robot.drive->heading = number("heading", robot.drive->heading, -kLargest, kLargest);
+      robot.drive->body_radius = number("radius", robot.drive->body_radius, 1e-300, kLargest);
+      take_wheels(robot);
+    } else {
+      keep_within_tube(robot, number("radius", body_radius_of(robot), 1e-300, kLargest), tracking_);
+      robot.max_speed = number("max_speed", robot.max_speed, 1e-300, kLargest);
+    }
     if (!table.has("id")) return;
     if (table.field("id").empty()) table.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
     robot.id = table.field("id");
@@ -354,7 +385,8 @@ class RobotsReader {
   const std::vector<formation::SceneObstacle>& obstacles_;
   const std::string& file_;
   const std::filesystem::path& base_dir_;
-  const double tracking_;  ///< m
+  const double time_step_, tracking_;  ///< s, m
+  std::optional<double> heading_;      ///< degrees, of all robots of the entry; else each looks towards its goal
   RobotList out_;
   std::size_t entry_ = 0, made_ = 0;
   std::string pointer_, prefix_;
@@ -363,9 +395,9 @@ class RobotsReader {
 
 }  // namespace
 
-RobotList read_robots(const Json& list, const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
-                      const std::filesystem::path& base_dir, double tracking) {
-  return RobotsReader(obstacles, file, base_dir, tracking).read(list);
+RobotList read_robots(const Json& list, const formation::Scenario& scenario, const std::string& file,
+                      const std::filesystem::path& base_dir) {
+  return RobotsReader(scenario, file, base_dir).read(list);
 }
 
 }  // namespace exactvo::datasets

@@ -45,9 +45,9 @@ struct RobotList {
 };
 
 /// `list`, or one of its entries alone, has been held against the schema. Tables are looked up in `base_dir`; `file` is
-/// the scenario's name in messages; `tracking` m, its tracking error, which radii take in. Throws DataError: a table
-/// that is missing or wrong, a box without room.
-RobotList read_robots(const Json& list, const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
-                      const std::filesystem::path& base_dir, double tracking);
+/// the scenario's name in messages. Of `scenario` it takes obstacles, the time step and the tracking error, which radii
+/// take in. Throws DataError: a table that is missing or wrong, a box without room.
+RobotList read_robots(const Json& list, const formation::Scenario& scenario, const std::string& file,
+                      const std::filesystem::path& base_dir);
 
 }  // namespace exactvo::datasets
