@@ -6,8 +6,10 @@
 
 #include <cmath>
 
+#include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/speed_profile.h"
 #include "paper_scenes.h"
+#include "support/seeded_random.h"
 
 namespace exactvo::formation {
 namespace {
@@ -55,6 +57,17 @@ TEST(SpeedProfile, VelocityIsTheDerivativeOfPosition) {
     const LeaderState now = leader_at(leader, t), next = leader_at(leader, t + kStep);
     EXPECT_NEAR((next.position.x - now.position.x) / kStep, 0.5 * (now.velocity.x + next.velocity.x), 1e-6) << t;
   }
+}
+
+/// A velocity holds from its own time on, though the place of the corner before it is rounded.
+TEST(SpeedProfile, VelocitiesThatChangeTogetherWithTheWayBeginAtTheirTimes) {
+  test::SeededRandom random(test::seed_of_run(7));
+  std::vector<TimedVelocity> velocities;
+  for (int k = 0; k < 500; ++k)
+    velocities.push_back({k * 0.1, random.integer(0, 3) == 0 ? Vec2{} : random.uniform(0.1, 2.0) * random.direction()});
+  const TimedPath motion = path_of({3, -2}, velocities, 60.0);
+  for (const TimedVelocity& v : velocities)
+    EXPECT_LT(norm(leader_at(motion, v.time).velocity - v.velocity), 1e-9) << v.time;
 }
 
 TEST(SpeedProfile, ALeaderThatStopsShortNeverArrives) {

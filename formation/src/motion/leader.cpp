@@ -12,6 +12,16 @@ namespace {
 /// Share of the path: a profile that covers all but this covers it; sums over knots round by less.
 constexpr double kWholePath = 1e-12;
 
+/// Share of a time that roundings of products and sums explain.
+constexpr double kSameTime = 0x1p-48;
+
+/// Whether the speed jumps from time `from` to time `to` (s): two knots are there.
+bool jumps_within(const std::vector<SpeedKnot>& profile, double from, double to) {
+  const auto first =
+      std::partition_point(profile.begin(), profile.end(), [&](const SpeedKnot& knot) { return knot.time < from; });
+  return profile.end() - first > 1 && (first + 1)->time <= to;
+}
+
 /// `covered` along the path, m, at `speed`.
 LeaderState on_path(const TimedPath& leader, double covered, double speed) {
   for (std::size_t i = 1; i < leader.path.size(); ++i) {
@@ -31,7 +41,13 @@ LeaderState on_path(const TimedPath& leader, double covered, double speed) {
 LeaderState leader_at(const TimedPath& leader, double time) {
   if (leader.profile.empty()) return on_path(leader, leader.speed * time, leader.speed);
   if (time >= leader_arrival(leader)) return {leader.path.back(), {}};
-  return on_path(leader, distance_at(leader.profile, time), speed_at(leader.profile, time));
+  const double covered = distance_at(leader.profile, time);
+  // Where a leg and a speed begin together, no rounding of the time or of the way lets one come before the other.
+  const double soon = time * (1.0 + kSameTime);
+  if (!jumps_within(leader.profile, time * (1.0 - kSameTime), soon))
+    return on_path(leader, covered, speed_at(leader.profile, time));
+  const double further = distance_at(leader.profile, soon) + kWholePath * length_of(leader.path);
+  return {on_path(leader, covered, 0.0).position, on_path(leader, further, speed_at(leader.profile, soon)).velocity};
 }
 
 double leader_arrival(const TimedPath& leader) {
