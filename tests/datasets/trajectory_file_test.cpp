@@ -240,6 +240,25 @@ TEST(TrajectoryFile, QuotedFieldsMayBeSeparatedByTabs) {
   expect_row(c.rows[1], 1, 1.0, 3.0, 4.0, 3);
 }
 
+/// As the text of JuPedSim is. The unit of velocities stays unknown.
+TEST(TrajectoryFile, PlacesOfCsvInCentimetresAreReadAsSuch) {
+  const Content c = content_of("t,id,x/cm,y/cm,vx,vy\n0,A,100,250,1,1\n1,A,200,250,1,1\n");
+  ASSERT_EQ(c.rows.size(), 2u);
+  expect_row(c.rows[1], 0, 1.0, 2.0, 2.5, 3);
+  EXPECT_TRUE(std::isnan(c.rows[1].velocity.x));
+}
+
+/// As `numpy.savetxt` writes one.
+TEST(TrajectoryFile, AHeaderMayStandInAComment) {
+  for (const char* text : {"# t id x y\n0 7 1 2\n1 7 3 4\n", "# of a planner\n#t,id,x,y\n0,7,1,2\n# half\n1,7,3,4\n"}) {
+    const Content c = content_of(text);
+    EXPECT_EQ(c.file.format, "csv");
+    EXPECT_THAT(c.file.agents, ElementsAre("7"));
+    ASSERT_EQ(c.rows.size(), 2u);
+    EXPECT_DOUBLE_EQ(c.rows[1].at.y, 4.0);
+  }
+}
+
 TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   const Content c = content_of(
       "statistics:\n  cost: 3\nschedule:\n  agent0:\n    - x: 0\n      y: 1\n      t: 0\n    - x: 0\n      y: 2\n      "
@@ -379,6 +398,12 @@ TEST(TrajectoryFile, RefusalsNameTheLine) {
       {"t,id,x,y\n0,\"A,1,2\n", DataCode::format_syntax, "quotation mark"},
       {"", DataCode::format_unknown, "an empty file"},
       {"hello\n", DataCode::format_unknown, "--format"},
+      {"time [s];agent;X (m);Y (m)\n0;A;1;2\n", DataCode::format_unknown,
+       "found \"time [s];agent;X (m);Y (m)\", expected a header with the columns t,id,x,y and, where there is one, "
+       "theta: it has no t, no x, no y"},
+      {"t,id,x_mm,y_mm\n0,A,1,2\n", DataCode::format_unknown, "it has no x, no y"},
+      {"{\n\"name\": \"a\",\n\"robots\": []\n}\n", DataCode::format_unknown, "found a scenario, which is no run yet"},
+      {"t,robot name,x,y\n1,A,1,2\n1,B,1,3\n", DataCode::out_of_range, "the table has no column of ids, such as id"},
       {"#framerate: x\n#ID FR X Y\n", DataCode::number, "line 1"},
       {"#framerate: 10\n#ID FR X Y\n1 0 1\n", DataCode::wrong_count, "line 3"},
       {"1 2 3 0 4 0 0 0\n2 2 3 0\n", DataCode::wrong_count, "line 2"},

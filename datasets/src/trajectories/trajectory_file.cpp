@@ -31,6 +31,14 @@ const TrajectoryFormat& format_named(const std::string& name, const std::string&
 const TrajectoryFormat& format_for(std::string_view beginning, const std::string& file) {
   for (const TrajectoryFormat& format : trajectory_readers())
     if (format.matches(beginning)) return format;
+  const std::string lacks = what_a_header_lacks(beginning);
+  if (!lacks.empty())
+    throw DataError(DataCode::format_unknown, file, "",
+                    excerpt(beginning.substr(0, beginning.find_first_of("\r\n")), 0, 60), lacks);
+  const bool has_robots = beginning.find("\"robots\"") != std::string_view::npos;
+  if (has_robots && beginning.find_first_not_of(" \t\r\n") == beginning.find('{'))
+    throw DataError(DataCode::format_unknown, file, "", "a scenario, which is no run yet",
+                    "a file of trajectories, or the folder of a run, as simulate --out writes it");
   throw DataError(
       DataCode::format_unknown, file, "", excerpt(beginning, 0),
       "a file of trajectories, such as CSV with the columns t,id,x,y; if its format is one of these, name it "
@@ -99,7 +107,8 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
   if (time == last.time) {
     if (metres != last.at)
       refuse(DataCode::out_of_range, line, "a second place at " + words(time),
-             "one place at a time; " + place_of_last() + " has another");
+             "one place at a time; " + place_of_last() + " has another" +
+                 (has_ids_ ? "" : "; the table has no column of ids, such as id, agent or robot"));
     // A row without a heading or a velocity repeats any.
     if (!std::isnan(heading) && heading != last.heading)
       refuse(DataCode::out_of_range, line, "a second heading at " + words(time),
@@ -120,6 +129,11 @@ void TrajectorySink::row(std::size_t agent, double time, geometry::Vec2 at, std:
     large_headings_ += std::fabs(heading) > 2.0 * geometry::kPi ? 1 : 0;
   }
   take_({agent, time, metres, heading, metres_a_second, line});
+}
+
+void TrajectorySink::has_no_ids() {
+  has_ids_ = false;
+  file_.notes.emplace_back("no column of ids: all rows are of one agent");
 }
 
 void TrajectorySink::finish() {

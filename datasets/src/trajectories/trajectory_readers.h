@@ -35,6 +35,8 @@ class TrajectorySink {
   const TrajectoryOptions& options() const { return options_; }
   /// Behind the last row: notes on all of them.
   void finish();
+  /// All rows are of one agent, since the table does not say whose they are. Notes it.
+  void has_no_ids();
   /// s, of a frame. Notes once where no frame rate is known. `of_file`: frames a second as the file says, 0 if not.
   double time_of_frame(double frame, double of_file);
   [[noreturn]] void refuse(DataCode code, std::uint64_t line, const std::string& found,
@@ -57,7 +59,7 @@ class TrajectorySink {
   std::string id_;  ///< to look up without allocating each time
   std::vector<Last> last_;
   std::uint64_t headings_ = 0, large_headings_ = 0;  ///< rows with one, and with one beyond a whole turn
-  bool rate_noted_ = false;
+  bool rate_noted_ = false, has_ids_ = true;
 };
 
 struct TrajectoryFormat {
@@ -71,6 +73,8 @@ const std::vector<TrajectoryFormat>& trajectory_readers();
 
 // trajectory_tables.cpp
 bool looks_like_trajectory_csv(std::string_view beginning);
+/// What a file is to have that begins with other names of columns; empty of a file that does not begin with names.
+std::string what_a_header_lacks(std::string_view beginning);
 void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out);
 bool looks_like_jupedsim_text(std::string_view beginning);
 void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out);

@@ -3,6 +3,8 @@
 // columns of numbers (frame, id, x, y).
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/join.hpp>
+#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -16,13 +18,13 @@
 namespace exactvo::datasets {
 namespace {
 
-/// The first lines that are neither blank nor begin with `comment`.
-std::string_view first_line(std::string_view text, char comment = '\0') {
+/// The first line that is not blank.
+std::string_view first_line(std::string_view text) {
   text = without_mark(text);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));
-    if (!line.empty() && line.front() != comment) return line;
+    if (!line.empty()) return line;
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
   }
   return {};
@@ -167,7 +169,7 @@ class TableRows {
  public:
   TableRows(const Columns& columns, std::size_t count, Ids ids, TrajectorySink& out)
       : columns_(columns), count_(count), ids_(ids), out_(out) {
-    if (columns_[kIdColumn] == kNoColumn) out.file().notes.emplace_back("no column of ids: all rows are of one agent");
+    if (columns_[kIdColumn] == kNoColumn) out.has_no_ids();
   }
 
   /// Frames a second, where the file says; units of length in m.
@@ -213,7 +215,10 @@ class TableRows {
   std::string memory_;
 };
 
-constexpr double kMetresOfCentimetre = 0.01;
+/// m, of a unit of length of the places, which their names tell.
+double unit_in(const std::vector<std::string_view>& header, const Columns& columns) {
+  return lower_case(std::string(header[columns[kXColumn]])) == "x/cm" ? 0.01 : 1.0;
+}
 
 /// Rows of numbers without a header.
 void read_numbers(const std::filesystem::path& path, const Columns& columns, std::size_t count, TrajectorySink& out) {
@@ -238,13 +243,46 @@ bool split_csv(std::string_view line, char separator, std::vector<std::string_vi
   return quoted.has_value();
 }
 
+/// Of a line that may have the names of columns, behind a mark of a comment if need be.
+std::string_view header_in(std::string_view line) {
+  return trimmed(line.substr(line.front() == '#' ? 1 : 0));
+}
+
+/// What a header is to have, and this one lacks.
+std::string words_of_header(const Columns& columns) {
+  std::vector<std::string> missing;
+  if (columns[kTimeColumn] == kNoColumn && columns[kFrameColumn] == kNoColumn) missing.emplace_back("t");
+  if (columns[kXColumn] == kNoColumn) missing.emplace_back("x");
+  if (columns[kYColumn] == kNoColumn) missing.emplace_back("y");
+  return "a header with the columns t,id,x,y and, where there is one, theta: it has no " +
+         boost::join(missing, ", no ") + " (also time, frame, x_m, x/cm; of another length --scale says the metres)";
+}
+
 }  // namespace
 
 bool looks_like_trajectory_csv(std::string_view beginning) {
-  const std::string_view header = first_line(beginning, '#');
   std::vector<std::string_view> fields;
   std::optional<std::vector<std::string>> quoted;
-  return split_csv(header, separator_of(header), fields, quoted) && has_place_and_time(columns_in(fields));
+  for (std::string_view line = first_line(beginning); !line.empty(); line = first_line(beginning)) {
+    const std::string_view header = header_in(line);
+    if (split_csv(header, separator_of(header), fields, quoted) && has_place_and_time(columns_in(fields))) return true;
+    if (line.front() != '#') return false;
+    beginning.remove_prefix(static_cast<std::size_t>(line.data() + line.size() - beginning.data()));
+  }
+  return false;
+}
+
+std::string what_a_header_lacks(std::string_view beginning) {
+  const std::string_view line = first_line(beginning);
+  std::vector<std::string_view> fields;
+  std::optional<std::vector<std::string>> quoted;
+  constexpr std::size_t kFewest = 3;
+  const auto is_name = [](std::string_view field) {
+    return !field.empty() && std::isalpha(static_cast<unsigned char>(field.front())) != 0;
+  };
+  const bool is_header = split_csv(line, separator_of(line), fields, quoted) && fields.size() >= kFewest &&
+                         separator_of(line) != ' ' && std::all_of(fields.begin(), fields.end(), is_name);
+  return is_header ? words_of_header(columns_in(fields)) : "";
 }
 
 void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out) {
@@ -255,21 +293,28 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
   char separator = ',';
   for (std::string_view line; lines.next(line);) {
     line = trimmed(lines.number() == 1 ? without_mark(line) : line);
-    if (line.empty() || line.front() == '#') continue;
-    if (!rows) separator = separator_of(line);
-    if (!split_csv(line, separator, fields, quoted))
+    if (line.empty() || (rows && line.front() == '#')) continue;
+    const bool is_comment = line.front() == '#';
+    if (!rows) line = header_in(line), separator = separator_of(line);
+    if (!split_csv(line, separator, fields, quoted)) {
+      if (is_comment) continue;
       out.refuse(DataCode::format_syntax, lines.number(), "a quotation mark that is not closed",
                  "CSV whose fields end on their line");
+    }
     if (rows) {
       rows->add(fields, lines.number());
       continue;
     }
-    const Columns columns = columns_in(fields);
-    if (!has_place_and_time(columns))
-      out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60),
-                 "a header with the columns t,id,x,y and, where there is one, theta");
+    Columns columns = columns_in(fields);
+    if (!has_place_and_time(columns)) {
+      if (is_comment) continue;
+      out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60), words_of_header(columns));
+    }
     note_headings_left_out(fields, columns, out.file());
+    const double unit = unit_in(fields, columns);
+    if (unit != 1.0) columns[kVxColumn] = columns[kVyColumn] = kNoColumn;  // whose unit no name tells
     rows.emplace(columns, fields.size(), Ids::texts, out);
+    rows->unit = unit;
     rows->has_names = true;
     if (columns[kTimeColumn] != kNoColumn && fields[columns[kTimeColumn]] == kNanoseconds) rows->time_unit = 1e-9;
   }
@@ -322,7 +367,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     std::fill(columns.begin() + kVxColumn, columns.end(), kNoColumn);
     count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
                           named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
-    if (lower_case(std::string(fields[named[kXColumn]])) == "x/cm") unit = kMetresOfCentimetre;
+    unit = unit_in(fields, named);
   }
 }
 
