@@ -315,7 +315,7 @@ Proof.
   - apply Rlt_le_trans with (2 := a1). lra.
 Qed.
 
-(* --- The same faster, in whole numbers and with a coarse sine. Real certificates have so much room that this mostly
+(* --- The same faster, in whole numbers, most with a coarse sine. Real certificates have so much room that this mostly
    decides. All numbers of a file have one denominator, d: what is multiplied by `times` has d d. --- *)
 Definition zabs (a : Z) : Z := if Z.leb 0 a then a else (- a)%Z.
 Definition pair_in (d : positive) (p : point) : option (Z * Z) := if in_units d p then Some (Qnum (fst p), Qnum (snd p)) else None.
@@ -325,32 +325,32 @@ Fixpoint pairs_in (d : positive) (l : list point) : option (list (Z * Z)) :=
   | [] => Some []
   | p :: r => match pair_in d p, pairs_in d r with Some a, Some m => Some (a :: m) | _, _ => None end
   end.
-(* Corners; the reach and the bend of the fastest one, over (coarse d d) and over coarse; the largest sum of coordinates. *)
+(* Corners; the reach and the bend of the fastest one, over (g d d) and over g; the largest sum of coordinates. *)
 Record quick := { arms : list (Z * Z); quick_reach : Z; quick_bend : Z; size_of_arms : Z }.
-Definition quickly (dd : positive) (d : drive) (p : part) : option quick :=
+Definition quickly (g dd : positive) (d : drive) (p : part) : option quick :=
   let square := fold_right (fun a m => qmax a m) 0%Q (map (speed2 d) (corners p)) in let v := root_above square in
   match pairs_in dd (map (arm d) (corners p)), number_in dd (qmul (times d) (reach p)) with
-  | Some l, Some r => if is_above v square then Some {| arms := l; quick_reach := Zpos coarse * r; quick_bend := up coarse (bend d v);
+  | Some l, Some r => if is_above v square then Some {| arms := l; quick_reach := Zpos g * r; quick_bend := up g (bend d v);
       size_of_arms := fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l |} else None
   | _, _ => None
   end.
 Definition place_at := option (point * near_circle).
-Definition beyond (dd : positive) (nx ny far needed size : Z) (l : list (Z * Z)) (p : place_at) : bool :=
+Definition beyond (g dd : positive) (nx ny far needed size : Z) (l : list (Z * Z)) (p : place_at) : bool :=
   match p with
   | None => false
   | Some (z, (s, k, e)) => in_units dd z &&
       (let x := k * nx + s * ny in let y := k * ny - s * nx in
-       let most := needed - (Zpos coarse * (nx * Qnum (fst z) + ny * Qnum (snd z) - far) - e * size) in
+       let most := needed - (Zpos g * (nx * Qnum (fst z) + ny * Qnum (snd z) - far) - e * size) in
        forallb (fun a => negb (Z.leb (x * fst a + y * snd a) most)) l)%Z
   end.
-Definition clears_quickly (one dd : positive) (turn : Z) (q : quick) (ends : (Z * Z) * (Z * Z)) (s : separation) (here there : place_at) : bool :=
+Definition clears_quickly (g one dd : positive) (turn : Z) (q : quick) (ends : (Z * Z) * (Z * Z)) (s : separation) (here there : place_at) : bool :=
   match pair_in (Qden (fst (direction s))) (direction s), number_in one (since s), number_in one (until s), number_in one (width s) with
   | Some (nx, ny), Some t0, Some t1, Some w =>
       let far := zmax (nx * fst (fst ends) + ny * snd (fst ends)) (nx * fst (snd ends) + ny * snd (snd ends)) in
       let nn := nx * nx + ny * ny in let length := Z.sqrt nn + 1 in let span := t1 - t0 in
-      let needed := (quick_reach q + Zpos coarse * (turn * w) + quick_bend q * (span * span)) * length in
+      let needed := (quick_reach q + Zpos g * (turn * w) + quick_bend q * (span * span)) * length in
       let size := (zabs nx + zabs ny) * size_of_arms q in
-      Z.leb 0 w && Z.leb 0 length && Z.leb nn (length * length) && beyond dd nx ny far needed size (arms q) here && beyond dd nx ny far needed size (arms q) there
+      Z.leb 0 w && Z.leb 0 length && Z.leb nn (length * length) && beyond g dd nx ny far needed size (arms q) here && beyond g dd nx ny far needed size (arms q) there
   | _, _, _, _ => false
   end%Z.
 
@@ -388,10 +388,10 @@ Qed.
 Definition placed (g : positive) (d : drive) (t : R) (p : place_at) := forall z c, p = Some (z, c) -> exists si co, encloses g c si co /\ forall q,
   scale (Q2R (times d)) (driven d t (real q)) = add (real z) (add (scale co (real (arm d q))) (scale si (left_of (real (arm d q))))).
 
-Lemma beyond_ok dd d nx ny far needed size l t p q a : beyond dd nx ny far needed size l p = true -> placed coarse d t p ->
+Lemma beyond_ok g dd d nx ny far needed size l t p q a : beyond g dd nx ny far needed size l p = true -> placed g d t p ->
   In a l -> real (arm d q) = (IZR (fst a) / IZR (Zpos dd), IZR (snd a) / IZR (Zpos dd)) ->
   (Rabs (IZR nx) + Rabs (IZR ny)) * (Rabs (IZR (fst a)) + Rabs (IZR (snd a))) <= IZR size ->
-  IZR needed < IZR (Zpos coarse) * (IZR (Zpos dd) * (Q2R (times d) * dot (IZR nx, IZR ny) (driven d t (real q))) - IZR far).
+  IZR needed < IZR (Zpos g) * (IZR (Zpos dd) * (Q2R (times d) * dot (IZR nx, IZR ny) (driven d t (real q))) - IZR far).
 Proof.
   intros h hp ha ea hs. unfold beyond in h. destruct p as [[z [[s k] e]]|]; [|discriminate]. apply andb_true_iff in h. destruct h as [hz h].
   rewrite forallb_forall in h. specialize (h a ha). rewrite negb_true_iff in h. apply Z.leb_gt in h. apply IZR_lt in h.
@@ -399,7 +399,7 @@ Proof.
   rewrite dot_scale in there. rewrite there. clear there hp. rewrite !dot_add, !dot_scale, ea.
   assert (ez : real z = (IZR (Qnum (fst z)) / IZR (Zpos dd), IZR (Qnum (snd z)) / IZR (Zpos dd))) by (apply (pair_in_ok dd z (Qnum (fst z), Qnum (snd z))); unfold pair_in; now rewrite hz).
   rewrite ez. clear ez ea hz. rewrite !minus_IZR, !plus_IZR, !mult_IZR, !minus_IZR, !plus_IZR, !mult_IZR in h.
-  set (G := IZR (Zpos coarse)) in *. set (E := IZR (Zpos dd)) in *. assert (E0 : 0 < E) by (apply IZR_lt; reflexivity).
+  set (G := IZR (Zpos g)) in *. set (E := IZR (Zpos dd)) in *. assert (E0 : 0 < E) by (apply IZR_lt; reflexivity).
   set (x := IZR nx) in *. set (y := IZR ny) in *. set (u := IZR (fst a)) in *. set (v := IZR (snd a)) in *.
   pose proof (near_times _ _ _ (x * u + y * v) hco) as n1. pose proof (near_times _ _ _ (y * u - x * v) hsi) as n2.
   assert (sum : Rabs (x * u + y * v) + Rabs (y * u - x * v) <= (Rabs x + Rabs y) * (Rabs u + Rabs v)).
@@ -415,10 +415,10 @@ Proof.
   rewrite same in h. replace (co * G * A) with (G * (co * A)) in n1 by ring. replace (si * G * B) with (G * (si * B)) in n2 by ring. lra.
 Qed.
 
-Lemma clears_quickly_ok one d p q e ends s here there : quickly (one * one) d p = Some q -> number_in one (times d) <> None ->
+Lemma clears_quickly_ok g one d p q e ends s here there : quickly g (one * one) d p = Some q -> number_in one (times d) <> None ->
   pair_in (one * one) (pscale (times d) (fst e)) = Some (fst ends) -> pair_in (one * one) (pscale (times d) (snd e)) = Some (snd ends) ->
-  clears_quickly one (one * one) (Qnum (times d)) q ends s here there = true ->
-  placed coarse d (Q2R (since s) - Q2R (sets_out d)) here -> placed coarse d (Q2R (until s) - Q2R (sets_out d)) there ->
+  clears_quickly g one (one * one) (Qnum (times d)) q ends s here there = true ->
+  placed g d (Q2R (since s) - Q2R (sets_out d)) here -> placed g d (Q2R (until s) - Q2R (sets_out d)) there ->
   0 <= Q2R (reach p) -> clear_between d p e s.
 Proof.
   intros hq ht he0 he1 h hh tt r0. unfold clears_quickly in h.
@@ -428,7 +428,7 @@ Proof.
   destruct (number_in one (times d)) as [tn|] eqn:et; [|congruence]. clear ht.
   assert (etn : Qnum (times d) = tn) by (unfold number_in in et; destruct (Pos.eqb (Qden (times d)) one); [now injection et|discriminate]). rewrite etn in h.
   set (far := zmax _ _) in h. set (len := (Z.sqrt _ + 1)%Z) in h. clearbody len.
-    set (needed := ((quick_reach q + Zpos coarse * (tn * w) + quick_bend q * ((t1 - t0) * (t1 - t0))) * len)%Z) in h. set (size := ((_ + _) * size_of_arms q)%Z) in h.
+    set (needed := ((quick_reach q + Zpos g * (tn * w) + quick_bend q * ((t1 - t0) * (t1 - t0))) * len)%Z) in h. set (size := ((_ + _) * size_of_arms q)%Z) in h.
   apply andb_true_iff in h; destruct h as [h b1]. apply andb_true_iff in h; destruct h as [h b0]. apply andb_true_iff in h; destruct h as [h nl].
   apply andb_true_iff in h; destruct h as [w0 l0]. apply Z.leb_le, IZR_le in w0, l0, nl. rewrite plus_IZR, !mult_IZR in nl.
   unfold quickly in hq. destruct (pairs_in (one * one) (map (arm d) (corners p))) as [l|] eqn:el; [|discriminate].
@@ -440,14 +440,14 @@ Proof.
   destruct (pairs_in_ok _ _ _ el (arm d c) (in_map _ _ _ hc)) as [a [ha ea]].
   assert (big : IZR (zabs (fst a) + zabs (snd a)) <= IZR (fold_right (fun a m => zmax (zabs (fst a) + zabs (snd a)) m) 0%Z l)) by (apply (largest (fun a => zabs (fst a) + zabs
     (snd a))%Z); assumption).
-  pose proof (up_ok coarse (bend d v)) as bent. set (S := fold_right _ _ l) in *. set (B := up coarse (bend d v)) in *. clearbody S B.
+  pose proof (up_ok g (bend d v)) as bent. set (S := fold_right _ _ l) in *. set (B := up g (bend d v)) in *. clearbody S B.
   rewrite plus_IZR, !zabs_ok in big.
   assert (hsize : (Rabs (IZR nx) + Rabs (IZR ny)) * (Rabs (IZR (fst a)) + Rabs (IZR (snd a))) <= IZR size).
   { unfold size. rewrite mult_IZR, plus_IZR, !zabs_ok. apply Rmult_le_compat_l; [|assumption]. pose proof (Rabs_pos (IZR nx)). pose proof (Rabs_pos (IZR ny)). lra. }
-  assert (one0 : 0 < IZR (Zpos one)) by (apply IZR_lt; reflexivity). assert (G0 : 0 < IZR (Zpos coarse)) by (apply IZR_lt; reflexivity).
+  assert (one0 : 0 < IZR (Zpos one)) by (apply IZR_lt; reflexivity). assert (G0 : 0 < IZR (Zpos g)) by (apply IZR_lt; reflexivity).
   assert (edd : IZR (Zpos (one * one)) = IZR (Zpos one) * IZR (Zpos one)) by (rewrite Pos2Z.inj_mul; apply mult_IZR).
-  pose proof (beyond_ok (one * one) d nx ny far needed size l _ here c a b0 hh ha ea hsize) as k0.
-  pose proof (beyond_ok (one * one) d nx ny far needed size l _ there c a b1 tt ha ea hsize) as k1.
+  pose proof (beyond_ok g (one * one) d nx ny far needed size l _ here c a b0 hh ha ea hsize) as k0.
+  pose proof (beyond_ok g (one * one) d nx ny far needed size l _ there c a b1 tt ha ea hsize) as k1.
   apply pair_in_ok in he0, he1. fold n in k0, k1.
   apply number_in_ok in e0, e1, ew, et, er. rewrite Q2R_mul in er.
   assert (edge_low : Q2R (times d) * dot n x <= IZR far / IZR (Zpos (one * one))).
@@ -463,7 +463,7 @@ Proof.
         with (IZR nx * IZR (fst (snd ends)) + IZR ny * IZR (snd (snd ends))) by (field; lra).
       replace (IZR f / E * E) with (IZR f) by (field; lra). assumption. }
   apply (enough d c v n _ _ t _ (Q2R (reach p)) known htt) with (2 := edge_low). clear edge_low.
-  destruct (times_ok d) as [T0 _]. set (T := Q2R (times d)) in *. set (D := IZR (Zpos one)) in *. set (E := IZR (Zpos (one * one))) in *. set (G := IZR (Zpos coarse)) in *.
+  destruct (times_ok d) as [T0 _]. set (T := Q2R (times d)) in *. set (D := IZR (Zpos one)) in *. set (E := IZR (Zpos (one * one))) in *. set (G := IZR (Zpos g)) in *.
   set (N := sqrt (dot n n)) in *. assert (N0 : 0 <= N) by apply sqrt_pos.
   assert (NN : N * N = dot n n) by (apply sqrt_sqrt, dot_self).
   assert (NL : N <= IZR len).
@@ -503,7 +503,7 @@ Definition same_moment (a b : Q) : bool := Z.eqb (Qnum a) (Qnum b) && Pos.eqb (Q
 Fixpoint known_at (known : list (Q * place_at)) (t : Q) : option place_at :=
   match known with [] => None | (u, p) :: r => if same_moment u t then Some p else known_at r t end.
 Definition recall (at_ : Q -> place_at) (known : list (Q * place_at)) (t : Q) : place_at * list (Q * place_at) :=
-  match known_at known t with Some p => (p, known) | None => let p := at_ t in (p, (t, p) :: firstn 7 known) end.
+  match known_at known t with Some p => (p, known) | None => let p := at_ t in (p, (t, p) :: firstn 15 known) end.
 Fixpoint places (at_ : Q -> place_at) (known : list (Q * place_at)) (l : list separation) : list sided :=
   match l with
   | [] => []
@@ -525,7 +525,7 @@ Lemma recall_ok g d at_ known t : (forall t, known_place g d (t, at_ t)) -> Fora
 Proof.
   intros ha h. unfold recall. destruct (known_at known t) as [p|] eqn:e; cbn [fst snd].
   - split; [now apply (known_at_ok g d known)|assumption].
-  - split; [apply ha|]. constructor; [apply ha|]. rewrite <- (firstn_skipn 7 known) in h. now apply Forall_app in h.
+  - split; [apply ha|]. constructor; [apply ha|]. rewrite <- (firstn_skipn 15 known) in h. now apply Forall_app in h.
 Qed.
 Lemma places_ok g d at_ l : (forall t, known_place g d (t, at_ t)) -> forall known, Forall (known_place g d) known ->
   forall x, In x (places at_ known l) -> known_place g d (since (its x), here x) /\ known_place g d (until (its x), there x).
@@ -543,36 +543,40 @@ Proof.
 Qed.
 
 (* --- A part and an edge, prepared for many separations --- *)
-Definition prepare (d : drive) (p : part) : part * option quick := (p, quickly (Qden (turns d) * Qden (turns d)) d p).
+Definition prepare (g : positive) (d : drive) (p : part) : part * option quick := (p, quickly g (Qden (turns d) * Qden (turns d)) d p).
 Definition prepare_edge (d : drive) (e : edge) : edge * option ((Z * Z) * (Z * Z)) :=
   let f := times_edge d e in let dd := (Qden (turns d) * Qden (turns d))%positive in
   (f, match pair_in dd (fst f), pair_in dd (snd f) with Some a, Some b => Some (a, b) | _, _ => None end).
-Definition fits (d : drive) : part * option quick -> edge * option ((Z * Z) * (Z * Z)) -> sided -> bool :=
+Definition fits (g : positive) (d : drive) : part * option quick -> edge * option ((Z * Z) * (Z * Z)) -> sided -> bool :=
   let one := Qden (turns d) in let dd := (one * one)%positive in let turn := times d in
   fun p e s =>
     match number_in one turn, snd p, snd e with
-    | Some t, Some q, Some ends => clears_quickly one dd t q ends (its s) (here s) (there s)
+    | Some t, Some q, Some ends => clears_quickly g one dd t q ends (its s) (here s) (there s)
     | _, _, _ => false
     end || clears grain d (fst p) (fst e) (its s).
-Lemma fits_ok d p e s : fits d (prepare d p) (prepare_edge d e) s = true ->
-  known_place coarse d (since (its s), here s) -> known_place coarse d (until (its s), there s) ->
+Lemma fits_ok g d p e s : fits g d (prepare g d p) (prepare_edge d e) s = true ->
+  known_place g d (since (its s), here s) -> known_place g d (until (its s), there s) ->
   0 <= Q2R (reach p) -> clear_between d p e (its s).
 Proof.
   unfold fits, prepare, prepare_edge. cbv zeta. cbn [fst snd]. intros h hh tt r0. apply orb_true_iff in h. destruct h as [h|h].
   - destruct (number_in (Qden (turns d)) (times d)) as [t|] eqn:et; [|discriminate].
-    destruct (quickly _ d p) as [q|] eqn:eq; [|discriminate].
+    destruct (quickly g _ d p) as [q|] eqn:eq; [|discriminate].
     destruct (pair_in _ (fst (times_edge d e))) as [a|] eqn:ea; [|discriminate]. destruct (pair_in _ (snd (times_edge d e))) as [b|] eqn:eb; [|discriminate].
     assert (etn : Qnum (times d) = t) by (unfold number_in in et; destruct (Pos.eqb (Qden (times d)) (Qden (turns d))); [now injection et|discriminate]). rewrite <- etn in h.
-    apply (clears_quickly_ok (Qden (turns d)) d p q e (a, b) (its s) (here s) (there s)); try assumption. congruence.
+    apply (clears_quickly_ok g (Qden (turns d)) d p q e (a, b) (its s) (here s) (there s)); try assumption. congruence.
   - apply (clears_ok grain d p e (its s)); try assumption. apply known_apt. now right.
 Qed.
 
 (* --- All parts and edges, at all moments --- *)
+(* Places are taken times the turn rate: of slow turns the coarse units rarely decide. *)
+Definition units_for (d : drive) : positive := if qlt (qabs (turns d)) (1 # 1024) && negb (straight d) then grain else coarse.
+Lemma units_apt d : apt (units_for d) (terms (units_for d)).
+Proof. apply known_apt. unfold units_for. destruct (_ && _); auto. Qed.
 Definition turn_past (d : drive) (o : obstacle) (l : list separation) : bool :=
-  let es := edges_of o in
+  let es := edges_of o in let g := units_for d in
   qle (qmul (qabs (turns d)) (qsub (halts d) (sets_out d))) 64
   && forallb (fun p => qle 0 (reach p)) (body_parts d)
-  && all_taken its (fits d) (sets_out d) (halts d) (pairs (map (prepare d) (body_parts d)) (map (prepare_edge d) es)) (all_places coarse d l)
+  && all_taken its (fits g d) (sets_out d) (halts d) (pairs (map (prepare g d) (body_parts d)) (map (prepare_edge d) es)) (all_places g d l)
   && begins_outside (place_then d) (body_parts d) o es.
 
 Lemma hull_over (f : vec -> R) c ps : (forall x y s, f (mix s x y) = (1 - s) * f x + s * f y) -> (forall p, In p ps -> c < f (real p)) -> forall x, hull ps x -> c < f x.
@@ -590,10 +594,10 @@ Proof.
     dot (sub x (driven d t y)) (sub x (driven d t y)) <= Q2R (reach p) * Q2R (reach p) -> In e es -> ~ on e x).
   { intros t p y x e ht hp hy hx he ox. assert (r0 := parts p hp).
     apply qle_R in r0. rewrite Q2R_0 in r0.
-    destruct (all_taken_fits _ _ _ _ _ _ _ taken (prepare d p) (prepare_edge d e) (Q2R (sets_out d) + t)) as [a [ia [hs [s1 [s2 s3]]]]];
+    destruct (all_taken_fits _ _ _ _ _ _ _ taken (prepare (units_for d) d p) (prepare_edge d e) (Q2R (sets_out d) + t)) as [a [ia [hs [s1 [s2 s3]]]]];
       [now apply in_map|now apply in_map|lra|].
-    destruct (all_places_ok coarse d l (known_apt coarse (or_introl eq_refl)) a ia) as [hh tt]. set (s := its a) in *.
-    destruct (fits_ok _ _ _ _ hs hh tt r0) as [n k]. fold s in k. specialize (k t ltac:(lra)).
+    destruct (all_places_ok (units_for d) d l (units_apt d) a ia) as [hh tt]. set (s := its a) in *.
+    destruct (fits_ok _ _ _ _ _ hs hh tt r0) as [n k]. fold s in k. specialize (k t ltac:(lra)).
     assert (over : Q2R (reach p) * sqrt (dot n n) < dot n (driven d t y) - dot n x).
     { apply (hull_over (fun y => dot n (driven d t y) - dot n x) _ (corners p)); [|intros q hq; now apply k|assumption].
       intros b c u. rewrite driven_affine, dot_mix. ring. }
