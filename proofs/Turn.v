@@ -568,8 +568,8 @@ Proof.
 Qed.
 
 (* --- All parts and edges, at all moments --- *)
-(* Places are taken times the turn rate: of slow turns the coarse units rarely decide. *)
-Definition units_for (d : drive) : positive := if qlt (qabs (turns d)) (1 # 1024) && negb (straight d) then grain else coarse.
+(* Places are taken times the turn rate: of slower turns the coarse units rarely decide. *)
+Definition units_for (d : drive) : positive := if qlt (qabs (turns d)) (1 # 32768) && negb (straight d) then grain else coarse.
 Lemma units_apt d : apt (units_for d) (terms (units_for d)).
 Proof. apply known_apt. unfold units_for. destruct (_ && _); auto. Qed.
 Definition turn_past (d : drive) (o : obstacle) (l : list separation) : bool :=
