@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trajectories from files of ten formats: what is read, and what is refused with file and line.
+// Trajectories from files of many formats: what is read, and what is refused with file and line.
 #include "exactvo/datasets/trajectory_file.h"
 
 #include <gmock/gmock.h>
@@ -125,6 +125,48 @@ TEST(TrajectoryFile, ReadsPosesOfRosBags) {
   EXPECT_DOUBLE_EQ(tilted.rows.at(0).heading, 2.0 * std::atan2(1.0, 1.0));
   const DataError two = refusal_of("__time,/a/position/x,/a/position/y,/b/position/x,/b/position/y\n7,1,2,3,4\n");
   EXPECT_EQ(two.code(), DataCode::format_unknown) << "two topics: which one is meant is not known";
+}
+
+TEST(TrajectoryFile, ReadsCurvesOfJson) {
+  const Content c =
+      content_of(R"({"id":"A","basis":"b-spline","degree":1,"start":1,"interval":0.5,"points":[[0,0],[1,0],[1,2]]})"
+                 "\n"
+                 R"({"id":7,"basis":"bezier","start":0,"end":2,"points":[[0,0],[1,2],[2,0]]})"
+                 "\n"
+                 R"({"id":7,"basis":"powers","start":3,"end":4,"points":[[5,5],[1,0]]})"
+                 "\n");
+  EXPECT_EQ(c.file.format, "curves");
+  EXPECT_THAT(c.file.agents, ElementsAre("A", "7"));
+  ASSERT_EQ(c.file.curves.size(), 2u);
+  ASSERT_EQ(c.file.curves[0].size(), 2u) << "a piece for each interval";
+  EXPECT_EQ(c.file.curves[0][1].start, 1.5);
+  EXPECT_EQ(c.file.curves[0][1].end, 2.0);
+  EXPECT_EQ(position_at(c.file.curves[0][1], 1.75), (geometry::Vec2{1.0, 1.0}));
+  ASSERT_EQ(c.file.curves[1].size(), 2u);
+  ASSERT_EQ(c.rows.size(), 33u + 17u + 17u);
+  expect_row(c.rows[33 + 8], 1, 1.0, 1.0, 1.0, 2);
+  expect_row(c.rows[33 + 17], 1, 3.0, 5.0, 5.0, 3);
+}
+
+TEST(TrajectoryFile, CurvesOfJsonThatCannotBeAreRefused) {
+  const auto refused = [](const std::string& members) {
+    const DataError error = refusal_of(R"({"id":"A","basis":"bezier",)" + members + "}\n");
+    EXPECT_THAT(error.what(), HasSubstr("line 1")) << members;
+    return error.code();
+  };
+  EXPECT_EQ(refused(R"("start":0,"end":0,"points":[[0,0]])"), DataCode::out_of_range);
+  EXPECT_EQ(refused(R"("start":"nan","end":1,"points":[[0,0]])"), DataCode::out_of_range);
+  EXPECT_EQ(refused(R"("start":0,"end":1,"points":[])"), DataCode::wrong_count);
+  EXPECT_EQ(refused(R"("start":0,"end":1,"points":[[0,"inf"]])"), DataCode::out_of_range);
+  EXPECT_EQ(refused(R"("start":0,"end":1)"), DataCode::key_missing);
+  const std::string spline = R"({"id":"A","basis":"b-spline","start":0,"points":[[0,0],[1,1]],)";
+  EXPECT_EQ(refusal_of(spline + R"("degree":2,"interval":1})").code(), DataCode::wrong_count);
+  EXPECT_EQ(refusal_of(spline + R"("degree":1,"interval":0})").code(), DataCode::out_of_range);
+  EXPECT_EQ(refusal_of(spline + R"("degree":11,"interval":1})").code(), DataCode::out_of_range);
+  const std::string piece = R"({"id":"A","basis":"powers","start":0,"end":1,"points":[[0,0]]})";
+  EXPECT_THAT(refusal_of(piece + "\n" + piece).what(), HasSubstr("line 2"));
+  EXPECT_EQ(refusal_of(R"({"id":"A","basis":"spline","start":0,"end":1,"points":[[0,0]]})").code(),
+            DataCode::not_an_option);
 }
 
 TEST(TrajectoryFile, ReadsJuPedSimAndPedPy) {

@@ -187,6 +187,17 @@ TEST(CheckVerb, PolynomialsOfSeveralFilesAreOneFleet) {
   }
 }
 
+TEST(CheckVerb, BSplinesAreDecidedAlongTheCurve) {
+  // Two swarm drones: control points apart at every knot, curves that cross between them.
+  const std::string line = R"("basis":"b-spline","degree":3,"start":0,"interval":1,"points":)";
+  const Outcome outcome = checked(R"({"id":"A",)" + line + "[[-3,0],[-1,0],[1,0],[3,0]]}\n" + R"({"id":"B",)" + line +
+                                      "[[0,-3],[0,-1],[0,1],[0,3]]}\n",
+                                  "--radius 0.25");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("along the file's polynomials"), HasSubstr("overlap: A and B"),
+                                 HasSubstr("0.5 m deep at 0.5 s, at (0, 0)")));
+}
+
 TEST(CheckVerb, SeveralFilesAndFoldersAreCheckedOneAfterTheOther) {
   const Workplace here;
   here.write("all/a.csv", kCrossing);

@@ -57,6 +57,7 @@ const std::vector<TrajectoryFormat>& trajectory_readers() {
       {"sumo-fcd", looks_like_sumo_fcd, read_sumo_fcd},
       {"mapf-paths", looks_like_mapf_paths, read_mapf_paths},
       {"mapf-yaml", looks_like_mapf_yaml, read_mapf_yaml},
+      {"curves", looks_like_curves, read_curves},
       {"polynomials", looks_like_polynomials, read_polynomials},
       {"jupedsim-txt", looks_like_jupedsim_text, read_jupedsim_text},
       {"csv", looks_like_trajectory_csv, read_trajectory_csv},

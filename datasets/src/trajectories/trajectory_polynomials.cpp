@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polynomials of quadrotors as the programs for Crazyflies and uav_trajectories exchange them: CSV with the header
 // duration,x^0,...,x^7,y^0,...,z^0,...,yaw^0,...; each line is a piece, in powers of the time since its beginning. A
-// file is one agent. Only x and y count.
+// file is one agent. Only x and y count. And curves in JSON, an object a line, as certificates write them.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,6 +10,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "files/text_file.h"
+#include "json/json_text.h"
 #include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
 
@@ -110,16 +111,77 @@ geometry::CurvedMotion piece_in(std::string_view text, const Header& header, dou
   return curve;
 }
 
-/// Samples of a piece; of the first one also its beginning.
+/// Samples of a piece; of one that follows no other also its beginning.
 void add_rows(std::size_t agent, const geometry::CurvedMotion& curve, bool is_first, std::uint64_t line,
               TrajectorySink& out) {
+  const bool has_powers = curve.basis == geometry::CurveBasis::powers;
   const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
   const double duration = curve.end - curve.start;
   for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {
     const double t = static_cast<double>(s) / kSamples * duration;
-    out.row(agent, s == kSamples ? curve.end : curve.start + t, value_of(curve.points, t) / out.scale(), line,
-            TrajectoryRow().heading, value_of(velocity, t) / out.scale());
+    const double time = s == kSamples ? curve.end : std::min(curve.start + t, curve.end);
+    out.row(agent, time, geometry::position_at(curve, time) / out.scale(), line, TrajectoryRow().heading,
+            has_powers ? value_of(velocity, t) / out.scale() : TrajectoryRow().velocity);
   }
+}
+
+void note_samples(TrajectoryFile& file) {
+  file.notes.emplace_back("rows are " + std::to_string(kSamples) +
+                          " samples of each piece; overlaps are those of the polynomials themselves; z does not count");
+}
+
+// --- JSON ---
+
+constexpr const char* kBases[] = {"powers", "bezier", "b-spline"};
+
+/// Points of a curve, in m. Of powers each term has bounds.
+std::vector<geometry::Vec2> points_in(const JsonCursor& list, double scale, double time_unit) {
+  std::vector<geometry::Vec2> points;
+  double factor = 1.0;
+  for (std::size_t k = 0; k < list.size(); ++k, factor *= time_unit) {
+    const geometry::Vec2 p = scale * list.at(k).point();
+    if (!(std::max(std::fabs(p.x), std::fabs(p.y)) * factor <= kLargestCoordinate))
+      list.at(k).refuse("numbers up to 2^100 m", DataCode::out_of_range);
+    points.push_back(p);
+  }
+  return points;
+}
+
+/// The pieces of a line: one from `start` to `end`, or those of a uniform B-spline, an `interval` each.
+std::vector<geometry::CurvedMotion> curves_in(const JsonCursor& line, double scale) {
+  const auto basis = std::find(std::begin(kBases), std::end(kBases), line.at("basis").text());
+  if (basis == std::end(kBases)) line.at("basis").refuse("powers, bezier or b-spline", DataCode::not_an_option);
+  const auto kind = static_cast<geometry::CurveBasis>(basis - std::begin(kBases));
+  const JsonCursor list = line.at("points");
+  const auto has_degree = [&](std::size_t degree) {
+    if (degree > geometry::kMostDegree)
+      list.refuse("a degree up to " + std::to_string(geometry::kMostDegree), DataCode::out_of_range);
+  };
+  const double start = line.at("start").number();
+  const auto later = [&](const char* key, double time) {
+    if (!(start < time && time - start <= kLargestCoordinate && std::fabs(start) <= kLargestCoordinate))
+      line.at(key).refuse("a time after the start, both finite and up to 2^100 s", DataCode::out_of_range);
+  };
+  if (kind == geometry::CurveBasis::b_spline && line.has("interval")) {
+    const std::uint64_t degree = line.at("degree").count();
+    has_degree(degree);
+    if (list.size() <= degree) list.refuse("more points than the degree", DataCode::wrong_count);
+    const double interval = line.at("interval").number();
+    const double pieces = static_cast<double>(list.size() - degree);
+    later("interval", start + pieces * interval);
+    std::vector<geometry::CurvedMotion> curves =
+        geometry::b_spline_pieces(points_in(list, scale, 1.0), degree, start, interval);
+    for (const geometry::CurvedMotion& curve : curves)
+      if (!(curve.start < curve.end))
+        line.at("interval").refuse("an interval that makes times differ", DataCode::out_of_range);
+    return curves;
+  }
+  const double end = line.at("end").number();
+  later("end", end);
+  if (list.size() == 0) list.refuse("at least one point", DataCode::wrong_count);
+  has_degree(list.size() - 1);
+  const double unit = kind == geometry::CurveBasis::powers ? end - start : 1.0;
+  return {{kind, start, end, points_in(list, scale, unit)}};
 }
 
 }  // namespace
@@ -140,12 +202,40 @@ void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
     add_rows(agent, curves.back(), curves.size() == 1, lines.number(), out);
   }
   if (curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no piece", "a line for each piece");
-  if (out.file().curves.empty())
-    out.file().notes.emplace_back(
-        "rows are " + std::to_string(kSamples) +
-        " samples of each piece; overlaps are those of the polynomials themselves; z does not count");
+  if (out.file().curves.empty()) note_samples(out.file());
   out.file().curves.resize(agent);
   out.file().curves.push_back(std::move(curves));
+}
+
+bool looks_like_curves(std::string_view beginning) {
+  const std::string_view text = trimmed(without_mark(beginning));
+  return text.substr(0, 1) == "{" && text.find("\"basis\"") != std::string_view::npos &&
+         text.find("\"certificate\"") == std::string_view::npos;
+}
+
+void read_curves(const std::filesystem::path& path, TrajectorySink& out) {
+  TextLines lines(path.string(), kLongestRow);
+  TrajectoryFile& file = out.file();
+  for (std::string_view text; lines.next(text);) {
+    if (trimmed(text).empty()) continue;
+    const Json json = parse_json_line(text, file.file, lines.number());
+    const JsonCursor line(json, file.file, "line " + std::to_string(lines.number()));
+    std::vector<geometry::CurvedMotion> added = curves_in(line, out.scale());
+    const JsonCursor id = line.at("id");
+    const std::size_t agent = out.agent(id.json().is_string() ? id.text() : number_text(id.number()));
+    file.curves.resize(file.agents.size());
+    for (geometry::CurvedMotion& curve : added) {
+      std::vector<geometry::CurvedMotion>& known = file.curves[agent];
+      const double ended = known.empty() ? -std::numeric_limits<double>::infinity() : known.back().end;
+      if (curve.start < ended)
+        line.at("start").refuse("no time before the end of the agent's last curve, " + number_text(ended) + " s",
+                                DataCode::out_of_range);
+      add_rows(agent, curve, ended < curve.start, lines.number(), out);
+      known.push_back(std::move(curve));
+    }
+  }
+  if (file.curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no curve", "a line for each curve");
+  note_samples(file);
 }
 
 }  // namespace exactvo::datasets

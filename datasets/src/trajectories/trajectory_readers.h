@@ -86,6 +86,8 @@ void read_four_columns(const std::filesystem::path& path, TrajectorySink& out);
 // trajectory_polynomials.cpp
 bool looks_like_polynomials(std::string_view beginning);
 void read_polynomials(const std::filesystem::path& path, TrajectorySink& out);
+bool looks_like_curves(std::string_view beginning);
+void read_curves(const std::filesystem::path& path, TrajectorySink& out);
 
 // trajectory_plans.cpp
 bool looks_like_mapf_yaml(std::string_view beginning);

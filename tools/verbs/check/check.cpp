@@ -411,7 +411,7 @@ void declare_check(CLI::App& app, CheckFlags& flags) {
          "trajectories", flags.files,
          "Files or folders: CSV with the columns t,id,x,y and theta, vx, vy, text or SQLite of JuPedSim, PedPy, "
          "obsmat.txt, frame-id-x-y in four columns, TrajNet++, SUMO's FCD, a plan of libMultiRobotPlanning or "
-         "paths of cells, polynomials (all files together), a recording of this program; - for stdin")
+         "paths of cells, polynomials (all files together), curves in JSON, a recording of this program; - for stdin")
       ->required();
   app.add_option("--format", flags.format,
                  fmt::format("Format of the trajectories: {}; by default detected from content",
