@@ -125,9 +125,9 @@ void add_rows(std::size_t agent, const geometry::CurvedMotion& curve, bool is_fi
   }
 }
 
-void note_samples(TrajectoryFile& file) {
-  file.notes.emplace_back("rows are " + std::to_string(kSamples) +
-                          " samples of each piece; overlaps are those of the polynomials themselves; z does not count");
+void note_samples(TrajectoryFile& file, const std::string& more) {
+  file.notes.push_back("rows are " + std::to_string(kSamples) +
+                       " samples of each piece; overlaps are those of the polynomials themselves" + more);
 }
 
 // --- JSON ---
@@ -202,7 +202,7 @@ void read_polynomials(const std::filesystem::path& path, TrajectorySink& out) {
     add_rows(agent, curves.back(), curves.size() == 1, lines.number(), out);
   }
   if (curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no piece", "a line for each piece");
-  if (out.file().curves.empty()) note_samples(out.file());
+  if (out.file().curves.empty()) note_samples(out.file(), "; z does not count");
   out.file().curves.resize(agent);
   out.file().curves.push_back(std::move(curves));
 }
@@ -235,7 +235,7 @@ void read_curves(const std::filesystem::path& path, TrajectorySink& out) {
     }
   }
   if (file.curves.empty()) out.refuse(DataCode::wrong_count, lines.number(), "no curve", "a line for each curve");
-  note_samples(file);
+  note_samples(file, "");
 }
 
 }  // namespace exactvo::datasets
