@@ -318,6 +318,24 @@ TEST(Preflight, AgreesWithAFloodedGrid) {
   EXPECT_LT(open, 25);
 }
 
+TEST(Preflight, OutsideOfAllObstaclesTheMapOfRoutesHasAWayToo) {
+  test::SeededRandom random(test::seed_of_run(17));
+  int outside = 0;
+  for (int k = 0; k < 200; ++k) {
+    Scenario s = random_scene(random);
+    const Vec2 start = s.robots[0].position = random.in_box(7.0), goal = s.robots[0].goals[0] = random.in_box(7.0);
+    geometry::Box box;
+    for (const SceneObstacle& o : s.obstacles)
+      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+    detail::Reachability asked(detail::terrain_of(s)), with_map(detail::terrain_of(s));
+    EXPECT_EQ(asked.reachable_place(kRadius, start, {goal, 0.0}).has_value(),
+              with_map.plan(kRadius).is_reachable(start, goal))
+        << "case " << k;
+    outside += geometry::distance_below(box, start) > kRadius && geometry::distance_below(box, goal) > kRadius;
+  }
+  EXPECT_GT(outside, 20);
+}
+
 TEST(Preflight, RobotsThatHaveArrivedBeforeTheyMoveAreNamed) {
   Scenario s = scene({0.002, 0.001}, {{0.008, 0.001}}, {});  // metres and a map in millimetres, say
   s.robots.push_back(s.robots[0]);

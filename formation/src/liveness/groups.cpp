@@ -104,6 +104,7 @@ void Groups::begin_step(double time, std::vector<RobotNow> now, const std::funct
   now_ = std::move(now);
   if (plans_) {
     std::vector<Vec2> here;
+    here.reserve(now_.size());
     for (const RobotNow& r : now_) here.push_back(r.position);
     history_.add(std::move(here));
     advance();

@@ -47,13 +47,14 @@ class KinematicSteps final : public Stepper {
         journeys_(robots.journeys),
         wheels_(scenario_.robots, rules_),
         ways_(robots.size()),
+        here_(robots.size()),
         steered_(robots.size()),
         stopping_steps_(robots.size(), 0),
         meets_movers_(meets_movers(scenario_)),
         asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
         joint_(
-            rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return viewpoint(i); },
+            rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return here_[i]; },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
         recording_(recording) {
     if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
@@ -134,6 +135,7 @@ class KinematicSteps final : public Stepper {
 
   Step decide_all(double time) {
     now_ = time;
+    for (std::size_t i = 0; i < ways_.size(); ++i) here_[i] = viewpoint(i);
     if (journeys_.has_claims()) look_at_claims();
     if (groups_) look_at_groups();
     joint_.begin_step();
@@ -188,6 +190,7 @@ class KinematicSteps final : public Stepper {
 
   void look_at_groups() {
     std::vector<RobotNow> now;
+    now.reserve(ways_.size());
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       const Journey& j = journeys_[i];
       // Without a way to its goal it stays where it is, and makes way.
@@ -224,11 +227,10 @@ class KinematicSteps final : public Stepper {
   RobotStep decide_one(std::size_t i) {
     const bool is_prepared = options_.steering || options_.half_planes;
     if (!is_prepared) prepare(i);
-    if (!goes_by_plan(i)) {
-      if (guide_) journeys_.look_along(i);
-      look(i);
-    }
-    if (!meets_movers_) add_moving_constraints(rules_, viewpoint(i), scene_, joint_.others[i]);
+    if (guide_ && !goes_by_plan(i)) journeys_.look_along(i);
+    here_[i].turns_after = journeys_.turns_after(i);
+    if (!goes_by_plan(i)) look(i);
+    if (!meets_movers_) add_moving_constraints(rules_, here_[i], scene_, joint_.others[i]);
     RobotStep step = undecided_now(i);
     if (measuring_) step.measured = measuring_->measured()[i];
     step.note = journeys_.take_note(i);
@@ -248,10 +250,10 @@ class KinematicSteps final : public Stepper {
     return step;
   }
 
+  /// In this step; when it turns is known after a look along its course.
   Viewpoint viewpoint(std::size_t i) const {
     const Robot& spec = scenario_.robots[i];
     Viewpoint here{positions_[i], velocities_[i], obstacle_radius(spec), spec.max_speed};
-    here.turns_after = journeys_.turns_after(i);
     here.robot = i;
     here.body = scene_.robot(i);
     here.wheels = wheels_.of(i);
@@ -264,7 +266,7 @@ class KinematicSteps final : public Stepper {
   void look(std::size_t i) {
     StaticField& field = *ways_[i].field;
     if (const std::optional<double> margin = journeys_.take_margin(i)) field.set_margin(*margin);
-    own_.look(field, joint_.brakes(i) ? joint_.braked(viewpoint(i)) : viewpoint(i));
+    own_.look(field, joint_.brakes(i) ? joint_.braked(here_[i]) : here_[i]);
   }
 
   /// REQUIRES: it has looked, and nobody after it.
@@ -272,7 +274,7 @@ class KinematicSteps final : public Stepper {
     if (meets_movers_) return choose_among_movers(i, preferred, step);
     if (!promises_between_robots(rules_.method)) joint_.take_sides(i, preferred);
     wheels_.choose(i, preferred, joint_.anchors[i], space(), step, [&](Vec2 wish) {
-      own_.choose(wish, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
+      own_.choose(wish, here_[i], joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
     });
   }
 
@@ -280,7 +282,7 @@ class KinematicSteps final : public Stepper {
   /// If nothing else is left it brakes, which is always allowed (lemma 8), or stands.
   void choose_among_movers(std::size_t i, Vec2 preferred, RobotStep& step) {
     const std::size_t last = stopping_steps_[i];
-    const double acceleration = scenario_.acceleration->max, most = fastest(rules_.speed_bound, viewpoint(i).max_speed);
+    const double acceleration = scenario_.acceleration->max, most = fastest(rules_.speed_bound, here_[i].max_speed);
     std::optional<RobotStep> best;
     for (const std::size_t steps : {last + 1, last, last - 1}) {
       if (steps == 0 || steps > last + 1) continue;
@@ -290,7 +292,7 @@ class KinematicSteps final : public Stepper {
       if (is_better) best = std::move(found);
     }
     if (!best) {
-      own_.look(*ways_[i].field, joint_.braked(viewpoint(i)));
+      own_.look(*ways_[i].field, joint_.braked(here_[i]));
       const Vec2 braked = last > 1 ? (1.0 - 1.0 / static_cast<double>(last)) * velocities_[i] : Vec2{};
       if (last > 1) best = within_steps(i, last - 1, braked, preferred, step);
       if (last > 1 && !best) best = within_steps(i, last - 1, braked, braked, step);
@@ -300,14 +302,14 @@ class KinematicSteps final : public Stepper {
       return;
     }
     step.stopping_steps = 0;
-    own_.choose({}, viewpoint(i), joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
+    own_.choose({}, here_[i], joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
   }
 
   /// The choice of a robot that is to stand after so many steps; nothing where half-planes leave it none. `from`: the
   /// velocity that those against movers are to leave the most room.
   std::optional<RobotStep> within_steps(std::size_t i, std::size_t steps, Vec2 from, Vec2 preferred,
                                         const RobotStep& undecided) {
-    Viewpoint here = viewpoint(i);
+    Viewpoint here = here_[i];
     here.most = stopping_speed(scenario_.acceleration->max, rules_.time_step, steps);
     std::vector<Constraint> others = joint_.others[i];
     for (std::size_t k = 0; k < scene_.moving_obstacles(); ++k)
@@ -366,8 +368,7 @@ class KinematicSteps final : public Stepper {
     }
     const bool at_goal = journeys_.at_goal(i);
     if (!guide_ || at_goal)
-      return own_.steer(ways_[i], {now_, viewpoint(i), journeys_.aim_of(i), at_goal, acceleration_of(scenario_, i)},
-                        step);
+      return own_.steer(ways_[i], {now_, here_[i], journeys_.aim_of(i), at_goal, acceleration_of(scenario_, i)}, step);
     if (own_.is_in_contact()) step.mode = Mode::pushing_out;
     return guided(i, step);
   }
@@ -432,6 +433,7 @@ class KinematicSteps final : public Stepper {
   Journeys& journeys_;
   WheelsOfRun wheels_;
   std::vector<OwnWay> ways_;
+  std::vector<Viewpoint> here_;                    ///< of each robot, in the present step
   std::vector<Vec2> steered_;                      ///< m/s, by the user
   std::vector<std::size_t> stopping_steps_;        ///< `RobotStep::stopping_steps` of the last step
   bool meets_movers_;                              ///< moving obstacles have a max_speed

@@ -114,13 +114,11 @@ ProvenHalfPlane relative_half_plane(const MovingDisc& a, const MovingDisc& b, co
 /// n.v + a (c - (n.v_A - n.v_B)), rounded up, where v is v_A and a the responsibility. In units of u, a product of n.v
 /// passes 3 roundings where it stands first (its own, the dot's sum, the last sum) and 6 a in the brackets, which it
 /// enters once more: 3 + 6 a <= 9. The product by a is exact where a is 0, 1/2 or 1, which leaves 3 + 5 a <= 8; n.v_B
-/// and c pass fewer.
-double half_offset(double responsibility, double c, Vec2 n, Vec2 own, Vec2 other) {
+/// and c pass fewer. `magnitude`: of n.v_A, n.v_B and c.
+double half_offset(double responsibility, double c, Vec2 n, Vec2 own, Vec2 other, double magnitude) {
   const double at_own = dot(n, own);
   const double at_other = dot(n, other);
   const double value = at_own + responsibility * (c - (at_own - at_other));
-  const double magnitude =
-      geometry::dot_magnitude(n, own) + geometry::dot_magnitude(n, other) + geometry::product_magnitude(1.0, c);
   const bool exact_product = responsibility == 0.0 || responsibility == 0.5 || responsibility == 1.0;
   return geometry::rounded_up_sum(value, magnitude, exact_product ? 8.0 : 9.0);
 }
@@ -134,8 +132,10 @@ ReciprocalHalfPlanes ordered(const MovingDisc& a, const MovingDisc& b, const Rec
   const ProvenHalfPlane joint = relative_half_plane(a, b, options);
   const Vec2 n = joint.half_plane.normal;
   const double c = joint.half_plane.offset;
-  const double c_a = half_offset(options.responsibility_of_a, c, n, a.velocity, b.velocity);
-  const double c_b = half_offset(1.0 - options.responsibility_of_a, c, -n, b.velocity, a.velocity);
+  const double magnitude = geometry::dot_magnitude(n, a.velocity) + geometry::dot_magnitude(n, b.velocity) +
+                           geometry::product_magnitude(1.0, c);
+  const double c_a = half_offset(options.responsibility_of_a, c, n, a.velocity, b.velocity, magnitude);
+  const double c_b = half_offset(1.0 - options.responsibility_of_a, c, -n, b.velocity, a.velocity, magnitude);
   return {{n, c_a}, {-n, c_b}, joint.proof == Proof::alone};
 }
 
