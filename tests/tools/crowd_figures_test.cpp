@@ -8,10 +8,12 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
+#include "explorer/crowd_headings.h"
 
 namespace exactvo::tools {
 namespace {
@@ -40,6 +42,58 @@ class CrowdFigures : public testing::Test {
   formation::RunReport report_;
   CrowdCourse course_;
 };
+
+/// Writes down where the crowd says that its robots head.
+class HeadingsOfRun final : public formation::RunSink {
+ public:
+  explicit HeadingsOfRun(datasets::CrowdRecorder& recorder) : recorder_(recorder) {}
+  void add_state(const formation::RunState& now) override {
+    recorder_.add_state(now);
+    for (std::size_t i = 0; i < now.positions.size(); ++i)
+      headings.push_back(now.crowd->heading(static_cast<formation::RobotId>(i)));
+  }
+  std::vector<Vec2> headings;
+
+ private:
+  datasets::CrowdRecorder& recorder_;
+};
+
+TEST(CrowdHeadings, FollowThoseOfTheCrowdWhereEveryStepIsARow) {
+  const formation::Scenario scenario = datasets::parse_scenario(
+      R"({"name": "burgers", "guidance": "none", "time_step": 0.25, "time_limit": 10, "horizons": {"least": 0.5},
+          "robots": {"grid": {"columns": 3, "rows": 3, "spacing": 0.5, "goal": [3, 1]}, "heading": 120, "radius": 0.105,
+                     "kinematics": {"type": "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22,
+                                    "max_wheel_acceleration": 1}}})",
+      "burgers.json", {});
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "exactvo_crowd_headings.evr";
+  std::vector<Vec2> expected;
+  {
+    datasets::CrowdRecorder recorder(path, scenario, 1);
+    HeadingsOfRun run(recorder);
+    run_crowd(scenario, {}, &run);
+    recorder.finish();
+    expected = run.headings;
+  }
+  datasets::CrowdRecordingReader reader(path);
+  CrowdHeadings headings(reader.head());
+  datasets::CrowdRow row;
+  std::size_t judged = 0, turned = 0;
+  while (reader.next(row)) {
+    headings.follow(row);
+    for (std::size_t i = 0; i < 9; ++i, ++judged) {
+      ASSERT_TRUE(headings.has(i));
+      EXPECT_LT(norm(headings.of(i).heading - expected.at(judged)), 1e-7) << "row " << row.step;
+      turned += norm(expected[judged] - expected[i]) > 0.5;
+    }
+  }
+  std::filesystem::remove(path);
+  EXPECT_EQ(judged, expected.size());
+  EXPECT_GT(turned, 100U);
+  EXPECT_NEAR(headings.drive(0).body_radius, 0.105, 1e-9);
+  datasets::CrowdRecordingHead seldom = reader.head();
+  seldom.every = 2;
+  EXPECT_FALSE(CrowdHeadings(seldom).has(0)) << "what is driven between its rows is not known";
+}
 
 TEST_F(CrowdFigures, CellsHoldAllTheTimeAndTheWaysOfEveryRobot) {
   double time = 0.0, way = 0.0;

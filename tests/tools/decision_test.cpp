@@ -193,6 +193,42 @@ TEST(VelocitySpace, DrawsEveryLayerOnce) {
   EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
 }
 
+/// A small acceleration: its sides are drawn as far as they bound what a step can reach, and the rim of that above all.
+TEST(VelocitySpace, OwnLimitsAreAPolygonAndTheRimOfWhatIsAllowedLiesOnTop) {
+  Decision d = with_two_walls();
+  d.scenario.acceleration = formation::Acceleration{0.5};
+  d.step.velocity = d.step.chosen;
+  const std::vector<geometry::HalfPlane> limits = formation::own_limits(d.scenario, d.step, 0);
+  ASSERT_GT(limits.size(), 4U);
+  for (const geometry::HalfPlane& h : limits) {
+    DecisionConstraint own = d.step.constraints[0];
+    own.source = ConstraintSource::robot;
+    own.index = 0;
+    own.active = false;
+    own.half_plane = h;
+    d.step.constraints.push_back(own);
+    d.seen.push_back(d.seen[0]);
+  }
+  const Figure figure = velocity_space_figure(d);
+  EXPECT_THAT(figure.body, HasSubstr("title 'its own limits'"));
+  EXPECT_THAT(figure.body, testing::Not(HasSubstr("half-plane, slack")));
+  const std::size_t rim = figure.data.find("rim of the allowed velocities");
+  ASSERT_NE(rim, std::string::npos);
+  for (const char* below :
+       {"the robot's own limits: boundaries", "half-plane, binding: boundaries", "chosen velocity: tip"})
+    EXPECT_LT(figure.data.find(below), rim) << below;
+  const std::size_t from = figure.data.find("the robot's own limits: boundaries");
+  ASSERT_NE(from, std::string::npos);
+  std::istringstream lines(figure.data.substr(from));
+  std::string heading;
+  std::getline(lines, heading);
+  std::getline(lines, heading);
+  std::size_t judged = 0;
+  for (double x = 0.0, y = 0.0; lines >> x >> y; ++judged)
+    EXPECT_LT(geometry::norm(geometry::Vec2{x, y} - d.step.velocity), 0.1) << "a side runs on beyond the polygon";
+  EXPECT_GE(judged, 8U);
+}
+
 TEST(VelocitySpace, SaysWhereHalfPlanesWereNotRecorded) {
   Decision d = with_two_walls();
   EXPECT_THAT(velocity_space_figure(d).body, HasSubstr("title 'allowed velocities'"));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "explorer/packed_run.h"
-
 #include <fmt/format.h>
 
 #include <utility>
 
 #include "exactvo/datasets/crowd_recording.h"
+#include "explorer/crowd_headings.h"
+#include "explorer/packed_run.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
@@ -16,9 +16,9 @@ using geometry::Vec2;
 
 namespace {
 
-/// The row as a step: of each robot its place, its mean velocity since the row before, and whether it kept its
-/// half-planes.
-void put(const CrowdRow& row, const CrowdRecordingHead& head, formation::Step& step) {
+/// The row as a step: of each robot its place, its mean velocity since the row before, where it heads, and whether it
+/// kept its half-planes.
+void put(const CrowdRow& row, const CrowdRecordingHead& head, const CrowdHeadings& headings, formation::Step& step) {
   const bool is_first = step.robots.empty();
   const double before = step.time;
   step.robots.resize(row.x.size());
@@ -32,6 +32,7 @@ void put(const CrowdRow& row, const CrowdRecordingHead& head, formation::Step& s
     robot.velocity = is_first || !(step.time > before) ? Vec2{} : (here - robot.position) / (step.time - before);
     robot.position = here;
     robot.status = is_first || row.kept[i] != 0 ? lp::Status::optimal : lp::Status::relaxed;
+    if (headings.has(i)) robot.wheels = headings.of(i);
   }
 }
 
@@ -41,13 +42,17 @@ PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimit
                          const std::string& metrics_json) {
   datasets::CrowdRecordingReader reader(path);
   datasets::RecordingFile about = scene_of(reader.head());
+  CrowdHeadings headings(reader.head());
+  for (std::size_t i = 0; i < about.scenario.robots.size(); ++i)
+    if (headings.has(i)) about.scenario.robots[i].drive = headings.drive(i);
   RunPacker packer(limits);
   CrowdRow row;
   formation::Step step;
   std::size_t rows = 0;
   for (; reader.next(row); ++rows) {
     if (interrupted()) throw Interrupted();
-    put(row, reader.head(), step);
+    headings.follow(row);
+    put(row, reader.head(), headings, step);
     packer.add_positions(step);
   }
   if (rows == 0)

@@ -196,6 +196,20 @@ Points boundary_within(const Box& box, const HalfPlane& half_plane) {
   return segment_within(box, foot - along * perp(n), foot + along * perp(n));
 }
 
+Points stretch_within(const std::vector<geometry::HalfPlane>& all, const Points& line) {
+  constexpr double kOn = 1e-9;
+  if (line.empty()) return {};
+  const Vec2 along = line[1] - line[0];
+  double from = 0.0, to = 1.0;
+  for (const geometry::HalfPlane& h : all) {
+    const double start = dot(h.normal, line[0]) - h.offset + kOn, gained = dot(h.normal, along);
+    if (start < 0.0 && start + gained < 0.0) return {};
+    if (start < 0.0) from = std::max(from, -start / gained);
+    if (start + gained < 0.0) to = std::min(to, -start / gained);
+  }
+  return from < to ? Points{line[0] + from * along, line[0] + to * along} : Points{};
+}
+
 std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap) {
   const Vec2 along = normalized(boundary[1] - boundary[0]);
   const Vec2 stroke = -0.9 * gap * normalized(normal) + 0.6 * gap * along;

@@ -78,6 +78,9 @@ Points segment_within(const Box& box, Vec2 a, Vec2 b);
 /// The stretch of a half-plane's boundary that lies in the box; empty where none does.
 Points boundary_within(const Box& box, const geometry::HalfPlane& half_plane);
 
+/// The stretch of a line between two points that half-planes keep, up to 1e-9; empty where none does, or of no line.
+Points stretch_within(const std::vector<geometry::HalfPlane>& all, const Points& line);
+
 /// Strokes from a boundary into its forbidden side, aslant, `gap` apart; `normal` points into the allowed side.
 std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap);
 

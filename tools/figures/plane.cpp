@@ -17,6 +17,8 @@ constexpr double kReadable = 1e5;
 constexpr double kMostViews = 100.0;
 /// Strokes of a hatching over the width of the view.
 constexpr int kHatchesAcross = 45;
+/// And over a line, however short.
+constexpr int kLeastHatches = 3;
 
 bool are_empty(const std::vector<Points>& all) {
   return std::all_of(all.begin(), all.end(), [](const Points& points) { return points.empty(); });
@@ -157,14 +159,15 @@ void Panel::obstacles(const std::vector<formation::SceneObstacle>& obstacles, do
 }
 
 void Panel::half_planes(const std::string& title, const std::vector<geometry::HalfPlane>& all, const std::string& style,
-                        const std::string& hatching, const std::string& key) {
+                        const std::string& hatching, const std::string& key,
+                        const std::vector<geometry::HalfPlane>& others) {
   std::vector<Points> lines, strokes;
   for (const geometry::HalfPlane& h : all) {
-    const Points line = boundary_within(view, h);
+    const Points line = stretch_within(others, boundary_within(view, h));
     if (line.empty()) continue;
     lines.push_back(line);
-    for (const Points& stroke : tools::hatching(line, h.normal, view.width() / kHatchesAcross))
-      strokes.push_back(stroke);
+    const double gap = std::min(view.width() / kHatchesAcross, norm(line[1] - line[0]) / kLeastHatches);
+    for (const Points& stroke : tools::hatching(line, h.normal, gap)) strokes.push_back(stroke);
   }
   curves(title + ": boundaries", lines, style, key);
   curves(title + ": hatching on the forbidden side", strokes, hatching);

@@ -99,9 +99,11 @@ class Panel {
   /// Polygons filled, with their outlines and holes left free, and walls as lines. gnuplot lets fillings run over the
   /// labels of the axes: they are cut at the view.
   void obstacles(const std::vector<formation::SceneObstacle>& obstacles, double wall_width, bool has_key);
-  /// The boundaries of half-planes as far as they are in view, with strokes into their forbidden sides.
+  /// The boundaries of half-planes as far as they are in view, and within `others`, with strokes into their forbidden
+  /// sides.
   void half_planes(const std::string& title, const std::vector<geometry::HalfPlane>& all, const std::string& style,
-                   const std::string& hatching, const std::string& key = "");
+                   const std::string& hatching, const std::string& key = "",
+                   const std::vector<geometry::HalfPlane>& others = {});
 
   /// The body of a figure of this panel alone, of metres.
   std::string body(const std::string& quoted_title) const;

@@ -44,6 +44,7 @@ class VelocitySpace {
     add_allowed();
     add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
     add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
+    add_own_limits();
     add_half_planes(Effect::slack, "lw 1.5", kSlackColour);
     add_half_planes(Effect::binding, "lw 3", kBindingColour);
     add_half_planes(Effect::violated, "lw 3 dt (8,4)", kViolatedColour);
@@ -55,6 +56,7 @@ class VelocitySpace {
     add_numbers_of(Effect::violated, kViolatedColour);
     add_numbers_of(Effect::slack, kSlackNumber);
     add_arrows();
+    add_rim();
   }
 
   std::string data() const { return data_.text(); }
@@ -95,16 +97,26 @@ class VelocitySpace {
   }
 
   void add_allowed() {
-    Points ring = speed_bound_ring();
-    for (const DecisionConstraint& c : constraints()) ring = clipped(ring, c.half_plane);
-    for (const geometry::HalfPlane& h : formation::own_limits(d_.scenario, d_.step, d_.robot)) ring = clipped(ring, h);
+    allowed_ = speed_bound_ring();
+    for (const DecisionConstraint& c : constraints()) allowed_ = clipped(allowed_, c.half_plane);
+    for (const geometry::HalfPlane& h : own_limits_) allowed_ = clipped(allowed_, h);
     for (const formation::OwnConstraint& c : d_.step.own)
-      if (c.hard && d_.step.own_stage == formation::OwnStage::held) ring = clipped(ring, c.half_plane);
-    if (ring.size() < 3) return;
-    panel_.rings("allowed velocities", {ring}, solid_fill(kAllowedColour),
+      if (c.hard && d_.step.own_stage == formation::OwnStage::held) allowed_ = clipped(allowed_, c.half_plane);
+    if (allowed_.size() < 3) return;
+    panel_.rings("allowed velocities", {allowed_}, solid_fill(kAllowedColour),
                  d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
-    // Where a step changes the velocity by little, the rim is what is seen of it.
-    panel_.rings("rim of the allowed velocities", {ring}, line_style(2.5, kAllowedRim));
+  }
+
+  /// Where a step changes the velocity by little, the rim is what is seen of what it allows: nothing lies upon it.
+  void add_rim() {
+    if (allowed_.size() >= 3) panel_.rings("rim of the allowed velocities", {allowed_}, line_style(2.5, kAllowedRim));
+  }
+
+  /// What its acceleration or its wheels allow, as one polygon: their lines beyond it would hide all else.
+  void add_own_limits() {
+    panel_.half_planes("the robot's own limits", own_limits_,
+                       fmt::format("with lines lw 1.5 lc rgb '{}'", kSlackColour), line_style(1, kSlackColour),
+                       "its own limits", own_limits_);
   }
 
   /// What wheels can hold for ever at their present heading, whatever they do now: the hull of a disc about 0 and a
@@ -211,12 +223,15 @@ class VelocitySpace {
   }
 
   void add_half_planes(Effect effect, const std::string& style, const char* colour) {
-    std::vector<geometry::HalfPlane> all;
+    std::vector<geometry::HalfPlane> all, own;
     for (const DecisionConstraint& c : constraints())
-      if (effect_of(d_, c) == effect) all.push_back(c.half_plane);
+      if (effect_of(d_, c) == effect) (is_own_limit(c) ? own : all).push_back(c.half_plane);
     const std::string title = "half-plane, " + name(effect);
-    panel_.half_planes(title, all, fmt::format("with lines {} lc rgb '{}'", style, colour), line_style(1, colour),
-                       title);
+    const std::string lines = fmt::format("with lines {} lc rgb '{}'", style, colour);
+    panel_.half_planes(title, all, lines, line_style(1, colour), title);
+    if (effect != Effect::slack)
+      panel_.half_planes("its own limit, " + name(effect), own, lines, line_style(1, colour), all.empty() ? title : "",
+                         own_limits_);
   }
 
   void add_speed_bound() {
@@ -226,8 +241,12 @@ class VelocitySpace {
   void add_numbers_of(Effect effect, const char* colour) {
     std::vector<Label> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
-      const Points line = boundary_within(panel_.view, constraints()[i].half_plane);
-      if (effect_of(d_, constraints()[i]) != effect || line.empty()) continue;
+      if (effect_of(d_, constraints()[i]) != effect) continue;
+      const bool is_own = is_own_limit(constraints()[i]);
+      if (is_own && effect == Effect::slack) continue;
+      const Points line = stretch_within(is_own ? own_limits_ : std::vector<geometry::HalfPlane>(),
+                                         boundary_within(panel_.view, constraints()[i].half_plane));
+      if (line.empty()) continue;
       numbers.push_back({free_place(line, constraints()[i].half_plane.normal), fmt::format("[{}]", i + 1)});
     }
     panel_.labels("numbers of the half-planes", numbers,
@@ -282,6 +301,8 @@ class VelocitySpace {
   const Decision& d_;
   DataFile data_;
   Panel panel_;
+  std::vector<geometry::HalfPlane> own_limits_ = formation::own_limits(d_.scenario, d_.step, d_.robot);
+  Points allowed_;  ///< a ring
   Points numbers_;  ///< where numbers stand
 };
 

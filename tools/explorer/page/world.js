@@ -286,6 +286,21 @@ function drawCrowd(ctx, view, colours, run, positions, t) {
     }
     ctx.fill();
   }
+  if (run.columns['heading']) drawHeadings(ctx, view, colours, run, positions, t);
+}
+
+// Of robots that are large enough to show it: a line to the rim of the disc.
+function drawHeadings(ctx, view, colours, run, positions, t) {
+  ctx.strokeStyle = colours.text;
+  ctx.lineWidth = 1.2;
+  ctx.beginPath();
+  for (let i = 0; i < run.n; ++i) {
+    const r = run.robots[i].radius, x = positions.x[i], y = positions.y[i];
+    if (!run.robots[i].on_wheels || r * view.scale < 3 || !run.isThere(i, t)) continue;
+    ctx.moveTo(view.px(x), view.py(y));
+    ctx.lineTo(view.px(x + r * Math.cos(positions.heading[i])), view.py(y + r * Math.sin(positions.heading[i])));
+  }
+  ctx.stroke();
 }
 
 // Within its disc: the body about the axle, both wheels, and a line from the axle to the reference point.
