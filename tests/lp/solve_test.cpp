@@ -13,7 +13,7 @@
 namespace exactvo::lp {
 namespace {
 
-/// Answers are rounded inward by at most 16 u V times the sharpness of the vertex, which is below 10 in these cases.
+/// Answers are rounded inward by at most 24 u V times the sharpness of the vertex, which is below 10 in these cases.
 constexpr double kRounding = 1e-13;
 
 Problem in_disc(double disc, Vec2 preferred) {

@@ -18,26 +18,21 @@ bool find_candidate(const Problem& problem, SolveMemory& memory, Solution& answe
 /// Memory of the calling thread, for calls that have none of their own.
 SolveMemory& memory_of_thread();
 
-/// The optimum with the constraints moved inward by `slack_units` times the slack of region.h; nothing where the kernel
-/// finds none. REQUIRES: a well-formed problem.
+/// The optimum with the constraints moved inward by `slack_units` times the slack of lanes/layout.h; nothing where the
+/// kernel finds none. REQUIRES: a well-formed problem.
 std::optional<Vec2> optimum_inside(const Problem& problem, double slack_units);
 
 /// False where the kernel cannot settle the problem; `solve` of solve.h says what it takes.
 bool run_kernel(const SingleProblem& problem, Solution& answer);
 
-/// The most lines that `copy_unit_lines` takes.
-inline constexpr std::size_t kMostCopied = 64;
+/// Copies the constraints in registers, which are read as registers next, and solves; true where the solution's own
+/// multipliers prove it (lanes/single_proof.h). An optimum is that of `set_vertex`. False unless there are at most 64
+/// with normals of unit length (kUnitLength) and finite offsets, hard ones first.
+/// REQUIRES: a disc, no box, the nearest velocity to a finite one.
+bool run_plain(const Problem& problem, Solution& answer);
 
-/// Where it writes them; each with room for kMostCopied.
-struct CopiedLines {
-  double *x, *y, *offset;
-};
-
-/// Copies the half-planes in registers, which are read as registers next. False, with anything written, unless their
-/// normals are of unit length (kUnitLength), offsets finite and hard ones first, of which `hard` is the number.
-bool copy_unit_lines(const Constraint* constraints, std::size_t count, CopiedLines to, std::size_t& hard);
-
-/// Whether the solution's own multipliers prove it (lanes/single_proof.h). Sets the violation of a relaxed answer.
-bool prove_in_arrays(const SingleProblem& problem, Solution& answer);
+/// Makes the velocity of an optimum the vertex of what binds, and sets its multipliers. It depends on nothing else.
+/// False where these do not meet.
+bool set_vertex(const SingleProblem& problem, Solution& answer);
 
 }  // namespace exactvo::lp

@@ -5,6 +5,8 @@
 /// Where the lines of a problem stand in the arrays of a batch.
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "exactvo/vo/lp/batch.h"
@@ -19,9 +21,11 @@ std::size_t first_line_of(const BatchProblems<T>& in, std::size_t i) {
   return i / in.block * in.block * in.lines + i % in.block;
 }
 
-/// What the searches allow for rounding, in units of u V: lines are moved inward by the slack, 16 u V for any vertex of
-/// unit normals (region.h) and half of that again for normals that are not quite of unit length; what is left over of a
-/// violation after a step is noise up to 8 u V, which leaves 16 u V of the slack; the disc shrinks by as much.
+/// What the searches allow for rounding, in units of u V: lines are moved inward by the slack. A vertex of unit normals
+/// misses its lines by up to 2.1 u V where measured; with a bound of (1 + 2) u for the dot product on either side and
+/// the division of the intersection, 16 u V covers every well-conditioned one, and half of that again normals that are
+/// not quite of unit length. What is left over of a violation after a step is noise up to 8 u V, which leaves 16 u V of
+/// the slack; the disc shrinks by as much.
 inline constexpr double kSlackUnits = 24.0, kNoiseUnits = 8.0, kDiscUnits = 8.0;
 
 /// A velocity whose |v|^2 is within this share of the disc's is said to lie on it: kWidestGap (certificate.h).
@@ -37,6 +41,18 @@ inline constexpr T kMostSquare = static_cast<T>(sizeof(T) == 8 ? 0x1p500 : 0x1p6
 /// Added to a slope of two lines: lost in all but 0, for which it stands. Far below u, far above the least number.
 template <class T>
 inline constexpr T kParallel = static_cast<T>(sizeof(T) == 8 ? 1e-300 : 1e-36);
+
+/// The number of a line stands in so many last digits of its violation; 2^16 of them leave it 36.
+inline constexpr std::size_t kMostNumbered = std::size_t{1} << 16U;
+
+/// A violation as the search of one problem compares it with another, the later line first among equals.
+inline double without_last_digits(double violation) {
+  std::uint64_t digits = 0;
+  std::memcpy(&digits, &violation, sizeof digits);
+  digits &= ~std::uint64_t{kMostNumbered - 1};
+  std::memcpy(&violation, &digits, sizeof digits);
+  return violation;
+}
 
 /// Rounds after which a lane is left to `solve`; recorded problems need at most a dozen.
 inline constexpr int kMostLockstepRounds = 40;

@@ -11,6 +11,8 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/lanes/layout.h"
+#include "lp/lanes/vertex.h"
+#include "lp/problem/exact_sign.h"
 #include "lp/problem/region.h"
 #include "lp/proof/multipliers.h"
 
@@ -86,9 +88,6 @@ HWY_INLINE void for_registers(D d, CountBetween<kLeast, kMost>, std::size_t coun
       what(k, hn::FirstN(d, std::max(count, k) - k));
   }
 }
-
-/// The number of a line stands in so many last digits of its violation; 2^16 of them leave it 36.
-constexpr std::size_t kMostNumbered = std::size_t{1} << 16U;
 
 /// What a line may be violated by: all lines the same, or hard lines, which come first, less than soft ones.
 struct AllAlike {
@@ -337,9 +336,11 @@ class Slide : private Allowance {
     const double px = p_.preferred.x, py = p_.preferred.y;
     const std::ptrdiff_t line = most_violated(D(), Count(), p_, px, py, AllAlike{noise - slack});
     if (line >= 0) return p_.count <= kMostSlidLines && slide(line, s);
-    if (!(px * px + py * py <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53))) return false;  // nearest on the disc
-    s = {{px, py}, Status::optimal, {}, 0, 0.0};
-    return !kProve || prove_in<D>(p_, s);
+    put(s, px, py, Status::optimal, 0, 0.0);
+    set(s.active[0], 0, 0.0);
+    set(s.active[1], 0, 0.0);
+    // All lines hold by more than their violation can be wrong by, which proves the preferred velocity.
+    return px * px + py * py <= disc_squared || sign_of_excess_speed(p_.preferred, p_.disc) <= 0 || stop_at_disc(s);
   }
 
  private:
@@ -354,6 +355,21 @@ class Slide : private Allowance {
     HWY_ALIGN double cuts[kMostSlidLines];
     double low, high;
   };
+
+  /// The disc binds alone; false where lines have a say.
+  HWY_NOINLINE bool stop_at_disc(Solution& s) const {
+    s.active[0].binding.kind = BindingKind::disc;
+    s.active_count = 1;
+    return set_vertex(p_, s) && prove_in<D, Count>(p_, s);
+  }
+
+  /// Two lines bind, of which the first is followed.
+  HWY_NOINLINE bool stop_at(std::ptrdiff_t line, std::ptrdiff_t other, Solution& s) const {
+    put(s, 0.0, 0.0, Status::optimal, 2, 0.0);
+    set(s.active[0], line, 0.0);
+    set(s.active[1], other, 0.0);
+    return set_vertex(p_, s) && prove_in<D, Count>(p_, s);
+  }
 
   /// The first line that cuts it off there; -1 where none does.
   HWY_INLINE std::ptrdiff_t line_at(const Stretch& left, double where) const {
@@ -420,7 +436,7 @@ class Slide : private Allowance {
       const double x = (h.x * h.c - where * h.y) * inverse, y = (h.y * h.c + where * h.x) * inverse;
       const double pull_x = x - p_.preferred.x, pull_y = y - p_.preferred.y;
       if (where == wish) {
-        const double share = std::max(0.0, (h.x * pull_x + h.y * pull_y) * inverse);
+        const double share = std::max(0.0, (pull_x * h.x + pull_y * h.y) / squared);
         put(s, x, y, Status::optimal, 1, 0.0);
         set(s.active[0], line, share);
         set(s.active[1], 0, 0.0);
@@ -431,12 +447,16 @@ class Slide : private Allowance {
       const double gx = at_disc ? -x : p_.normal_x[number], gy = at_disc ? -y : p_.normal_y[number];
       // Parallel boundaries (h is tangent to the disc) leave one point, or have no multipliers.
       const double pull = pull_x * gy - pull_y * gx, turn = h.x * gy - h.y * gx;
-      if (pull * turn >= 0.0 && turn != 0.0) {
-        const double of_h = std::max(0.0, pull / turn), of_g = std::max(0.0, (h.x * pull_y - h.y * pull_x) / turn);
+      if (pull * turn > 0.0) {
+        if (kProve && ((count > 0) & !at_disc)) {  // one branch: whether it is the disc is not predicted
+          const Vertex vertex(Objective::nearest, p_.preferred, p_.disc, p_.disc, kSlacks[0]);
+          if (!vertex.follows(binding_line(line), binding_line(end))) return stop_at(end, line, s);
+        }
         put(s, x, y, Status::optimal, 2, 0.0);
+        const double of_h = std::max(0.0, pull / turn), of_g = std::max(0.0, (h.x * pull_y - h.y * pull_x) / turn);
         set(s.active[0], line, of_h);
         set(s.active[1], number, of_g);
-        if (at_disc) s.active[1].binding.kind = BindingKind::disc;
+        s.active[1].binding.kind = at_disc ? BindingKind::disc : BindingKind::constraint;
         const double gc = at_disc ? -p_.disc * p_.disc : p_.offset[number];
         return !kProve || is_proven(h, of_h, {gx, gy, gc, end}, of_g, {x, y});
       }
@@ -444,6 +464,10 @@ class Slide : private Allowance {
       line = end;
     }
     return false;
+  }
+
+  HWY_INLINE BindingLine binding_line(std::ptrdiff_t k) const {
+    return {{p_.normal_x[k], p_.normal_y[k]}, p_.offset[k], static_cast<std::size_t>(k), false};
   }
 
   HWY_INLINE bool is_proven(Line h, double of_h, const Line& g, double of_g, Vec2 v) const {
@@ -487,7 +511,7 @@ class Slide : private Allowance {
     low.c += slack;
     high.c += slack;
     LoneSearch<D, true> search(p_);
-    return search.relax(line, low, high, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
+    return search.relax(line, low, high, s) && ((!kProve && !search.is_on_disc()) || prove_in<D>(p_, s));
   }
 
   static HWY_INLINE void set_level(AllAlike& allowed, double level) { allowed.allowed = level; }
@@ -548,10 +572,10 @@ class Slide : private Allowance {
   HWY_NOINLINE bool relax_from(Line a, Line b, Line c, Line enters, Solution& s) const {
     if (p_.hard > 0) {
       LoneSearch<D, true> search(p_);
-      return search.relax_from(a, b, c, enters, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
+      return search.relax_from(a, b, c, enters, s) && ((!kProve && !search.is_on_disc()) || prove_in<D>(p_, s));
     }
     LoneSearch<D, false> search(p_);
-    return search.relax_from(a, b, c, enters, s) && (!search.is_on_disc() || prove_in<D>(p_, s));
+    return search.relax_from(a, b, c, enters, s) && ((!kProve && !search.is_on_disc()) || prove_in<D>(p_, s));
   }
 
   const SingleProblem& p_;
@@ -575,7 +599,8 @@ HWY_NOINLINE bool run_in(const SingleProblem& p, Solution& s) {
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
   if (squared <= limit * kFarthestSlid && Slide<D, Count, kProve>(p).run(s)) return true;
   if (!(p.hard > 0 ? search_alone<D, true>(p, s) : search_alone<D, false>(p, s))) return false;
-  return !kProve || prove_in<D>(p, s);
+  if (!kProve) return true;
+  return (s.status != Status::optimal || set_vertex(p, s)) && prove_in<D>(p, s);
 }
 
 template <bool kProve>
@@ -596,20 +621,30 @@ bool run_single_proven(const SingleProblem& p, Solution& s) {
 static_assert(sizeof(Constraint) == 4 * sizeof(double) && offsetof(Constraint, priority) == 3 * sizeof(double) &&
               static_cast<int>(Priority::soft) == 1);
 
-bool copy_lines(const Constraint* from, std::size_t count, CopiedLines to, std::size_t& hard) {
+/// The most lines that are copied.
+constexpr std::size_t kMostCopied = 64;
+
+struct CopiedLines {
+  double x[kMostCopied], y[kMostCopied], offset[kMostCopied];
+};
+
+HWY_INLINE bool copy_lines(const Constraint* from, std::size_t count, CopiedLines& to, std::size_t& hard) {
   using V = hn::Vec<FewLines>;
   const FewLines d;
   const hn::RebindToUnsigned<FewLines> bits;
   constexpr std::size_t kLanes = hn::MaxLanes(FewLines());
   const V one = hn::Set(d, 1.0), unit = hn::Set(d, kUnitLength), far = hn::Set(d, HUGE_VAL);
-  auto bad = hn::MaskFromVec(hn::Zero(d));
+  auto all_good = hn::Eq(one, one);
   std::uint64_t soft = 0;
-  const auto copy = [&](const Constraint* lines, std::size_t k) HWY_ATTR {
+  const auto numbers_of = [&](std::size_t k) {
+    return reinterpret_cast<const double*>(from + k);
+  };  // NOLINT: four each
+  const auto copy = [&](const double* numbers, std::size_t k) HWY_ATTR {
     V x, y, offset, rest;
-    hn::LoadInterleaved4(d, reinterpret_cast<const double*>(lines), x, y, offset, rest);  // NOLINT: four numbers each
+    hn::LoadInterleaved4(d, numbers, x, y, offset, rest);
     const V length = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
     const auto is_unit = hn::Le(hn::Abs(hn::Sub(length, one)), unit);
-    bad = hn::Or(bad, hn::Not(hn::And(is_unit, hn::Lt(hn::Abs(offset), far))));
+    all_good = hn::And(all_good, hn::And(is_unit, hn::Lt(hn::Abs(offset), far)));
     hn::StoreU(x, d, to.x + k);
     hn::StoreU(y, d, to.y + k);
     hn::StoreU(offset, d, to.offset + k);
@@ -618,24 +653,25 @@ bool copy_lines(const Constraint* from, std::size_t count, CopiedLines to, std::
     soft |= std::uint64_t{of_four} << k;
   };
   std::size_t k = 0;
-  for (; k + kLanes <= count; k += kLanes) copy(from + k, k);
-  if (k < count && count > kLanes) {  // once more the lines before: what was just written would have to be waited for
-    copy(from + count - kLanes, count - kLanes);
-  } else if (k < count) {
-    Constraint last[kLanes];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) last[lane] = from[std::min(lane, count - 1)];
-    copy(last, 0);
+  for (; k + kLanes <= count; k += kLanes) copy(numbers_of(k), k);
+  if (k < count) {  // the last ones, in registers too, and one of them as often as is left
+    double last[4 * kLanes];
+    for (std::size_t at = 0; at < 4 * kLanes; at += kLanes)
+      hn::StoreU(hn::LoadU(d, numbers_of(std::min(k + at / 4, count - 1)) + at % 4), d, last + at);
+    copy(last, k);
   }
-  if (!hn::AllFalse(d, bad)) return false;
+  if (!hn::AllTrue(d, all_good)) return false;
   const std::uint64_t all = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
   soft &= all;
   hard = soft == 0 ? count : hwy::Num0BitsBelowLS1Bit_Nonzero64(soft);
   return soft == 0 || soft == (all >> hard << hard);
 }
 
-bool prove_single(const SingleProblem& p, Solution& s) {
-  if (p.count == 0 || p.count > kFewLines) return prove_in<ManyLines>(p, s);
-  return p.count > 8 ? prove_in<FewLines, UpTo12>(p, s) : prove_in<FewLines, UpTo8>(p, s);
+bool run_plain_lines(const Problem& problem, Solution& s) {
+  CopiedLines lines;
+  SingleProblem p{lines.x, lines.y, lines.offset, problem.constraints.size(), 0, problem.preferred, problem.bound.disc};
+  if (p.count > kMostCopied || !copy_lines(problem.constraints.data(), p.count, lines, p.hard)) return false;
+  return run<true>(p, s);
 }
 
 }  // namespace exactvo::lp::HWY_NAMESPACE
@@ -645,8 +681,7 @@ HWY_AFTER_NAMESPACE();
 namespace exactvo::lp {
 
 HWY_EXPORT(run_single);
-HWY_EXPORT(copy_lines);
-HWY_EXPORT(prove_single);
+HWY_EXPORT(run_plain_lines);
 HWY_EXPORT(run_single_proven);
 
 namespace {
@@ -680,12 +715,8 @@ bool run_kernel(const SingleProblem& problem, Solution& answer) {
   return HWY_DYNAMIC_DISPATCH(run_single)(problem, answer);
 }
 
-bool copy_unit_lines(const Constraint* constraints, std::size_t count, CopiedLines to, std::size_t& hard) {
-  return HWY_DYNAMIC_DISPATCH(copy_lines)(constraints, count, to, hard);
-}
-
-bool prove_in_arrays(const SingleProblem& problem, Solution& answer) {
-  return HWY_DYNAMIC_DISPATCH(prove_single)(problem, answer);
+bool run_plain(const Problem& problem, Solution& answer) {
+  return HWY_DYNAMIC_DISPATCH(run_plain_lines)(problem, answer);
 }
 
 void solve(const SingleProblem& problem, Solution& answer) {

@@ -11,11 +11,7 @@ namespace exactvo::lp {
 /// u, the unit roundoff of double.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
-/// A vertex computed in double misses its lines by up to 2.1 u V where measured; with a bound of (1 + 2) u for the dot
-/// product on either side and the division of the intersection, 16 u V covers every well-conditioned vertex.
-inline constexpr double kInwardSlack = 16.0 * kUnitRoundoff;
-
-/// Slacks tried in turn, in units of kInwardSlack: sharp vertices need more of it.
+/// Slacks tried in turn, in units of that of the searches (lanes/layout.h): sharp vertices need more of it.
 inline constexpr double kSlacks[] = {1.0, 8.0, 64.0, 512.0};
 
 /// Normals of | |normal| - 1 | up to this are taken as they are (solve.h, batch.h).
