@@ -44,6 +44,10 @@ constexpr double kBeyondBox = 2.0, kBeyondData = 8.0, kFarBeyondData = 0x1p20;
 /// Violations count in units of |n|: with normals that differ by more they are not those that the kernel compares.
 constexpr double kSameLength = 1.0 + 0x1p-48;
 
+/// A direction as a preferred velocity: this many times the disc along it. The optimum then has the same lines, and
+/// what binds says where it lies.
+constexpr double kFar = 0x1p20;
+
 /// Which constraints there are, and which of them may give.
 enum class Part { all, hard_ones_give };
 
@@ -202,7 +206,7 @@ bool leaves_a_stretch(const Problem& problem, const Solution& s) {
   std::size_t count = 0;
   double length = 0.0;
   for (std::size_t k = 0; k < s.active_count; ++k)
-    if (s.active[k].binding != kDisc)
+    if (s.active[k].binding.kind != BindingKind::disc)
       normal[count++] = unit_normal(half_plane_at(problem, s.active[k].binding), length);
   bool leaves = false;
   for (std::size_t i = 0; i < count; ++i)

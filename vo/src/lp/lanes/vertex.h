@@ -15,10 +15,6 @@
 
 namespace exactvo::lp {
 
-/// A direction as a preferred velocity: this many times the disc along it. The optimum then has the same lines, and
-/// what binds says where it lies.
-inline constexpr double kFar = 0x1p20;
-
 /// A line that binds, as the kernel reads it.
 struct BindingLine {
   Vec2 normal;
@@ -35,19 +31,16 @@ class Vertex {
       : objective_(objective),
         preferred_(preferred),
         disc_(disc * (1.0 - slack_units * kDiscUnits * kUnitRoundoff)),
-        largest_(largest),
         slack_(slack_units * kSlackUnits * kUnitRoundoff * largest),
         noise_(slack_units * kNoiseUnits * kUnitRoundoff * largest) {}
 
   /// The optimum of the disc alone.
   Vec2 on_disc() const { return disc_ * normalized(preferred_); }
 
-  /// Whether `a` is followed and not `b`: the line that is violated more at the preferred velocity.
+  /// Whether `a` is followed and not `b`: the line that is violated more at `preferred`.
   bool follows(const BindingLine& a, const BindingLine& b) const {
-    const double radius = std::isfinite(disc_) ? disc_ : 2.0 * largest_;
-    const Vec2 start = objective_ == Objective::nearest ? preferred_ : (kFar * radius) * normalized(preferred_);
     const auto by = [&](const BindingLine& line) {
-      return without_last_digits((line.offset - dot(line.normal, start)) - (noise_ - slack_));
+      return without_last_digits((line.offset - dot(line.normal, preferred_)) - (noise_ - slack_));
     };
     const double by_a = by(a), by_b = by(b);
     return by_a != by_b ? by_a > by_b : a.number > b.number;
@@ -95,7 +88,7 @@ class Vertex {
 
   Objective objective_;
   Vec2 preferred_;
-  double disc_, largest_, slack_, noise_;
+  double disc_, slack_, noise_;
 };
 
 }  // namespace exactvo::lp
