@@ -142,6 +142,38 @@ TEST(Movers, BrakingSatisfiesTheHalfPlanesOfEveryStepUntilTheRobotStands) {
   EXPECT_GT(judged, 10000);
 }
 
+/// The mover comes as fast as it can, and of the skin hardly more is left than roundings of far places need.
+TEST(Movers, BrakingIsProvenWhereTheSkinIsAlmostUsedUp) {
+  test::SeededRandom random(test::seed_of_run(89));
+  int begun = 0;
+  for (int tries = 0; tries < 20000; ++tries) {
+    const double step = random.uniform(0.02, 0.2), speed = random.uniform(0.05, 0.5);
+    detail::Mover mover{
+        {random.in_box(2.0) + Vec2{1000.0, 0.0}, random.uniform(0.1, 0.6)}, random.uniform(0.0, 0.6), 1};
+    mover.steps = static_cast<std::size_t>(random.integer(2, 12));
+    const Vec2 away = random.direction();
+    Vec2 u = -speed * away;
+    const double steps = static_cast<double>(mover.steps), room = random.uniform(1.0, 3.0) * 0x1p-45 * 2006.0;
+    const double apart =
+        mover.disc.radius + mover.speed * steps * step + detail::way_time(step, mover.steps) * speed + room;
+    Vec2 place = mover.disc.center + apart * away;
+    const auto is_allowed = [&] {
+      const vo::ProvenHalfPlane h = detail::mover_half_plane(step, place, u, mover);
+      return h.proof != vo::Proof::none && dot(h.half_plane.normal, u) >= h.half_plane.offset;
+    };
+    if (!is_allowed()) continue;
+    ++begun;
+    while (mover.steps > 1) {
+      place += step * u;
+      mover.disc.center += (1.0 - 1e-12) * step * mover.speed * away;
+      u = (1.0 - 1.0 / static_cast<double>(mover.steps)) * u;
+      --mover.steps;
+      ASSERT_TRUE(is_allowed()) << "try " << tries << ", " << mover.steps << " steps left";
+    }
+  }
+  EXPECT_GT(begun, 1000);
+}
+
 constexpr double kStep = 0.1, kSpeed = 0.155, kRadius = 0.185;
 
 /// To and fro, as the reference point of a TurtleBot3.
@@ -290,6 +322,27 @@ TEST(Movers, SeveralRobotsThatMeasureEachOtherAmongWallsAndMoversAreProven) {
   EXPECT_GT(moved, 500u);
 }
 
+/// It drives towards a mover that may come, and stands before that.
+TEST(Movers, ARobotThatStartsWithAVelocityStandsInTime) {
+  Scenario s = to_and_fro();
+  s.robots.front().velocity = {kSpeed, 0.0};
+  s.time_limit = 5.0;
+  // After 4 steps it has driven 2.5 steps at its first velocity, and the mover 4 at its own.
+  for (const double spare : {1e-4, -1e-3}) {
+    const double gap = (2.5 - 1.0) * kStep * kSpeed + 0.2 * 3 * kStep + spare;
+    s.moving_obstacles = {moving_disc("M1", {{-1.5 + 2 * kRadius + gap, 0.0}, kRadius},
+                                      path_of({}, {{0.0, {-0.2, 0.0}}, {2.0, {0.2, 0.0}}}, 6.0))};
+    s.moving_obstacles.front().max_speed = 0.2;
+    EXPECT_EQ(validate(s).empty(), spare > 0.0);
+    if (spare < 0.0) continue;
+    const RecordingFile file = recorded(s);
+    const datasets::AuditReport report = audit(file);
+    EXPECT_TRUE(report.clean()) << (report.findings.empty() ? "" : report.findings.front());
+    EXPECT_EQ(file.recording.steps.front().robots.front().stopping_steps, 3u);
+    EXPECT_GT(report.hits_standing, 0u);
+  }
+}
+
 /// A robot that takes movers to keep their velocities is run over while it moves.
 TEST(Movers, TheAuditRefusesARobotThatTouchesAMoverWhileItMoves) {
   std::size_t refuted = 0, hit = 0;
@@ -384,7 +437,12 @@ TEST(Movers, ScenariosThatPromiseNothingAreRefused) {
   for (const double least : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THAT(refused([&](Scenario& s) { s.acceleration->max = least; }), HasSubstr("/acceleration/max"));
   EXPECT_THAT(refused([](Scenario& s) { s.acceleration->max = 1e-300; }), HasSubstr("/horizons/most"));
-  EXPECT_THAT(refused([](Scenario& s) { s.robots[0].velocity = {0.1, 0.0}; }), HasSubstr("start at rest"));
+  EXPECT_THAT(refused([](Scenario& s) {
+                s.robots[0].velocity = {0.155, 0.0};  // 4 steps: it meets the mover after 0.03 m
+                s.moving_obstacles[0] = moving_disc("M1", {{-1.5 + 2 * kRadius + 0.03, 0.0}, kRadius}, {{{0.0, 0.0}}});
+                s.moving_obstacles[0].max_speed = 0.0;
+              }),
+              HasSubstr("/robots/0/velocity: (0.155, 0), at which moving obstacle 'M1' may meet it before it stands"));
   EXPECT_THAT(refused([](Scenario& s) { s.braking_time = 0.36; }), HasSubstr("/braking_time: 0.36; the 4 time steps"));
 }
 

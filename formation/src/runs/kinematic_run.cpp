@@ -49,7 +49,6 @@ class KinematicSteps final : public Stepper {
         ways_(robots.size()),
         here_(robots.size()),
         steered_(robots.size()),
-        stopping_steps_(robots.size(), 0),
         meets_movers_(meets_movers(scenario_)),
         asked_(robots.size()),
         walls_(guide ? std::vector<SceneObstacle>{} : scenario_.obstacles),
@@ -65,6 +64,10 @@ class KinematicSteps final : public Stepper {
       positions_.push_back(robot.position);
       velocities_.push_back(robot.velocity);
       before_.push_back(robot.velocity);
+      stopping_steps_.push_back(
+          meets_movers_ && robot.velocity != Vec2{}
+              ? stopping_steps(norm(robot.velocity), scenario_.acceleration->max, rules_.time_step)
+              : 0);
     }
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look_at_goal(i);

@@ -24,13 +24,14 @@ bool surely_satisfies(const HalfPlane& h, Vec2 v) {
   return dot(h.normal, v) - h.offset >= kRoundings * (geometry::dot_magnitude(h.normal, v) + std::fabs(h.offset));
 }
 
-/// What `make` makes of the largest room up to the skin for which it `holds`; without room where none does.
+/// What `make` makes of the largest room from `least` (m) up to the skin for which it `holds`; with the least where
+/// none does.
 template <class Make, class Holds>
-auto with_room_left(const Make& make, const Holds& holds) {
+auto with_room_left(const Make& make, const Holds& holds, double least = 0.0) {
   auto made = make(kContactSkin);
   if (holds(made)) return made;
-  made = make(0.0);
-  double most = kContactSkin, least = 0.0;
+  made = make(least);
+  double most = kContactSkin;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (least + most);
     auto better = make(middle);
@@ -76,10 +77,11 @@ vo::ProvenHalfPlane mover_half_plane(double time_step, Vec2 position, Vec2 veloc
   const double tau = way_time(time_step, mover.steps);
   const double reached = mover.speed * static_cast<double>(mover.steps) * time_step;
   const Vec2 apart = position - mover.disc.center, end = apart + tau * velocity;
-  // More than places, their ways and all that follows are off by.
-  constexpr double kRounding = 0x1p-45;
-  const double off = kRounding * (std::fabs(position.x) + std::fabs(position.y) + std::fabs(mover.disc.center.x) +
-                                  std::fabs(mover.disc.center.y) + mover.disc.radius + reached + tau * norm(velocity));
+  // More than places, their ways and all that follows are off by. Each step of braking rounds again, and asks for less.
+  constexpr double kRounding = 0x1p-45, kOfStep = 0x1p-48;
+  const double share = kRounding + kOfStep * static_cast<double>(mover.steps);
+  const double off = share * (std::fabs(position.x) + std::fabs(position.y) + std::fabs(mover.disc.center.x) +
+                              std::fabs(mover.disc.center.y) + mover.disc.radius + reached + tau * norm(velocity));
   const auto make = [&](double room) {
     const double from = norm(apart), kept = mover.disc.radius + room;
     vo::ProvenHalfPlane made{{{1.0, 0.0}, 0.0}, vo::Proof::none};
@@ -94,7 +96,7 @@ vo::ProvenHalfPlane mover_half_plane(double time_step, Vec2 position, Vec2 veloc
   const auto holds = [&](const vo::ProvenHalfPlane& made) {
     return made.proof != vo::Proof::none && surely_satisfies(made.half_plane, velocity);
   };
-  const vo::ProvenHalfPlane made = with_room_left(make, holds);
+  const vo::ProvenHalfPlane made = with_room_left(make, holds, off);
   return holds(made) ? made : make(kContactSkin);
 }
 

@@ -18,6 +18,7 @@
 #include "exactvo/geometry/told_apart.h"
 #include "exactvo/geometry/validity.h"
 #include "motion/differential.h"
+#include "scene/braking.h"
 #include "scene/chain.h"
 #include "scene/field_problems.h"
 #include "scene/free_space.h"
@@ -388,9 +389,17 @@ void check_movers_beside_brakes(const Scenario& s, bool has_wheels, Checker& c) 
   c.require(s.robots.size() == 1 || measures_others(s), "/moving_obstacles",
             geometry::counted(s.robots.size(), "robot") + " that rely on each other, beside movers",
             "one robot, or /uncertainty/measurements, with which each may stand when it wants");
-  for (std::size_t i = 0; i < s.robots.size(); ++i)
-    c.require(s.robots[i].velocity == Vec2{}, "/robots/" + std::to_string(i) + "/velocity", show(s.robots[i].velocity),
-              "none: robots beside movers start at rest");
+}
+
+/// Lemma 8 (braking.h), for what is left of the velocity after a step of braking.
+bool stands_before(const Scenario& s, const Robot& r, const MovingObstacle& mover) {
+  const std::size_t steps = stopping_steps(norm(r.velocity), s.acceleration->max, s.time_step);
+  if (steps == 1) return true;
+  const Vec2 braked = (1.0 - 1.0 / static_cast<double>(steps)) * r.velocity;
+  const geometry::Disc grown{mover.disc->center, mover.disc->radius + r.radius};
+  const vo::ProvenHalfPlane found =
+      detail::mover_half_plane(s.time_step, r.position, braked, {grown, *mover.max_speed, steps - 1});
+  return found.proof != vo::Proof::none && dot(found.half_plane.normal, braked) >= found.half_plane.offset;
 }
 
 /// Robots with an acceleration, of their velocity or of their wheels.
@@ -460,6 +469,10 @@ void check_braking(const Scenario& s, Checker& c) {
     const Robot& r = s.robots[i];
     if (r.velocity == Vec2{}) continue;
     require_way(space.is_clear(r.position, r.position + left * r.velocity, obstacle_radius(r)), i, "an obstacle");
+    for (const MovingObstacle& mover : s.moving_obstacles)
+      c.require(stands_before(s, r, mover), "/robots/" + std::to_string(i) + "/velocity",
+                show(r.velocity) + ", at which moving obstacle '" + mover.id + "' may meet it before it stands",
+                "a velocity from which it stands before that");
     for (std::size_t j = 0; j < s.robots.size(); ++j) {
       const Robot& other = s.robots[j];
       if (j == i || (j < i && other.velocity != Vec2{})) continue;
