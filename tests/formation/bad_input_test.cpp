@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
 #include "paper_scenes.h"
@@ -110,6 +111,9 @@ TEST(BadInput, WhatMovesFasterThanARobotIsSaidBeforeTheRun) {
   EXPECT_THAT(warnings_of(with_cart({{{0, 0}, {20, 0}}, 9.0})),
               HasSubstr("moving obstacle 'cart' moves at up to 9 m/s, faster than R1"));
   EXPECT_EQ(warnings_of(with_cart({{{0, 0}}, 9.0})), "") << "it has nowhere to go";
+  s = datasets::load_scenario(EXACTVO_SOURCE_DIR "/datasets/data/robots/B0_huskies.json");
+  s.formation->leader.speed = 2.0;
+  EXPECT_THAT(warnings_of(s), HasSubstr("faster than R1 can (max_wheel_speed 1 m/s)"));
 }
 
 TEST(BadInput, SpeedsAfterTheEndOfThePathOrTheRunDoNotCount) {
@@ -242,7 +246,8 @@ TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
   s.time_limit = 1.0;
   const Recording r = simulate(s);
   ASSERT_EQ(r.warnings.size(), 1u);
-  EXPECT_THAT(r.warnings[0], HasSubstr("too near to each other"));
+  EXPECT_THAT(r.warnings[0], testing::ContainsRegex(
+                                 "too near to each other for both robots: [0-9.]+ m, and their radii take [0-9.]+ m"));
 }
 
 /// Neither too near nor with the margin between them: who came second pressed against the first for ever, and nothing

@@ -20,6 +20,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/stuck.h"
 #include "scene/braking.h"
 #include "support/seeded_random.h"
 
@@ -192,6 +193,15 @@ Scenario to_and_fro() {
   for (int k = 0; k < 4; ++k) r.goals.insert(r.goals.end(), {{1.5, 0.0}, {-1.5, 0.0}});
   s.robots.push_back(r);
   return s;
+}
+
+/// At 8 s people are so near that the robot may do nothing else.
+TEST(Movers, ARobotThatHasToStandIsGivenThatReason) {
+  Scenario s = datasets::load_scenario(EXACTVO_SOURCE_DIR "/datasets/data/robots/burger_movers.json");
+  s.time_limit = 8.1;
+  const std::vector<StuckReport> stuck = explain_stuck(s, simulate(s));
+  ASSERT_EQ(stuck.size(), 1u);
+  EXPECT_THAT(stuck[0].text, HasSubstr("it stands, since a moving obstacle could reach it while it moves"));
 }
 
 RecordingFile recorded(const Scenario& s) {

@@ -189,7 +189,9 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
     return (is_at_rest(end, r) ? "it stays, since " : "it stops, since ") +
            why_it_stays(end.scenario, *end.decided, r.robot);
   std::string text;
-  if (!is_at_rest(end, r)) {
+  if (meets_movers(end.scenario) && decision->stopping_steps == 0) {
+    text = "it stands, since a moving obstacle could reach it while it moves";
+  } else if (!is_at_rest(end, r)) {
     text = r.binding.empty() && decision->mode != Mode::following ? "no active constraint"
                                                                   : moving_words(end, *decision, r);
   } else if (r.binding.empty()) {

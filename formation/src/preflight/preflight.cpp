@@ -97,12 +97,16 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
   for (std::size_t i = 0; i < last.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double room = norm(last[i].place - last[j].place) + last[i].reach + last[j].reach;
-      if (!(room < s.robots[i].radius + s.robots[j].radius) || ++pairs > kNamed) continue;
-      out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots");
+      const double radii = s.robots[i].radius + s.robots[j].radius;
+      if (!(room < radii) || ++pairs > kNamed) continue;
+      const auto [have, need] = geometry::told_apart(room, radii);
+      out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots: " + have +
+                    " m, and their radii take " + need + " m");
     }
   }
   if (pairs > kNamed)
-    out.push_back(geometry::counted(pairs - kNamed, "more pair") + " of goals too near to each other");
+    out.push_back(geometry::counted(pairs - kNamed, "more pair") + (s.formation ? " of slots" : " of goals") +
+                  " too near to each other");
 }
 
 /// Last goals where there is room for both, but not with the margin between them, also where they stand aside within
@@ -209,8 +213,8 @@ void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
     const auto [most, speed] = geometry::told_apart(robot.max_speed, top.speed, 6);
-    out.push_back("the leader moves at up to " + speed + " m/s, faster than " + robot.id + " can (max_speed " + most +
-                  " m/s): the formation falls behind");
+    out.push_back("the leader moves at up to " + speed + " m/s, faster than " + robot.id + " can (" +
+                  (robot.drive ? "max_wheel_speed " : "max_speed ") + most + " m/s): the formation falls behind");
     return;
   }
 }

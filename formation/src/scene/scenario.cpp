@@ -189,12 +189,18 @@ void check_disc(const Obstacle& o, const std::string& at, Checker& c) {
             geometry::to_string(geometry::ConvexShape{*o.disc}), "a disc in the polygon round it (disc_obstacle.h)");
 }
 
+std::optional<std::size_t> first_drive(const Scenario& s) {
+  for (std::size_t i = 0; i < s.robots.size(); ++i)
+    if (s.robots[i].drive) return i;
+  return std::nullopt;
+}
+
 /// What a robot can keep clear of that knows its greatest speed only.
 void check_mover(const Scenario& s, const MovingObstacle& o, const std::string& at, Checker& c) {
   c.not_negative(*o.max_speed, at + "/max_speed", "m/s");
   c.require(o.disc.has_value(), at + "/max_speed", "a moving obstacle that is no disc",
             "a disc that holds it: what moves in any way may turn, too");
-  c.require(s.acceleration.has_value(), at + "/max_speed", "robots without /acceleration",
+  c.require(s.acceleration || first_drive(s), at + "/max_speed", "robots without /acceleration",
             "an /acceleration, which says how soon a robot can stand, or no max_speed");
   c.require(!(o.motion.speed > *o.max_speed), at + "/speed", show(o.motion.speed),
             "at most its max_speed, " + show(*o.max_speed) + " m/s");
@@ -283,12 +289,6 @@ void check_separate(const Scenario& s, Checker& c) {
   c.require(s.moving_obstacles.empty(), "/separate", "true", "false with moving obstacles, which robots must evade");
   for (std::size_t i = 0; i < s.robots.size(); ++i)
     c.require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true with /separate");
-}
-
-std::optional<std::size_t> first_drive(const Scenario& s) {
-  for (std::size_t i = 0; i < s.robots.size(); ++i)
-    if (s.robots[i].drive) return i;
-  return std::nullopt;
 }
 
 /// The first two edges with a point in common that neighbours have not; by their first corners. The same corner twice
@@ -380,8 +380,10 @@ void check_formation_on_wheels(const Scenario& s, Checker& c) {
 void check_movers_beside_brakes(const Scenario& s, bool has_wheels, Checker& c) {
   if (s.moving_obstacles.empty()) return;
   if (has_wheels)
-    return c.require(false, "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
-                     "none with robots on wheels: no braking of wheels is proven to evade what moves by itself");
+    return c.require(
+        false, "/moving_obstacles", geometry::counted(s.moving_obstacles.size(), "obstacle"),
+        "none with robots on wheels: no braking of wheels is proven to evade what moves by itself; the reference "
+        "point of one may be a robot without kinematics, with an /acceleration");
   for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k)
     c.require(s.moving_obstacles[k].max_speed.has_value(), "/moving_obstacles/" + std::to_string(k),
               "no max_speed, with /acceleration",
