@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formations on wheels: the paper's scenes B0 to B3 with three Huskies, beside discs that move in any direction.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -191,6 +192,17 @@ TEST(WheeledFormation, RandomScenesRelaxNothingAndAreProven) {
   }
   EXPECT_GT(decisions, 15000u);
   EXPECT_GT(fell_back, 50u) << "half-planes contradict each other too seldom to test anything";
+}
+
+/// R2 stands before a wall that its discs would pass.
+TEST(WheeledFormation, ARobotWithoutRoomToTurnIsGivenThatReason) {
+  Scenario s = huskies("B1");
+  for (Robot& r : s.robots) {
+    DifferentialDrive d = *r.drive;
+    d.footprint = {{0.495, 0.335}, {-0.495, 0.335}, {-0.495, -0.335}, {0.495, -0.335}};
+    put_on_wheels(r, d, s.time_step);
+  }
+  EXPECT_THAT(simulate(s).outcome, testing::HasSubstr("; R2 has no room between obstacles to turn its footprint"));
 }
 
 TEST(WheeledFormation, EditsAreRefused) {

@@ -296,7 +296,16 @@ std::string idle_words(const Decision& d, const Balance& b) {
                      numbered(idle), idle.size() == 1 ? "does" : "do");
 }
 
+/// Whether moving obstacles leave it nothing but to stand: its preferred velocity is then 0, whatever led to it.
+bool has_to_stand(const Decision& d) {
+  return meets_movers(d.scenario) && d.step.stopping_steps == 0;
+}
+
 std::string unmoved_words(const Decision& d) {
+  if (has_to_stand(d))
+    return "Why: it stands, since a moving obstacle could reach it while it moves, at any velocity from which it "
+           "stands "
+           "again after a time step.\n";
   const std::string turned = turned_words(d);
   if (turned.empty() && idle_words(d, {}).empty()) return "Why: no constraint forbids the preferred velocity.\n";
   const std::string reason = turned.empty() ? "the preferred velocity" : turned + "; it";

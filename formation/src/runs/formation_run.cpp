@@ -353,6 +353,10 @@ class FormationRun {
     if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
     add_note(recording.outcome, spec_.leader.why_short);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!wheels_.has_room(i) &&
+          norm(end.robots[i].position - end.leader_position - offsets_[i]) > scenario_.arrival_tolerance)
+        add_note(recording.outcome, scenario_.robots[i].id + " " + WheelsOfRun::kNoRoom);
     if (!tracks_) add_note(recording.outcome, "on wheels no theorem says that robots reach their slots");
     add_note(recording.outcome, assumed_words(scenario_));
   }

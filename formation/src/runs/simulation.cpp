@@ -115,7 +115,7 @@ std::string recentring_notice(const Scenario& scenario, const SimulationOptions&
   const Vec2 moved = offsets_in_use(scenario, options).front() - scenario.formation->offsets.front();
   if (!(norm(moved) > scenario.arrival_tolerance)) return "";
   return "formation: recentre moves every slot by (" + number_text(moved.x, 4) + ", " + number_text(moved.y, 4) +
-         "), so that the offsets have no mean; \"recentre\": false keeps them as they are";
+         "), so that their mean is 0; \"recentre\": false keeps them as they are";
 }
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {

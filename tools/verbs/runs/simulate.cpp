@@ -222,9 +222,9 @@ void announce(const formation::Scenario& scenario, const formation::SimulationOp
   const std::string spectrum = fmt::format("formation: eigenvalues of L + B from {:.4g} to {:.4g}; ",
                                            s.eigenvalues.front(), s.eigenvalues.back());
   if (!tracks_choices(scenario))
-    return message(fmt::format(
-        "{}while no limit of the wheels binds, an error is left by a step with {:.4g} of it at most in the long run",
-        spectrum, step_spectral_radius(*scenario.formation, std::nullopt, scenario.time_step)));
+    return message(
+        fmt::format("{}while no limit of the wheels binds, a step leaves {:.4g} of an error at most, in the long run",
+                    spectrum, step_spectral_radius(*scenario.formation, std::nullopt, scenario.time_step)));
   const bool has_limit = options.integrator == formation::Integrator::euler;
   message(fmt::format("{}the slowest mode decays at {:.4g} 1/s{}", spectrum, s.convergence_rate,
                       has_limit ? fmt::format("; explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
