@@ -448,11 +448,11 @@ TEST(Movers, ScenariosThatPromiseNothingAreRefused) {
     EXPECT_THAT(refused([&](Scenario& s) { s.acceleration->max = least; }), HasSubstr("/acceleration/max"));
   EXPECT_THAT(refused([](Scenario& s) { s.acceleration->max = 1e-300; }), HasSubstr("/horizons/most"));
   EXPECT_THAT(refused([](Scenario& s) {
-                s.robots[0].velocity = {0.155, 0.0};  // 4 steps: it meets the mover after 0.03 m
-                s.moving_obstacles[0] = moving_disc("M1", {{-1.5 + 2 * kRadius + 0.03, 0.0}, kRadius}, {{{0.0, 0.0}}});
+                s.robots[0].velocity = {0.155, 0.0};  // braking, it drives 0.023 m and meets the mover after 0.02 m
+                s.moving_obstacles[0] = moving_disc("M1", {{-1.5 + 2 * kRadius + 0.02, 0.0}, kRadius}, {{{0.0, 0.0}}});
                 s.moving_obstacles[0].max_speed = 0.0;
               }),
-              HasSubstr("/robots/0/velocity: (0.155, 0), at which moving obstacle 'M1' may meet it before it stands"));
+              HasSubstr("/robots/0/velocity: [0.155, 0], at which moving obstacle 'M1' may meet it before it stands"));
   EXPECT_THAT(refused([](Scenario& s) { s.braking_time = 0.36; }), HasSubstr("/braking_time: 0.36; the 4 time steps"));
 }
 
