@@ -136,8 +136,9 @@ formation::Scenario scenario_in(const Json& question, double time) {
   const Json& scenario = member(question, "scenario", &Json::is_object, "a scenario");
   check_entries(scenario, "robots",
                 {"id", "position", "velocity", "radius", "max_speed", "goal", "goals", "cooperates"});
-  check_entries(scenario, "obstacles", {"id", "polyline", "polygon", "holes"});
-  check_entries(scenario, "moving_obstacles", {"id", "polyline", "polygon", "holes", "path", "speed", "profile"});
+  check_entries(scenario, "obstacles", {"id", "polyline", "polygon", "holes", "disc"});
+  check_entries(scenario, "moving_obstacles",
+                {"id", "polyline", "polygon", "holes", "disc", "path", "speed", "profile", "max_speed"});
   const auto robots = scenario.find("robots");
   if (robots != scenario.end() && robots->size() > kMostLiveRobots)
     refuse(DataCode::size, "/scenario/robots", std::to_string(robots->size()) + " robots",
@@ -185,10 +186,6 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   } else {
     problem.bound.box_x = problem.bound.box_y = max_speed;
   }
-  if (step.stopping_steps > 0)
-    problem.bound.disc =
-        std::min(problem.bound.disc,
-                 formation::stopping_speed(scenario.acceleration->max, scenario.time_step, step.stopping_steps));
   problem.constraints = problem_of(step, step.constraints);
   const lp::Proven proven = lp::solve_certified(problem);
   const lp::Solution& solution = proven.solution;
@@ -241,9 +238,15 @@ formation::Recording moment_of(const LiveQuestion& question) {
   formation::SimulationOptions options = question.options;
   options.record_all = true;
   options.stop_at = 0.0;
-  formation::Recording moment = formation::simulate(question.scenario, options);
   const std::size_t changed = question.preferred_robot;
-  if (question.preferred)
+  // Among movers half-planes depend on how soon the robot is to stand, which the preference decides.
+  const bool steers = question.preferred && meets_movers(question.scenario);
+  if (steers)
+    options.steering = [&](const formation::RobotSlice&, std::vector<Vec2>& all) {
+      all[changed] = *question.preferred;
+    };
+  formation::Recording moment = formation::simulate(question.scenario, options);
+  if (question.preferred && !steers)
     choose_anew(question.scenario, question.scenario.robots[changed].max_speed, *question.preferred,
                 moment.steps.front().robots[changed]);
   for (formation::Step& row : moment.steps) keep_what_is_shown(question.robot, row);
