@@ -189,6 +189,16 @@ class Serve(unittest.TestCase):
             self.assertEqual(status, 400)
             self.assertEqual(json.loads(body)["code"], "E_PATH_ESCAPE")
 
+    def test_moments_among_discs_and_movers_are_computed(self):
+        robot = {**SCENARIO["robots"][0], "velocity": [0.2, 0]}
+        mover = {"id": "M", "disc": {"centre": [8, 6], "radius": 0.3}, "path": [[8, 6], [8, 9]], "speed": 0.1, "max_speed": 0.2}
+        scenario = {**SCENARIO, "robots": [robot], "obstacles": [{"disc": {"centre": [-9, 9], "radius": 1}}], "moving_obstacles": [mover],
+                    "acceleration": {"max": 1}, "guidance": "none"}
+        for preferred in [None, [0, 0.3]]:
+            with self.subTest(preferred):
+                status, body = self.server.ask(scenario=scenario, time=1, robot=0, preferred=preferred)
+                self.assertEqual(status, 200, body)
+
     def test_garbage_is_refused_with_its_place(self):
         decide = self.server.path + "decide"
         for body, code in [(b"", "E_JSON_SYNTAX"), (b"{", "E_JSON_SYNTAX"), (b"\xff\xfe", "E_JSON_SYNTAX"), (b"[" * 1000000, "E_NESTING"), (b"[]", "E_TYPE"),
