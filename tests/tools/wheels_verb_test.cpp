@@ -138,7 +138,9 @@ TEST(MoversVerb, ItsSceneArrivesIsProvenAndSaysWhatIsAssumed) {
   EXPECT_THAT(here.run("audit run").out, HasSubstr("robots that stood were hit in "));
   EXPECT_THAT(here.run("explain run --robot R1 --time 2").out,
               AllOf(HasSubstr(words), HasSubstr("if it brakes: proven to touch no moving obstacle before")));
-  EXPECT_THAT(here.run("explain run --robot R1 --time 8").out, HasSubstr("nothing is promised to it"));
+  EXPECT_THAT(here.run("explain run --robot R1 --time 8").out,
+              AllOf(HasSubstr("nothing is promised to it"), HasSubstr("Why: it stands, since a moving obstacle could"),
+                    Not(HasSubstr("leads along a proven route"))));
   EXPECT_EQ(here.run("view run --out page.html").status, 0);
 }
 
@@ -162,6 +164,13 @@ TEST(MoversVerb, BadSpeedsAreRefusedWithTheirCodes) {
   EXPECT_THAT(refusal(mine, "\"max_speed\": 0.3,"),
               AllOf(HasSubstr("/moving_obstacles/0/speed: found 0.4, expected at most its max_speed, 0.3 m/s")));
   EXPECT_THAT(refusal(mine, ""), HasSubstr("/moving_obstacles/0: found no max_speed, with /acceleration"));
+  std::string on_wheels =
+      with(burgers(), "\"robots\":", R"("moving_obstacles": [{ "id": "walker", "speed": 0.4, "max_speed": 0.5,
+    "path": [[1, -2], [1, 2]], "disc": { "centre": [1, -2], "radius": 0.25 } }], "robots":)");
+  here.write("bad.json", on_wheels);
+  EXPECT_THAT(here.run("simulate bad.json").err,
+              AllOf(HasSubstr("bad.json: /moving_obstacles: found 1 obstacle, expected none with robots on wheels"),
+                    HasSubstr("the reference point of one may be a robot without kinematics")));
 }
 
 /// With the keys that the page names for crowds.
