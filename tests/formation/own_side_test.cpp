@@ -382,6 +382,21 @@ TEST(Measurements, ScenariosKeepThem) {
   EXPECT_THAT(assumed_words(s), HasSubstr("0.1 s ago at most, within 0.02 m and 0.05 m/s"));
 }
 
+TEST(Measurements, ARobotThatFollowsWithinTheWayOnWhichItBrakesIsRefused) {
+  Scenario s = datasets::parse_scenario(kText, "measured.json", {});
+  const double way = 0.2 * (braking_time_of(s) - s.time_step);
+  for (Robot& robot : s.robots) robot.velocity = {0.2, 0.0};
+  s.robots[1].position = {0.4 + 1.01 * way, 0.0};
+  EXPECT_TRUE(validate(s).empty());
+  s.robots[1].position = {0.4 + 0.99 * way, 0.0};
+  const std::vector<ScenarioProblem> problems = validate(s);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].pointer, "/robots/0/velocity");
+  EXPECT_THAT(problems[0].found, HasSubstr("meets robot 'R2' before it has braked"));
+  s.uncertainty->measurements.reset();  // robots that brake alike may follow
+  EXPECT_TRUE(validate(s).empty());
+}
+
 TEST(Measurements, RecordingsKeepThem) {
   Scenario s = measured_circle({0.02, 0.05, 0.1}, 4);
   s.time_limit = 3.0;

@@ -478,9 +478,14 @@ void check_braking(const Scenario& s, Checker& c) {
     for (std::size_t j = 0; j < s.robots.size(); ++j) {
       const Robot& other = s.robots[j];
       if (j == i || (j < i && other.velocity != Vec2{})) continue;
-      const Vec2 apart = other.position - r.position;
-      const geometry::Segment way{{}, left * (r.velocity - other.velocity)};
-      require_way(geometry::distance(way, apart) >= r.radius + other.radius, i, "robot '" + other.id + "'");
+      const auto way = [&](const Robot& of) {
+        return geometry::Segment{of.position, of.position + left * of.velocity};
+      };
+      const geometry::Segment relative{r.position, r.position + left * (r.velocity - other.velocity)};
+      // Robots that measure each other brake whenever they want (decision/own_side.h), others alike.
+      const double apart =
+          measures_others(s) ? geometry::distance(way(r), way(other)) : geometry::distance(relative, other.position);
+      require_way(apart >= r.radius + other.radius, i, "robot '" + other.id + "'");
     }
   }
 }
