@@ -26,7 +26,7 @@ let share_of scenario = if Json.find "speed_bound" scenario = Some (Json.Str "bo
 (* The braking time that a scenario does not state is 1.1 V / A of the robot that is slowest to stop, and at least a step. Among
    movers of bounded speed it is no less than the steps in which that robot stands. *)
 let usual_time scenario robots step =
-  let movers = match Json.find "moving_obstacles" scenario with Some (Json.Arr l) -> List.exists (fun m -> Json.find "max_speed" m <> None) l | _ -> false in
+  let movers = Decisions.meets_movers scenario in
   let in_steps speed a t = if movers then Float.max t (Decisions.stopping_steps speed a step *. step) else t in
   let of_robot t robot =
     let by speed a t = Float.max t (1.1 *. (speed /. a)) in

@@ -124,9 +124,13 @@ let stopping_steps speed a t =
   let about = Float.max 1. (Float.ceil (speed /. stopping_speed a t 1.)) in
   if speed > stopping_speed a t about then about +. 1. else about
 
+let meets_movers scenario = match Json.find "moving_obstacles" scenario with
+  | Some (Json.Arr l) -> List.exists (fun mover -> Json.find "max_speed" mover <> None) l
+  | _ -> false
+
 (* Among movers of bounded speed no velocity is longer than one from which it stands after the steps that it says. *)
 let stands_from scenario robot = match Json.find "stopping_steps" robot, Json.find "acceleration" scenario with
-  | Some k, Some a when a <> Json.Null -> Some (stopping_speed (number "max" a) (number "time_step" scenario) (Json.num k))
+  | Some k, Some a when a <> Json.Null && meets_movers scenario -> Some (stopping_speed (number "max" a) (number "time_step" scenario) (Json.num k))
   | _ -> None
 
 let choice robot speed is_disc within cs =
