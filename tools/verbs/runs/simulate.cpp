@@ -154,7 +154,7 @@ std::string decision_lines(const datasets::RunInfo& info, const formation::Metri
     return count > 0 ? static_cast<double>(part) / static_cast<double>(count) : 0.0;
   };
   return text + fmt::format(
-                    ", {} cut short before another robot, {} with a reserved place, {} stopped before an edge, "
+                    ", {} cut short before another robot, {} with a reserved place, {} stopped by hard half-planes, "
                     "{} overlapping; none recorded\n"
                     "  half-planes  in a decision {:.3g} against robots, {:.3g} against edges, {:.3g} against bodies "
                     "(discs at rest and moving obstacles)\n",

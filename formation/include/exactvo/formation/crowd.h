@@ -170,8 +170,8 @@ struct StepReport {
   std::size_t widened = 0;     ///< robots with more in reach of the step than their kind's neighbours: took more, (5)
   std::size_t edges = 0;       ///< half-planes made against edges of obstacles
   std::size_t bodies = 0;      ///< half-planes made against bodies, at rest and in motion
-  std::size_t stopped = 0;  ///< robots that stay where they are, since nothing else was found that leads onto no edge
-  std::size_t nudged = 0;   ///< kept robots whose velocity had to be rounded to another place of the lattice
+  std::size_t stopped = 0;     ///< robots that stay, since edges, bodies and wheels allow nothing else that was tried
+  std::size_t nudged = 0;      ///< kept robots whose velocity had to be rounded to another place of the lattice
   std::size_t overlapping =
       0;  ///< robots that overlapped another by more than 8 lattice steps at the beginning of the step
   std::size_t reserved = 0;   ///< robots that drive straight to a reserved place

@@ -21,7 +21,7 @@ struct RobotNotThere {
 struct CrowdMetrics {
   std::size_t cut_short = 0;       ///< that did not get their wish, since another robot would be met in the step
   std::size_t reserved = 0;        ///< of robots that drive to a reserved place, or stand there
-  std::size_t stopped = 0;         ///< to stay, for lack of anything else that meets no edge
+  std::size_t stopped = 0;         ///< to stay, for lack of anything else that edges, bodies at rest and wheels allow
   std::size_t overlapping = 0;     ///< of robots that overlapped another: 0 after a legal start
   std::size_t touching = 0;        ///< of robots that touched another
   std::size_t widened = 0;         ///< with more than 10 neighbours
