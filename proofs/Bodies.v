@@ -19,7 +19,7 @@ Definition has (b : shape) (p : point) : bool :=
   match b with
   | Polygon (v :: ps) => in_fan v ps p
   | Polygon [] => false
-  | Disc c r => let d := psub p c in qle (pdot d d) (qmul r r)
+  | Disc c r => let d := psub p c in qle 0 r && qle (pdot d d) (qmul r r)
   | Ellipse _ _ _ _ => contains b [p] 0
   end.
 Definition hold (bs : list shape) (o : obstacle) : bool :=
@@ -65,7 +65,7 @@ Proof.
   intros h k o. destruct e as [p q]. cbn [fst snd] in *. destruct b as [vs|c r|c l11 l21 l22]; cbn [has inside] in *.
   - destruct vs as [|v vs]; [discriminate|]. pose proof (in_fan_ok v (v :: vs) p vs h (incl_refl _)) as hp. pose proof (in_fan_ok v (v :: vs) q vs k (incl_refl _)) as hq.
     apply on_mix in o. destruct o as [s [hs e]]. subst. now apply chord.
-  - reals. apply on_mix in o. destruct o as [s [hs e]]. subst. set (R2 := Q2R r * Q2R r) in *.
+  - reals. split; [assumption|]. apply on_mix in o. destruct o as [s [hs e]]. subst. set (R2 := Q2R r * Q2R r) in *.
     set (u := sub (real p) (real c)) in *. set (w := sub (real q) (real c)) in *.
     replace (sub (mix s (real p) (real q)) (real c)) with (mix s u w) by (unfold u, w, mix, sub, add, scale; simpl; f_equal; ring).
     replace (dot (mix s u w) (mix s u w)) with ((1 - s) * dot u u + s * dot w w - s * (1 - s) * dot (sub u w) (sub u w)) by (unfold dot, mix, sub, add, scale; simpl; ring).

@@ -59,6 +59,8 @@ Example a_piece_is_too_short : hold [lying; standing (d 17592186044415 42)] corn
 Proof. vm_compute. reflexivity. Qed.
 Example the_disc_holds_the_wall : hold [Disc (d 0 0, d 0 0) (d 5 0)] (Wall [(d 3 0, d 4 0); (d (-5) 0, d 0 0)]) = true.
 Proof. vm_compute. reflexivity. Qed.
+Example no_disc_is_below_0 : hold [Disc (d 0 0, d 0 0) (d (-5) 0)] (Wall [(d 3 0, d 4 0); (d (-5) 0, d 0 0)]) = false.
+Proof. vm_compute. reflexivity. Qed.
 Example a_disc_too_small : hold [Disc (d 0 0, d 0 0) (d 5497558138879 40)] (Wall [(d 3 0, d 4 0); (d (-5) 0, d 0 0)]) = false.
 Proof. vm_compute. reflexivity. Qed.
 
@@ -112,6 +114,9 @@ Definition needle : program := {| disc := Some (d 2 0); box_x := None; box_y := 
 Definition one_is_left : allowed 0 needle (real (d 1 1, d 0 0)).
 Proof. apply pinned_sound. vm_compute. reflexivity. Qed.
 Example an_ulp_beside_it : pinned needle (d 4503599627370497 53, d 0 0) = false.
+Proof. vm_compute. reflexivity. Qed.
+Example no_speed_bound_is_below_0 : pinned {| disc := Some (d (-2) 0); box_x := None; box_y := None; wish := wish needle; rows := rows needle |}
+  (d 1 1, d 0 0) = false.
 Proof. vm_compute. reflexivity. Qed.
 Definition none_is_allowed : forall w, ~ allowed 0 program_least w.
 Proof. apply (contradicted_sound _ choice_least). vm_compute. reflexivity. Qed.

@@ -46,7 +46,7 @@ Proof.
     assert (dot (real n) o <= Q2R (highest n v vs)) by (apply hull_below with (2 := ho); apply highest_ok).
     rewrite dot_sub. lra.
   - destruct (qle 0 r) eqn:hr; [|discriminate]. injection h as hm he. subst. reals.
-    pose proof (dot_root _ (real n) _ ho) as k.
+    destruct ho as [_ ho]. pose proof (dot_root _ (real n) _ ho) as k.
     rewrite <- sqrt_mult in k; [|nra|apply dot_self]. unfold dot, sub in *; simpl in *; lra.
   - injection h as hm he. subst. reals. destruct ho as [a [b [ab e]]]. subst o.
     set (x := Q2R l11 * Q2R (fst n) + Q2R l21 * Q2R (snd n)). set (y := Q2R l22 * Q2R (snd n)).

@@ -9,7 +9,7 @@ Open Scope R_scope.
 Definition qabs (a : Q) : Q := qmax a (qopp a).
 Definition within (x : Q) (b : option Q) : bool := match b with Some q => qle (qabs x) q | None => true end.
 Definition is_slow (p : program) (v : point) : bool :=
-  match disc p with Some d => qle (pdot v v) (qmul d d) | None => true end
+  match disc p with Some d => qle 0 d && qle (pdot v v) (qmul d d) | None => true end
   && within (fst v) (box_x p) && within (snd v) (box_y p).
 Definition is_allowed (give : Q) (p : program) (v : point) : bool :=
   is_slow p v && forallb (fun c =>
@@ -25,7 +25,7 @@ Proof. destruct b; simpl; [|auto]. intro h. apply qle_R in h. now rewrite Q2R_ab
 Lemma is_slow_ok p v : is_slow p v = true -> slow p (real v).
 Proof.
   unfold is_slow, slow. intro h. apply andb_true_iff in h; destruct h as [h y]. apply andb_true_iff in h; destruct h as [d x].
-  apply within_ok in x, y. repeat split; auto. destruct (disc p); [|auto]. reals. assumption.
+  apply within_ok in x, y. repeat split; auto. destruct (disc p); [|auto]. reals. now split.
 Qed.
 Lemma is_allowed_ok give p v : is_allowed give p v = true -> allowed (Q2R give) p (real v).
 Proof.
@@ -92,7 +92,7 @@ Proof.
     pose proof (cauchy_schwarz (real w) v). pose proof (dot_self (real w)). assert (e : dot (real w) (real w) = 0) by lra.
     rewrite e in H. assert (dot (real w) v * dot (real w) v <= 0) by lra. nra.
   - apply andb_true_iff in h; destruct h as [l0 h]. apply qle_R in l0. rewrite Q2R_0 in l0. apply orb_true_iff in h. destruct h as [h|h].
-    + destruct (disc p) as [d|]; [|discriminate]. apply below_ok in h. rewrite !Q2R_mul, Q2R_dot in h.
+    + destruct (disc p) as [d|]; [|discriminate]. destruct hd as [_ hd]. apply below_ok in h. rewrite !Q2R_mul, Q2R_dot in h.
       pose proof (cauchy_schwarz (real w) v) as c. pose proof (dot_self (real w)).
       assert (dot (real w) v * dot (real w) v <= Q2R d * Q2R d * dot (real w) (real w)) by nra.
       destruct s; simpl in *; [apply Rnot_le_lt; intro l; nra|apply square_le; lra].
@@ -143,7 +143,7 @@ Proof.
   assert (disc_ok : Q2R (mu c) * dot w w <= Q2R (mu c) * Q2R dd).
   { apply qle_R in hmu. rewrite Q2R_0 in hmu. destruct (qeq (mu c) 0) eqn:e.
     - apply qeq_R in e. rewrite e, Q2R_0. lra.
-    - destruct hs as [hs _]. destruct (disc p) as [d|]; [|discriminate]. injection hd as hd. subst dd. rewrite Q2R_mul. now apply Rmult_le_compat_l. }
+    - destruct hs as [hs _]. destruct (disc p) as [d|]; [|discriminate]. destruct hs as [_ hs]. injection hd as hd. subst dd. rewrite Q2R_mul. now apply Rmult_le_compat_l. }
   clear hs hr hp hd ok. reals. unfold off_wish.
   set (W := real (wish p)) in *. set (V := sub (real (velocity c)) W) in *. set (N := real (sum_normal s)) in *.
   set (C := Q2R (sum_offset s)) in *. set (m := Q2R (mu c)) in *. set (g := Q2R (gap c)) in *.

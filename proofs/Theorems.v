@@ -1,6 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* What exactvo-verify promises: definitions and statements, no proofs. Checker.v has a checker for each statement and
-   proves that it keeps the promise. A `point` is made of fractions, as files have them; a `vec` of real numbers. *)
+   proves that it keeps the promise. A `point` is made of fractions, as files have them; a `vec` of real numbers. What no
+   promise mentions (multipliers, joints, separations) only helps the checkers. *)
 Require Import Reals QArith Qreals List Bool.
 Import ListNotations.
 Open Scope R_scope.
@@ -11,7 +12,7 @@ Definition add (a b : vec) : vec := (fst a + fst b, snd a + snd b).
 Definition sub (a b : vec) : vec := (fst a - fst b, snd a - snd b).
 Definition scale (s : R) (a : vec) : vec := (s * fst a, s * snd a).
 Definition dot (a b : vec) : R := fst a * fst b + snd a * snd b.
-Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* their distance is at least r *)
+Definition apart (r : R) (x y : vec) := r * r <= dot (sub x y) (sub x y).        (* r >= 0: their distance is at least r *)
 Definition mix (s : R) (a b : vec) : vec := add (scale (1 - s) a) (scale s b).   (* from a (s = 0) to b (s = 1) *)
 Definition point := (Q * Q)%type.
 Definition real (p : point) : vec := (Q2R (fst p), Q2R (snd p)).
@@ -29,7 +30,7 @@ Definition in_ellipse (m : R) (c : point) (l11 l21 l22 : Q) (x : vec) := exists 
   a * a + b * b <= m /\ x = add (real c) (Q2R l11 * a, Q2R l21 * a + Q2R l22 * b).
 Definition inside (b : shape) (x : vec) : Prop := match b with
   | Polygon vs => hull vs x
-  | Disc c r => dot (sub x (real c)) (sub x (real c)) <= Q2R r * Q2R r
+  | Disc c r => 0 <= Q2R r /\ dot (sub x (real c)) (sub x (real c)) <= Q2R r * Q2R r
   | Ellipse c l11 l21 l22 => in_ellipse 1 c l11 l21 l22 x
   end.
 
@@ -44,7 +45,8 @@ Definition keeps_clear (c : half_plane) := forall v t o,
   apart (Q2R (radius c)) here there /\     (* and an empty strip across the normal, margin / |normal| wide, parts them: *)
   forall y, dot (sub y here) (sub y here) <= Q2R (radius c) * Q2R (radius c) ->
     dot (real (normal c)) there + Q2R (margin c) <= dot (real (normal c)) y.
-(* Two robots: c is of one (its body does not count), p, r place and radius of the other, `other` the opposite offset. *)
+(* Two robots: c is of one (its body and margin do not count); p, r are place and radius of the other, whose half-plane has the
+   opposite normal and the offset `other`. *)
 Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := forall v w t,
   Q2R (offset c) <= dot (real (normal c)) v -> Q2R other <= dot (scale (-1) (real (normal c))) w -> moment (horizon c) t ->
   apart (Q2R (radius c) + Q2R r) (add (real (position c)) (scale t v)) (add (real p) (scale t w)).
@@ -53,7 +55,7 @@ Definition keep_each_other_clear (c : half_plane) (p : point) (r other : Q) := f
 Record row := { row_normal : point; row_offset : Q; soft : bool }.
 Record program := { rows : list row; disc : option Q; box_x : option Q; box_y : option Q; wish : point }.
 Definition at_most (x : R) (b : option Q) := match b with Some q => x <= Q2R q | None => True end.
-Definition slow (p : program) (v : vec) := match disc p with Some d => dot v v <= Q2R d * Q2R d | None => True end /\
+Definition slow (p : program) (v : vec) := match disc p with Some d => 0 <= Q2R d /\ dot v v <= Q2R d * Q2R d | None => True end /\
   at_most (Rabs (fst v)) (box_x p) /\ at_most (Rabs (snd v)) (box_y p).
 Definition holds (give : R) (v : vec) (c : row) := Q2R (row_offset c) - give <= dot (real (row_normal c)) v.
 Definition allowed (give : R) (p : program) (v : vec) :=   (* hard ones hold, soft ones are broken by at most `give` *)
@@ -107,7 +109,7 @@ Definition moves (sizes : list Q) (a b : list point) : list motion :=
   map (fun x => {| size := fst x; from := fst (snd x); to := snd (snd x) |}) (combine sizes (combine a b)).
 Fixpoint all_steps (P : list point -> list point -> Prop) (rows : list (list point)) : Prop :=
   match rows with a :: ((b :: _) as r) => P a b /\ all_steps P r | _ => True end.
-Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows | [] => [] end.   (* rest, then the steps *)
+Definition with_start {A} (rows : list A) := match rows with a :: _ => a :: rows | [] => [] end.   (* at rest in the first row, then the steps *)
 
 (* --- Braking: the robots choose velocities, take them for a step (s), and then all brake: in each step of braking a
    robot keeps the share 1 - step / tau of its velocity (tau: s) --- *)
@@ -141,7 +143,7 @@ Fixpoint mixed_once (share : nat -> R) (ps : list vec) : list vec :=   (* each t
   match ps with a :: ((b :: _) as r) => mix (share O) a b :: mixed_once (fun i => share (S i)) r | _ => [] end.
 Fixpoint mixed (share : nat -> nat -> R) (n : nat) (ps : list vec) : vec :=   (* n times, until one is left: de Casteljau, de Boor *)
   match n with O => hd (0, 0) ps | S k => mixed share k (mixed_once (share n) ps) end.
-Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the time that has passed *)
+Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the time that has passed; without points: (0, 0) *)
   let ps := map real (points m) in let n := Nat.pred (length ps) in match meant m with
   | Powers => fold_right (fun p more => add p (scale passed more)) (0, 0) ps
   | Bezier => mixed (fun _ _ => u) n ps
@@ -149,6 +151,7 @@ Definition on_way (m : trip) (passed u : R) : vec :=    (* u: the share of the t
   end.
 Definition at_time (m : trip) (t s : R) : vec :=        (* no time to go: the whole way at once, s is the share of it; of powers the start alone *)
   let l := Q2R (leave m) in let a := Q2R (arrive m) in on_way m (t - l) (if Req_EM_T l a then s else (t - l) / (a - l)).
+(* x is in the body then. *)
 Definition covers (m : trip) (t s : R) (x : vec) := exists p y, In p (parts m) /\ hull (corners p) y /\
   let d := sub x (add (at_time m t s) y) in dot d d <= Q2R (reach p) * Q2R (reach p).
 Definition never_meet (a b : trip) := forall t s x, under_way a t -> under_way b t -> 0 <= s <= 1 -> covers a t s x -> ~ covers b t s x.
@@ -168,7 +171,7 @@ Definition carried (o v : vec) (w t : R) (y : vec) : vec :=
 Definition driven (d : drive) : R -> vec -> vec := carried (real (place_then d)) (real (heads d)) (Q2R (turns d)).
 Definition drives_clear (d : drive) (o : obstacle) := forall t p y x,
   0 <= t <= Q2R (halts d) - Q2R (sets_out d) -> In p (body_parts d) -> hull (corners p) y ->
-  (let e := sub x (driven d t y) in dot e e <= Q2R (reach p) * Q2R (reach p)) -> outside [o] x /\ forall e, In e (edges_of o) -> ~ on e x.
+  (let off := sub x (driven d t y) in dot off off <= Q2R (reach p) * Q2R (reach p)) -> outside [o] x /\ forall e, In e (edges_of o) -> ~ on e x.
 
 (* --- Wheels: the axle, at o, looks along h, and holds a speed and a turn rate for a step (s). The body, within `body_reach`
    of the axle, stays in a disc about a point that goes straight from where the point `ahead` of the axle is to where it comes --- *)

@@ -87,19 +87,28 @@ let nearly program c =
     wish = program.wish } c.velocity
 
 (* --- Answers of `exactvo lp`, beside the problems that they answer --- *)
+(* What it does not know would change the problem, and what it read in its place would be proven of another one. *)
+let known keys = function Json.Obj members when List.for_all (fun (k, _) -> List.mem k keys) members -> () | _ -> raise Json.Bad
+let word key words v = match Json.find key v with
+  | None -> List.hd words
+  | Some (Json.Str w) when List.mem w words -> w
+  | _ -> raise Json.Bad
 let pair_of v = match Json.arr v with [x; y] -> (Json.num x, Json.num y) | _ -> raise Json.Bad
 let answer p a =
   let q = over (max (Certificates.bits_needed p) (Certificates.bits_needed a)) in
   let at v = let x, y = pair_of v in (q x, q y) in
-  (* The statements square the speed bound: one below 0 would count as its absolute value. *)
-  let optional = function Some (Json.Num x) when x < 0. -> raise Json.Bad | Some (Json.Num x) -> Some (q x) | _ -> None in
+  let at_least_0 v = let x = Json.num v in if x < 0. then raise Json.Bad else q x in
   let bound = Option.value (Json.find "bound" p) ~default:(Json.Obj []) in
-  let box = match Json.find "box" bound with Some (Json.Arr [x; y]) -> [optional (Some x); optional (Some y)] | _ -> [None; None] in
-  let soft c = Json.find "priority" c = Some (Json.Str "soft") in
+  let bound_on = function Json.Null -> None | x -> Some (at_least_0 x) in
+  let box = match Json.find "box" bound with None -> [None; None] | Some (Json.Arr [x; y]) -> [bound_on x; bound_on y] | _ -> raise Json.Bad in
+  let soft c = word "priority" ["hard"; "soft"] c = "soft" in
   let status = Json.(str (get "status" a)) in
   let infeasible = status = "infeasible" in
   (* Where even the hard ones contradict each other, they give, and the soft ones do not count. *)
   let constraints = Json.(arr (get "constraints" p)) in
+  known ["preferred"; "constraints"; "bound"; "objective"] p;
+  known ["disc"; "box"] bound;
+  List.iter (known ["normal"; "offset"; "priority"; "label"]) constraints;
   let kept = List.mapi (fun i c -> (i, c)) constraints |> List.filter (fun (_, c) -> not (infeasible && soft c)) in
   let side x y b = match b with None -> [] | Some b -> [{ row_normal = (q x, q y); row_offset = { b with qnum = Whole.neg b.qnum }; soft = false }] in
   let sides = List.map2 (fun name s -> (name, s)) ["box-right"; "box-left"; "box-top"; "box-bottom"]
@@ -120,12 +129,12 @@ let answer p a =
   let pull, mu = if status = "no-interior" then ([], of_q Q.zero) else multipliers "bound" in
   let against, _ = multipliers "contradiction" in
   if Json.(num (get "violation" a)) < 0. || Json.(num (get "gap" certificate)) < 0. then raise Json.Bad;
-  let program = { rows = rows @ List.concat_map snd sides; disc = optional (Json.find "disc" bound);
+  let program = { rows = rows @ List.concat_map snd sides; disc = Option.map at_least_0 (Json.find "disc" bound);
     box_x = List.nth box 0; box_y = List.nth box 1; wish = at (Json.get "preferred" p) } in
   let choice = { velocity = at (Json.get "velocity" a); gap = q Json.(num (get "gap" certificate));
     violation = q Json.(num (get "violation" a)); pull; mu; against } in
   match status with
-  | "optimal" -> if Json.find "objective" p = Some (Json.Str "farthest") then Checked.farthest program choice else Checked.nearest program choice
+  | "optimal" -> if word "objective" ["nearest"; "farthest"] p = "farthest" then Checked.farthest program choice else Checked.nearest program choice
   | "relaxed" | "infeasible" -> Checked.least program choice
   | "no-interior" ->
     (* The point nearest 0 on the boundaries named: whatever point this is, the checker asks whether it satisfies all. *)

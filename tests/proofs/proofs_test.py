@@ -254,6 +254,14 @@ def certificates(tools):
     status, verdicts, words = tools.verified("worse.jsonl", "\n".join(worse), "--problems", path)
     require(status == 1 and len(verdicts) == 6 and "valid" not in verdicts, words)
     count += 6
+    # What `lp` refuses in a problem is not read as if it were not there.
+    for was, odd in (('"disc":3', '"disc":null'), ('"disc":3', '"disc":-3'), ('"disc":3', '"disc":3,"box":1'), ('"disc":3', '"disc":3,"box":[null]'),
+                     ('"disc":3', '"disc":3,"polygon":[]'), ('"bound":{"disc":3}', '"bound":7'), ('"offset":-1.75', '"offset":-1.75,"priority":"weak"'),
+                     ('"preferred"', '"objective":"quickest","preferred"'), ('"preferred"', '"also":1,"preferred"')):
+        changed = tools.file("odd.jsonl", problems.splitlines()[0].replace(was, odd, 1) + "\n")
+        status, verdicts, words = tools.verified("first.jsonl", answers[0], "--problems", changed)
+        require(run(tools.program, "lp", changed).returncode == 2 and status == 1 and verdicts == ["malformed"], odd, words)
+        count += 1
 
     for name, content, code in (("none.txt", "nothing\n", "E_FORMAT_UNKNOWN"), ("empty.txt", "", "E_FORMAT_UNKNOWN")):
         status, verdicts, words = tools.verified(name, content)
