@@ -540,6 +540,7 @@ class PageItself(Page):
         self.assertLessEqual(rows, 11)
         self.assertAlmostEqual(x, float(last[3]), delta=ROBOTS_AT_A_TIME)
         self.assertIn("positions only", self.text("#why"))
+        self.assertIn("exactvo-verify, whose checkers are proven in Coq, covers of a recording: that on straight motions", self.text("#covered"))
 
     def test_trajectories_of_a_check_play_and_lead_to_their_overlaps(self):
         rows = [(0, "A", 0, 0), (0, "B", 5, -5), (1, "A", 10, 0), (1, "B", 5, 5), (2, "C", 9, 1), (4, "C", 9, -3)]
@@ -554,6 +555,7 @@ class PageItself(Page):
         self.assertIn("A: collision with B", listed[0])
         self.assertIn("C: collision with the polygon 1 of the map", listed[1])
         self.assertEqual(self.text("#moment"), "Moment")
+        self.assertIn("covers of certificates of exactvo check --certificates: that", self.text("#covered"))
         there = self.run_script("const r = exactvo.page.run; return [0, 0.5, 1.5, 3].map((t) => [0, 1, 2].map((i) => r.isThere(i, t)))")
         self.assertEqual(there, [[True, True, False], [True, True, False], [False, False, False], [False, False, True]])
         self.run_script("document.querySelectorAll('#collisions button')[0].click()")
@@ -938,6 +940,7 @@ class Proofs(Page):
         self.record()
         self.run_program("view", "A7", "--out", "a7.html")
         self.open("a7.html")
+        self.assertIn("exactvo-verify, whose checkers are proven in Coq, covers of a recording: half-planes", self.text("#covered"))
         counts = self.await_script("return await exactvo.checkAll()")
         audit = json.loads(self.run_program("audit", "A7", "--json").stdout)
         text = json.dumps(audit)

@@ -2,7 +2,7 @@
 // The runs of the page: their list, the one that is shown, its words and measurements.
 import {bytesOfBase64, DataProblem, unpackRun} from './columns.js';
 import {shortName} from './draw.js';
-import {number} from './words.js';
+import {coveredWords, number} from './words.js';
 import {Positions, unreachableOf} from './world.js';
 import {collisionWords, eventsOf, pathLength} from './charts.js';
 import {$, element, page, report, ui} from './state.js';
@@ -84,6 +84,7 @@ function fillRun() {
   $('partial').textContent = partial.join(' ');
   $('origin').textContent = `ExactVO ${about.version}, ${about.commit}`;
   $('checked').textContent = '';
+  $('covered').textContent = coveredWords(run);
   fillMetrics();
 }
 

@@ -146,4 +146,12 @@ function whyWords(run, d, mode) {
   return words;
 }
 
-export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords};
+// Which claims of what is shown the checkers that are proven themselves cover (docs/guide/proofs.md).
+function coveredWords(run) {
+  const of = run.about.method === 'check' ? 'certificates of exactvo check --certificates: that bodies which do not turn never meet each other or the map.' :
+    run.decisionTime.length ? 'a recording: half-planes against bodies at rest and pairs of opposite ones, choices with multipliers, bodies that stand for obstacles, straight motions from row to row, and braking.' :
+    'a recording: that on straight motions from row to row no two robots overlap, and none overlaps an edge.';
+  return `exactvo-verify, whose checkers are proven in Coq, covers of ${of}`;
+}
+
+export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords, coveredWords};
