@@ -412,6 +412,12 @@ def recordings(tools):
         change(odd["header"]["scenario"])
         status, _, words = tools.verified("odd.jsonl", json.dumps(odd, separators=(",", ":")) + "\n" + "".join(lines[1:]))
         require(status == 2 and "E_FORMAT_SYNTAX" in words, status, words)
+    # A speed bound below 0 allows nothing, though its square is the same.
+    backward = json.loads(lines[0])
+    for robot in backward["header"]["scenario"]["robots"]:
+        robot["max_speed"] *= -1
+    status, _, words = tools.verified("backward.jsonl", json.dumps(backward, separators=(",", ":")) + "\n" + "".join(lines[1:]))
+    require(status == 1 and re.search(r"choices with multipliers: [1-9]\d* asked, 0 proven", words), words)
     # Robots inside a polygon whose edges they never meet are in no row clear of it, nor could they brake.
     brakes = tools.folder / "brakes"
     run(tools.program, "simulate", tools.file("brakes.json", json.dumps(dict(ACCELERATING, obstacles=[]))), "--no-figures", "--out", brakes, check=True)
