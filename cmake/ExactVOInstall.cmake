@@ -55,7 +55,8 @@ if(TARGET exactvo)
   install(TARGETS exactvo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
   install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/exactvo COMPONENT runtime)
   set(pages ${PROJECT_BINARY_DIR}/help_pages)
-  install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime OPTIONAL)
+  install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime OPTIONAL
+    PATTERN exactvo-verify.1 EXCLUDE)
   install(FILES ${pages}/completions/exactvo.bash RENAME exactvo
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime OPTIONAL)
   # Debian's zsh looks below /usr in the folder for packages alone, below /usr/local in that of zsh.
@@ -65,6 +66,14 @@ if(TARGET exactvo)
   endif()
   install(FILES ${pages}/completions/_exactvo
     DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} COMPONENT runtime OPTIONAL)
+endif()
+if(TARGET exactvo_verify)
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/bin/exactvo-verify DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT verify)
+  # CMake strips what it linked itself, and this is OCaml's.
+  install(CODE "if(CMAKE_INSTALL_DO_STRIP)
+      execute_process(COMMAND ${CMAKE_STRIP} \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/exactvo-verify\" COMMAND_ERROR_IS_FATAL ANY)
+    endif()" COMPONENT verify)
+  install(FILES ${PROJECT_BINARY_DIR}/help_pages/man/exactvo-verify.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT verify OPTIONAL)
 endif()
 # The README's links hold where it is installed as well.
 install(FILES LICENSE README.md CITATION.cff CHANGELOG.md CONTRIBUTING.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR}

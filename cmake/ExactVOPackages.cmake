@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Debian packages: `cpack -G DEB` in the build folder makes exactvo, libexactvo-dev and, where it is built, python3-exactvo
-# (scripts/make_packages.sh). With the prefix /usr libraries lie where Debian wants them, lib/<architecture>.
+# Debian packages: `cpack -G DEB` in the build folder makes exactvo, libexactvo-dev and, where they are built, exactvo-verify
+# and python3-exactvo (scripts/make_packages.sh). With the prefix /usr libraries lie where Debian wants them, lib/<architecture>.
 set(CPACK_PACKAGE_NAME exactvo)
 set(CPACK_PACKAGE_VENDOR "ExactVO")
 set(CPACK_PACKAGE_CONTACT "The ExactVO maintainers <maintainers@exactvo.invalid>")
@@ -25,6 +25,16 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgmp-dev, libmpfr-dev, libtbb-dev${EXACT
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS
   "libgdal-dev, libsqlite3-dev, libopenmpi-dev, libpugixml-dev, libyaml-cpp-dev, libssl-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Static libraries and headers; find_package(ExactVO) and pkg-config find them.")
+
+# The proven checker alone: what others computed is checked without the program and its libraries.
+if(TARGET exactvo_verify)
+  list(APPEND CPACK_COMPONENTS_ALL verify)
+  set(CPACK_DEBIAN_VERIFY_PACKAGE_NAME exactvo-verify)
+  set(CPACK_DEBIAN_VERIFY_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_COMPONENT_VERIFY_DESCRIPTION "The checker exactvo-verify, which is proven in Coq.")
+  # The guide and the README call it beside exactvo, and it is small.
+  set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS exactvo-verify)
+endif()
 
 if(EXACTVO_BUILDS_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -56,10 +66,12 @@ if(EXACTVO_GZIP)
     install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian_copyright RENAME copyright DESTINATION ${folder} COMPONENT ${component})
     install(FILES ${changes}.gz DESTINATION ${folder} COMPONENT ${component})
   endforeach()
-  # And compressed manual pages.
-  install(CODE "file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/exactvo*.1\")
-    if(pages)
-      execute_process(COMMAND ${EXACTVO_GZIP} --best --no-name --force \${pages} COMMAND_ERROR_IS_FATAL ANY)
-    endif()" COMPONENT runtime)
+  # And compressed manual pages, of which only these two components have any.
+  foreach(component runtime verify)
+    install(CODE "file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/exactvo*.1\")
+      if(pages)
+        execute_process(COMMAND ${EXACTVO_GZIP} --best --no-name --force \${pages} COMMAND_ERROR_IS_FATAL ANY)
+      endif()" COMPONENT ${component})
+  endforeach()
 endif()
 include(CPack)
