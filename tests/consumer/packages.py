@@ -19,7 +19,8 @@ import tempfile
 from pathlib import Path
 
 SKIPPED = 77
-VERIFY = {"usr/bin/exactvo-verify", "usr/share/man/man1/exactvo-verify.1.gz", "usr/share/doc/exactvo-verify/copyright", "usr/share/doc/exactvo-verify/changelog.gz"}
+VERIFY = {"usr/bin/exactvo-verify", "usr/share/man/man1/exactvo-verify.1.gz",
+          "usr/share/doc/exactvo-verify/copyright", "usr/share/doc/exactvo-verify/changelog.gz"}
 
 
 def run(*command, **options):
