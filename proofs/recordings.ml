@@ -220,6 +220,10 @@ let recording file text =
     if Wheels.tracking (Json.get "scenario" h) > 0. then not_covered := !not_covered @ ["that bodies are within the tracking error of where rows have them: that is assumed"];
     if List.exists Wheels.has_footprint Json.(arr (get "robots" !scenario)) then not_covered := !not_covered @ ["that robots keep clear of obstacles: some have footprints, which turn; audit checks this"];
     if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points; audit checks that bodies and wheels follow"];
+    let measures = match Json.find "uncertainty" !scenario with
+      | Some (Json.Obj _ as bounds) -> not (List.mem (Json.find "measurements" bounds) [None; Some Json.Null])
+      | _ -> false in
+    if measures then not_covered := !not_covered @ ["that robots measured each other within the bounds, and may each brake alone: they are proven to brake all at once; audit checks this"];
     if Json.find "moving_obstacles" !scenario <> Some (Json.Arr []) then not_covered := !not_covered @ ["that robots are clear of moving obstacles"];
     not_covered := !not_covered @ ["plans, half-planes that are not counted above, and that none is missing";
       "choices without room, with exact multipliers or with half-planes of a user"; "that rows follow from choices and from one another in time, and that the scenario is the one that was meant"];

@@ -599,6 +599,8 @@ def judged(tools, name, lines):
         more.add("bodies")
     if "some have footprints" in words:
         more |= {"motions", "braking"}
+    if "measured each other" in words or any("max_speed" in mover for mover in scenario.get("moving_obstacles", [])):
+        more.add("braking")
     return ours, theirs, more
 
 
