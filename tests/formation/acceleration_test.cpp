@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Robots with bounded accelerations: lemma 4 and theorem 3 of docs/guide/accelerations.md by their numbers, in
 // rationals, and whole runs by their audit.
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,6 +20,7 @@
 #include "exactvo/geometry/pi.h"
 #include "exactvo/vo/lp/solve.h"
 #include "liveness_scenes.h"
+#include "rational_point.h"
 #include "scene/braking.h"
 #include "scene/free_space.h"
 #include "scene/goals.h"
@@ -28,27 +28,6 @@
 
 namespace exactvo::formation {
 namespace {
-
-using Rational = mpq_class;
-
-struct Point {
-  Rational x, y;
-};
-Point exactly(Vec2 v) {
-  return {Rational(v.x), Rational(v.y)};
-}
-Point operator+(const Point& a, const Point& b) {
-  return {Rational(a.x + b.x), Rational(a.y + b.y)};
-}
-Point operator-(const Point& a, const Point& b) {
-  return {Rational(a.x - b.x), Rational(a.y - b.y)};
-}
-Point operator*(const Rational& s, const Point& a) {
-  return {Rational(s * a.x), Rational(s * a.y)};
-}
-Rational dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y;
-}
 
 /// Of the way from `from` on, `along` long, to 0.
 Rational squared_distance(const Point& from, const Point& along) {

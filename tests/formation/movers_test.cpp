@@ -2,7 +2,6 @@
 // Robots among movers of which they know the greatest speed only: lemma 8 of docs/guide/accelerations.md by its number,
 // in rationals, and whole runs among movers that chase them, by their audit.
 #include <gmock/gmock.h>
-#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include "exactvo/formation/notices.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/stuck.h"
+#include "rational_point.h"
 #include "scene/braking.h"
 #include "support/seeded_random.h"
 
@@ -30,27 +30,6 @@ namespace {
 using datasets::AuditPoint;
 using datasets::RecordingFile;
 using testing::HasSubstr;
-
-using Rational = mpq_class;
-
-struct Point {
-  Rational x, y;
-};
-Point exactly(Vec2 v) {
-  return {Rational(v.x), Rational(v.y)};
-}
-Point operator+(const Point& a, const Point& b) {
-  return {Rational(a.x + b.x), Rational(a.y + b.y)};
-}
-Point operator-(const Point& a, const Point& b) {
-  return {Rational(a.x - b.x), Rational(a.y - b.y)};
-}
-Point operator*(const Rational& s, const Point& a) {
-  return {Rational(s * a.x), Rational(s * a.y)};
-}
-Rational dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y;
-}
 
 /// Of length 1, exactly: ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)) or its negative.
 Point unit(test::SeededRandom& random) {

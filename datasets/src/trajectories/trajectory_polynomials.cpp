@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polynomials of quadrotors as the programs for Crazyflies and uav_trajectories exchange them: CSV with the header
 // duration,x^0,...,x^7,y^0,...,z^0,...,yaw^0,...; each line is a piece, in powers of the time since its beginning. A
-// file is one agent. Only x and y count. And curves in JSON, an object a line, as certificates write them.
+// file is one agent. Only x and y count. It also reads curves in JSON: each line is an object, as in certificates.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

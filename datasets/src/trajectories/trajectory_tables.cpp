@@ -243,7 +243,7 @@ bool split_csv(std::string_view line, char separator, std::vector<std::string_vi
   return quoted.has_value();
 }
 
-/// Of a line that may have the names of columns, behind a mark of a comment if need be.
+/// The names of columns that a line has. A comment may have them too: its mark is left out.
 std::string_view header_in(std::string_view line) {
   return trimmed(line.substr(line.front() == '#' ? 1 : 0));
 }

@@ -74,8 +74,8 @@ struct Decision {
   int side = 0;               ///< +1 left, -1 right, 0 none: the side kept while blocked
   double turned_right = 0.0;  ///< rad: how far rule R1 (liveness) turned `preferred`, to avoid other robots
   std::string note;           ///< why a mode began or ended, empty otherwise
-  /// Where something moves of which its greatest speed is known: after so many steps, this one included, the robot can
-  /// stand, and is proven to meet none of it before. 0: it stands in this step.
+  /// Among moving obstacles with a `max_speed`: the robot can stand after this many steps, this one included, and is
+  /// proven to meet none of them before. 0: it stands in this step.
   std::size_t stopping_steps = 0;
   std::size_t uncertified = 0;          ///< half-planes of this decision that could not be certified
   OwnStage own_stage = OwnStage::none;  ///< the stage of the decision; none without half-planes of a user
@@ -155,9 +155,9 @@ std::vector<geometry::HalfPlane> own_limits(const Scenario& scenario, const Robo
 
 /// The body that a half-plane keeps clear of, as its robot saw it: enough to prove the half-plane again. The half-plane
 /// excludes the velocity obstacle of `shape`, grown by `radius`, seen from `position` and shifted by `velocity`, within
-/// its `time_horizon`. (Of a body of which its greatest speed is known `radius` takes in how far it gets before the
-/// robot stands, and the half-plane says less: that the robot is clear of it as it stands, and by then of what it
-/// reaches.)
+/// its `time_horizon`. (For a moving obstacle with a `max_speed`, `radius` includes how far it gets before the robot
+/// stands. Its half-plane promises less: the robot is clear of it now, and of all that it can reach by the time the
+/// robot stands.)
 struct SeenBody {
   geometry::ConvexShape shape;  ///< m
   Vec2 position;                ///< m: the robot's anchor

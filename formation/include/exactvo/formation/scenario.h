@@ -248,8 +248,8 @@ inline double usual_braking_time(double fastest, double acceleration, double tim
   return std::max(kSpare * (fastest / acceleration), time_step);
 }
 
-/// m/s: from this speed a robot that brakes stands after so many steps. A millionth of its acceleration is left to
-/// roundings.
+/// m/s: the greatest speed from which a robot can brake to rest in `steps` steps. A millionth of its acceleration is
+/// left to roundings.
 inline double stopping_speed(double acceleration, double time_step, std::size_t steps) {
   constexpr double kShare = 1.0 - 1e-6;
   return static_cast<double>(steps) * (kShare * acceleration * time_step);
@@ -265,7 +265,7 @@ inline std::size_t stopping_steps(double speed, double acceleration, double time
   return steps;
 }
 
-/// Whether something moves of which robots know the greatest speed only.
+/// Whether there is a moving obstacle with a `max_speed`: robots know no more of its motion.
 inline bool meets_movers(const Scenario& scenario) {
   return std::any_of(scenario.moving_obstacles.begin(), scenario.moving_obstacles.end(),
                      [](const MovingObstacle& o) { return o.max_speed.has_value(); });
