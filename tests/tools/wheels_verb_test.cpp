@@ -122,9 +122,9 @@ TEST(MoversVerb, ItsSceneArrivesIsProvenAndSaysWhatIsAssumed) {
       "no moving obstacle is faster than its max_speed, 0.5 m/s at most: then no robot that moves";
   const std::string scene = data_file("robots/burger_movers.json");
   const Outcome run = here.run("simulate " + scene + " --out run");
-  EXPECT_THAT(run.out,
-              AllOf(HasSubstr("the robot arrived"), HasSubstr(", 0 relaxed"), HasSubstr(words),
-                    HasSubstr("robots that stood were hit by moving obstacles 1 time;"), Not(HasSubstr("COLLISION"))))
+  EXPECT_THAT(run.out, AllOf(HasSubstr("the robot arrived"), HasSubstr(", 0 relaxed"), HasSubstr(words),
+                             HasSubstr("robots that stood were hit by moving obstacles 1 time;"),
+                             HasSubstr(" s, while it stood\n"), Not(HasSubstr("COLLISION"))))
       << run.err;
   const Outcome audit = here.run("audit run --scenario " + scene + " --json");
   EXPECT_EQ(audit.status, 0) << audit.out;

@@ -69,8 +69,9 @@ std::string collision_lines(const std::vector<formation::Collision>& all) {
   std::string text;
   for (std::size_t k = 0; k < std::min(all.size(), kMostLines); ++k) {
     const formation::Collision& c = all[k];
-    text += fmt::format("  collision    {} with {} '{}' from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
-                        shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at);
+    text += fmt::format("  collision    {} with {} '{}' from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s{}\n",
+                        shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at,
+                        c.standing ? ", while it stood" : "");
   }
   if (all.size() > kMostLines)
     text += fmt::format("  collision    and {} more: see metrics.json\n", all.size() - kMostLines);
