@@ -23,6 +23,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SITE = ROOT / "docs/site"
 TITLE = re.compile(r"^# (.+)$", re.M)
+SINGLES = ("HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/building.md", "docs/claims.md", "docs/stability.md")
 
 
 def page_of(source):
@@ -36,7 +37,7 @@ def page_of(source):
         if name.startswith(folder + "/") and name.endswith(".md"):
             stem = "index" if source.stem == "README" else source.stem
             return pathlib.Path(folder.removeprefix("docs/"), stem + ".html")
-    if name in ("HACKING.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/building.md", "docs/claims.md"):
+    if name in SINGLES:
         return pathlib.Path(source.stem.lower() + ".html")
     if name == "examples/python":
         return pathlib.Path("tutorials/index.html")
@@ -130,10 +131,10 @@ def index_of(site, folder, title, sources, words=""):
 
 def make_guide(site):
     pages = [p.relative_to(ROOT) for folder in ("guide", "adr", "design", "measurements") for p in sorted((ROOT / "docs" / folder).glob("*.md"))]
-    singles = ("README.md", "HACKING.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/building.md", "docs/claims.md")
-    for source in [*map(pathlib.Path, singles), *pages]:
+    for source in [*map(pathlib.Path, ("README.md", *SINGLES)), *pages]:
         site.page(source)
     more = ('<p>Also: <a href="../adr/index.html">decisions and their reasons</a>, <a href="../claims.html">claims to check</a>, '
+            '<a href="../stability.html">what stays the same from version to version</a>, '
             '<a href="../hacking.html">how the repository is laid out</a>, <a href="../contributing.html">how to contribute</a>, '
             '<a href="../changelog.html">what changed</a>.</p>\n')
     index_of(site, "guide", "Guide", [p for p in pages if p.parent.name == "guide"], more)
