@@ -209,8 +209,8 @@ TEST(LpCheck, WhatIsNoAnswerIsRefusedWithItsLine) {
   here.write("p.jsonl", kThree);
   const std::pair<const char*, const char*> cases[] = {
       {"", "no answer"},
-      {"x,y\n1,2\n", "line 1: found x,y, expected answers"},
-      {"vx,vy\n1\n", "line 2: found 1, expected 2 fields"},
+      {"x,y\n1,2\n", "line 1: found an unknown column \"x\", expected answers"},
+      {"vx,vy\n1\n", "line 2: found 1 field, expected 2, as many"},
       {"vx,vy\n1,two\n", "line 2: found two, expected a number in column vy"},
       {"index,vx,vy\n3,0,0\n", "found an answer to problem 3, expected a problem of the file, 0 to 2"},
       {"index,vx,vy\n0,0,0\n0,1,0\n", "line 3: found a second answer to problem 0"},

@@ -17,8 +17,8 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
+#include "readers/line_reader.h"
 #include "support/certificate_json.h"
-#include "support/fields.h"
 #include "support/json_layout.h"
 #include "support/motion_certificates.h"
 #include "support/route_certificates.h"
@@ -185,7 +185,7 @@ auto count_valid(const CheckedCertificates& checked) {
 }  // namespace
 
 CheckedCertificates check_certificates(const std::string& file) {
-  const std::string whole = datasets::read_file_or_input(file), text(without_mark(whole));
+  const std::string whole = datasets::read_file_or_input(file), text(datasets::without_mark(whole));
   CheckedCertificates checked = is_json(text) ? checked_in_json(text) : checked_in_lines(text);
   const bool is_empty = checked.all.empty() && checked.none == 0 && !checked.is_summed;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 
 namespace exactvo::datasets {
@@ -13,7 +12,7 @@ constexpr std::string_view kBlanks = " \t\r\v\f";
 }  // namespace
 
 LineReader::LineReader(std::string text, const std::string& file)
-    : text_(std::move(text)), rest_(without_mark(text_)), file_(file) {}
+    : LineAtHand(file), text_(std::move(text)), rest_(without_mark(text_)) {}
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
@@ -31,50 +30,48 @@ bool LineReader::next_filled() {
   return false;
 }
 
-double LineReader::to_number(std::string_view field) const {
+bool TableLines::next_filled() {
+  while (lines_.next(line_)) {
+    number_ = lines_.number();
+    line_ = trimmed(number_ == 1 ? without_mark(line_) : line_);
+    if (!line_.empty() && line_.front() != '#') return true;
+  }
+  return false;
+}
+
+std::vector<std::string> TableLines::fields() const {
+  if (line_.find(',') != std::string_view::npos) return LineAtHand::fields();
+  const std::vector<std::string_view> words = words_of(line_);
+  return {words.begin(), words.end()};
+}
+
+void TableLines::refuse(DataCode code, std::string_view found, const std::string& expected) const {
+  constexpr std::size_t kShown = 60;
+  LineAtHand::refuse(code, std::string(found.substr(0, kShown)) + (found.size() > kShown ? "..." : ""), expected);
+}
+
+double LineAtHand::to_number(std::string_view field) const {
   double value = 0.0;
   if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
   return value;
 }
 
-std::int64_t LineReader::to_integer(std::string_view field) const {
+std::int64_t LineAtHand::to_integer(std::string_view field) const {
   std::int64_t value = 0;
   if (!parse_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
   return value;
 }
 
-void LineReader::refuse(DataCode code, const std::string& found, const std::string& expected) const {
+void LineAtHand::refuse(DataCode code, const std::string& found, const std::string& expected) const {
   throw DataError(code, file_, number_ == 0 ? "" : place(), found, expected);
 }
 
-std::vector<std::string> CsvTable::fields_of_line() const {
-  std::optional<std::vector<std::string>> fields = csv_fields_of(line());
+std::vector<std::string> LineAtHand::fields() const {
+  std::optional<std::vector<std::string>> fields = csv_fields_of(line_);
   if (!fields)
     refuse(DataCode::format_syntax, "a quotation mark that is not closed where its field ends",
            "fields as CSV quotes them: \"a, \"\"b\"\"\"");
   return std::move(*fields);
-}
-
-void CsvTable::read_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected) {
-  if (!next_filled()) refuse(DataCode::format_syntax, "an empty file", expected);
-  const std::vector<std::string> names = fields_of_line();
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (std::find(known.begin(), known.end(), names[k]) == known.end())
-      refuse(DataCode::key_unknown, "an unknown column \"" + names[k] + "\"", expected);
-    if (!columns_.emplace(names[k], k).second)
-      refuse(DataCode::json_duplicate_key, "column \"" + names[k] + "\" a second time", "each column once");
-  }
-  for (std::size_t k = 0; k < required; ++k)
-    if (!has(known[k])) refuse(DataCode::key_missing, "no column \"" + known[k] + "\"", expected);
-}
-
-bool CsvTable::next_row() {
-  if (!next_filled()) return false;
-  fields_ = fields_of_line();
-  if (fields_.size() != columns_.size())
-    refuse(DataCode::wrong_count, geometry::counted(fields_.size(), "field"),
-           std::to_string(columns_.size()) + ", as many as the header has");
-  return true;
 }
 
 std::string_view without_mark(std::string_view text) {

@@ -197,7 +197,7 @@ class Table {
 
   static constexpr double kMost = 1e90;  // as in the schema
 
-  CsvTable rows_;
+  CsvTable<LineReader> rows_;
   std::string number_;
 };
 

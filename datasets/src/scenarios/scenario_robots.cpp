@@ -333,7 +333,7 @@ class RobotsReader {
     const std::filesystem::path path = base_dir_ / name;
     const std::string text = text_of(path), shown = path.string();
     if (std::find(out_.tables.begin(), out_.tables.end(), path) == out_.tables.end()) out_.tables.push_back(path);
-    CsvTable table(text, shown);
+    CsvTable<LineReader> table(text, shown);
     table.read_header({"x", "y", "goal_x", "goal_y", "id", "vx", "vy", "radius", "max_speed", "heading"}, 4,
                       "a header with x, y, goal_x and goal_y, and where wanted id, vx, vy, radius, max_speed, heading");
     const auto refuse_column = [&](const char* name, bool has_no_use, const char* expected) {
@@ -351,7 +351,7 @@ class RobotsReader {
       throw DataError(DataCode::wrong_count, shown, "", "a header without robots", "at least one robot");
   }
 
-  void read_row(const CsvTable& table) {
+  void read_row(const CsvTable<LineReader>& table) {
     const auto number = [&](const char* name, double otherwise, double least, double most) {
       if (!table.has(name)) return otherwise;
       const double value = table.to_number(table.field(name));

@@ -30,7 +30,7 @@
 #include "exactvo/vo/lp/problem.h"
 #include "exactvo/vo/lp/solution.h"
 #include "exactvo/vo/lp/solvers.h"
-#include "support/fields.h"
+#include "readers/line_reader.h"
 #include "support/json_layout.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
@@ -78,6 +78,7 @@ struct JudgedAnswer {
 
 using datasets::DataCode;
 using datasets::DataError;
+using datasets::TableLines;
 using geometry::Vec2;
 using lp::Status;
 using Tree = nlohmann::json;
@@ -177,55 +178,25 @@ void put_json_line(const TableLines& at, AnswersByNumber& answers) {
 
 constexpr const char* kAnswerColumns = "the columns vx and vy and, where wanted, index, problem and status";
 
-/// Which column is which, by the first line.
-class AnswerColumns {
- public:
-  explicit AnswerColumns(const TableLines& at) {
-    const std::vector<std::string_view> names = fields_of(at.line());
-    width_ = names.size();
-    const bool is_table =
-        std::count(names.begin(), names.end(), "vx") > 0 && std::count(names.begin(), names.end(), "vy") > 0;
-    if (!is_table)
-      at.refuse(DataCode::format_unknown, at.line(),
-                fmt::format("answers: an object of JSON on each line, or CSV with {}", kAnswerColumns));
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      constexpr std::array<std::string_view, 5> kKnown{"vx", "vy", "index", "problem", "status"};
-      if (std::find(kKnown.begin(), kKnown.end(), names[k]) == kKnown.end())
-        at.refuse(DataCode::key_unknown, fmt::format("an unknown column \"{}\"", names[k]), kAnswerColumns);
-      if (!column_.emplace(names[k], k).second)
-        at.refuse(DataCode::json_duplicate_key, fmt::format("column \"{}\" a second time", names[k]),
-                  "each column once");
-    }
-  }
+using AnswerTable = datasets::CsvTable<TableLines>;
 
-  void put(const TableLines& at, AnswersByNumber& answers) const {
-    const std::vector<std::string_view> fields = fields_of(at.line());
-    if (fields.size() != width_)
-      at.refuse(DataCode::wrong_count, at.line(), fmt::format("{} fields, as many as the header has", width_));
-    GivenAnswer answer;
-    const std::optional<double> x = number(at, fields, "vx"), y = number(at, fields, "vy");
-    if (x && y) answer.velocity = Vec2{*x, *y};
-    if (const auto status = column_.find("status"); status != column_.end())
-      answer.status = status_of(at, fields[status->second]);
-    require_velocity_or_status(at, answer);
-    std::optional<std::string_view> name;
-    if (const auto problem = column_.find("problem"); problem != column_.end()) name = fields[problem->second];
-    answers.put(at, number(at, fields, "index"), name, answer);
-  }
-
- private:
-  std::optional<double> number(const TableLines& at, const std::vector<std::string_view>& fields,
-                               const char* column) const {
-    const auto found = column_.find(column);
-    if (found == column_.end() || fields[found->second].empty()) return std::nullopt;
-    const std::optional<double> value = number_in(fields[found->second]);
-    if (!value) at.refuse(DataCode::wrong_type, fields[found->second], fmt::format("a number in column {}", column));
+void put_row(const AnswerTable& table, AnswersByNumber& answers) {
+  const auto number = [&](const char* column) -> std::optional<double> {
+    if (!table.has(column) || table.field(column).empty()) return std::nullopt;
+    double value = 0.0;
+    if (!datasets::parse_whole(table.field(column), value))
+      table.refuse(DataCode::number, table.field(column), fmt::format("a number in column {}", column));
     return value;
-  }
-
-  std::map<std::string, std::size_t> column_;
-  std::size_t width_ = 0;
-};
+  };
+  GivenAnswer answer;
+  const std::optional<double> x = number("vx"), y = number("vy");
+  if (x && y) answer.velocity = Vec2{*x, *y};
+  if (table.has("status")) answer.status = status_of(table, table.field("status"));
+  require_velocity_or_status(table, answer);
+  std::optional<std::string_view> name;
+  if (table.has("problem")) name = table.field("problem");
+  answers.put(table, number("index"), name, answer);
+}
 
 // --- The verdict ---
 
@@ -289,17 +260,19 @@ const char* name(LpVerdict verdict) {
 /// datasets::DataError.
 std::vector<std::optional<GivenAnswer>> read_lp_answers(const std::string& file, std::size_t count,
                                                         const std::vector<std::string>& names) {
-  TableLines lines(file);
+  AnswerTable lines(file);
   AnswersByNumber answers(count, names);
-  if (!lines.next())
+  if (!lines.next_filled())
     throw DataError(DataCode::format_unknown, file, "", "no answer", "an object of JSON on each line, or CSV");
   if (lines.line().front() == '{') {
     do put_json_line(lines, answers);
-    while (lines.next());
+    while (lines.next_filled());
     return answers.take();
   }
-  const AnswerColumns columns(lines);
-  while (lines.next()) columns.put(lines, answers);
+  lines.take_header({"vx", "vy", "index", "problem", "status"}, 2,
+                    fmt::format("answers: an object of JSON on each line, or CSV with {}", kAnswerColumns),
+                    AnswerTable::OtherColumns::refused);
+  while (lines.next_row()) put_row(lines, answers);
   return answers.take();
 }
 

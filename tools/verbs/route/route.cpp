@@ -12,7 +12,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
 #include "figures/figure.h"
-#include "support/fields.h"
+#include "readers/line_reader.h"
 #include "support/robot_numbers.h"
 #include "support/stop.h"
 #include "support/terminal.h"
@@ -44,21 +44,9 @@ struct RouteFlags {
 // start_y, goal_x and goal_y, or the .scen format of the Moving AI benchmarks ---
 
 constexpr const char* kHeader = "a header with the columns start_x,start_y,goal_x,goal_y, or \"version 1\" of a .scen";
-constexpr const char* kColumns[] = {"start_x", "start_y", "goal_x", "goal_y"};
 
 /// bucket, map, width, height, start x, start y, goal x, goal y, optimal length.
 constexpr std::size_t kTaskFields = 9, kWidthField = 2, kStartField = 4;
-
-/// Fields are parted by tabs, so that a map's name may hold blanks; some files use blanks throughout.
-std::vector<std::string_view> task_fields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t from = 0; from != std::string_view::npos;) {
-    const std::size_t tab = line.find('\t', from);
-    fields.push_back(trimmed(line.substr(from, tab == std::string_view::npos ? tab : tab - from)));
-    from = tab == std::string_view::npos ? tab : tab + 1;
-  }
-  return fields.size() == kTaskFields ? fields : fields_of(line);
-}
 
 struct RouteQuery {
   std::size_t index = 0;       ///< from 0
@@ -69,13 +57,13 @@ class RouteQueries {
  public:
   /// Reads the header. Throws DataError, as `next` does: a file without one, a .scen for another kind of map.
   RouteQueries(const std::string& file, const AskedMap& map) : lines_(file), map_(map) {
-    if (!lines_.next()) throw datasets::DataError(DataCode::format_syntax, lines_.file(), "", "an empty file", kHeader);
+    if (!lines_.next_filled()) lines_.refuse(DataCode::format_syntax, "an empty file", kHeader);
     take_header();
   }
 
   /// The next question; nothing at the end.
   std::optional<RouteQuery> next() {
-    if (!lines_.next()) return std::nullopt;
+    if (!(is_scen_ ? lines_.next_filled() : lines_.next_row())) return std::nullopt;
     RouteQuery query = is_scen_ ? from_task() : from_columns();
     query.index = count_++;
     return query;
@@ -88,48 +76,36 @@ class RouteQueries {
 
  private:
   void take_header() {
-    const std::vector<std::string_view> words = fields_of(lines_.line());
+    const std::vector<std::string> words = lines_.fields();
     is_scen_ = words.size() == 2 && words[0] == "version" && (words[1] == "1" || words[1] == "1.0");
     if (is_scen_ && !map_.cells)
       lines_.refuse(DataCode::format_syntax, "cells of a Moving AI map",
                     fmt::format("CSV with coordinates, since {} is {}", map_.file, map_.format));
-    if (is_scen_) return;
-    column_count_ = words.size();
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      const auto found = std::find(words.begin(), words.end(), kColumns[k]);
-      if (found == words.end()) lines_.refuse(DataCode::format_syntax, lines_.line(), kHeader);
-      if (std::find(found + 1, words.end(), kColumns[k]) != words.end())
-        lines_.refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
-      columns_[k] = static_cast<std::size_t>(found - words.begin());
-    }
+    if (!is_scen_)
+      lines_.take_header({"start_x", "start_y", "goal_x", "goal_y"}, 4, kHeader, Table::OtherColumns::passed_over);
   }
 
   RouteQuery from_columns() const {
-    const std::vector<std::string_view> fields = fields_of(lines_.line());
-    if (fields.size() != column_count_)
-      lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
-                    fmt::format("{} fields", column_count_));
-    std::array<double, 4> numbers{};
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      const std::optional<double> number = number_in(fields[columns_[k]]);
-      if (!number || !std::isfinite(*number))
-        lines_.refuse(DataCode::number, fields[columns_[k]], fmt::format("a number in the column {}", kColumns[k]));
-      numbers[k] = *number;
-    }
-    return {0, {numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
+    const auto number = [&](const char* column) {
+      double value = 0.0;
+      if (!datasets::parse_whole(lines_.field(column), value) || !std::isfinite(value))
+        lines_.refuse(DataCode::number, lines_.field(column), fmt::format("a number in the column {}", column));
+      return value;
+    };
+    return {0, {number("start_x"), number("start_y")}, {number("goal_x"), number("goal_y")}};
   }
 
   RouteQuery from_task() const {
-    const std::vector<std::string_view> fields = task_fields(lines_.line());
+    // Tabs part fields, so that a map's name may hold blanks; some files have blanks throughout.
+    std::vector<std::string_view> fields = datasets::fields_of(lines_.line(), '\t');
+    if (fields.size() != kTaskFields) fields = datasets::words_of(lines_.line());
     if (fields.size() != kTaskFields)
       lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
                     fmt::format("{} fields", kTaskFields));
     std::array<double, 6> numbers{};
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-      const std::optional<double> number = number_in(fields[kWidthField + k]);
-      if (!number || *number != std::floor(*number))
+      if (!datasets::parse_whole(fields[kWidthField + k], numbers[k]) || numbers[k] != std::floor(numbers[k]))
         lines_.refuse(DataCode::number, fields[kWidthField + k], "a whole number of cells");
-      numbers[k] = *number;
     }
     const datasets::MapSize& size = map_.cells->size;
     if (numbers[0] != static_cast<double>(size.columns) || numbers[1] != static_cast<double>(size.rows))
@@ -139,11 +115,10 @@ class RouteQueries {
     return {0, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}};
   }
 
-  TableLines lines_;
+  using Table = datasets::CsvTable<datasets::TableLines>;
+  Table lines_;
   const AskedMap& map_;
   bool is_scen_ = false;
-  std::array<std::size_t, 4> columns_{};  ///< of start x, y, goal x, y
-  std::size_t column_count_ = 0;
   std::size_t count_ = 0;
 };
 
@@ -177,11 +152,11 @@ void check(const RouteFlags& flags) {
 // --- Points ---
 
 Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) {
-  const std::vector<std::string_view> fields = fields_of(text);
-  const bool are_two = fields.size() == 2 && text.find(',') != std::string::npos;
-  const std::optional<double> x = are_two ? number_in(fields[0]) : std::nullopt;
-  const std::optional<double> y = are_two ? number_in(fields[1]) : std::nullopt;
-  const std::optional<Vec2> metres = x && y ? map.in_metres({*x, *y}) : std::nullopt;
+  const std::vector<std::string_view> fields = datasets::fields_of(text, ',');
+  Vec2 p;
+  const bool is_point =
+      fields.size() == 2 && datasets::parse_whole(fields[0], p.x) && datasets::parse_whole(fields[1], p.y);
+  const std::optional<Vec2> metres = is_point ? map.in_metres(p) : std::nullopt;
   if (!metres) throw UsageError(option, text, map.accepted_points());
   return *metres;
 }

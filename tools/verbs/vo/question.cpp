@@ -26,7 +26,7 @@
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure.h"
-#include "support/fields.h"
+#include "readers/line_reader.h"
 #include "support/robot_numbers.h"
 #include "support/usage.h"
 #include "verbs/obstacles/obstacle_files.h"
@@ -71,13 +71,13 @@ struct Call {
 };
 
 std::string word_before_bracket(const std::string& text) {
-  return boost::to_upper_copy(std::string(trimmed(std::string_view(text).substr(0, text.find('(')))),
+  return boost::to_upper_copy(std::string(datasets::trimmed(std::string_view(text).substr(0, text.find('(')))),
                               std::locale::classic());
 }
 
 Call call_in(const std::string& text) {
   Call call{word_before_bracket(text), {}};
-  const std::string whole(trimmed(text));
+  const std::string whole(datasets::trimmed(text));
   if (whole.empty() || whole.back() != ')') return call;
   const auto open = whole.find('(');
   const std::string within = whole.substr(open + 1, whole.size() - open - 2);

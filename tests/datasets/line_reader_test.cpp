@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/fields.h"
+#include "readers/line_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "exactvo/datasets/data_error.h"
 
-namespace exactvo::tools {
+namespace exactvo::datasets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,7 +22,7 @@ class Lines : public testing::Test {
 
   std::vector<std::string> lines_of(const std::string& text) const {
     std::ofstream(path_, std::ios::binary) << text;
-    datasets::TextLines stream(path_, TableLines::kLongestLine);
+    TextLines stream(path_, TableLines::kLongestLine);
     std::vector<std::string> lines;
     std::string_view line;
     while (stream.next(line)) {
@@ -68,8 +68,8 @@ TEST_F(Lines, ALineMayBeAsLongAsTheLimitAndNoLonger) {
     try {
       lines_of("a\n" + longest + "x" + end);
       ADD_FAILURE() << "a line beyond the limit was given";
-    } catch (const datasets::DataError& error) {
-      EXPECT_EQ(error.code(), datasets::DataCode::size);
+    } catch (const DataError& error) {
+      EXPECT_EQ(error.code(), DataCode::size);
       EXPECT_EQ(error.place(), "line 2");
     }
   }
@@ -79,33 +79,37 @@ TEST_F(Lines, ATableSkipsWhatHoldsNothingAndItsMark) {
   std::ofstream(path_, std::ios::binary) << "\xEF\xBB\xBF"
                                             "a,b\r\n\n# comment\n  1, 2 \n";
   TableLines table(path_);
-  ASSERT_TRUE(table.next());
+  ASSERT_TRUE(table.next_filled());
   EXPECT_EQ(table.line(), "a,b");
-  ASSERT_TRUE(table.next());
+  ASSERT_TRUE(table.next_filled());
   EXPECT_EQ(table.line(), "1, 2");
   EXPECT_EQ(table.number(), 4u);
-  EXPECT_FALSE(table.next());
+  EXPECT_FALSE(table.next_filled());
 }
 
-TEST(Fields, CommasWithinQuotationMarksPartNothing) {
-  using Fields = std::vector<std::string_view>;
-  EXPECT_EQ(fields_of("\"a, b\",1, \"2\" ,"), (Fields{"a, b", "1", "2", ""}));
-  EXPECT_EQ(fields_of("1, 2,3"), (Fields{"1", "2", "3"}));
-  EXPECT_EQ(fields_of("1 2\t3"), (Fields{"1", "2", "3"}));
+TEST_F(Lines, CommasWithinQuotationMarksPartNothing) {
+  std::ofstream(path_, std::ios::binary) << "\"a, b\",1, \"2\" ,\n1, 2,3\n1 2\t3\n\"a\"\"b\",\n\"a,\n";
+  TableLines table(path_);
+  for (const Strings& fields :
+       {Strings{"a, b", "1", "2", ""}, Strings{"1", "2", "3"}, Strings{"1", "2", "3"}, Strings{"a\"b", ""}}) {
+    ASSERT_TRUE(table.next_filled());
+    EXPECT_EQ(table.fields(), fields);
+  }
+  ASSERT_TRUE(table.next_filled());
+  EXPECT_THROW(table.fields(), DataError) << "a quotation mark that is not closed";
 }
 
 TEST_F(Lines, AFileThatIsNotThereOrAFolderIsRefused) {
-  for (const auto& [file, code] :
-       {std::pair{path_ + ".missing", datasets::DataCode::file_missing},
-        std::pair{fs::temp_directory_path().string(), datasets::DataCode::file_unreadable}}) {
+  for (const auto& [file, code] : {std::pair{path_ + ".missing", DataCode::file_missing},
+                                   std::pair{fs::temp_directory_path().string(), DataCode::file_unreadable}}) {
     try {
       const TableLines stream(file);
       ADD_FAILURE() << file;
-    } catch (const datasets::DataError& error) {
+    } catch (const DataError& error) {
       EXPECT_EQ(error.code(), code);
     }
   }
 }
 
 }  // namespace
-}  // namespace exactvo::tools
+}  // namespace exactvo::datasets
