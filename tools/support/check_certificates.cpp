@@ -70,7 +70,8 @@ void CheckCertificates::add_to_body(const MetPair& pair, const RigidBody& body, 
 }
 
 std::string CheckCertificates::finish() {
-  put({{"summary", {{"certificates", count_}, {"without", touching_ + unproven_}, {"unproven", unproven_}}}});
+  out_.write(json_line(
+      {{"summary", {{"certificates", count_}, {"without", touching_ + unproven_}, {"unproven", unproven_}}}}));
   out_.commit();
   std::string words = geometry::counted(count_, "certificate") + " for motions that come near and stay clear";
   if (touching_ > 0) words += fmt::format(", none for {} that {}", touching_, touching_ == 1 ? "touches" : "touch");
@@ -85,17 +86,13 @@ void CheckCertificates::write(const std::string& certificate) {
 
 void CheckCertificates::write_none(const MetPair& pair, bool touches) {
   ++(touches ? touching_ : unproven_);
-  put({{"certificate", nullptr},
-       {"why", touches ? "touches" : "too near"},
-       {"from",
-        pair.with_obstacle ? start_of(pair.motion) : std::max(start_of(pair.motion), start_of(pair.other_motion))},
-       {"body", asked_.file.agents[pair.body]},
-       {pair.with_obstacle ? "obstacle" : "other",
-        pair.with_obstacle ? asked_.obstacles[pair.other].id : asked_.file.agents[pair.other]}});
-}
-
-void CheckCertificates::put(const OrderedJson& json) {
-  out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
+  out_.write(json_line({{"certificate", nullptr},
+                        {"why", touches ? "touches" : "too near"},
+                        {"from", pair.with_obstacle ? start_of(pair.motion)
+                                                    : std::max(start_of(pair.motion), start_of(pair.other_motion))},
+                        {"body", asked_.file.agents[pair.body]},
+                        {pair.with_obstacle ? "obstacle" : "other",
+                         pair.with_obstacle ? asked_.obstacles[pair.other].id : asked_.file.agents[pair.other]}}));
 }
 
 }  // namespace exactvo::tools

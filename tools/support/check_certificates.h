@@ -28,7 +28,6 @@ class CheckCertificates {
   void add_to_body(const geometry::MetPair& pair, const geometry::RigidBody& body, const geometry::RigidBody& other);
   void write(const std::string& certificate);
   void write_none(const geometry::MetPair& pair, bool touches);
-  void put(const OrderedJson& json);
 
   datasets::AtomicFile out_;
   const CheckedFile& asked_;

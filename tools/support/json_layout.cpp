@@ -38,4 +38,8 @@ std::string laid_out(const OrderedJson& json) {
   return laid_out(json, 0) + "\n";
 }
 
+std::string json_line(const OrderedJson& json) {
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
 }  // namespace exactvo::tools

@@ -37,5 +37,7 @@ OrderedJson json_or_null(const std::optional<T>& value) {
 
 /// What fits into a line stands on one, the rest on indented lines. Zero has no sign, and what is not finite is null.
 std::string laid_out(const OrderedJson& json);
+/// On one line, which ends. Bytes that are no UTF-8 become U+FFFD.
+std::string json_line(const OrderedJson& json);
 
 }  // namespace exactvo::tools

@@ -82,10 +82,6 @@ OrderedJson extreme_json(const Extreme& e) {
   return {{"value", e.value}, {"time", e.time}, {"line", e.line > 0 ? OrderedJson(e.line) : OrderedJson()}};
 }
 
-std::string line_of(const OrderedJson& json) {
-  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
 
 void SampledMoves::add(std::size_t agent, const geometry::Motion& piece) {
@@ -147,7 +143,7 @@ void CheckAnswer::add(const MotionEvent& e) {
     json["clearance"] = bounds_json(e.clearance);
     json["time"] = e.nearest_time;
     json["place"] = json_point(e.place);
-    return put(line_of(json));
+    return put(json_line(json));
   }
   const std::string first = seconds(e.first.low), last = seconds(e.last.high);
   const std::string when =
@@ -183,9 +179,9 @@ void CheckAnswer::look_at(const Move& move) {
       OrderedJson json = finding("jump");
       json["length"] = norm(move.to.at - move.from.at);
       json["speed"] = move.speed();
-      put(line_of(json));
+      put(json_line(json));
     }
-    if (is_gap) put(line_of(finding("gap")));
+    if (is_gap) put(json_line(finding("gap")));
     return;
   }
   const std::string where = fmt::format("{}, {} {}: ", name_of(move.agent), asked_.file.row_word, move.to.line);
@@ -205,7 +201,7 @@ void CheckAnswer::list_approaches(const std::vector<Approach>& approaches) {
       json[a.with_obstacle ? "obstacle" : "other"] = a.with_obstacle ? asked_.obstacles[a.other].id : name_of(a.other);
       json["time"] = a.nearest_time;
       json["place"] = json_point(a.place);
-      put(line_of(json));
+      put(json_line(json));
     }
     return;
   }
@@ -300,7 +296,7 @@ void CheckAnswer::put_counts(const geometry::MotionCheck& check, std::uint64_t m
 void CheckAnswer::finish(const geometry::MotionCheck& check, std::uint64_t missed) {
   list_approaches(check.approaches);
   if (json_) {
-    put(line_of({{"summary", summary_json(check, missed)}}));
+    put(json_line({{"summary", summary_json(check, missed)}}));
     return print_waiting();
   }
   if (jumps_ > kMostListed) put(fmt::format("... and {} more jumps\n", jumps_ - kMostListed));

@@ -293,7 +293,7 @@ class ProofFile {
         const auto proof = certify(arc.motion, body, obstacle.shape);
         ++(proof ? count_ : without_);
         if (!proof) {
-          put({{"line", line}, {"certificate", nullptr}, {"obstacle", obstacle.id}});
+          out_.write(json_line({{"line", line}, {"certificate", nullptr}, {"obstacle", obstacle.id}}));
           continue;
         }
         const std::string text = certificate_text(*proof, arc.motion, body, obstacle_text(obstacle));
@@ -302,14 +302,11 @@ class ProofFile {
     }
   }
   void finish() {
-    put({{"summary", {{"certificates", count_}, {"without", without_}}}});
+    out_.write(json_line({{"summary", {{"certificates", count_}, {"without", without_}}}}));
     out_.commit();
   }
 
  private:
-  void put(const OrderedJson& json) {
-    out_.write(json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
-  }
   datasets::AtomicFile out_;
   const MonitorSetup& setup_;
   std::vector<geometry::Box> boxes_;

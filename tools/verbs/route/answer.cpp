@@ -322,7 +322,7 @@ std::string json_of(const AnsweredRoute& answered, const AskedMap& map, bool wit
   if (answered.widest) json["widest_radius"] = *answered.widest;
   if (answered.is_widest_of_map) json["widest_radius_is_bound_of_map"] = true;
   if (answered.answer) add_answer(answered, map, with_obstacles, json);
-  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return json_line(json);
 }
 
 Figure route_figure(const AnsweredRoute& answered, const AskedMap& asked) {
