@@ -145,37 +145,18 @@ class TreeChecker {
   CheckedCertificates checked_;
 };
 
-/// Whether the text is a JSON value a line, several of them.
-bool is_json_lines(const std::string& text) {
-  const std::vector<std::string> lines = lines_of(text);
-  return lines.size() > 1 && !Json::accept(text) && Json::accept(lines.front());
-}
-
+/// A JSON value, or one a line, several of them.
 CheckedCertificates checked_in_json(const std::string& text) {
   TreeChecker tree;
-  if (is_json_lines(text)) {
-    for (const std::string& line : lines_of(text)) tree.add(line);
-  } else {
-    tree.add(text);
-  }
+  const std::vector<std::string> lines = lines_of(text);
+  const bool is_lines = lines.size() > 1 && !Json::accept(text) && Json::accept(lines.front());
+  for (const std::string& one : is_lines ? lines : std::vector<std::string>{text}) tree.add(one);
   return std::move(tree).checked();
-}
-
-CheckedCertificates checked_in_lines(const std::string& text) {
-  CheckedCertificates checked;
-  for (const std::string& one : lines_of(text)) checked.all.push_back(check_one(one));
-  return checked;
 }
 
 bool is_json(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && (text[first] == '{' || text[first] == '[');
-}
-
-/// A picture, say, has none; of a spoilt certificate the first word is most often left.
-bool has_a_line_of_one(const std::string& text) {
-  const std::vector<std::string> lines = lines_of(text);
-  return std::any_of(lines.begin(), lines.end(), begins_as_one);
 }
 
 auto count_valid(const CheckedCertificates& checked) {
@@ -186,9 +167,13 @@ auto count_valid(const CheckedCertificates& checked) {
 
 CheckedCertificates check_certificates(const std::string& file) {
   const std::string whole = datasets::read_file_or_input(file), text(datasets::without_mark(whole));
-  CheckedCertificates checked = is_json(text) ? checked_in_json(text) : checked_in_lines(text);
+  const std::vector<std::string> lines = is_json(text) ? std::vector<std::string>() : lines_of(text);
+  CheckedCertificates checked;
+  if (is_json(text)) checked = checked_in_json(text);
+  for (const std::string& line : lines) checked.all.push_back(check_one(line));
   const bool is_empty = checked.all.empty() && checked.none == 0 && !checked.is_summed;
-  if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
+  // A picture, say, has none; of a spoilt certificate the first word is most often left.
+  if (is_empty || (!is_json(text) && std::none_of(lines.begin(), lines.end(), begins_as_one)))
     throw datasets::DataError(datasets::DataCode::format_unknown, datasets::name_of_input(file), "",
                               whole.empty() ? "an empty file" : "no certificate", "a certificate a line");
   return checked;

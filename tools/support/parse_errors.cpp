@@ -41,10 +41,6 @@ bool is_flag(const CLI::Option& option) {
   return !option.get_positional() && option.get_expected_max() == 0;
 }
 
-bool takes_one(const CLI::Option& option) {
-  return option.get_expected_max() == 1;
-}
-
 /// The option with this name, "--out" or "-o"; null where there is none.
 const CLI::Option* option_named(const std::vector<const CLI::Option*>& options, const std::string& word) {
   for (const CLI::Option* option : options)
@@ -169,7 +165,8 @@ std::string words_of(const CLI::App& app, const CLI::ParseError& error, const st
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_words(option);
   if (!option) return "the command line could not be understood";
   const std::string name = option->get_name();
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().size() > 1 && takes_one(*option))
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().size() > 1 &&
+      option->get_expected_max() == 1)
     return fmt::format("{}: given {} times, expected once", name, option->results().size());
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().empty() && !is_flag(*option))
     return fmt::format("{}: no value given, expected {}", name, kind_of_value(*option));

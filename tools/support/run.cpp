@@ -54,14 +54,6 @@ std::optional<fs::path> run_around(const fs::path& path) {
   return has_recording(folder) ? std::optional(folder) : std::nullopt;
 }
 
-/// A run, or a part of one, where a scenario is expected.
-void refuse_run(const fs::path& path) {
-  if (!has_recording(path) && !run_around(path)) return;
-  throw datasets::DataError(datasets::DataCode::format_unknown, path.string(), "",
-                            fs::is_directory(path) ? "the folder of a run" : "a file of a run",
-                            "a scenario in JSON; draw, explain, view, serve and audit take runs");
-}
-
 }  // namespace
 
 std::string FinishedRun::metrics_json() const {
@@ -164,7 +156,10 @@ void draw_figures_of(const datasets::RecordingFile& run, const fs::path& folder)
 }
 
 datasets::LoadedScenario read_scenario(const std::string& path) {
-  if (path != "-") refuse_run(path);
+  if (path != "-" && (has_recording(path) || run_around(path)))
+    throw datasets::DataError(datasets::DataCode::format_unknown, path, "",
+                              fs::is_directory(path) ? "the folder of a run" : "a file of a run",
+                              "a scenario in JSON; draw, explain, view, serve and audit take runs");
   datasets::LoadedScenario loaded =
       path != "-" ? datasets::load_scenario_with_notes(path)
                   : datasets::parse_scenario_with_notes(datasets::read_file_or_input("-"), "-", fs::current_path());

@@ -81,13 +81,6 @@ std::optional<formation::ControllerOptions> controller_options_of(const Simulati
   return options;
 }
 
-/// What was given of the command line that needs recorded decisions; empty: nothing.
-std::string what_needs_decisions(const SimulationFlags& simulation, const std::string& needed) {
-  if (!needed.empty()) return needed;
-  const bool is_other_method = simulation.method_option->count() > 0 && simulation.method != "orca";
-  return is_other_method ? "--method " + simulation.method : std::string();
-}
-
 /// Throws where the scenario, or the command line, cannot do without decisions.
 void require_crowd(const std::string& file, const formation::Scenario& scenario, const std::string& needed,
                    const std::string& asked_by) {
@@ -222,7 +215,8 @@ void declare_decisions(CLI::App& app, DecisionFlags& flags) {
 Way way_of(const DecisionFlags& flags, const SimulationFlags& simulation, const std::string& file,
            const formation::Scenario& scenario, const std::string& needed, bool has_ranks) {
   if (!flags.recorded.empty()) require_known("--decisions", flags.recorded, {"none", "binding", "all"});
-  const std::string need = what_needs_decisions(simulation, needed);
+  const bool is_other_method = simulation.method_option->count() > 0 && simulation.method != "orca";
+  const std::string need = needed.empty() && is_other_method ? "--method " + simulation.method : needed;
   Way way;
   way.records_all = flags.recorded == "all";
   if (flags.recorded == "none" || has_ranks) {

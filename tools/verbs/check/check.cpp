@@ -94,11 +94,6 @@ struct Bodies {
   bool on_arcs = false;  ///< some turn between rows
 };
 
-/// Whether the caller says what the bodies are; otherwise they are the discs of a recording.
-bool gives_bodies(const CheckFlags& flags) {
-  return flags.radius || !flags.footprint.empty();
-}
-
 Bodies discs(const CheckFlags& flags, const TrajectoryFile& file, const TrajectorySurvey& survey) {
   Bodies bodies;
   if (!flags.radius && file.radii.empty())
@@ -299,8 +294,8 @@ class Byproducts {
 
 /// One file, or several files of polynomials together.
 ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
-  TrajectoryReader reader(files,
-                          {flags.format, flags.frame_rate, flags.scale, gives_bodies(flags), flags.between == "cubic"});
+  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale, flags.radius || !flags.footprint.empty(),
+                                  flags.between == "cubic"});
   TrajectorySurvey survey = survey_of(reader);
   const TrajectoryFile file = reader.file();
   say_what_was_read(file, survey);

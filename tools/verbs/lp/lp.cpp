@@ -208,10 +208,6 @@ double violation_of(const lp::Problem& problem, Vec2 v, lp::Priority priority) {
   return most;
 }
 
-double beyond_bound(const lp::SpeedBound& bound, Vec2 v) {
-  return std::max({norm(v) - bound.disc, std::fabs(v.x) - bound.box_x, std::fabs(v.y) - bound.box_y});
-}
-
 /// m/s: how much worse than the best one, by the problem's objective.
 double excess_over(const lp::Problem& problem, Vec2 v, Vec2 best) {
   if (problem.objective == lp::Objective::farthest) return dot(problem.preferred, best - v) / norm(problem.preferred);
@@ -240,11 +236,6 @@ std::optional<double> certified_gap_of(const lp::Problem& problem, const lp::Cer
     if (lp::check(problem, claim) == lp::CertificateError::none) return claim.gap;
   }
   return std::nullopt;
-}
-
-LpVerdict verdict_on_infeasible(Status truth) {
-  if (truth == Status::infeasible) return LpVerdict::infeasible;
-  return truth == Status::relaxed ? LpVerdict::wrong_status : LpVerdict::wrongly_infeasible;
 }
 
 /// "optimal", "infeasible", "violated", "not-optimal", "wrongly-infeasible", "wrongly-feasible", "wrong-status",
@@ -284,12 +275,16 @@ JudgedAnswer judge(const lp::Problem& problem, const std::optional<GivenAnswer>&
   judged.best = proven.solution.velocity;
   if (!answer) return judged;
   if (answer->status == Status::infeasible) {
-    judged.verdict = verdict_on_infeasible(judged.truth);
+    judged.verdict = judged.truth == Status::infeasible ? LpVerdict::infeasible
+                     : judged.truth == Status::relaxed  ? LpVerdict::wrong_status
+                                                        : LpVerdict::wrongly_infeasible;
     return judged;
   }
   const Vec2 v = *answer->velocity;
   const double soft = violation_of(problem, v, lp::Priority::soft);
-  double violation = std::max(violation_of(problem, v, lp::Priority::hard), beyond_bound(problem.bound, v));
+  const lp::SpeedBound& bound = problem.bound;
+  double violation = std::max({violation_of(problem, v, lp::Priority::hard), norm(v) - bound.disc,
+                               std::fabs(v.x) - bound.box_x, std::fabs(v.y) - bound.box_y});
   const bool gives = judged.truth == Status::relaxed;
   violation = std::max({violation, gives ? soft - proven.solution.violation : soft, 0.0});
   if (!geometry::is_finite(v)) violation = std::numeric_limits<double>::infinity();
@@ -639,10 +634,6 @@ ExitCode write_problems(const LpFlags& flags) {
   return ExitCode::success;
 }
 
-bool asks_for_proofs(lp::Solver solver, const LpFlags& flags) {
-  return flags.certify || solver == lp::Solver::certified || solver == lp::Solver::exact;
-}
-
 void check_option_conflicts(const LpFlags& flags) {
   const bool checks = !flags.answers.empty(), writes = !flags.out.empty();
   refuse_both(checks && writes, "--check", "--out");
@@ -673,7 +664,8 @@ ExitCode solve_or_check(const LpFlags& flags) {
   std::vector<lp::Proven> answers = solving.answers();
   if (flags.certify)
     for (std::size_t k = 0; k < problems.size(); ++k) prove(problems[k], answers[k]);
-  Summary summary = summarise(problems, answers, asks_for_proofs(solver, flags));
+  const bool is_proven = flags.certify || solver == lp::Solver::certified || solver == lp::Solver::exact;
+  Summary summary = summarise(problems, answers, is_proven);
   summary.ns_per_solve = problems.empty() ? 0.0 : spent / static_cast<double>(problems.size());
   if (flags.json)
     print_lines(answers, names, summary);

@@ -418,19 +418,14 @@ MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obsta
   return setup;
 }
 
-/// The option that sets a field of the setup: of "max_deceleration" "--max-deceleration", of "obstacles/3" "--map".
-std::string option_of(const std::string& place) {
-  std::string option = place.substr(0, place.find('/'));
-  if (option == "obstacles") option = "map";
-  std::replace(option.begin(), option.end(), '_', '-');
-  return "--" + option;
-}
-
 Monitor monitor_of(const MonitorSetup& setup) {
   try {
     return Monitor(setup);
   } catch (const MonitorError& error) {
-    throw UsageError(option_of(error.place()), error.found(), error.expected());
+    std::string option = error.place().substr(0, error.place().find('/'));  // "max_deceleration", "obstacles/3"
+    if (option == "obstacles") option = "map";
+    std::replace(option.begin(), option.end(), '_', '-');
+    throw UsageError("--" + option, error.found(), error.expected());
   }
 }
 

@@ -105,13 +105,6 @@ BatchConfiguration configuration_of(const BatchFlags& flags) {
   return configuration;
 }
 
-void parse_shard(const std::string& text, BatchRun& run) {
-  if (text.empty()) return;
-  char rest = 0;
-  const bool two = std::sscanf(text.c_str(), "%zu/%zu%c", &run.shard, &run.shards, &rest) == 2;
-  if (!two || run.shard < 1 || run.shard > run.shards) throw UsageError("--shard", text, "i/n with 1 <= i <= n");
-}
-
 /// The command line without what leaves the results as they are, so that a resumed run's provenance is the same: how
 /// it is run, and where the results lie.
 std::vector<std::string> reproducible_arguments(const std::vector<std::string>& words) {
@@ -141,7 +134,10 @@ BatchRun run_of(const BatchFlags& flags) {
   run.workers = flags.workers == 0 && datasets::under_mpi() ? 1 : flags.workers;  // ranks share a machine's processors
   run.resume = flags.resume;
   run.command_line = reproducible_arguments(command_line());
-  parse_shard(flags.shard, run);
+  if (flags.shard.empty()) return run;
+  char rest = 0;
+  const bool two = std::sscanf(flags.shard.c_str(), "%zu/%zu%c", &run.shard, &run.shards, &rest) == 2;
+  if (!two || run.shard < 1 || run.shard > run.shards) throw UsageError("--shard", flags.shard, "i/n with 1 <= i <= n");
   return run;
 }
 
@@ -223,28 +219,6 @@ void say_batch_notes(const BatchSummary& summary, const std::string& out) {
     message(fmt::format("and {} more notes, see {}/summary.json", notes.size() - kMostSaid, out));
 }
 
-/// Whether this batch goes where an earlier one is, and does not go on with it.
-bool goes_over_another(const BatchFlags& flags) {
-  std::error_code error;
-  return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
-}
-
-/// Folders that were named or walked and are not read.
-void note_earlier_batches(const datasets::BatchResult& result) {
-  for (const datasets::EarlierBatch& earlier : result.earlier)
-    message(fmt::format("note: not read: {} holds an earlier batch ({}); a file that is named is read", earlier.folder,
-                        counted(earlier.files, "file")));
-}
-
-/// Nothing of this process's own to tell: the last of several puts the parts together.
-void say_incomplete(const BatchFlags& flags, const BatchRun& run) {
-  if (run.shards > 1)
-    return message(
-        fmt::format("shard {}/{} is complete. The last shard to finish joins the results", run.shard, run.shards));
-  if (!datasets::under_mpi())
-    message("another process took the parts of this batch from " + flags.out + " and left no summary");
-}
-
 /// Nothing of them is wrong, and yet whoever takes half-planes from measurements.jsonl must know.
 void note_missing_half_planes(const BatchSummary& summary, const std::string& out) {
   if (summary.no_half_plane == 0) return;
@@ -264,7 +238,9 @@ ExitCode batch(const BatchFlags& flags) {
   datasets::set_wait_hook(nullptr);  // it reads no pipes, and looks for interrupts itself
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
-  const bool over_another = goes_over_another(flags);
+  std::error_code error;
+  const bool over_another =
+      !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
   ProgressLine line(1.0, "of the input");
   bool has_said_sizes = false;
   const auto watch = [&](const BatchProgress& progress) {
@@ -277,13 +253,19 @@ ExitCode batch(const BatchFlags& flags) {
   const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)
                                                              : datasets::run_batch(configuration, run, watch);
   line.clear();
-  note_earlier_batches(result);
+  for (const datasets::EarlierBatch& earlier : result.earlier)
+    message(fmt::format("note: not read: {} holds an earlier batch ({}); a file that is named is read", earlier.folder,
+                        counted(earlier.files, "file")));
   if (result.end == BatchEnd::interrupted) {
     error_message("interrupted; --resume goes on");
     return ExitCode::interrupted;
   }
   if (result.end == BatchEnd::incomplete) {
-    say_incomplete(flags, run);
+    if (run.shards > 1)
+      message(
+          fmt::format("shard {}/{} is complete. The last shard to finish joins the results", run.shard, run.shards));
+    else if (!datasets::under_mpi())
+      message("another process took the parts of this batch from " + flags.out + " and left no summary");
     return ExitCode::success;
   }
   if (result.was_complete) message("nothing left to do");
@@ -295,7 +277,7 @@ ExitCode batch(const BatchFlags& flags) {
   return verdict(result.summary);
 }
 
-void declare_run(CLI::App& app, BatchFlags& flags) {
+void declare_batch(CLI::App& app, BatchFlags& flags) {
   app.add_option("paths", flags.paths, "Files and folders; outputs of earlier batches inside the folders are ignored")
       ->required();
   declare_out(app, flags.out, "Folder for the results")->required();
@@ -314,16 +296,10 @@ void declare_run(CLI::App& app, BatchFlags& flags) {
       ->capture_default_str();
   app.add_flag("--metres", flags.metres,
                "GeoJSON in metres, which other programs read as degrees; by default longitude and latitude");
-}
-
-void declare_reading(CLI::App& app, BatchFlags& flags) {
   app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
   declare_reading_flags(app, flags.reading);
   app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m")
       ->capture_default_str();
-}
-
-void declare_robot(CLI::App& app, BatchFlags& flags) {
   app.add_option("--time-horizon", flags.time_horizon, "Horizon of the velocity obstacles, s");
   app.add_option("--radius", flags.radius, "Radius of the robot, m");
   app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
@@ -331,12 +307,6 @@ void declare_robot(CLI::App& app, BatchFlags& flags) {
       ->capture_default_str();
   app.add_option("--goal", flags.goal,
                  "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
-}
-
-void declare_batch(CLI::App& app, BatchFlags& flags) {
-  declare_run(app, flags);
-  declare_reading(app, flags);
-  declare_robot(app, flags);
 }
 
 }  // namespace

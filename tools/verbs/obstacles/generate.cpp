@@ -47,13 +47,9 @@ ExitCode list_kinds() {
   return ExitCode::success;
 }
 
-void check_kind(const std::string& kind) {
-  if (kind.empty()) throw missing_option("generate", "argument kind", kind_help());
-  require_known("kind", kind, datasets::generator_kind_names());
-}
-
 void check(const GenerateFlags& flags) {
-  check_kind(flags.kind);
+  if (flags.kind.empty()) throw missing_option("generate", "argument kind", kind_help());
+  require_known("kind", flags.kind, datasets::generator_kind_names());
   if (flags.out.empty()) throw missing_option("generate", "option --out", kOutHelp);
   constexpr std::int64_t kMostItems = 100'000'000;
   if (flags.count < 1 || flags.count > kMostItems)

@@ -229,11 +229,6 @@ std::string words_of(const Decomposed& t) {
       s.trap_free.ellipse ? fmt::format("{:.6g} m^2 ({})", f.trap_free_area, word(s.trap_free_contains)) : "none");
 }
 
-std::string title_of_shapes(const std::vector<std::string>& files, std::size_t obstacles) {
-  const std::string name = std::filesystem::path(files.front()).filename().string();
-  return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
-}
-
 // --- The figure ---
 
 /// Neighbouring pieces in different colours, as far as taking turns does that.
@@ -315,8 +310,12 @@ ExitCode segment(const SegmentFlags& flags) {
     message("wrote " + flags.out);
   }
   if (!flags.figure.empty() && all.empty()) message("no figure: no obstacle");
-  if (!flags.figure.empty() && !all.empty())
-    write_figure(shapes_figure(all, title_of_shapes(flags.files, all.size())), flags.figure);
+  if (!flags.figure.empty() && !all.empty()) {
+    const std::string name = std::filesystem::path(flags.files.front()).filename().string();
+    write_figure(shapes_figure(all, fmt::format("{}{}: {}", name, flags.files.size() > 1 ? " and others" : "",
+                                                counted(all.size(), "obstacle"))),
+                 flags.figure);
+  }
   if (flags.json) print(records(all));
   if (!flags.json && flags.out.empty()) {
     for (const Decomposed& t : all) print(words_of(t));

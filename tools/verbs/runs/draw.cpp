@@ -48,20 +48,19 @@ fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
   return recording.parent_path() / "figures";
 }
 
-/// Whether the recording was cut off.
-bool draw_into(const fs::path& folder, const fs::path& recording) {
-  const TerminateOnSignal terminate_on_signal;
-  if (datasets::is_crowd_recording(recording)) return draw_crowd_figures(recording, folder);
-  draw_figures_of(read_shown(recording), folder);
-  return false;
-}
-
 ExitCode draw_figures(const DrawFlags& flags) {
   const fs::path recording = recording_at(flags.recording).value_or(flags.recording);
   const fs::path out = folder_for(flags, recording);
   check_figure_folder(out);
   StagedFolder folder(out);
-  const bool is_cut_off = draw_into(folder.path(), recording);
+  bool is_cut_off = false;
+  {
+    const TerminateOnSignal terminate_on_signal;
+    if (datasets::is_crowd_recording(recording))
+      is_cut_off = draw_crowd_figures(recording, folder.path());
+    else
+      draw_figures_of(read_shown(recording), folder.path());
+  }
   if (interrupted()) throw Interrupted();
   folder.publish();
   message("wrote " + out.string());

@@ -213,15 +213,10 @@ struct ExplainFlags {
   bool json = false;
 };
 
-std::vector<std::string> robot_ids(const Scenario& scenario) {
-  std::vector<std::string> ids;
-  for (const auto& robot : scenario.robots) ids.push_back(robot.id);
-  return ids;
-}
-
 /// By id, or by number counted from 0 where no robot has that id.
 std::size_t find_robot(const Scenario& scenario, const std::string& text) {
-  const std::vector<std::string> ids = robot_ids(scenario);
+  std::vector<std::string> ids;
+  for (const formation::Robot& robot : scenario.robots) ids.push_back(robot.id);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (ids[i] == text || (std::to_string(i) == text && std::find(ids.begin(), ids.end(), text) == ids.end())) return i;
   }
@@ -248,19 +243,14 @@ struct Explained {
   std::optional<formation::RouteAhead> ahead = {};  ///< of a robot along a route, or whose goal is out of reach
 };
 
-/// The goal that a robot is after.
-std::size_t goal_at(const formation::Recording& recording, std::size_t robot, double time) {
-  std::size_t goal = 0;
-  for (const formation::GoalBodies& of_goal : recording.goal_bodies)
-    if (of_goal.robot == robot && of_goal.time <= time) goal = of_goal.goal;
-  return goal;
-}
-
 std::optional<formation::RouteAhead> route_ahead_of(const Decision& d, const formation::Recording& recording,
                                                     const std::optional<formation::SimulationOptions>& options) {
   const bool has_route = d.step.mode == formation::Mode::guided || d.step.mode == formation::Mode::staying;
   if (!has_route || !options || d.scenario.formation) return std::nullopt;
-  return route_ahead(d.scenario, *options, d.robot, goal_at(recording, d.robot, d.time), d.step.position);
+  std::size_t goal = 0;
+  for (const formation::GoalBodies& of_goal : recording.goal_bodies)
+    if (of_goal.robot == d.robot && of_goal.time <= d.time) goal = of_goal.goal;
+  return route_ahead(d.scenario, *options, d.robot, goal, d.step.position);
 }
 
 /// Warnings of the run, and, of a robot that hardly moves, what it rests on. `stuck`: who is, at that time.

@@ -107,15 +107,6 @@ CampaignOptions campaign_options(const PaperFlags& flags, const char* folder, st
   return {fs::path(flags.out) / folder / "parts", fields, flags.seed, jobs};
 }
 
-/// What a request to stop leaves: the parts that are done.
-ExitCode kept_parts(const PaperFlags& flags) {
-  std::error_code error;
-  const bool any = fs::exists(flags.out, error);
-  error_message(any ? "interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there"
-                    : std::string("interrupted; nothing was finished, so nothing is kept"));
-  return ExitCode::interrupted;
-}
-
 /// Each in a folder of its own that has the name of its files.
 void publish(const CampaignFiles& files, const char* name, const PaperFlags& flags) {
   const fs::path folder = fs::path(flags.out) / name;
@@ -132,7 +123,11 @@ ExitCode campaigns(const PaperFlags& flags) try {
   renew_report(flags);
   return ExitCode::success;
 } catch (const Interrupted&) {
-  return kept_parts(flags);
+  std::error_code error;
+  error_message(fs::exists(flags.out, error)
+                    ? "interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there"
+                    : std::string("interrupted; nothing was finished, so nothing is kept"));
+  return ExitCode::interrupted;
 }
 
 ExitCode paper(const PaperFlags& flags) {

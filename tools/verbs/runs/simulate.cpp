@@ -99,10 +99,6 @@ std::string course_words(const formation::LyapunovCourse& c) {
   return fmt::format("{:.4g} -> {:.4g}, minimum {:.4g}, {}", c.first, c.last, c.least, rise);
 }
 
-std::string lyapunov_lines(const formation::LyapunovSummary& s) {
-  return fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(s.paper), course_words(s.sound));
-}
-
 /// Where it was not kept.
 std::string margin_line(const formation::Metrics& m) {
   if (!m.robot_margin || m.robot_margin->pair_rows == 0) return "";
@@ -110,14 +106,6 @@ std::string margin_line(const formation::Metrics& m) {
   return fmt::format("  margin       {} of robots nearer to each other than margins.robot, {:.4g} m ({})\n",
                      geometry::counted(margin.pair_rows, "pair-row"), margin.asked,
                      geometry::counted(margin.robots, "robot"));
-}
-
-/// With many robots only those have lines that stopped elsewhere.
-std::string robot_lines(const formation::Scenario& scenario, const formation::Metrics& m) {
-  std::string text;
-  if (m.robots.size() > kMostRobots) return text;
-  for (const formation::RobotMetrics& robot : m.robots) text += robot_line(robot, !scenario.formation);
-  return text;
 }
 
 std::string stuck_lines(const std::vector<std::string>& all) {
@@ -134,13 +122,6 @@ std::string arrival_line(const formation::Metrics& m) {
   return fmt::format("  arrival      {} of {}, median {}, last {}\n", m.arrived,
                      geometry::counted(m.robots.size(), "robot"), or_dash(m.median_arrival_time, "s"),
                      or_dash(m.last_arrival_time, "s"));
-}
-
-/// m, on average.
-double mean_path(const formation::Metrics& m) {
-  double sum = 0.0;
-  for (const formation::RobotMetrics& robot : m.robots) sum += robot.path_length;
-  return m.robots.empty() ? 0.0 : sum / static_cast<double>(m.robots.size());
 }
 
 /// What was counted of decisions, and what of them is recorded.
@@ -164,7 +145,10 @@ std::string decision_lines(const datasets::RunInfo& info, const formation::Metri
 }
 
 std::string motion_lines(const formation::Metrics& m) {
-  std::string text = fmt::format("  path length  {:.4g} m on average\n", mean_path(m));
+  double sum = 0.0;
+  for (const formation::RobotMetrics& robot : m.robots) sum += robot.path_length;
+  std::string text = fmt::format("  path length  {:.4g} m on average\n",
+                                 m.robots.empty() ? 0.0 : sum / static_cast<double>(m.robots.size()));
   text += fmt::format("  jitter       {:.4g} m/s^2, {}", m.jitter,
                       geometry::counted(m.heading_reversals, "heading reversal"));
   if (!m.crowd) text += ", " + geometry::counted(m.active_set_switches, "active-set switch", "active-set switches");
@@ -175,9 +159,13 @@ std::string motion_lines(const formation::Metrics& m) {
 std::string run_summary(const datasets::RunInfo& info, const formation::Scenario& scenario,
                         const formation::Metrics& m) {
   std::string text = shown(in_words(info)) + ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
-  text += robot_lines(scenario, m);
+  // With many robots only those have lines that stopped elsewhere.
+  if (m.robots.size() <= kMostRobots)
+    for (const formation::RobotMetrics& robot : m.robots) text += robot_line(robot, !scenario.formation);
   if (scenario.formation) text += formation_lines(m);
-  if (m.lyapunov) text += lyapunov_lines(*m.lyapunov);
+  if (m.lyapunov)
+    text += fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(m.lyapunov->paper),
+                        course_words(m.lyapunov->sound));
   text += stuck_lines(m.stuck) + arrival_line(m);
   const double robot_steps = static_cast<double>(m.robots.size() * m.steps);
   text += fmt::format("  clearance    to obstacles {}, between robots {}\n{}", or_dash(m.min_obstacle_clearance, "m"),
@@ -252,13 +240,6 @@ std::string results(const SimulateFlags& flags, const FinishedRun& run) {
   return flags.json ? run.metrics_json() : run_summary(run.file.info, run.file.scenario, run.metrics);
 }
 
-/// Removes recordings of an earlier run that was made the other way, or whose table was small.
-void remove_other_recordings(const std::filesystem::path& target, const std::filesystem::path& staged) {
-  std::error_code ignored;
-  for (const char* name : {"recording.jsonl", "recording.evr", "trajectory.csv", "lyapunov.csv"})
-    if (!std::filesystem::exists(staged / name)) std::filesystem::remove(target / name, ignored);
-}
-
 void write_page(const FinishedRun& run, const std::string& packed, const std::filesystem::path& folder) {
   ProgressLine line(0.0, "");
   line.say("making explorer.html of " + run.file.scenario.name);
@@ -275,7 +256,11 @@ void publish(const SimulateFlags& flags, const FinishedRun& finished, StagedFold
   if (!beside.empty()) std::filesystem::rename(beside, folder.path() / "recording.evr");
   const std::optional<datasets::RunInfo> replaced = run_in(flags.out);
   if (flags.no_figures) remove_figures(flags.out);
-  remove_other_recordings(flags.out, folder.path());
+  // Recordings of an earlier run that was made the other way, or whose table was small.
+  std::error_code ignored;
+  for (const char* name : {"recording.jsonl", "recording.evr", "trajectory.csv", "lyapunov.csv"})
+    if (!std::filesystem::exists(folder.path() / name))
+      std::filesystem::remove(std::filesystem::path(flags.out) / name, ignored);
   folder.publish("metrics.json");
   message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
 }
@@ -302,14 +287,6 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
   return finished;
 }
 
-FinishedRun run_and_print(const SimulateFlags& flags, const datasets::LoadedScenario& read,
-                          const formation::SimulationOptions& options,
-                          std::shared_ptr<datasets::AtomicFile> recording) {
-  FinishedRun finished = run_with_progress(flags, read, options, {}, std::move(recording));
-  is_stdout(flags.record) ? print_to_stderr(results(flags, finished)) : print(results(flags, finished));
-  return finished;
-}
-
 /// What `--record` names, before anything can go wrong: who reads it waits for its end, whatever it is.
 std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) {
   const bool has_other_end = is_stdout(path) || path.rfind("/dev/", 0) == 0;  // what a shell has made
@@ -330,8 +307,10 @@ FinishedRun simulate_decisions(const SimulateFlags& flags, const datasets::Loade
   note_liveness(flags.simulation, scenario, options);
   check_out(flags, datasets::run_info(scenario, options, {}));
   announce(scenario, options);
-  return flags.out.empty() ? run_and_print(flags, read, options, std::move(recording))
-                           : run_into_folder(flags, read, options);
+  if (!flags.out.empty()) return run_into_folder(flags, read, options);
+  FinishedRun finished = run_with_progress(flags, read, options, {}, std::move(recording));
+  is_stdout(flags.record) ? print_to_stderr(results(flags, finished)) : print(results(flags, finished));
+  return finished;
 }
 
 // --- Without ---
@@ -389,19 +368,6 @@ std::optional<FinishedRun> simulate_crowd(const SimulateFlags& flags, const data
 
 // --- Both ---
 
-/// Whether the recording goes to somebody who reads it while it is made.
-bool is_streamed(const std::string& record) {
-  std::error_code unknown;
-  return !record.empty() && (is_stdout(record) || std::filesystem::is_fifo(record, unknown));
-}
-
-void check_record(const SimulateFlags& flags) {
-  refuse_both(!flags.record.empty() && !flags.out.empty(), "--record", "--out",
-              "--out DIR already writes the recording into the folder");
-  if (!flags.record.empty() && is_stdout(flags.record) && ::isatty(STDOUT_FILENO) == 1)
-    throw UsageError("--record", flags.record, "a reader of stdout, which is a terminal: --record - | exactvo audit -");
-}
-
 ExitCode status_of(const SimulateFlags& flags, const formation::Metrics& m) {
   const bool overlapped = !m.collisions.empty() || (m.crowd && m.crowd->overlapping > 0);
   const bool failed = (flags.fail_on_collision && overlapped) || (flags.fail_unless_arrived && !m.all_arrived);
@@ -410,11 +376,17 @@ ExitCode status_of(const SimulateFlags& flags, const formation::Metrics& m) {
 
 /// `ranks`: null where this process is alone.
 ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
-  check_record(flags);
+  refuse_both(!flags.record.empty() && !flags.out.empty(), "--record", "--out",
+              "--out DIR already writes the recording into the folder");
+  if (!flags.record.empty() && is_stdout(flags.record) && ::isatty(STDOUT_FILENO) == 1)
+    throw UsageError("--record", flags.record, "a reader of stdout, which is a terminal: --record - | exactvo audit -");
   if (ranks && flags.scenario == "-")
     throw UsageError("scenario", "-", "a file: every rank reads it, and only the first has a stdin");
   formation::SimulationOptions options = simulation_options(flags.simulation);
-  const std::string needed = is_streamed(flags.record) ? "--record " + flags.record : std::string();
+  std::error_code unknown;
+  const bool is_streamed =
+      !flags.record.empty() && (is_stdout(flags.record) || std::filesystem::is_fifo(flags.record, unknown));
+  const std::string needed = is_streamed ? "--record " + flags.record : std::string();
   std::shared_ptr<datasets::AtomicFile> recording;
   if (!needed.empty() && flags.decisions.recorded != "none" && !ranks) recording = opened_recording(flags.record);
   datasets::LoadedScenario read = read_scenario(flags.scenario);

@@ -131,15 +131,6 @@ MadeRun simulated(const PageFlags& flags, const std::string& path) {
   return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
 }
 
-/// Trajectories of another program, which are no scenario.
-void refuse_trajectories(const std::string& path) {
-  const std::string format = datasets::recognised_trajectory_format(path);
-  if (!format.empty())
-    throw datasets::DataError(
-        datasets::DataCode::format_unknown, path, "", "trajectories (" + format + ")",
-        "a run or a scenario; 'exactvo check FILE --radius R --page FILE.html' shows trajectories");
-}
-
 // --- The verb ---
 
 struct ViewFlags {
@@ -211,7 +202,10 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
       runs.push_back(is_crowd ? recorded_crowd(flags, *recording, metrics_beside(*recording))
                               : recorded(flags, *recording));
     } else {
-      refuse_trajectories(path);
+      if (const std::string format = datasets::recognised_trajectory_format(path); !format.empty())
+        throw datasets::DataError(
+            datasets::DataCode::format_unknown, path, "", "trajectories (" + format + ")",
+            "a run or a scenario; 'exactvo check FILE --radius R --page FILE.html' shows trajectories");
       any_simulated = true;
       runs.push_back(simulated(flags, path));
     }

@@ -77,19 +77,8 @@ Json json_of(const char* side, const vo::Leg& leg) {
 
 namespace {
 
-std::string ellipse_words(const VoQuestion& question, std::size_t cone) {
-  return fmt::format("obstacle {} takes part as an ellipse, whose offset has degree eight",
-                     place_of(question, cone).obstacle);
-}
-
 std::string contact_words(const VoQuestion& question, std::size_t cone) {
   return fmt::format("the robot touches or overlaps obstacle {}", place_of(question, cone).obstacle);
-}
-
-std::string curves_words(const std::vector<ShiftedCone>& cones) {
-  std::size_t curves = 0;
-  for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
-  return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
 }
 
 /// REQUIRES: not Refusal::none.
@@ -98,12 +87,16 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
     case vo::Refusal::ellipse: {
       const auto held = [](const ShiftedCone& c) { return FreeArrangement::can_hold(c); };
       const auto first = std::find_if_not(cones.begin(), cones.end(), held);
-      return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
+      return fmt::format("obstacle {} takes part as an ellipse, whose offset has degree eight",
+                         place_of(question, static_cast<std::size_t>(first - cones.begin())).obstacle);
     }
     case vo::Refusal::cones:
       return fmt::format("{}, more than {}", geometry::counted(cones.size(), "convex shape"), vo::kMostCones);
-    case vo::Refusal::curves:
-      return curves_words(cones);
+    case vo::Refusal::curves: {
+      std::size_t curves = 0;
+      for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
+      return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
+    }
     case vo::Refusal::range:
       return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
     default:
@@ -208,11 +201,6 @@ std::string exact_free_words(const ExactFree& exact) {
   return text + (exact.region_inside
                      ? fmt::format("; all that the half-planes allow is free: {}\n", word_of(*exact.region_inside))
                      : "\n");
-}
-
-/// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
-OrderedJson exact_legs_json(const vo::ExactLegs& legs) {
-  return OrderedJson::array({leg_json("left", legs.left), leg_json("right", legs.right)});
 }
 
 std::string exact_legs_words(const vo::ExactLegs& legs) {
@@ -416,14 +404,11 @@ void add_verdict(bool overlaps, bool contains, Json& json) {
   json["contains_velocity"] = overlaps ? Json() : Json(contains);
 }
 
-void add_relative(const ConeAnswer& a, Json& json) {
-  json["apex"] = json_point(a.encounter.obstacle_velocity);
-  json["time_horizon"] = a.encounter.time_horizon;
-}
-
 /// Where they were asked for.
 void add_exact_legs(const ConeAnswer& a, Json& json) {
-  if (a.exact_legs) json["exact_legs"] = exact_legs_json(*a.exact_legs);
+  if (a.exact_legs)
+    json["exact_legs"] =
+        OrderedJson::array({leg_json("left", a.exact_legs->left), leg_json("right", a.exact_legs->right)});
 }
 
 void add_bounds(const ConeAnswer& a, Json& json) {
@@ -457,7 +442,8 @@ Json single_json(const VoAnswer& a) {
   Json json{{"taken_as", taken_json(a.question, a.question.obstacles.front())}};
   if (a.cones.size() == 1) add_shape(first, json);
   add_verdict(any_overlaps(a), any_contains(a), json);
-  add_relative(first, json);
+  json["apex"] = json_point(first.encounter.obstacle_velocity);
+  json["time_horizon"] = first.encounter.time_horizon;
   if (a.cones.size() == 1) {
     add_bounds(first, json);
   } else {

@@ -82,10 +82,6 @@ Points cone_in(const Box& box, const vo::VelocityObstacle& cone, Vec2 apex) {
   return velocity_obstacle_in(box, cone.grown(), cone.time_horizon(), apex);
 }
 
-std::string horizon_text(double tau) {
-  return std::isfinite(tau) ? fmt::format("τ = {:g} s", tau) : std::string("no horizon");
-}
-
 // --- One cone ---
 
 /// The obstacle that the ellipse stands for, seen from the robot and divided by the horizon as S is.
@@ -167,7 +163,9 @@ Figure cone_figure(const VoAnswer& answer) {
   if (u != Vec2{}) draw_arrow("obstacle's velocity", {}, u, "#CC79A7", panel);
   draw_arrow("velocity", {}, a.encounter.velocity, "#444444", panel);
   draw_change(answer.cones, panel);
-  const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
+  const double tau = a.encounter.time_horizon;
+  const std::string title =
+      "Velocity obstacle, " + (std::isfinite(tau) ? fmt::format("τ = {:g} s", tau) : std::string("no horizon"));
   return {"cone", data.text(), title + ".", {940, 640}, body_of(title, panel)};
 }
 

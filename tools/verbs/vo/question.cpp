@@ -90,19 +90,17 @@ Call call_in(const std::string& text) {
   return call;
 }
 
-geometry::Ellipse ellipse_by_axes(Vec2 center, double a, double b, double degrees) {
-  const double turned = a >= b ? degrees : degrees + 90.0;
-  return geometry::ellipse_from_axes(center, {std::max(a, b), std::min(a, b), turned * geometry::kPi / 180.0});
-}
-
 std::optional<ConvexShape> shape_of(const Call& call) {
   const auto& g = call.groups;
   if (call.word == "DISC" && call.has({2, 1}) && g[1][0] >= 0.0) return geometry::Disc{{g[0][0], g[0][1]}, g[1][0]};
   if (call.word != "ELLIPSE") return std::nullopt;
   const Vec2 center = g.empty() || g[0].size() != 2 ? Vec2{} : Vec2{g[0][0], g[0][1]};
   if (call.has({2, 3})) return geometry::Ellipse{center, g[1][0], g[1][1], g[1][2]};
-  if (call.has({2, 2, 1}) && g[1][0] >= 0.0 && g[1][1] >= 0.0)
-    return ellipse_by_axes(center, g[1][0], g[1][1], g[2][0]);
+  if (call.has({2, 2, 1}) && g[1][0] >= 0.0 && g[1][1] >= 0.0) {
+    const auto [a, b] = std::pair(g[1][0], g[1][1]);
+    const double turned = a >= b ? g[2][0] : g[2][0] + 90.0;
+    return geometry::ellipse_from_axes(center, {std::max(a, b), std::min(a, b), turned * geometry::kPi / 180.0});
+  }
   return std::nullopt;
 }
 
@@ -186,36 +184,27 @@ ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
 
 // --- The horizon ---
 
-/// The paper's rule gives no horizon to a robot whose distance rounds to nothing, and an infinite one at rest.
-double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
-  const double seconds = vo::paper_time_horizon(cone, relative);
-  if (!is_horizon(seconds) && seconds != kInfinity)
-    throw UsageError("--time-horizon", fmt::format("paper, which is {:g} s here", std::fabs(seconds)), kHorizons);
-  return seconds;
-}
-
-/// The rule takes the distance over the speed: nothing for a piece in contact, which has no cone to measure it from.
-std::optional<double> horizon_by_rule(const std::string& rule, vo::Encounter e) {
+/// A number of seconds, or a rule, which takes the distance over the speed: nothing for a piece in contact, which has
+/// no cone to measure it from. The paper's gives none to a robot whose distance rounds to nothing, an infinite one at
+/// rest.
+std::optional<double> horizon_of(const std::string& text, vo::Encounter e) {
+  if (text == "infinite") return kInfinity;
+  if (text != "paper" && text != "clamped") {
+    double seconds = 0.0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%lf%c", &seconds, &rest) != 1 || !is_horizon(seconds))
+      throw UsageError("--time-horizon", text, kHorizons);
+    return seconds;
+  }
   e.time_horizon = 1.0;  // any: the distance does not depend on it
   const vo::VelocityObstacle cone = cone_of(e);
   if (cone.overlaps()) return std::nullopt;
   const Vec2 relative = e.velocity - e.obstacle_velocity;
-  return rule == "paper" ? paper_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
-}
-
-double horizon_in_seconds(const std::string& text) {
-  double seconds = 0.0;
-  char rest = 0;
-  const bool is_number = std::sscanf(text.c_str(), "%lf%c", &seconds, &rest) == 1;
-  if (!is_number || !is_horizon(seconds)) throw UsageError("--time-horizon", text, kHorizons);
+  if (text == "clamped") return vo::clamped_time_horizon(cone, relative);
+  const double seconds = vo::paper_time_horizon(cone, relative);
+  if (!is_horizon(seconds) && seconds != kInfinity)
+    throw UsageError("--time-horizon", fmt::format("paper, which is {:g} s here", std::fabs(seconds)), kHorizons);
   return seconds;
-}
-
-/// A number of seconds, or a rule.
-std::optional<double> horizon_of(const std::string& text, const vo::Encounter& encounter) {
-  if (text == "infinite") return kInfinity;
-  if (text == "paper" || text == "clamped") return horizon_by_rule(text, encounter);
-  return horizon_in_seconds(text);
 }
 
 /// What goes with what, and what would be ignored.
