@@ -20,24 +20,12 @@
 namespace exactvo::datasets {
 namespace {
 
-/// The clock, or SOURCE_DATE_EPOCH where a reproducible output is wanted.
-std::time_t time_of_writing() {
-  const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
-  return fixed != nullptr && *fixed != '\0' ? static_cast<std::time_t>(std::strtoll(fixed, nullptr, 10))
-                                            : std::time(nullptr);
-}
-
 std::string utc(std::time_t time) {
   std::tm parts{};
   ::gmtime_r(&time, &parts);
   char text[32];
   const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
   return {text, length};
-}
-
-std::string gmp_release() {
-  return std::to_string(__GNU_MP_VERSION) + "." + std::to_string(__GNU_MP_VERSION_MINOR) + "." +
-         std::to_string(__GNU_MP_VERSION_PATCHLEVEL);
 }
 
 }  // namespace
@@ -71,7 +59,8 @@ Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t 
   facts.compiler = EXACTVO_COMPILER;
   facts.build_type = EXACTVO_BUILD_TYPE;
   facts.cgal = EXACTVO_CGAL_VERSION;
-  facts.gmp = gmp_release();
+  facts.gmp = std::to_string(__GNU_MP_VERSION) + "." + std::to_string(__GNU_MP_VERSION_MINOR) + "." +
+              std::to_string(__GNU_MP_VERSION_PATCHLEVEL);
   facts.gdal = EXACTVO_GDAL_RELEASE;  // known without loading GDAL
   facts.seed = seed;
   facts.command_line = std::move(command_line);
@@ -79,7 +68,8 @@ Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t 
     // What came through a pipe can't be read again.
     facts.inputs.push_back({input.string(), is_pipe(input) ? std::string() : sha256_of_file(input)});
   }
-  facts.written_at = utc(time_of_writing());
+  const char* fixed = std::getenv("SOURCE_DATE_EPOCH");  // where a reproducible output is wanted
+  facts.written_at = utc(fixed != nullptr && *fixed != '\0' ? std::strtoll(fixed, nullptr, 10) : std::time(nullptr));
   return facts;
 }
 

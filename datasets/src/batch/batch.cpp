@@ -23,13 +23,6 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
                   std::string("a robot without position, radius or horizon"));
 }
 
-/// Every n-th input from the shard's on.
-std::vector<std::size_t> inputs_of(const BatchRun& run, std::size_t inputs) {
-  std::vector<std::size_t> mine;
-  for (std::size_t k = run.shard - 1; k < inputs; k += run.shards) mine.push_back(k);
-  return mine;
-}
-
 BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
   if (session.journal().look(session.identity(), joins) == Journal::State::complete) {
@@ -37,7 +30,8 @@ BatchResult run_share(Session& session, const BatchRun& run) {
   }
   session.journal().begin(session.identity());
   if (run.shards == 1) session.merge_ahead();
-  const std::vector<std::size_t> mine = inputs_of(run, session.identity().inputs.size());
+  std::vector<std::size_t> mine;
+  for (std::size_t k = run.shard - 1; k < session.identity().inputs.size(); k += run.shards) mine.push_back(k);
   session.plan(mine);
   try {
     session.process(mine);

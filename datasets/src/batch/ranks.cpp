@@ -37,14 +37,6 @@ bool all_manage(Ranks& ranks, const Step& step) {
   return first_failed == ranks.size();
 }
 
-void refuse_shards(const BatchRun& run, int ranks) {
-  if (run.shards == 1) return;
-  throw DataError(DataCode::other_run, run.out.string(), "",
-                  "shard " + std::to_string(run.shard) + "/" + std::to_string(run.shards) + " in each of " +
-                      geometry::counted(ranks, "rank"),
-                  "shards or ranks: ranks share all inputs among them");
-}
-
 /// A byte for each input: whether it is still to be done. Empty where the batch is complete.
 std::string open_output(const Session& session, bool resume) {
   if (session.journal().look(session.identity(), resume) == Journal::State::complete) return {};
@@ -73,16 +65,6 @@ std::vector<std::size_t> share_of(const Ranks& ranks, const std::string& left,
   return mine;
 }
 
-/// The first rank counts what all have made.
-void collect_counts(Ranks& ranks, Session& session) {
-  const batch::Counts made = session.take_counts();
-  for (const std::string& bytes : ranks.gather({reinterpret_cast<const char*>(&made), sizeof made})) {
-    batch::Counts more;
-    std::memcpy(&more, bytes.data(), sizeof more);
-    session.count(more);
-  }
-}
-
 }  // namespace
 
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
@@ -96,7 +78,11 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
   batch::Inputs inputs;
   std::string left;
   const bool opened = all_manage(ranks, [&] {
-    refuse_shards(run, ranks.size());
+    if (run.shards > 1)
+      throw DataError(DataCode::other_run, run.out.string(), "",
+                      "shard " + std::to_string(run.shard) + "/" + std::to_string(run.shards) + " in each of " +
+                          geometry::counted(ranks.size(), "rank"),
+                      "shards or ranks: ranks share all inputs among them");
     inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
     session.emplace(configuration, run, std::move(inputs.files), watch);
     session->be_rank(ranks.rank(), ranks.size());
@@ -125,7 +111,13 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
       })) {
     return nothing;
   }
-  collect_counts(ranks, *session);
+  // The first rank counts what all have made.
+  const batch::Counts made = session->take_counts();
+  for (const std::string& bytes : ranks.gather({reinterpret_cast<const char*>(&made), sizeof made})) {
+    batch::Counts more;
+    std::memcpy(&more, bytes.data(), sizeof more);
+    session->count(more);
+  }
   const bool is_interrupted = ranks.least(stopped ? 0 : 1) == 0;
   if (!is_first) return nothing;
   BatchResult result = is_interrupted ? BatchResult{BatchEnd::interrupted, {}, false} : session->finish();

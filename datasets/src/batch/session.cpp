@@ -100,13 +100,6 @@ bool all_there(const Journal& journal, std::size_t inputs) {
   return true;
 }
 
-std::vector<InputFacts> all_facts(const Journal& journal, std::size_t inputs) {
-  std::vector<InputFacts> facts;
-  facts.reserve(inputs);
-  for (std::size_t k = 0; k < inputs; ++k) facts.push_back(read_facts(journal, k));
-  return facts;
-}
-
 /// Whatever a batch may write to OUT, of this configuration or another.
 bool is_output(const std::string& name) {
   if (name == "measurements.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
@@ -316,7 +309,8 @@ BatchSummary Session::put_together(BatchResult& result) {
 
 /// Finishes `outputs_`, which hold all parts, writes what is missing beside them, and moves everything to its place.
 BatchSummary Session::publish() {
-  const std::vector<InputFacts> facts = all_facts(journal_, identity_.inputs.size());
+  std::vector<InputFacts> facts;
+  for (std::size_t k = 0; k < identity_.inputs.size(); ++k) facts.push_back(read_facts(journal_, k));
   const Counts& out = outputs_->counts();
   BatchSummary summary = summary_of(identity_, facts);
   summary.obstacles_out = out.obstacles;

@@ -23,17 +23,10 @@ std::atomic<void (*)()> wait_hook{nullptr};
 /// Between two calls of the hook.
 constexpr int kWaitMilliseconds = 50;
 
-/// Null for what can be read.
-const char* word_for_irregular(mode_t mode) {
-  if (S_ISREG(mode) || S_ISFIFO(mode)) return nullptr;
-  if (S_ISDIR(mode)) return "a directory";
-  if (S_ISSOCK(mode)) return "a socket";
-  return "a device";
-}
-
 void refuse_irregular(const std::filesystem::path& path, mode_t mode) {
-  if (const char* word = word_for_irregular(mode))
-    throw DataError(DataCode::file_unreadable, path.string(), "", word, "a file or a pipe");
+  if (S_ISREG(mode) || S_ISFIFO(mode)) return;
+  const char* word = S_ISDIR(mode) ? "a directory" : S_ISSOCK(mode) ? "a socket" : "a device";
+  throw DataError(DataCode::file_unreadable, path.string(), "", word, "a file or a pipe");
 }
 
 /// A regular file, a pipe or standard input, read without ever blocking.

@@ -12,10 +12,6 @@ constexpr std::size_t kRowsKept = 128;
 
 const char* const kImageDrivers[] = {"PNG", "BMP", "JPEG", nullptr};
 
-double brightest_of(GDALRasterBand& band) {
-  return band.GetRasterDataType() == GDT_UInt16 ? 65535.0 : 255.0;
-}
-
 /// A palette's colour as one brightness.
 float brightness_of(const GDALColorTable& palette, float index) {
   const GDALColorEntry* entry = palette.GetColorEntry(static_cast<int>(index));
@@ -74,7 +70,7 @@ class Decoder {
 
   void add_colour(GDALRasterBand& band, std::size_t row, float* pixels) {
     const GDALColorTable* palette = band.GetColorTable();
-    const auto scale = static_cast<float>(255.0 / brightest_of(band));
+    const auto scale = static_cast<float>(255.0 / (band.GetRasterDataType() == GDT_UInt16 ? 65535.0 : 255.0));
     const std::vector<float>& values = row_of(band, row);
     for (std::size_t x = 0; x < values.size(); ++x) {
       pixels[x] += palette != nullptr ? brightness_of(*palette, values[x]) : scale * values[x];

@@ -109,16 +109,6 @@ std::vector<Ring> rings_of_parts(const OGRMultiPolygon& parts) {
   return rings;
 }
 
-bool has_only_outer_rings(const OGRMultiPolygon& parts) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [](const OGRPolygon* part) { return part->getNumInteriorRings() == 0; });
-}
-
-/// Whether GDAL warns that it did not group the rings of a record, as it was asked.
-bool is_of_rings_as_they_stand(const std::string& warning) {
-  return warning.find("cannot be translated to Simple Geometry") != std::string::npos;
-}
-
 /// The outer ring first, then its holes; in the order of the outer rings. A counter-clockwise ring is a hole of the
 /// smallest clockwise one round it. One that is in none is wound wrongly: it is an outer ring unless an odd number of
 /// others like it are round it.
@@ -153,7 +143,8 @@ void group_rings(OGRFeature& feature) {
   const OGRGeometry* geometry = feature.GetGeometryRef();
   if (geometry == nullptr || wkbFlatten(geometry->getGeometryType()) != wkbMultiPolygon) return;
   const OGRMultiPolygon& parts = *geometry->toMultiPolygon();
-  if (!has_only_outer_rings(parts)) return;
+  const auto has_holes = [](const OGRPolygon* part) { return part->getNumInteriorRings() > 0; };
+  if (std::any_of(parts.begin(), parts.end(), has_holes)) return;
   auto grouped = std::make_unique<OGRMultiPolygon>();
   for (const std::vector<Ring>& rings : polygons_of_rings(rings_of_parts(parts))) {
     auto polygon = std::make_unique<OGRPolygon>();
@@ -198,7 +189,8 @@ class VectorReader {
     }
     plane_.note_extent();
     for (const std::string& words : complaints_.take_warnings())
-      if (!is_of_rings_as_they_stand(words)) out_.note("", words);
+      if (words.find("cannot be translated to Simple Geometry") == std::string::npos)  // its rings, as was asked
+        out_.note("", words);
   }
 
  private:
@@ -433,14 +425,6 @@ class VectorReader {
   std::string reason_;                ///< why the layer's units are what they are
 };
 
-/// Entities are declared before the first element; what is hidden behind a longer comment is left to expat, which
-/// bounds what entities grow to.
-void refuse_early_entities(const std::filesystem::path& path) {
-  constexpr std::size_t kDeclarations = 1 << 16;
-  const std::string beginning = read_beginning(path, kDeclarations);
-  if (!beginning.empty() && beginning[0] == '<') refuse_entities(beginning, path.string());
-}
-
 /// GDAL opens them beside the file, and would wait for a pipe for ever.
 void refuse_irregular_companions(const std::filesystem::path& path) {
   for (const char* extension :
@@ -460,7 +444,10 @@ void refuse_irregular_companions(const std::filesystem::path& path) {
 
 void read_vector_file(const std::filesystem::path& path, Collector& out) {
   refuse_irregular_companions(path);
-  refuse_early_entities(path);
+  // Entities are declared before the first element; what is hidden behind a longer comment is left to expat, which
+  // bounds what entities grow to.
+  const std::string beginning = read_beginning(path, std::size_t{1} << 16);
+  if (!beginning.empty() && beginning[0] == '<') refuse_entities(beginning, path.string());
   VectorReader(path, out).read();
 }
 

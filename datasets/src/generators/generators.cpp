@@ -85,24 +85,11 @@ const std::vector<Kind>& kinds() {
   return kKinds;
 }
 
-const Kind& kind_named(const std::string& name) {
-  for (const Kind& kind : kinds()) {
-    if (kind.facts.name == name) return kind;
-  }
-  EXACTVO_REQUIRE(false, name);
-}
-
 /// Bits 0, 2, 4, ... of k side by side.
 std::uint64_t every_other_bit(std::uint64_t k) {
   std::uint64_t bits = 0;
   for (int i = 0; i < 32; ++i) bits |= ((k >> (2 * i)) & 1U) << i;
   return bits;
-}
-
-/// Along a Z-order curve (Morton, 1966): any number of items fills a square or half of one.
-Vec2 corner_of_item(const Kind& kind, std::uint64_t k) {
-  return {kind.side * static_cast<double>(every_other_bit(k)),
-          kind.side * static_cast<double>(every_other_bit(k >> 1))};
 }
 
 // --- Fields of campaigns ---
@@ -317,13 +304,18 @@ std::vector<std::string> generator_kind_names() {
 }
 
 std::vector<formation::SceneObstacle> generated_item(const std::string& name, std::uint64_t k, std::uint64_t seed) {
-  const Kind& kind = kind_named(name);
+  const auto named = [&](const Kind& k) { return k.facts.name == name; };
+  const auto found = std::find_if(kinds().begin(), kinds().end(), named);
+  EXACTVO_REQUIRE(found != kinds().end(), name);
+  const Kind& kind = *found;
   // Streams of fields are their own; those of kinds begin beyond.
   constexpr std::uint64_t kFirstStream = 16;
   const auto stream = kFirstStream + static_cast<std::uint64_t>(&kind - kinds().data());
   CounterRandom random(random_key(stream, k, seed));
   GeneratedShapes obstacles = kind.draw != nullptr ? kind.draw(random) : field(kind.field, k, seed);
-  const Vec2 corner = corner_of_item(kind, k) + (kind.draw != nullptr ? Vec2{} : Vec2{8.0, 8.0});
+  // Along a Z-order curve (Morton, 1966): any number of items fills a square or half of one.
+  const Vec2 cell{static_cast<double>(every_other_bit(k)), static_cast<double>(every_other_bit(k >> 1))};
+  const Vec2 corner = kind.side * cell + (kind.draw != nullptr ? Vec2{} : Vec2{8.0, 8.0});
   std::vector<formation::SceneObstacle> item;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     shift(obstacles[i], corner);

@@ -12,20 +12,13 @@
 namespace exactvo::datasets {
 namespace {
 
-const char* word_for_non_finite(double number) {
-  if (std::isnan(number)) return "nan";
-  return number > 0.0 ? "inf" : "-inf";
-}
-
-constexpr std::array<bool, 256> escaped_bytes() {
-  std::array<bool, 256> escaped{};
-  for (std::size_t c = 0; c < 0x20; ++c) escaped[c] = true;
-  escaped['"'] = escaped['\\'] = true;
-  return escaped;
-}
-
 bool is_escaped(char c) {
-  static constexpr std::array<bool, 256> kEscaped = escaped_bytes();
+  static constexpr std::array<bool, 256> kEscaped = [] {
+    std::array<bool, 256> escaped{};
+    for (std::size_t k = 0; k < 0x20; ++k) escaped[k] = true;
+    escaped['"'] = escaped['\\'] = true;
+    return escaped;
+  }();
   return kEscaped[static_cast<unsigned char>(c)];
 }
 
@@ -145,7 +138,7 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 }
 
 JsonWriter& JsonWriter::value(double number) {
-  if (!std::isfinite(number)) return value(word_for_non_finite(number));
+  if (!std::isfinite(number)) return value(std::isnan(number) ? "nan" : number > 0.0 ? "inf" : "-inf");
   separate();
   text_.add_number(number);
   return *this;

@@ -12,12 +12,6 @@ namespace {
 using geometry::ObstacleShapes;
 using geometry::Verdict;
 
-void append_head(JsonWriter& json, const RecordHead& head) {
-  if (!head.file.empty()) json.member("file", head.file);
-  if (!head.id.empty()) json.member("id", head.id);
-  if (!head.outcome.empty()) json.member("outcome", head.outcome);
-}
-
 void append_verdict(JsonWriter& json, const char* name, const Verdict& verdict) {
   json.key(name);
   if (verdict.certified) {
@@ -25,24 +19,6 @@ void append_verdict(JsonWriter& json, const char* name, const Verdict& verdict) 
   } else {
     json.value(verdict.reason);
   }
-}
-
-void append_trap_free(JsonWriter& json, const ObstacleShapes& shapes) {
-  const geometry::TrapFreeEllipse& free = shapes.trap_free;
-  json.key("trap_free").begin_object();
-  json.member("grade", free.ellipse, [&](const auto&) { json.value(name(free.grade)); });
-  json.member("for_every_goal", free.for_every_goal);
-  append_verdict(json, "contains", shapes.trap_free_contains);
-  json.end_object();
-}
-
-void append_problems(JsonWriter& json, const ObstacleShapes& shapes) {
-  json.key("problems").begin_array();
-  for (const geometry::RingProblem& p : shapes.problems) {
-    json.begin_object().member("code", code_name(p.code)).member("ring", std::uint64_t{p.ring});
-    json.member("vertex", std::uint64_t{p.vertex}).member("where", p.where).member("repaired", p.repaired).end_object();
-  }
-  json.end_array();
 }
 
 void append_piece(JsonWriter& json, const geometry::ConvexShape& piece) {
@@ -94,15 +70,25 @@ void append_verdicts(JsonWriter& json, const ObstacleShapes& shapes) {
   append_verdict(json, "smallest_ellipse", shapes.ellipse_contains);
   append_verdict(json, "facade_ellipses", shapes.facade_ellipses_contain);
   json.end_object();
-  append_trap_free(json, shapes);
+  const geometry::TrapFreeEllipse& free = shapes.trap_free;
+  json.key("trap_free").begin_object();
+  json.member("grade", free.ellipse, [&](const auto&) { json.value(name(free.grade)); });
+  json.member("for_every_goal", free.for_every_goal);
+  append_verdict(json, "contains", shapes.trap_free_contains);
+  json.end_object();
 }
 
 std::string to_json(const RecordHead& head, const ObstacleShapes& shapes, bool geometry) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object();
-  append_head(json, head);
+  if (!head.file.empty()) json.member("file", head.file);
+  if (!head.id.empty()) json.member("id", head.id);
+  if (!head.outcome.empty()) json.member("outcome", head.outcome);
   json.member("valid", shapes.valid);
-  append_problems(json, shapes);
+  json.list("problems", shapes.problems, [&](const geometry::RingProblem& p) {
+    json.begin_object().member("code", code_name(p.code)).member("ring", std::uint64_t{p.ring});
+    json.member("vertex", std::uint64_t{p.vertex}).member("where", p.where).member("repaired", p.repaired).end_object();
+  });
   if (shapes.valid) {
     append_measurements(json, shapes);
     append_verdicts(json, shapes);

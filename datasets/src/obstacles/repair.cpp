@@ -31,28 +31,15 @@ double ring_area(const Ring& ring) {
   return 0.5 * std::fabs(doubled_area(ring));
 }
 
-std::size_t count_vertices(const Ring& ring) {
-  const bool is_closed = ring.size() > 1 && ring.front() == ring.back();
-  return ring.size() - (is_closed ? 1 : 0);
-}
-
 /// All but `area`.
 void add_polygon(const std::vector<Ring>& rings, RepairFacts& facts) {
   ++facts.polygons;
   facts.rings += rings.size();
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    facts.vertices += count_vertices(rings[k]);
+    const bool is_closed = rings[k].size() > 1 && rings[k].front() == rings[k].back();
+    facts.vertices += rings[k].size() - (is_closed ? 1 : 0);
     (k == 0 ? facts.outer_area : facts.hole_area) += ring_area(rings[k]);
   }
-}
-
-RepairFacts facts_of(const std::vector<Polygon>& polygons) {
-  RepairFacts facts;
-  for (const Polygon& polygon : polygons) {
-    add_polygon(courses_of(polygon), facts);
-    facts.area += area(polygon);
-  }
-  return facts;
 }
 
 bool encloses_nothing(const RingProblem& problem) {
@@ -162,7 +149,10 @@ Repair repair(const std::vector<Ring>& rings) {
   }
   if (!result.ok()) return result;
   for (RingProblem& problem : result.problems) problem.repaired = true;
-  result.after = facts_of(result.polygons);
+  for (const Polygon& polygon : result.polygons) {
+    add_polygon(courses_of(polygon), result.after);
+    result.after.area += area(polygon);
+  }
   return result;
 }
 

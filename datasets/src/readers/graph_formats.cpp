@@ -81,13 +81,6 @@ double half_perimeter_of_box(const std::vector<Vec2>& points) {
   return (box.high.x - box.low.x) + (box.high.y - box.low.y);
 }
 
-void put_largest_first(std::vector<GraphChain>& rings) {
-  const auto less = [](const GraphChain& a, const GraphChain& b) {
-    return half_perimeter_of_box(a.points) < half_perimeter_of_box(b.points);
-  };
-  std::iter_swap(rings.begin(), std::max_element(rings.begin(), rings.end(), less));
-}
-
 void add_walls(std::vector<GraphChain> chains, const std::string& place, Collector& out) {
   for (std::size_t k = 0; k < chains.size(); ++k) {
     const std::string number = std::to_string(k);
@@ -107,15 +100,13 @@ void add_graph(const PlaneGraph& graph, const std::string& place, Collector& out
   std::vector<GraphChain> chains = ChainWalker(graph).chains();
   if (!std::all_of(chains.begin(), chains.end(), [](const GraphChain& c) { return c.closed; }))
     return add_walls(std::move(chains), place, out);
-  put_largest_first(chains);
+  const auto less = [](const GraphChain& a, const GraphChain& b) {
+    return half_perimeter_of_box(a.points) < half_perimeter_of_box(b.points);
+  };
+  std::iter_swap(chains.begin(), std::max_element(chains.begin(), chains.end(), less));
   RawGeometry raw{RawKind::polygon, "0", place, {}};
   for (GraphChain& chain : chains) raw.rings.push_back(std::move(chain.points));
   out.add(raw);
-}
-
-/// Walls in any case: of edges that say nothing about what is inside.
-void add_graph_as_walls(const PlaneGraph& graph, const std::string& place, Collector& out) {
-  if (!is_lonely(graph, out, place)) add_walls(ChainWalker(graph).chains(), place, out);
 }
 
 // --- GraphML: <node id><data key="x">..</data><data key="y">..</data></node>, <edge source target/> ---
@@ -251,7 +242,8 @@ void read_pslg(const std::filesystem::path& path, Collector& out) {
     lines.need("an edge, two indices");
     graph.edges.emplace_back(lines.index(0, points), lines.index(1, points));
   }
-  add_graph_as_walls(graph, "graph", out);
+  // Walls in any case: of edges that say nothing about what is inside.
+  if (!is_lonely(graph, out, "graph")) add_walls(ChainWalker(graph).chains(), "graph", out);
 }
 
 }  // namespace exactvo::datasets

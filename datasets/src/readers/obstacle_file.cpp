@@ -26,10 +26,6 @@ constexpr geometry::Names<Units, 3> kUnits{
 constexpr geometry::Names<UnknownCells, 2> kUnknownCells{
     {{UnknownCells::free, "free"}, {UnknownCells::blocked, "blocked"}}};
 
-void read_with_gdal(const std::filesystem::path& path, Collector& out) {
-  vector_library().read_vector_file(path, out);
-}
-
 /// XML, by its first element, and where that is not enough what stands near it.
 auto xml_of(const char* element, const char* besides = "") {
   return [=](const FormatProbe& probe) {
@@ -154,7 +150,8 @@ const std::vector<Reader>& readers() {
       {"scenario", looks_like_scenario, read_scenario_obstacles},
       {"rings-json", looks_like_rings_json, read_rings_json},
       {"points-csv", looks_like_points_csv, read_points_csv},
-      {"gdal", looks_like_vector_file, read_with_gdal},
+      {"gdal", looks_like_vector_file,
+       [](const std::filesystem::path& path, Collector& out) { vector_library().read_vector_file(path, out); }},
   };
   return kReaders;
 }

@@ -57,18 +57,6 @@ const FindingWords& words_for(DataCode code) {
   return found == std::end(kFindings) ? kHoles : *found;
 }
 
-/// Where it is; a JSON pointer names no vertex, so that is said here.
-std::string words_for_where(const RingFinding& finding) {
-  const bool is_pointer = finding.place.rfind('/', 0) == 0;
-  const std::string vertex = is_pointer ? "vertex " + std::to_string(finding.vertex) + ", " : "";
-  return " at " + vertex + words_of_place(finding);
-}
-
-/// A polygon's JSON needs no repeated first point, so its absence is no repair worth a note there.
-bool is_worth_a_note(const RawGeometry& raw, DataCode code) {
-  return code != DataCode::unclosed || raw.ring_pointers.empty();
-}
-
 std::vector<DataCode> codes_of(const std::vector<RingFinding>& findings) {
   std::vector<DataCode> codes;
   for (const RingFinding& finding : findings) codes.push_back(finding.code);
@@ -146,7 +134,8 @@ ValidationResult validation_of(geometry::Obstacle shape, const std::vector<geome
   bool is_refused = false;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
-    if (problem.repaired && !is_worth_a_note(raw, code)) continue;
+    // A polygon's JSON needs no repeated first point, so its absence is no repair worth a note there.
+    if (problem.repaired && code == DataCode::unclosed && !raw.ring_pointers.empty()) continue;
     const bool first_refusal = !problem.repaired && !is_refused;
     is_refused = is_refused || !problem.repaired;
     if (checked.findings.size() < kMostFindings || first_refusal) {
@@ -225,7 +214,9 @@ ValidationResult validate(const RawGeometry& raw) {
 }
 
 DataError ring_refusal(const RingFinding& finding, const std::string& file) {
-  return {finding.code, file, finding.place, words_for(finding.code).found + words_for_where(finding),
+  const bool is_pointer = finding.place.rfind('/', 0) == 0;  // of JSON, which names no vertex
+  const std::string vertex = is_pointer ? "vertex " + std::to_string(finding.vertex) + ", " : "";
+  return {finding.code, file, finding.place, words_for(finding.code).found + " at " + vertex + words_of_place(finding),
           words_for(finding.code).expected};
 }
 

@@ -77,10 +77,6 @@ bool fits(const GreyImage& image, std::size_t bytes, std::size_t bytes_a_pixel) 
   return image.width * image.height * bytes_a_pixel <= bytes;
 }
 
-bool is_pgm(const std::string& bytes) {
-  return bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == '2' || bytes[1] == '5');
-}
-
 // ISO/IEC 15948, 5.2 and 5.3: a signature, then chunks of length, type, data and checksum.
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::uintmax_t kChecksumSize = 4;
@@ -134,7 +130,8 @@ GreyImage read_image(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) {
     throw DataError(DataCode::image, path.string(), "", "no such picture", "the picture that the map names");
   }
-  if (!is_pgm(read_beginning(path, 3))) {
+  const std::string mark = read_beginning(path, 3).substr(0, 2);
+  if (mark != "P2" && mark != "P5") {
     require_whole_png_chunks(path);
     return vector_library().read_gdal_image(path);
   }

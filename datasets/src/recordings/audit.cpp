@@ -310,16 +310,6 @@ std::size_t motions_in(const std::filesystem::path& path) {
   return rows * reader.head().kind_of.size();
 }
 
-/// The first row is of the start, and the others follow in time.
-void require_in_order(const std::string& file, std::size_t row, std::size_t before, std::size_t step) {
-  const std::string found = "step " + std::to_string(step);
-  if (row == 0 && step != 0)
-    throw DataError(DataCode::format_syntax, file, "row 0", found, "the start of the run, step 0");
-  if (row > 0 && step <= before)
-    throw DataError(DataCode::format_syntax, file, "row " + std::to_string(row), found,
-                    "a row after that of step " + std::to_string(before));
-}
-
 /// A recording of places: how robots move, by the points that need no decisions.
 AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) {
   const std::size_t one_of = sample == 0 ? 1 : std::max<std::size_t>(1, motions_in(path) / sample);
@@ -335,7 +325,11 @@ AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) 
   for (CrowdRow row; reader.next(row); ++tally.report.rows) {
     call_wait_hook();
     RowStates now = states_of(reader.head(), row);
-    require_in_order(path.string(), tally.report.rows, before.step, now.step);
+    const std::size_t number = tally.report.rows;
+    if (number == 0 ? now.step != 0 : now.step <= before.step)
+      throw DataError(
+          DataCode::format_syntax, path.string(), "row " + std::to_string(number), "step " + std::to_string(now.step),
+          number == 0 ? "the start of the run, step 0" : "a row after that of step " + std::to_string(before.step));
     for (std::size_t k = 0; k < reader.head().bodies.size(); ++k)
       if (!reader.head().bodies[k].moves && reader.head().displacement(row, k) != geometry::Vec2{})
         tally.refuted(AuditPoint::sequence,

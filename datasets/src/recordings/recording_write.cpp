@@ -33,11 +33,6 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.end_object();
 }
 
-void append_goal_bodies(JsonWriter& json, const GoalBodies& of_goal) {
-  json.begin_object().member("time", of_goal.time).member("robot", of_goal.robot).member("goal", of_goal.goal);
-  json.member("bodies", of_goal.bodies).end_object();
-}
-
 void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
   json.begin_object().member("row", plan.row).member("from_row", plan.from_row);
   json.key("robots").begin_array();
@@ -54,13 +49,6 @@ void append_row(JsonWriter& json, const Step& step, bool has_leader, const forma
   }
   json.member_if(!step.moving.empty(), "moving", step.moving).member("robots", step.robots);
   if (lyapunov) json.member("lyapunov", *lyapunov);
-  json.end_object();
-}
-
-void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, const std::string& digest) {
-  json.begin_object().member("rows", rows);
-  members(json, file);
-  json.member("sha256", digest);
   json.end_object();
 }
 
@@ -181,7 +169,10 @@ RecordingWriter::~RecordingWriter() = default;
 
 void RecordingWriter::add(const GoalBodies& of_goal, const std::vector<vo::Body>& bodies) {
   for (const std::size_t body : of_goal.bodies) state_->name_body(body, bodies);
-  state_->line("goal_bodies", [&] { append_goal_bodies(state_->json, of_goal); });
+  state_->line("goal_bodies", [&] {
+    state_->json.begin_object().member("time", of_goal.time).member("robot", of_goal.robot);
+    state_->json.member("goal", of_goal.goal).member("bodies", of_goal.bodies).end_object();
+  });
 }
 
 void RecordingWriter::add(const formation::JointPlan& plan) {
@@ -201,7 +192,9 @@ void RecordingWriter::finish(const RecordingFile& about, Durability durability) 
   const std::string digest = state_->hash.digest();
   state_->json.clear();
   state_->json.begin_object().key("end");
-  append_end(state_->json, about, state_->rows, digest);
+  state_->json.begin_object().member("rows", state_->rows);
+  members(state_->json, about);
+  state_->json.member("sha256", digest).end_object();
   state_->json.end_object().raw("\n");
   state_->out->write(state_->json.text());
   state_->out->commit(durability);

@@ -227,20 +227,6 @@ bool begins_as_text(const std::string& bytes) {
   return bytes.substr(0, 4).find('\0') == std::string::npos;
 }
 
-/// Objects, lists and texts: what is wrong with them has a line and a column.
-bool looks_like_lines(const std::string& bytes) {
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return first != std::string::npos && begins_as_text(bytes) && std::strchr("{[\"", bytes[first]) != nullptr;
-}
-
-/// The first line names the columns.
-bool looks_like_a_table(const std::string& bytes) {
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  if (first == std::string::npos || !begins_as_text(bytes)) return false;
-  return std::string_view(bytes).substr(first, bytes.find('\n', first) - first).find("preferred_x") !=
-         std::string::npos;
-}
-
 bool holds_its_count(const std::string& bytes) {
   constexpr std::uint64_t kLeastInstance = 20;  // m, m_hard, v_max, v_pref
   const std::optional<std::int32_t> count = count_of(bytes);
@@ -264,8 +250,13 @@ DataError neither_format(const std::string& bytes, const std::string& file) {
 std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name,
                                            std::vector<std::string>* names) {
   if (names) names->clear();
-  if (looks_like_lines(bytes)) return read_lines(bytes, file_name);
-  if (looks_like_a_table(bytes)) return Table(bytes, file_name).read(names);
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first != std::string::npos && begins_as_text(bytes)) {
+    // Objects, lists and texts: what is wrong with them has a line and a column.
+    if (std::strchr("{[\"", bytes[first]) != nullptr) return read_lines(bytes, file_name);
+    const std::string_view columns = std::string_view(bytes).substr(first, bytes.find('\n', first) - first);
+    if (columns.find("preferred_x") != std::string_view::npos) return Table(bytes, file_name).read(names);
+  }
   if (holds_its_count(bytes)) return read_binary(bytes, file_name);
   throw neither_format(bytes, file_name);
 }

@@ -36,13 +36,10 @@ struct Header {
   std::vector<std::size_t> x, y;  ///< columns of the powers
 };
 
-std::string_view without_comment_mark(std::string_view line) {
-  line = trimmed(line);
-  return line.substr(0, 1) == "#" ? trimmed(line.substr(1)) : line;
-}
-
 std::optional<Header> header_in(std::string_view line) {
-  const std::vector<std::string_view> names = fields_of(without_comment_mark(line), ',');
+  line = trimmed(line);
+  if (line.substr(0, 1) == "#") line.remove_prefix(1);
+  const std::vector<std::string_view> names = fields_of(trimmed(line), ',');
   const auto is_duration = [](std::string_view name) { return name == "duration" || name == "Duration"; };
   const auto at = std::find_if(names.begin(), names.end(), is_duration);
   if (at == names.end()) return std::nullopt;
@@ -56,12 +53,6 @@ geometry::Vec2 value_of(const std::vector<geometry::Vec2>& powers, double t) {
   geometry::Vec2 p;
   for (std::size_t k = powers.size(); k-- > 0;) p = t * p + powers[k];
   return p;
-}
-
-std::vector<geometry::Vec2> derivative_of(const std::vector<geometry::Vec2>& powers) {
-  std::vector<geometry::Vec2> derivative;
-  for (std::size_t k = 1; k < powers.size(); ++k) derivative.push_back(static_cast<double>(k) * powers[k]);
-  return derivative;
 }
 
 Header required_header(TextLines& lines, const TrajectorySink& out) {
@@ -115,7 +106,8 @@ geometry::CurvedMotion piece_in(std::string_view text, const Header& header, dou
 void add_rows(std::size_t agent, const geometry::CurvedMotion& curve, bool is_first, std::uint64_t line,
               TrajectorySink& out) {
   const bool has_powers = curve.basis == geometry::CurveBasis::powers;
-  const std::vector<geometry::Vec2> velocity = derivative_of(curve.points);
+  std::vector<geometry::Vec2> velocity;
+  for (std::size_t k = 1; k < curve.points.size(); ++k) velocity.push_back(static_cast<double>(k) * curve.points[k]);
   const double duration = curve.end - curve.start;
   for (int s = is_first ? 0 : 1; s <= kSamples; ++s) {
     const double t = static_cast<double>(s) / kSamples * duration;

@@ -120,11 +120,6 @@ Columns columns_in(const std::vector<std::string_view>& header) {
   return columns;
 }
 
-bool has_quaternion(const Columns& columns) {
-  return std::all_of(columns.begin() + kQxColumn, columns.begin() + kQwColumn + 1,
-                     [](std::size_t column) { return column != kNoColumn; });
-}
-
 /// The columns of rows without a header: frames, ids and places alone.
 Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y) {
   Columns columns;
@@ -138,7 +133,8 @@ Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y
 
 /// A name that may mean a heading, of a table that has none that is known: in another unit, or half a quaternion.
 void note_headings_left_out(const std::vector<std::string_view>& header, const Columns& columns, TrajectoryFile& file) {
-  if (columns[kHeadingColumn] != kNoColumn || has_quaternion(columns)) return;
+  const bool has_quaternion = std::count(columns.begin() + kQxColumn, columns.begin() + kColumnKinds, kNoColumn) == 0;
+  if (columns[kHeadingColumn] != kNoColumn || has_quaternion) return;
   for (const std::string_view field : header) {
     const std::string name = lower_case(std::string(field));
     const bool is_like_one = std::any_of(kHeadingWords.begin(), kHeadingWords.end(),

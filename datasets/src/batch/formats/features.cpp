@@ -139,12 +139,6 @@ void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
   }
 }
 
-void give_hull(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
-  Feature feature = flat_or_filled(kHulls, shapes.hull.vertices);
-  feature.fields = hull_fields(head.key, shapes.measurements.hull_area);
-  take(feature);
-}
-
 void give_ellipses(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   take(ellipse_feature(head.key, "smallest", 0, shapes.smallest_ellipse, kFinePoints));
   if (shapes.trap_free.ellipse) {
@@ -222,7 +216,9 @@ void features_of(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
   take(obstacle_feature(head, shapes));
   give_facades(head, shapes, take);
   give_pieces(head, shapes, take);
-  give_hull(head, shapes, take);
+  Feature hull = flat_or_filled(kHulls, shapes.hull.vertices);
+  hull.fields = hull_fields(head.key, shapes.measurements.hull_area);
+  take(hull);
   give_ellipses(head, shapes, take);
 }
 

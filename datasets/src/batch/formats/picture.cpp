@@ -69,18 +69,6 @@ std::string element(const View& view, const Ring& ring, const char* kind) {
   return std::string("<polygon class=\"") + kind + "\" points=\"" + view.points(ring) + "\"/>";
 }
 
-/// Outer ring and holes as one path, so that holes stay open.
-std::string path_of(const View& view, const geometry::Polygon& polygon) {
-  std::string text = "<path class=\"o\" d=\"M" + view.points(polygon.outer) + "Z";
-  for (const Ring& hole : polygon.holes) text += " M" + view.points(hole) + "Z";
-  return text + "\"/>";
-}
-
-std::string obstacle_element(const View& view, const geometry::Obstacle& obstacle) {
-  if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle)) return path_of(view, *polygon);
-  return "<polyline class=\"w\" points=\"" + view.points(std::get<geometry::Polyline>(obstacle).points) + "\"/>";
-}
-
 }  // namespace
 
 std::string picture_of(const std::string& id, const geometry::ObstacleShapes& shapes) {
@@ -94,7 +82,14 @@ std::string picture_of(const std::string& id, const geometry::ObstacleShapes& sh
   if (shapes.facade_ellipses.size() <= kMostFacadeEllipses) {
     for (const auto& e : shapes.facade_ellipses) text += element(view, outline_of(e.ellipse, 24), "f");
   }
-  text += obstacle_element(view, shapes.obstacle);
+  if (const auto* wall = std::get_if<geometry::Polyline>(&shapes.obstacle)) {
+    text += "<polyline class=\"w\" points=\"" + view.points(wall->points) + "\"/>";
+  } else {  // outer ring and holes as one path, so that holes stay open
+    const auto& polygon = std::get<geometry::Polygon>(shapes.obstacle);
+    text += "<path class=\"o\" d=\"M" + view.points(polygon.outer) + "Z";
+    for (const Ring& hole : polygon.holes) text += " M" + view.points(hole) + "Z";
+    text += "\"/>";
+  }
   return text + "</svg><figcaption>" + escaped_markup(id) + "</figcaption></figure>\n";
 }
 

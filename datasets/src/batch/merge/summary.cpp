@@ -43,17 +43,6 @@ void add_notes(std::vector<BatchNote>& notes, const std::vector<std::string>& te
     if (!is_measured(text)) add_note(notes, text, file);
 }
 
-constexpr const char* kRejected = "rejected";
-
-void count_file(BatchTally& files, const InputFacts& facts) {
-  ++files.read;
-  if (facts.outcome == kRejected) {
-    ++files.rejected[facts.code];
-  } else {
-    ++(facts.outcome == "repaired" ? files.repaired : files.done);
-  }
-}
-
 // --- Writing ---
 
 /// The counts of obstacles, and of files.
@@ -86,8 +75,13 @@ BatchSummary summary_of(const Identity& identity, const std::vector<InputFacts>&
   BatchSummary summary;
   for (std::size_t k = 0; k < facts.size(); ++k) {
     const InputFacts& one = facts[k];
-    count_file(summary.files, one);
-    if (one.outcome == kRejected) summary.rejected_files.push_back({identity.inputs[k].name, one.code});
+    ++summary.files.read;
+    if (one.outcome == "rejected") {
+      ++summary.files.rejected[one.code];
+      summary.rejected_files.push_back({identity.inputs[k].name, one.code});
+    } else {
+      ++(one.outcome == "repaired" ? summary.files.repaired : summary.files.done);
+    }
     add(summary.obstacles, one.tally);
     add_notes(summary.notes, one.notes, identity.inputs[k].name);
     summary.passed_over += one.passed_over;

@@ -115,14 +115,10 @@ void outside_the_reader(const Action& action) {
   }
 }
 
-bool is_read_whole(const std::string& format) {
-  return format != "wkt" && format != "jupedsim-wkt" && format != "gdal";
-}
-
 void refuse_large_file(const Input& input, const ReadOptions& options, std::uint64_t memory_limit) {
   if (memory_limit == 0 || input.size <= memory_limit / kBytesOfByte) return;
   const std::string format = options.format.empty() ? format_of(input.path) : options.format;
-  if (!is_read_whole(format)) return;
+  if (format == "wkt" || format == "jupedsim-wkt" || format == "gdal") return;  // not read whole
   throw DataError(DataCode::size, input.name, "", "a " + format + " file of " + std::to_string(input.size) + " bytes",
                   "at most a " + std::to_string(kBytesOfByte) + "th of the memory allowed: it is read whole");
 }
