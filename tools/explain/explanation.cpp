@@ -184,21 +184,15 @@ std::string proof_words(const Decision& d, const DecisionConstraint& c) {
                                      : "proven safe together with the other robot's half";
 }
 
-std::string line_words(const Decision& d, const DecisionConstraint& c) {
-  return fmt::format("{:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}", c.half_plane.normal.x, c.half_plane.normal.y,
-                     c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(d, c));
-}
-
-std::string effect_words(const Decision& d, const DecisionConstraint& c) {
-  const Effect effect = effect_of(d, c);
-  return effect == Effect::violated ? "violated by " + amount(violation_of(c, d.step.chosen)) + " m/s" : name(effect);
-}
-
 std::string constraint_words(const Decision& d, std::size_t i) {
   const DecisionConstraint& c = d.step.constraints[i];
-  return fmt::format("  [{}] {}{}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario, d.bodies),
-                     c.fell_back ? " (the pair fell back)" : "", effect_words(d, c), contact_words(d, i),
-                     line_words(d, c));
+  const Effect effect = effect_of(d, c);
+  return fmt::format(
+      "  [{}] {}{}, {}: {}\n      {:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}\n", i + 1,
+      name_of(c, d.scenario, d.bodies), c.fell_back ? " (the pair fell back)" : "",
+      effect == Effect::violated ? "violated by " + amount(violation_of(c, d.step.chosen)) + " m/s" : name(effect),
+      contact_words(d, i), c.half_plane.normal.x, c.half_plane.normal.y, c.half_plane.offset, c.hard ? "hard" : "soft",
+      proof_words(d, c));
 }
 
 std::string constraints_words(const Decision& d) {
@@ -296,13 +290,9 @@ std::string idle_words(const Decision& d, const Balance& b) {
                      numbered(idle), idle.size() == 1 ? "does" : "do");
 }
 
-/// Whether moving obstacles leave it nothing but to stand: its preferred velocity is then 0, whatever led to it.
-bool has_to_stand(const Decision& d) {
-  return meets_movers(d.scenario) && d.step.stopping_steps == 0;
-}
-
 std::string unmoved_words(const Decision& d) {
-  if (has_to_stand(d))
+  // Moving obstacles leave it nothing but to stand: its preferred velocity is then 0, whatever led to it.
+  if (meets_movers(d.scenario) && d.step.stopping_steps == 0)
     return "Why: it stands, since a moving obstacle could reach it while it moves, at any velocity from which it "
            "stands "
            "again after a time step.\n";

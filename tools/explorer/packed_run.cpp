@@ -220,13 +220,6 @@ Json about_json(const datasets::RecordingFile& file) {
   return json;
 }
 
-Json goal_bodies_json(const formation::Recording& run) {
-  Json goal_bodies = Json::array();
-  for (const formation::GoalBodies& o : run.goal_bodies)
-    goal_bodies.push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
-  return goal_bodies;
-}
-
 /// Places of all moves one after the other, as are those who make them.
 Json plans_json(const formation::Recording& run) {
   Json plans = Json::array();
@@ -566,7 +559,9 @@ Json packed_head(const datasets::RecordingFile& about, const PackedRunLimits& li
   if (limits.has_scenario) head["scenario"] = scenario_json(about.scenario);
   head["bodies"] = Json::array();
   for (const vo::Body& body : about.recording.bodies) head["bodies"].push_back(to_json(body));
-  head["goal_bodies"] = goal_bodies_json(about.recording);
+  head["goal_bodies"] = Json::array();
+  for (const formation::GoalBodies& o : about.recording.goal_bodies)
+    head["goal_bodies"].push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
   head["plans"] = plans_json(about.recording);
   head["routes"] = routes_json(about, limits);
   return head;

@@ -27,14 +27,6 @@ constexpr std::size_t kMostPieces = 16;
 /// m: robots that stand in one place are seen in a view of this size.
 constexpr double kLeastView = 1.0;
 
-/// 1, 2 or 5 times a power of ten, not below.
-double round_size(double least) {
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= least) return factor * power;
-  return 10.0 * power;
-}
-
 CellGrid grid_over(const Box& view) {
   CellGrid grid;
   grid.cell = round_size(std::max({view.width(), view.height(), kLeastView}) / static_cast<double>(kMostCells));

@@ -118,10 +118,6 @@ constexpr const char* kFreeName =
 
 constexpr const char* kPictures[] = {".pdf", ".png", ".svg"};
 
-bool is_picture(const fs::path& name) {
-  return std::find(std::begin(kPictures), std::end(kPictures), name.extension()) != std::end(kPictures);
-}
-
 std::vector<FigureFile> files_of(const fs::path& out) {
   const std::string stem = out.stem().string(), plain = plain_name(stem);
   std::vector<FigureFile> files;
@@ -339,7 +335,8 @@ Figure sheet_figure(const std::string& name, const std::string& data, const std:
 void check_figure_name(const std::string& option, const std::string& name, const std::vector<fs::path>& others) {
   if (name.empty()) return;
   if (has_control_characters(name)) throw UsageError(option, name, "a name without control characters");
-  if (!is_picture(name)) throw UsageError(option, name, "a name that ends in .svg, .png or .pdf");
+  if (std::find(std::begin(kPictures), std::end(kPictures), fs::path(name).extension()) == std::end(kPictures))
+    throw UsageError(option, name, "a name that ends in .svg, .png or .pdf");
   for (const auto& [drawn, asked] : files_of(name)) {
     const fs::path path = fs::path(name).parent_path() / asked;
     if (fs::is_directory(path)) throw UsageError(option, path.string() + ", a folder", "names that are free or files");

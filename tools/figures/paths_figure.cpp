@@ -516,11 +516,6 @@ Box without_slivers(Box box) {
   return {{box.low.x - missing_x, box.low.y - missing_y}, {box.high.x + missing_x, box.high.y + missing_y}};
 }
 
-/// A title stands over the middle of the axes and may go as far to the left as they and their labels do.
-std::string fitted_title(const RecordingFile& run, const Box& view) {
-  return shortened(run_title(run), characters_in(scale_of(view) * view.width() + 100.0));
-}
-
 /// Room for the axes, the title and the legend round a plane drawn to scale.
 Canvas canvas_for(const Box& view, std::size_t longest_key) {
   const double scale = scale_of(view);
@@ -564,7 +559,9 @@ Figure paths_figure(const RecordingFile& run) {
   DataFile data;
   const Box view = view_of(run);
   const PanelLayers panel = drawn(run, view, data, true);
-  const std::string body = panel.body(quoted(fitted_title(run, view)));
+  // A title stands over the middle of the axes and may go as far to the left as they and their labels do.
+  const std::string title = shortened(run_title(run), characters_in(scale_of(view) * view.width() + 100.0));
+  const std::string body = panel.body(quoted(title));
   const std::string shows = "Paths of the robots of " + run_title(run) + "; circles are the robots to scale.";
   return {"paths", data.text(), shows, canvas_for(view, longest_key(run)), body};
 }

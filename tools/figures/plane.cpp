@@ -51,6 +51,13 @@ Points footprint_at(const formation::DifferentialDrive& drive, Vec2 at, Vec2 hea
   return corners;
 }
 
+double round_size(double least) {
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= least) return digit * power;
+  return 10.0 * power;
+}
+
 Box square_round(const Box& box, double share) {
   constexpr double kLeast = 1e-9;  // a range that gnuplot can still put tics on
   const double half = share * std::max({box.width(), box.height(), kLeast});

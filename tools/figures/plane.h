@@ -29,6 +29,9 @@ std::string clear_fill(const std::string& colour, double opacity);
 /// The corners of the footprint of a robot on wheels whose reference point is at `at`, m; empty where it has none.
 Points footprint_at(const formation::DifferentialDrive& drive, Vec2 at, Vec2 heading);
 
+/// The least of 1, 2, 5, 10, 20, ... and their tenths, hundredths and so on that is not below.
+double round_size(double least);
+
 /// A square round the middle of the box, `share` of its longer side from the middle to each side, never empty.
 Box square_round(const Box& box, double share);
 

@@ -62,15 +62,12 @@ struct Range {
 /// px of the SVG: about what the axes of a figure enclose.
 constexpr double kAxesWidth = 720.0, kAxesHeight = 380.0;
 
-double height_of(const Range& range) {
-  return range.is_logarithmic ? std::log10(range.high / range.low) : range.high - range.low;
-}
-
 /// The rows that are drawn of a curve: all, or those that are seen to make a difference.
 std::vector<std::size_t> drawn_rows(const std::vector<double>& times, const std::vector<double>& values, double end,
                                     const Range& range, bool all) {
   if (all) return all_points(values.size());
-  const double a_second = kAxesWidth / end, a_unit = kAxesHeight / height_of(range);
+  const double height = range.is_logarithmic ? std::log10(range.high / range.low) : range.high - range.low;
+  const double a_second = kAxesWidth / end, a_unit = kAxesHeight / height;
   Points curve;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double shown = std::clamp(values[k], range.low, range.high);
@@ -341,11 +338,6 @@ std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRo
       {{"title", quoted(title)}, {"y_label", markup(y_label)}, {"y_axis", scale + range}, {"plot", plot.text()}});
 }
 
-std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
-  if (rows.size() > 1) rows.pop_back();  // it has no decision, so no derivative
-  return rows;
-}
-
 /// From each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
 Figure obstacle_distance_figure(const RecordingFile& run) {
   std::vector<Series> all;
@@ -463,7 +455,8 @@ std::vector<Figure> run_figures(const datasets::RecordingFile& run) {
 Figure lyapunov_figure(const datasets::RecordingFile& run) {
   DataFile data;
   const std::vector<LyapunovRow>& rows = run.lyapunov;
-  const std::vector<LyapunovRow> moving = without_the_last(rows);
+  std::vector<LyapunovRow> moving = rows;
+  if (moving.size() > 1) moving.pop_back();  // it has no decision, so no derivative
   const double end = rows.empty() ? 1.0 : std::max(rows.back().time, 1.0);
   const std::string title = run_title(run);
   // One after the other: their data sets are numbered.

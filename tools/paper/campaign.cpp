@@ -103,11 +103,6 @@ PartTask part_of(const Variant& variant, std::uint64_t first, std::uint64_t end,
           }};
 }
 
-void append_fields(const std::string& text, std::vector<FieldResult>& fields) {
-  std::stringstream in(text);
-  for (std::string row; std::getline(in, row);) fields.push_back(from_csv_row(row));
-}
-
 std::size_t count(const std::vector<FieldResult>& fields, bool (*holds)(const FieldResult&)) {
   return static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), holds));
 }
@@ -331,7 +326,10 @@ std::vector<VariantResult> run_campaign(const std::vector<Variant>& variants, co
   const std::vector<std::string> texts = run_parts(tasks, options.folder, program_key(), options.jobs);
   std::vector<VariantResult> results;
   for (const Variant& v : variants) results.push_back({datasets::name(v.kind), v.name, {}});
-  for (std::size_t i = 0; i < texts.size(); ++i) append_fields(texts[i], results[owner[i]].fields);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    std::stringstream in(texts[i]);
+    for (std::string row; std::getline(in, row);) results[owner[i]].fields.push_back(from_csv_row(row));
+  }
   return results;
 }
 

@@ -90,12 +90,6 @@ std::string where_words(const Robot& spec, const detail::RobotCourse& course) {
          (rests ? "at rest" : "still moving at " + detail::number_text(speed, 3) + " m/s");
 }
 
-/// How a run ended, from its measurements and from what the run says: collisions first, so that nothing sounds like
-/// success where it was none; long detours of a formation last.
-std::string outcome_words(const Metrics& m, const std::string& end) {
-  return detail::collision_words(m) + end + of_detours(m);
-}
-
 }  // namespace
 
 struct Evaluator::Parts {
@@ -208,8 +202,9 @@ Evaluation Evaluator::finish(const Recording& run) {
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
   const std::vector<std::size_t> deadlock = parts_->stuck->deadlock(run);
   for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
-  m.outcome =
-      outcome_words(m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
+  // Collisions first, so that nothing sounds like success where it was none; long detours of a formation last.
+  m.outcome = detail::collision_words(m) + run.outcome +
+              (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)) + of_detours(m);
   return found;
 }
 

@@ -163,13 +163,6 @@ std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const s
   return r.equilibrium ? equilibrium_words(end, r) : "";
 }
 
-std::string blocked_words(const RunEnd& end, const StuckReport& r) {
-  const std::vector<DecisionConstraint> by = pressing_of(r);
-  const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
-  return (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario, end.run.bodies) +
-         beyond_what_presses(end, r, by);
-}
-
 std::string moving_words(const RunEnd& end, const RobotStep& decision, const StuckReport& r) {
   const std::vector<DecisionConstraint> by = pressing_of(r);
   if (decision.mode == Mode::following) {
@@ -199,7 +192,10 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
   } else if (pressing_of(r).empty()) {
     text = "no active constraint changes its velocity";
   } else {
-    text = blocked_words(end, r);
+    const std::vector<DecisionConstraint> by = pressing_of(r);
+    const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
+    text = (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario, end.run.bodies) +
+           beyond_what_presses(end, r, by);
   }
   if (decision->status != lp::Status::optimal && decision->violation > 0.0)
     text += printed("; the half-planes contradict each other by %.2g m/s", decision->violation);

@@ -57,20 +57,6 @@ std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes,
   return found;
 }
 
-bool lies_inside(const SceneObstacle& o, const Target& t) {
-  return signed_distance(o, t.place) < 0.0;
-}
-
-void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
-                       std::vector<std::string>& out) {
-  for (const std::size_t k : which) {
-    const SceneObstacle& o = s.obstacles[k];
-    const std::string where = lies_inside(o, t) ? ", lies inside obstacle '" + o.id + "'"
-                                                : ", is too near to obstacle '" + o.id + "' for the robot's radius";
-    out.push_back(t.name + where + ": it cannot be reached");
-  }
-}
-
 /// Returns where the robot gets to; nothing where that is not known. A goal that leaves the robot no room may be shut
 /// off as well: a smaller robot would not get there either, so the radius is not named.
 std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, Vec2 from,
@@ -81,7 +67,14 @@ std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes
     if (const std::optional<Vec2> end = reach.reachable_place(obstacle_radius(robot), from, to)) return end;
     if (!reach.is_proven_out_of_reach(obstacle_radius(robot), from, to)) return std::nullopt;
   } else if (!reach.is_shut_off(obstacle_radius(robot), from, t.place)) {
-    warn_of_obstacles(s, in_the_way, t, out);
+    for (const std::size_t k : in_the_way) {
+      const SceneObstacle& o = s.obstacles[k];
+      out.push_back(t.name +
+                    (signed_distance(o, t.place) < 0.0
+                         ? ", lies inside obstacle '" + o.id + "'"
+                         : ", is too near to obstacle '" + o.id + "' for the robot's radius") +
+                    ": it cannot be reached");
+    }
     return std::nullopt;
   }
   const bool is_proof = !reach.is_open_past_discs(obstacle_radius(robot), from, to);

@@ -19,11 +19,6 @@ namespace exactvo::formation::detail {
 /// Share of a step: a time this near to a row is that row's, since 6 * 0.05 is not 0.3 in doubles.
 inline constexpr double kSameRow = 1e-6;
 
-/// How many steps a run has at most.
-inline std::size_t steps_of_run(const Scenario& scenario) {
-  return static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow));
-}
-
 class RunSchedule {
  public:
   /// Ten times a second.
@@ -31,7 +26,10 @@ class RunSchedule {
 
   /// `beat`: how much wall time passes between two calls of `options.progress` at least.
   RunSchedule(const Scenario& scenario, const SimulationOptions& options, std::chrono::milliseconds beat = kBeat)
-      : options_(&options), dt_(scenario.time_step), beat_(beat), steps_(steps_of_run(scenario)) {
+      : options_(&options),
+        dt_(scenario.time_step),
+        beat_(beat),
+        steps_(static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow))) {
     if (options.stop_at) last_decision_ = row_of(*options.stop_at);
   }
 

@@ -143,15 +143,6 @@ std::optional<Equilibrium> rest_in_corner(const Facade& f, double radius, Vec2 g
   return Equilibrium{*at, geometry::normalized(out + next), geometry::kInfinity, norm(way), true};
 }
 
-/// The rests on the edge and in the corner at its end.
-std::vector<Equilibrium> rests_at(const Facade& f, const std::vector<Facade>& all, double radius, Vec2 goal) {
-  std::vector<Equilibrium> rests;
-  if (const auto rest = rest_on_edge(f, radius, goal)) rests.push_back(*rest);
-  const auto corner = rest_in_corner(f, radius, goal);
-  if (corner && is_clear_of_all(all, f.obstacle, radius, corner->position)) rests.push_back(*corner);
-  return rests;
-}
-
 TrapFinding examine(const Facade& f, std::size_t number, const std::vector<Facade>& all, const Robot& robot,
                     Vec2 goal) {
   TrapFinding finding;
@@ -160,7 +151,10 @@ TrapFinding examine(const Facade& f, std::size_t number, const std::vector<Facad
   const double radius = obstacle_radius(robot);
   finding.start_clear = clear_of(f.edge, radius, robot.position);
   finding.goal_clear = clear_of(f.edge, radius, goal);
-  finding.equilibria = rests_at(f, all, radius, goal);
+  // The rests on the edge and in the corner at its end.
+  if (const auto rest = rest_on_edge(f, radius, goal)) finding.equilibria.push_back(*rest);
+  const auto corner = rest_in_corner(f, radius, goal);
+  if (corner && is_clear_of_all(all, f.obstacle, radius, corner->position)) finding.equilibria.push_back(*corner);
   finding.stall_possible = !finding.equilibria.empty();
   return finding;
 }

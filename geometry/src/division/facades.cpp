@@ -133,12 +133,6 @@ double refine(Course& course, double tolerance, double largest) {
   return deviation;
 }
 
-std::vector<Chain> chains_of(const std::vector<Course>& courses) {
-  std::vector<Chain> chains;
-  for (const Course& course : courses) chains.push_back({&course.points, course.closed});
-  return chains;
-}
-
 bool each_has_enough_points(const std::vector<Course>& courses) {
   return std::all_of(courses.begin(), courses.end(),
                      [](const Course& c) { return c.points.size() >= (c.closed ? 3U : 2U); });
@@ -157,7 +151,8 @@ double simplify(std::vector<Course>& courses, double tolerance) {
   const double largest = largest_coordinate(courses);
   const double budget = tolerance - 32.0 * kUnitRoundoff * largest;  // so that CGAL's choice passes the certified bound
   for (Course& course : courses) keep_only_ends(course);
-  const std::vector<Chain> chains = chains_of(courses);
+  std::vector<Chain> chains;
+  for (const Course& course : courses) chains.push_back({&course.points, course.closed});
   if (budget > 0.0 && each_has_enough_points(courses) && !detail::find_contact(chains)) {
     const auto kept = detail::kept_vertices(chains, budget);
     for (std::size_t i = 0; i < courses.size(); ++i) courses[i].kept = kept[i];
@@ -165,13 +160,6 @@ double simplify(std::vector<Course>& courses, double tolerance) {
   double deviation = 0.0;
   for (Course& course : courses) deviation = std::max(deviation, refine(course, tolerance, largest));
   return deviation;
-}
-
-void append_facades(const Course& course, std::vector<Segment>& facades) {
-  const std::vector<Vec2>& p = course.points;
-  for (std::size_t i = 1; i < p.size(); ++i) facades.push_back({p[i - 1], p[i]});
-  if (course.closed && p.size() > 1) facades.push_back({p.back(), p.front()});
-  if (p.size() == 1) facades.push_back({p.front(), p.front()});
 }
 
 bool is_usable(const Obstacle& obstacle) {
@@ -198,7 +186,11 @@ FacadeSet divide_into_facades(const Obstacle& obstacle, const FacadeOptions& opt
     result.deviation = simplify(courses, options.tolerance);
     for (Course& course : courses) drop_unkept(course);
   }
-  for (const Course& course : courses) append_facades(course, result.facades);
+  for (const Course& course : courses) {
+    const std::vector<Vec2>& p = course.points;
+    for (std::size_t i = 1; i < p.size(); ++i) result.facades.push_back({p[i - 1], p[i]});
+    if ((course.closed && p.size() > 1) || p.size() == 1) result.facades.push_back({p.back(), p.front()});
+  }
   return result;
 }
 

@@ -23,13 +23,6 @@ std::vector<Point> to_cgal(const std::vector<Vec2>& points) {
   return out;
 }
 
-ConvexPolygon hull_from_cgal(const std::vector<Point>& points) {
-  ConvexPolygon out;
-  out.vertices.reserve(points.size());
-  for (const Point& p : points) out.vertices.push_back({p.x(), p.y()});
-  return out;
-}
-
 }  // namespace
 
 ConvexPolygon convex_hull(const std::vector<Vec2>& points) {
@@ -41,7 +34,9 @@ ConvexPolygon convex_hull(const std::vector<Vec2>& points) {
         const std::vector<Point> input = to_cgal(points);
         std::vector<Point> hull;
         CGAL::convex_hull_2(input.begin(), input.end(), std::back_inserter(hull));
-        return hull_from_cgal(hull);
+        ConvexPolygon out;
+        for (const Point& p : hull) out.vertices.push_back({p.x(), p.y()});
+        return out;
       });
 }
 

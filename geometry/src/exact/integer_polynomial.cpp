@@ -7,13 +7,9 @@
 namespace exactvo::geometry::detail {
 namespace {
 
-void trim(IntegerPolynomial& f) {
-  while (!f.empty() && sgn(f.back()) == 0) f.pop_back();
-}
-
 /// Divides by the greatest common divisor of the coefficients: a positive number, so that signs stay.
 void make_coprime(IntegerPolynomial& f) {
-  trim(f);
+  while (!f.empty() && sgn(f.back()) == 0) f.pop_back();
   mpz_class content = 0;
   for (const mpz_class& c : f) content = gcd(content, c);
   if (content > 1)

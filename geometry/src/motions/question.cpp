@@ -118,10 +118,6 @@ struct SeenWay {
   }
 };
 
-Condition near_vertex(const SeenWay& seen, const Rational& reach2) {
-  return {sum(sum(product(seen.x, seen.x), product(seen.y, seen.y)), {reach2}, -1)};
-}
-
 /// Beside the edge, not beyond its ends: cross^2 < reach^2 L, 0 < along < L.
 Condition near_edge(const SeenWay& seen, const RationalPoint& e, const Rational& reach2) {
   const Rational length2 = dot(e, e);
@@ -138,7 +134,7 @@ std::vector<Condition> conditions_of(const std::vector<RationalPoint>& path, con
   Condition inside;
   for (std::size_t i = 0; i < v.size(); ++i) {
     const SeenWay seen(path, v[i]);
-    if (!only_inside) conditions.push_back(near_vertex(seen, reach2));
+    if (!only_inside) conditions.push_back({sum(sum(product(seen.x, seen.x), product(seen.y, seen.y)), {reach2}, -1)});
     if (v.size() == 1 || (v.size() == 2 && i == 1)) continue;
     const RationalPoint e = v[(i + 1) % v.size()] - v[i];
     if (!only_inside) conditions.push_back(near_edge(seen, e, reach2));

@@ -369,10 +369,6 @@ class Question {
   std::vector<Standing> standing_;
 };
 
-Motion standing_at_start(const TurningMotion& m) {
-  return StraightMotion{{m.start, m.at}, {m.start, m.at}};
-}
-
 }  // namespace
 }  // namespace turned
 
@@ -380,7 +376,8 @@ Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Ob
   turned::Question q(motion, body);
   q.add_edges(obstacle);
   // Only what begins inside a polygon is there without having met its edges.
-  if (has_interior(obstacle) && encounter(turned::standing_at_start(motion), body, obstacle) == Encounter::overlap)
+  const TimedPoint start{motion.start, motion.at};
+  if (has_interior(obstacle) && encounter(StraightMotion{start, start}, body, obstacle) == Encounter::overlap)
     return Encounter::overlap;
   return q.decide();
 }

@@ -50,12 +50,6 @@ Place place_of(Sign distance_minus_radius) {
   return static_cast<Place>(static_cast<int>(distance_minus_radius));
 }
 
-/// l22 = 0: the segment between the points +-(l11, l21), grown by r.
-Place locate_capsule(const Ellipse& e, const Vector<Exact>& u, const Exact& r) {
-  const Vector<Exact> h{Exact(e.l11), Exact(e.l21)};
-  return place_of(distance_sign({Exact(0), Exact(0)}, u - h, u + h, r));
-}
-
 /// l11 = 0: the vertical segment of squared half-length m = l21^2 + l22^2, grown by r.
 Place locate_vertical(const Ellipse& e, const Vector<Exact>& u, const Exact& r) {
   const Exact m = squared(Exact(e.l21)) + squared(Exact(e.l22));
@@ -68,7 +62,10 @@ Place locate_vertical(const Ellipse& e, const Vector<Exact>& u, const Exact& r) 
 
 Place locate_ellipse_exact(const Ellipse& e, const Vector<Exact>& u, const Exact& r) {
   if (e.l11 == 0.0) return locate_vertical(e, u, r);
-  if (e.l22 == 0.0) return locate_capsule(e, u, r);
+  if (e.l22 == 0.0) {  // the segment between the points +-(l11, l21), grown by r
+    const Vector<Exact> h{Exact(e.l11), Exact(e.l21)};
+    return place_of(distance_sign({Exact(0), Exact(0)}, u - h, u + h, r));
+  }
   const SeparationCubic<Exact> g = separation_cubic(e, r, u);
   // r = 0: Q - D = -c.
   if (sign_of(r) == Sign::zero) return place_of(sign_of(Exact(0) - g.c));

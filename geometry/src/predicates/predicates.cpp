@@ -85,12 +85,8 @@ Exact farthest(const std::vector<Vec2>& vertices, Vec2 n, Vec2 origin) {
   return best;
 }
 
-Exact exact_squared_norm(Vec2 n) {
-  return dot(make<Exact>(n), make<Exact>(n));
-}
-
 SupportParts parts_of(const GrownShape& s, Vec2 n) {
-  const auto from_radius = [&](const Exact& radius) { return squared(radius) * exact_squared_norm(n); };
+  const auto from_radius = [&](const Exact& radius) { return squared(radius) * dot(make<Exact>(n), make<Exact>(n)); };
   if (const auto* disc = std::get_if<Disc>(&s.shape))
     return {exact_offset(n, disc->center, s.origin), Exact(0), from_radius(Exact(disc->radius) + Exact(s.radius))};
   if (const auto* e = std::get_if<Ellipse>(&s.shape)) {

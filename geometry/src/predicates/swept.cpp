@@ -50,12 +50,6 @@ double extent_of(const ConvexShape& shape) {
   return std::max({std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x), std::fabs(box.high.y)});
 }
 
-/// A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.
-double time_beyond(double t_max, Vec2 v, double extent) {
-  if (std::isfinite(t_max)) return t_max;
-  return std::exp2(std::ceil(std::log2(4.0 * extent / std::max(std::fabs(v.x), std::fabs(v.y)))));
-}
-
 Exact finite_time(double t_max, const Point& d, double extent) {
   if (std::isfinite(t_max)) return Exact(t_max);
   return is_zero(d) ? Exact(0) : detail::beyond(d, extent);
@@ -155,7 +149,9 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
   const Point d = exact_sum(direction);
   const double extent = extent_of(s.shape) + size_of(s.origin) + s.radius;
   const Vec2 whole = rounded(direction);
-  const double t = time_beyond(t_max, whole, extent);
+  // A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.
+  const double fastest = std::max(std::fabs(whole.x), std::fabs(whole.y));
+  const double t = std::isfinite(t_max) ? t_max : std::exp2(std::ceil(std::log2(4.0 * extent / fastest)));
   if (std::isfinite(t) && is_zero(d - make<Exact>(whole))) return segment_meets(s, whole, t);
   detail::count_exact();
   return detail::segment_meets_exactly(s, d, finite_time(t_max, d, extent));

@@ -199,18 +199,6 @@ std::vector<Traits::Curve_2> edges_of_rings(const std::vector<Ring>& rings) {
   return edges;
 }
 
-std::vector<Vec2> sorted_vertices(const std::vector<Ring>& rings) {
-  std::vector<Vec2> vertices;
-  for (const Ring& ring : rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
-  std::sort(vertices.begin(), vertices.end(), detail::lexicographically_less);
-  return vertices;
-}
-
-// Crossing an edge changes sides if an odd number of the rings' edges lie on it.
-bool changes_sides(const HalfEdge& edge) {
-  return edge->curve().data().size() % 2 == 1;
-}
-
 template <class Action>
 void for_each_edge_round(const Face& face, const Action& action) {
   const auto walk = [&](HalfEdge first) {
@@ -234,7 +222,8 @@ void mark_inside(Arrangement& arrangement) {
       const Face next = edge->twin()->face();
       if (next->data().seen) return;
       next->data().seen = true;
-      next->data().inside = face->data().inside != changes_sides(edge);
+      // Crossing an edge changes sides if an odd number of the rings' edges lie on it.
+      next->data().inside = face->data().inside != (edge->curve().data().size() % 2 == 1);
       open.push_back(next);
     });
   }
@@ -253,14 +242,6 @@ void number_component(const Face& start, std::size_t component) {
       open.push_back(edge->twin()->face());
     });
   }
-}
-
-std::size_t number_components(Arrangement& arrangement) {
-  std::size_t components = 0;
-  for (Face face : arrangement.face_handles()) {
-    if (face->data().inside && face->data().component == 0) number_component(face, ++components);
-  }
-  return components;
 }
 
 // The region on the left, its outside on the right.
@@ -396,9 +377,14 @@ struct Cut {
 Cut cut(const std::vector<Ring>& rings) {
   Arrangement arrangement = arrangement_of(rings);
   mark_inside(arrangement);
-  const std::size_t components = number_components(arrangement);
+  std::size_t components = 0;
+  for (Face face : arrangement.face_handles())
+    if (face->data().inside && face->data().component == 0) number_component(face, ++components);
   Rounding rounding;
-  describe_vertices(arrangement, sorted_vertices(rings), rounding);
+  std::vector<Vec2> vertices;
+  for (const Ring& ring : rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
+  std::sort(vertices.begin(), vertices.end(), detail::lexicographically_less);
+  describe_vertices(arrangement, vertices, rounding);
   Cut result;
   result.polygons = polygons_of(arrangement, components);
   result.moved = rounding.moved();

@@ -22,14 +22,6 @@ Box box_of(const Segment& s, EdgeId id) {
   return {low, high, id};
 }
 
-std::vector<Box> boxes_of(const std::vector<Chain>& chains) {
-  std::vector<Box> boxes;
-  for (std::size_t c = 0; c < chains.size(); ++c) {
-    for (std::size_t i = 0; i < chains[c].edge_count(); ++i) boxes.push_back(box_of(chains[c].edge(i), {c, i}));
-  }
-  return boxes;
-}
-
 /// Ends the search: an exception is the only way out of CGAL's.
 struct Ended {};
 
@@ -52,7 +44,9 @@ bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
     without_cgal_failures(
         "for_each_box_pair", [&] { return std::to_string(chains.size()) + " chains"; },
         [&] {
-          std::vector<Box> boxes = boxes_of(chains);
+          std::vector<Box> boxes;
+          for (std::size_t c = 0; c < chains.size(); ++c)
+            for (std::size_t i = 0; i < chains[c].edge_count(); ++i) boxes.push_back(box_of(chains[c].edge(i), {c, i}));
           CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), report);
         });
   } catch (const Ended&) {

@@ -342,23 +342,15 @@ CleanRing without_closure(const Ring& points, std::size_t ring, Problems& proble
   return clean;
 }
 
-std::size_t count_distinct(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(), detail::lexicographically_less);
-  return static_cast<std::size_t>(std::distance(points.begin(), std::unique(points.begin(), points.end())));
-}
-
-// The reason why a ring encloses nothing, if so.
-std::optional<RingProblemCode> degeneracy(const Ring& ring) {
-  if (count_distinct(ring) < 3) return RingProblemCode::too_few_points;
-  if (detail::on_one_line(ring)) return RingProblemCode::zero_area;
-  return std::nullopt;
-}
-
 // Whether the ring by itself bounds an area; otherwise the problem is reported.
 bool bounds_an_area(const CleanRing& clean, std::size_t ring, Problems& problems) {
-  if (const auto code = degeneracy(clean.points)) {
+  std::vector<Vec2> distinct = clean.points;
+  std::sort(distinct.begin(), distinct.end(), detail::lexicographically_less);
+  const bool has_three = std::unique(distinct.begin(), distinct.end()) - distinct.begin() > 2;
+  if (!has_three || detail::on_one_line(clean.points)) {
     const Vec2 where = clean.points.empty() ? Vec2{} : clean.points.front();
-    problems.push_back({*code, ring, 0, where, false});
+    const RingProblemCode code = has_three ? RingProblemCode::zero_area : RingProblemCode::too_few_points;
+    problems.push_back({code, ring, 0, where, false});
     return false;
   }
   if (const auto contact = detail::find_contact({Chain{&clean.points}})) {

@@ -12,11 +12,6 @@ namespace {
 /// Gates up to this many diameters wide are crossed through their exact middle.
 constexpr double kTight = 1.01;
 
-/// The middle of an interval that rounding has turned over.
-void close_if_empty(double& low, double& high) {
-  if (low > high) low = high = 0.5 * (low + high);
-}
-
 /// Where a Link crosses the line x + s u, |u| = 1.
 double crossing_at(const CellMap& map, int link, Vec2 x, Vec2 u) {
   const Link& l = map.links[link];
@@ -124,7 +119,7 @@ ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
   out.open = low <= high + slack;
   out.nearly = low <= high + 1e3 * slack;
   out.tight = link.length < 2.0 * kTight * radius_;
-  close_if_empty(low, high);
+  if (low > high) low = high = 0.5 * (low + high);  // rounding has turned the interval over
   out.from = v + low * u;
   out.to = v + high * u;
   out.size = std::max({largest_of(v), largest_of(out.from), largest_of(out.to), link.length});

@@ -50,11 +50,6 @@ void append_ring(const Ring& ring, std::vector<Segment>& out) {
   if (ring.size() > 1) out.push_back({ring.back(), ring.front()});
 }
 
-// The largest magnitude in L: what the squares below are scaled by, so that none over- or underflows.
-double largest_entry(const Ellipse& e) {
-  return std::max({std::fabs(e.l11), std::fabs(e.l21), std::fabs(e.l22)});
-}
-
 std::string text(Vec2 p) {
   return hex_text(p.x) + " " + hex_text(p.y);
 }
@@ -77,7 +72,8 @@ Ellipse ellipse_from_axes(Vec2 center, EllipseAxes axes) {
 }
 
 EllipseAxes axes_of(const Ellipse& ellipse) {
-  const double scale = largest_entry(ellipse);
+  // What the squares below are scaled by, so that none over- or underflows.
+  const double scale = std::max({std::fabs(ellipse.l11), std::fabs(ellipse.l21), std::fabs(ellipse.l22)});
   if (!(scale > 0.0)) return {};
   const double x = ellipse.l11 / scale;
   const double y = ellipse.l21 / scale;

@@ -203,13 +203,6 @@ py::list plans(const Run& run) {
   return result;
 }
 
-py::list problems_of(const formation::Scenario& scenario) {
-  py::list result;
-  for (const formation::ScenarioProblem& p : formation::validate(scenario))
-    result.append(py::make_tuple(p.pointer, p.found, p.expected));
-  return result;
-}
-
 }  // namespace
 
 void bind_simulate(py::module_& module) {
@@ -224,7 +217,13 @@ void bind_simulate(py::module_& module) {
           WithoutGil())
       .def(
           "to_json", [](const LoadedScenario& s) { return datasets::write_scenario(s.scenario); }, WithoutGil())
-      .def("problems", [](const LoadedScenario& s) { return problems_of(s.scenario); })
+      .def("problems",
+           [](const LoadedScenario& s) {
+             py::list result;
+             for (const formation::ScenarioProblem& p : formation::validate(s.scenario))
+               result.append(py::make_tuple(p.pointer, p.found, p.expected));
+             return result;
+           })
       .def(
           "warnings", [](const LoadedScenario& s) { return formation::warnings_before(s.scenario); }, WithoutGil())
       .def_property_readonly("name", [](const LoadedScenario& s) { return s.scenario.name; })

@@ -234,15 +234,6 @@ constexpr double kGapOfPlots = 60.0;   // px
 /// "-1.2e+06", eight characters of 6 px, and a gap of two.
 constexpr double kWidthOfTic = 60.0;  // px
 
-/// The least of 1, 2, 5, 10, ... metres that is as wide as a label.
-double distance_of_tics(const Box& view) {
-  const double least = kWidthOfTic / kSideOfPlot * std::max(view.width(), view.height());
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double digit : {1.0, 2.0, 5.0})
-    if (digit * power >= least) return digit * power;
-  return 10.0 * power;
-}
-
 constexpr const char* kProblemMark = "with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'";
 
 void add_panel(const std::string& title, const Panel& panel, Sheet& sheet) {
@@ -250,7 +241,8 @@ void add_panel(const std::string& title, const Panel& panel, Sheet& sheet) {
   const std::size_t room = characters_in(1.3 * (kSideOfPlot + 0.5 * kGapOfPlots));
   const std::string words = letter_of(sheet.panels.size()) + " " + title;
   sheet.panels.push_back(panel.on_sheet(quoted(shortened(words, room - std::min(from.size(), room / 2)) + from)));
-  sheet.panels.back().settings += fmt::format("\nset xtics {:.9g}", distance_of_tics(panel.view));
+  const double least = kWidthOfTic / kSideOfPlot * std::max(panel.view.width(), panel.view.height());
+  sheet.panels.back().settings += fmt::format("\nset xtics {:.9g}", round_size(least));
 }
 
 /// Before and after. Each polygon with its own holes: what lies in a hole of another keeps its colour.

@@ -253,11 +253,6 @@ bool is_ray(const Owner& owner) {
   return owner.kind == Owner::Kind::ray;
 }
 
-/// A half-plane without a normal allows everything or nothing.
-bool allows_nothing(const HalfPlane& h) {
-  return h.normal == Vec2{} && h.offset > 0.0;
-}
-
 }  // namespace
 
 const char* name(Refusal refusal) {
@@ -342,7 +337,7 @@ bool FreeArrangement::holds(const std::vector<HalfPlane>& half_planes) const {
   for (const HalfPlane& h : half_planes) {
     EXACTVO_REQUIRE(is_in_range(h), geometry::hex_text(h.normal.x) + " " + geometry::hex_text(h.normal.y) + " " +
                                         geometry::hex_text(h.offset));
-    if (allows_nothing(h)) return true;
+    if (h.normal == Vec2{} && h.offset > 0.0) return true;  // allows nothing
     if (h.normal != Vec2{}) region.push_back(detail::allowed_by(h));
   }
   return guarded(cones_, [&] {

@@ -199,15 +199,11 @@ bool margin_holds(const RootSum& excess, double margin) {
   return sign({excess.k + Rational(margin), excess.b, excess.d}) <= 0;
 }
 
-double rounded_root(const Rational& x) {
-  return std::sqrt(x.get_d());
-}
-
 /// A double near the exact margin: exact but for the roots, which are refined once in rationals (Newton's step squares
 /// the relative error of 2^-52).
 double approximate_margin(const RootSum& excess) {
   const auto refined = [](const Rational& x) {
-    const Rational r(rounded_root(x));
+    const Rational r(std::sqrt(x.get_d()));
     return sgn(r) > 0 ? Rational((r + x / r) / 2) : Rational(0);
   };
   const Rational sum = -(excess.k + refined(excess.b) + refined(excess.d));

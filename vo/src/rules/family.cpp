@@ -21,10 +21,6 @@ VelocityObstacle cone_round(const ConvexShape& shape, const Encounter& e, double
   return {shape, e.position, e.radius, time_horizon};
 }
 
-ShiftedCone cone_of_vo(const Encounter& e) {
-  return {cone_of(e), VectorSum{{-e.obstacle_velocity}}, e.obstacle_velocity};
-}
-
 ShiftedCone cone_of_rvo(const Encounter& e) {
   const Vec2 half_v = 0.5 * e.velocity, half_u = 0.5 * e.obstacle_velocity;
   return {cone_round(e.obstacle, e, 2.0 * e.time_horizon), VectorSum{{-half_v, -half_u}}, half_v + half_u};
@@ -89,7 +85,7 @@ Member family_member(Variant variant, const Encounter& e) {
   Member member{variant, std::nullopt, std::nullopt};
   const VelocityObstacle obstacle = cone_of(e);
   if (obstacle.overlaps()) return member;
-  if (variant == Variant::vo) member.cone = cone_of_vo(e);
+  if (variant == Variant::vo) member.cone = {obstacle, VectorSum{{-e.obstacle_velocity}}, e.obstacle_velocity};
   if (variant == Variant::rvo) member.cone = cone_of_rvo(e);
   if (variant == Variant::hrvo) member.cone = cone_of_hrvo(e);
   if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e);

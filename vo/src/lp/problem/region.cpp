@@ -12,10 +12,6 @@
 namespace exactvo::lp {
 namespace {
 
-bool bound_is_not_empty(const SpeedBound& b) {
-  return b.disc >= 0.0 && b.box_x >= 0.0 && b.box_y >= 0.0;
-}
-
 std::string words(double x, double y) {
   return "(" + std::to_string(x) + ", " + std::to_string(y) + ")";
 }
@@ -40,7 +36,8 @@ void require_well_formed(const Problem& problem) {
   const Vec2 p = problem.preferred;
   EXACTVO_REQUIRE(is_finite(p), "preferred " + words(p.x, p.y));
   const SpeedBound& b = problem.bound;
-  EXACTVO_REQUIRE(bound_is_not_empty(b), "disc " + std::to_string(b.disc) + ", box " + words(b.box_x, b.box_y));
+  EXACTVO_REQUIRE(b.disc >= 0.0 && b.box_x >= 0.0 && b.box_y >= 0.0,
+                  "disc " + std::to_string(b.disc) + ", box " + words(b.box_x, b.box_y));
   if (problem.objective == Objective::nearest) return;
   EXACTVO_REQUIRE(bound_is_finite(b), "no finite speed bound for a linear objective");
   EXACTVO_REQUIRE(p != Vec2{}, "direction " + words(p.x, p.y));
