@@ -99,7 +99,7 @@ TEST_F(Lines, CommasWithinQuotationMarksPartNothing) {
   EXPECT_THROW(table.fields(), DataError) << "a quotation mark that is not closed";
 }
 
-TEST_F(Lines, AFileThatIsNotThereOrAFolderIsRefused) {
+TEST_F(Lines, AMissingFileIsRefusedAndSoIsAFolder) {
   for (const auto& [file, code] : {std::pair{path_ + ".missing", DataCode::file_missing},
                                    std::pair{fs::temp_directory_path().string(), DataCode::file_unreadable}}) {
     try {

@@ -131,7 +131,7 @@ TEST(ScenarioRefusals, MessagesAreSentences) {
             std::string::npos);
 }
 
-TEST(ScenarioRefusals, BottomlessNestingEndsEarly) {
+TEST(ScenarioRefusals, EndlessNestingIsRefused) {
   const DataError error = refused(std::string(100000, '['));
   EXPECT_EQ(error.code(), DataCode::nesting);
   EXPECT_EQ(refused("{\"name\":" + std::string(100000, '{')).code(), DataCode::json_syntax);

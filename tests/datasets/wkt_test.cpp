@@ -119,7 +119,7 @@ TEST(Wkt, OneBadGeometryDoesNotStopTheRest) {
   EXPECT_EQ(file.counts.done, 3u);
 }
 
-TEST(Wkt, BottomlessNestingEndsEarly) {
+TEST(Wkt, EndlessNestingIsRefused) {
   std::string text;
   for (int k = 0; k < 100000; ++k) text += "GEOMETRYCOLLECTION(";
   EXPECT_EQ(refused(text).code(), DataCode::nesting);

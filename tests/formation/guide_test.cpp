@@ -439,7 +439,7 @@ TEST(NearestPlace, OfAGoalInACornerLiesWhereBothWallsAreOneRadiusAway) {
 }
 
 TEST(NearestPlace, IsWhereTheRobotStandsIfItCannotGetNearer) {
-  // A closet about the robot, and the goal straight behind its wall.
+  // The robot is in a closet; the goal is straight behind the wall of the closet.
   Scenario s = nearest(scene({Polyline{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}}}, {0.5, 0}, {9, 0}));
   s.robots[0].position.x = 0.5 - 3e-6;  // the room that a place needs
   const detail::NearestPlace found = nearest_place(s);

@@ -198,7 +198,7 @@ TEST(Metrics, VelocityVariationAndPeakAcceleration) {
   EXPECT_DOUBLE_EQ(m.peak_acceleration, 4.0);
 }
 
-TEST(Metrics, ClearancesFarOutAreStillBelowTheTruth) {
+TEST(Metrics, ClearancesFarFromTheOriginAreLowerBoundsToo) {
   // A kilometre out the wall lies a radius away, up to rounding: contact, and no clearance may be promised.
   Scenario s = scene_of({{1000.0, 4.0}});
   s.robots[0].radius = 0.3;

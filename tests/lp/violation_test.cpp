@@ -20,7 +20,7 @@ double rounded_worst(const lp::Problem& problem, lp::Vec2 v) {
   return worst;
 }
 
-TEST(WorstViolation, IsZeroWhereTheExactSolverKeepsWhatDoublesCallBroken) {
+TEST(WorstViolation, IsZeroForExactAnswersThatDoublesCallViolated) {
   std::size_t called_broken = 0;
   for (const lp::Problem& problem : lp::generate("RF10", 2000, 1)) {
     const lp::Solution s = lp::solve_exact(problem).solution;

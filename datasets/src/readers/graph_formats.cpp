@@ -164,7 +164,7 @@ class CountedLines : public LineReader {
     const std::int64_t n = whole(field);
     if (n < 0) refuse(DataCode::format_syntax, excerpt(line(), 0), "a count");
     if (static_cast<std::uint64_t>(n) > left() / 2 + 1)
-      refuse(DataCode::size, std::to_string(n) + " lines", "no more than the file holds");
+      refuse(DataCode::size, std::to_string(n) + " lines", "no more lines than the file has");
     return static_cast<std::size_t>(n);
   }
   std::size_t index(std::size_t field, std::size_t below) const {

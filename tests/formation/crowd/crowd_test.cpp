@@ -102,7 +102,7 @@ TEST(Crowd, ASteeringFunctionAndAnArrayGiveTheSameBits) {
   }
 }
 
-TEST(Crowd, RobotsKeepTheirIdsWhenOthersGoAndNewOnesComeInTheirPlace) {
+TEST(Crowd, RobotsKeepTheirIdsWhenOthersLeaveAndNewOnesReplaceThem) {
   const CrowdScene scene = crowd_scene("crowd", 100);
   Crowd crowd = crowd_of(scene);
   run(crowd, 3);
@@ -319,7 +319,7 @@ TEST(CrowdBodies, ARobotStopsBeforeOneAtRestUntilItIsRemoved) {
   }
 }
 
-TEST(CrowdBodies, ARobotGoesRoundADiscAsNearAsItMay) {
+TEST(CrowdBodies, ARobotPassesADiscAtTheSumOfTheRadii) {
   Crowd crowd = with_one_kind();
   crowd.add_robot({-6.0, 0.3});
   crowd.add_body(geometry::Disc{{0.0, 0.0}, 1.0});

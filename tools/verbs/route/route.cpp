@@ -110,7 +110,7 @@ class RouteQueries {
     const datasets::MapSize& size = map_.cells->size;
     if (numbers[0] != static_cast<double>(size.columns) || numbers[1] != static_cast<double>(size.rows))
       lines_.refuse(DataCode::out_of_range, fmt::format("a task for a map of {} x {} cells", numbers[0], numbers[1]),
-                    fmt::format("{} x {} cells, as {} has", size.columns, size.rows, map_.file));
+                    fmt::format("{} x {} cells, the size of {}", size.columns, size.rows, map_.file));
     static_assert(kStartField == kWidthField + 2);
     return {0, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}};
   }

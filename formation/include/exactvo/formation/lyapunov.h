@@ -40,8 +40,8 @@ struct SoundTerms {
   double value() const { return kinetic + consensus + slots; }
 };
 
-/// The derivative of the function that holds, near obstacles too, and whatever the controller: e_i is what v_i follows
-/// (v + u / k3) less the preference of the default law in free space.
+/// The function's derivative, valid near obstacles too and for any controller. e_i is the velocity that v_i follows
+/// (v + u / k3) minus the preference of the default law in free space.
 struct SoundRates {
   double consensus = 0.0;     ///< -k2 v^T (L+B) v^
   double tracking = 0.0;      ///< -k3 |v^|^2

@@ -8,8 +8,8 @@
 ///     Monitor monitor(setup);
 ///     for (;;) drive(monitor.judge(pose, command).share * command);
 ///
-/// The way. A command (a constant twist) that is scaled by a share s is held for `period + latency`: so long it takes
-/// until another one takes effect. Then speed and turn rate fall together and evenly to 0, within the braking limits,
+/// The way. A command (a constant twist) that is scaled by a share s is held for `period + latency`, the time until
+/// another one takes effect. Then speed and turn rate fall together and evenly to 0, within the braking limits,
 /// so that the robot stops on the arc on which it was. A trajectory is followed for a share of its duration and for
 /// `latency`, then the robot brakes along the rest of it. The pose is where the robot is as the command takes effect.
 ///

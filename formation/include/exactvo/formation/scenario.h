@@ -230,7 +230,7 @@ struct Scenario {
   /// s, with `acceleration`: how long the way of a robot that brakes is kept clear, `braking_time_of`. Not used
   /// without.
   std::optional<double> braking_time;
-  /// Part of each robot's `radius`, as `keep_within_tube` and `put_on_wheels` make it; none: bodies are exactly where
+  /// `keep_within_tube` and `put_on_wheels` set it and add it to each robot's `radius`. None: bodies are exactly where
   /// the run has them.
   std::optional<Uncertainty> uncertainty;
 };

@@ -127,7 +127,7 @@ ProvenHalfPlane half_plane_against(geometry::GrownShape& seen, const VelocityObs
 ProvenHalfPlane contact_or_push_out(const geometry::GrownShape& seen, const VelocityObstacle::Nearest& nearest,
                                     const ClearancePolicy& policy);
 
-/// { v : n.(v - u) >= c } as { v : n.v >= c' }, c' rounded up. Certified where h is; h itself where u is 0.
+/// { v : n.(v - u) >= c } as { v : n.v >= c' }, c' rounded up. Certified if h is; h itself if u is 0.
 HalfPlane shifted_by(const HalfPlane& h, Vec2 u);
 
 }  // namespace exactvo::vo

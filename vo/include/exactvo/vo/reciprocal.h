@@ -27,7 +27,7 @@ struct MovingDisc {
   double radius = 0.0;  ///< m, >= 0
 };
 
-/// What the two keep, and how they share the change.
+/// The distance that two discs keep, and how they share the change of velocity.
 struct ReciprocalOptions {
   double time_horizon = 2.0;  ///< s, > 0
   double margin = 0.0;        ///< m, >= 0, kept between the rims; where it is already used up, discs only have to part
