@@ -17,7 +17,7 @@ std::size_t files_in(const std::filesystem::path& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-/// While it lives, a write beyond so many bytes of a file fails, as on a full disk.
+/// While it lives, a write beyond this many bytes of a file fails, as on a full disk.
 class FilesUpTo {
  public:
   explicit FilesUpTo(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -187,8 +187,8 @@ TEST(Passing, NothingIsProvenOfRobotsThatOverlapAtTheStart) {
   EXPECT_THAT(robots_without_passing(changing({-1, 0.26}, {1, 0})), IsEmpty());
 }
 
-/// Whose goal the walls alone keep it from has no use of room to pass: beyond the strip, in a wall, or behind a gap
-/// that is just too narrow.
+/// Goals that walls alone keep out of reach, whatever room there is to pass: beyond the strip, in a wall, or behind a
+/// gap that is just too narrow.
 TEST(Passing, NothingIsSaidOfAGoalThatIsOutOfReachByItself) {
   const auto reversed = [](double length, double width, Vec2 goal) {
     Scenario s = corridor(length, width);

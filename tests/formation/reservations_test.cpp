@@ -21,7 +21,7 @@ namespace {
 using namespace detail;
 using namespace test_scenes;
 
-/// Places that are `apart` from each other on so many columns and rows, and other such places, in random order.
+/// Places that are `apart` from each other on this many columns and rows, and other such places, in random order.
 Scenario exchange_of_places(int columns, int rows, double apart, test::SeededRandom& random) {
   Scenario s;
   std::vector<Vec2> from, to;

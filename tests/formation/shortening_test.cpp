@@ -33,7 +33,7 @@ Timetable timetable_of(const JointProblem& p, const std::vector<JointMove>& move
   return timetable_of(moves, p.radii, edges);
 }
 
-/// m: the way that a robot goes until all are there that never waits, if they follow the plan in small strides.
+/// m: how far a robot that never waits would go until all robots have arrived, following the plan in small strides.
 double driven(const Problem& p, const std::vector<JointMove>& moves) {
   constexpr double kStride = 0.02;
   std::vector<Vec2> at = positions(p.map, p.joint.starts);

@@ -163,7 +163,7 @@ inline RouteField bars_field(SeededRandom& random) {
   return f;
 }
 
-/// Rows of occupied cells as boxes, each rounded by itself as a file of so many digits has it.
+/// Rows of occupied cells as boxes, each rounded by itself as a file of this many digits has it.
 inline RouteField rounded_field(SeededRandom& random) {
   const Turn turn(random.integer(0, 3) ? random.uniform(0, 2 * geometry::kPi) : 0.0);
   const double digits = std::pow(10.0, random.integer(6, 12));

@@ -23,7 +23,7 @@ struct TurningCase {
   geometry::RoundedPolygon piece;
 };
 
-/// The hull of so many points in a box of this half side.
+/// The hull of this many points in a box of this half side.
 std::vector<geometry::Vec2> random_hull(SeededRandom& random, int least, int most, double size);
 
 /// All numbers, losslessly.

@@ -70,7 +70,7 @@ TEST(Multipliers, MakeTheVelocityStationaryForEveryKind) {
   });
 }
 
-TEST(Multipliers, OfARelaxedAnswerHaveAWeightOnWhatGives) {
+TEST(Multipliers, OfARelaxedAnswerWeightAViolatedConstraint) {
   for_each_kind(82, [](const Problem& problem) {
     const Solution s = solve(problem);
     if (s.status == Status::optimal) return;

@@ -362,7 +362,7 @@ TEST(DrawnPoints, LeaveNoPointFartherThanTheThinning) {
   EXPECT_TRUE(drawn_points({}).empty());
 }
 
-/// So many robots side by side that all drive upward in waves.
+/// This many robots side by side that all drive upward in waves.
 datasets::RecordingFile long_run(std::size_t robots, int rows) {
   datasets::RecordingFile run = short_run();
   run.scenario.robots.clear();

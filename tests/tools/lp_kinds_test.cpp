@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Problems of every kind through the program: each solver's answers against those of `exact`.
 //
-// EXACTVO_LP_PROBLEMS=4000 tools_lp_kinds_test     # so many of every kind, some minutes
+// EXACTVO_LP_PROBLEMS=4000 tools_lp_kinds_test     # this many of every kind, some minutes
 #include <gtest/gtest.h>
 
 #include <cmath>

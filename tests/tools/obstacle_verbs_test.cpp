@@ -185,8 +185,8 @@ TEST(Repair, FilesOfDegreesAreNotPutOnOneHeap) {
 
 constexpr const char* kFourByThree = R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,3],[0,3],[0,0]]]})";
 
-/// A 4 x 3 rectangle without units is one of degrees by RFC 7946: nobody means that, so it is said.
-TEST(ObstacleVerbs, DegreesThatBecameMetresAreSaid) {
+/// By RFC 7946 a 4 x 3 rectangle without units is in degrees, which is hardly meant: a message says so.
+TEST(ObstacleVerbs, AMessageSaysThatDegreesBecameMetres) {
   const Workplace here;
   here.write("unit.geojson", kFourByThree);
   here.write("unit.json", R"({"name": "unit", "robots": [{"id": "R", "position": [2, 1], "goal": [9, 9]}],
@@ -376,7 +376,7 @@ class HeldLock {
   HeldLock(const HeldLock&) = delete;
   HeldLock& operator=(const HeldLock&) = delete;
 
-  /// The processes that wait for it, once there are so many, a minute at most.
+  /// The processes that wait for it, once there are this many, a minute at most.
   std::vector<pid_t> awaited_by(std::size_t processes) const {
     std::vector<pid_t> waiting;
     for (int looks = 0; looks < 6000; ++looks, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {

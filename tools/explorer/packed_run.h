@@ -35,7 +35,7 @@ class PackedColumns;
 struct PackedRunLimits {
   std::size_t states = 1U << 20;            ///< positions and velocities
   std::size_t decision_numbers = 1U << 20;  ///< doubles of decisions: about twenty a robot and six a half-plane
-  std::size_t routed_robots = 50;           ///< beyond so many robots, no routes
+  std::size_t routed_robots = 50;           ///< beyond this many robots, no routes
   std::size_t routed_vertices = 2000;       ///< the same, of obstacles: planning again must cost little
   bool has_scenario = false;  ///< whether the whole scenario is in it, for a page that asks to compute with it
 };

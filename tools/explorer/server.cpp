@@ -217,8 +217,8 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   }
 }
 
-/// What an answer holds of robots that were not asked about: what holds them (who waits for whom) and their halves of
-/// pairs with the one that was, which its proofs need. All 50 half-planes of 51 robots would take most of an answer's
+/// What an answer has of robots that were not asked about: the robots they wait for, and their halves of pairs with the
+/// robot that was, which its proofs need. All 50 half-planes of 51 robots would take most of an answer's
 /// time to pack.
 void keep_what_is_shown(std::size_t robot, formation::Step& row) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {

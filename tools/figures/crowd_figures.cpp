@@ -22,7 +22,7 @@ namespace {
 
 // --- What the crowd did ---
 
-/// A way between two rows is divided among the cells in so many equal pieces at most.
+/// A way between two rows is divided among the cells in this many equal pieces at most.
 constexpr std::size_t kMostPieces = 16;
 /// m: robots that stand in one place are seen in a view of this size.
 constexpr double kLeastView = 1.0;

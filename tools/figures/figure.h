@@ -128,7 +128,7 @@ std::string names_of(const std::vector<std::size_t>& robots, const NameOf& name_
   return robots.size() == 1 ? first : first + " and " + std::to_string(robots.size() - 1) + " more";
 }
 
-/// How many characters of a title go into so many pixels of the SVG.
+/// How many characters of a title go into this many pixels of the SVG.
 std::size_t characters_in(double pixels);
 
 /// Texts by place.

@@ -66,7 +66,7 @@ struct PartTask {
   std::function<std::string()> work;  ///< gives the part's text; called from any thread
 };
 
-/// Does every part that is not in the folder yet, which is created where missing, on so many threads. `key`: what a
+/// Does every part that is not in the folder yet, which is created where missing, on this many threads. `key`: what a
 /// part depends on beside its name; one made under another key is done again. Returns the texts of all, in the tasks'
 /// order. Throws Interrupted after a request to stop, with the parts kept that are done; what a task throws goes
 /// through.

@@ -54,7 +54,7 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags);
 // some hundred robots (formation/simulation.h); or places alone are recorded, with method orca and reserved places, for
 // any number of robots (formation/crowd_run.h). The user asks for one with --decisions; else the scenario decides ---
 
-/// From so many robots on places alone are recorded: a dense scene of 200 takes 75 times as long with decisions, and
+/// From this many robots on places alone are recorded: a dense scene of 200 takes 75 times as long with decisions, and
 /// below that either takes seconds.
 inline constexpr std::size_t kManyRobots = 200;
 

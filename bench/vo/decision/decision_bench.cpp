@@ -20,7 +20,7 @@ using geometry::GrownShape;
 using geometry::Vec2;
 
 constexpr std::size_t kScenes = 32768;
-constexpr std::size_t kInRationals = 32;  // of so many scenes one is judged in rationals as well
+constexpr std::size_t kInRationals = 32;  // of this many scenes one is judged in rationals as well
 constexpr int kRounds = 15;
 constexpr double kSame = 1e-6;       // m/s: slacks and tilts are of the order of 1e-14, corners magnify them
 constexpr double kMostApart = 1e-3;  // of the scenes: corners so sharp that they magnify more

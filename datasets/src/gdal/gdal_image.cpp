@@ -7,7 +7,7 @@
 namespace exactvo::datasets {
 namespace {
 
-/// So many rows stay with GDAL: 4 MB of the widest that are usual.
+/// This many rows stay with GDAL: 4 MB of the widest that are usual.
 constexpr std::size_t kRowsKept = 128;
 
 const char* const kImageDrivers[] = {"PNG", "BMP", "JPEG", nullptr};

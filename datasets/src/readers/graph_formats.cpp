@@ -145,7 +145,7 @@ PlaneGraph read_graph(const XmlFile& xml, const pugi::xml_node& element, const s
 
 // --- Counted lists ---
 
-/// Lines that hold something, so many fields each.
+/// Lines that hold something, this many fields each.
 class CountedLines : public LineReader {
  public:
   using LineReader::LineReader;

@@ -36,7 +36,7 @@ inline constexpr double kNoDirection = 0x1p-900;
 /// Of a range, for its own rounding.
 inline constexpr double kWiden = 1.0 + 0x1p-20;
 
-/// Ends of edges are cut at so many times the range.
+/// Ends of edges are cut at this many times the range.
 inline constexpr double kCutRanges = 2.0;
 
 /// Of length 1, or 0 where there is no direction.

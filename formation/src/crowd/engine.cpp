@@ -171,7 +171,7 @@ class CrowdEngine final : public CrowdCore {
     return report;
   }
 
-  /// Robots a range of so many.
+  /// Robots a range of this many.
   std::size_t grain_of(std::size_t count) const {
     const std::size_t share = count / (8 * static_cast<std::size_t>(tasks.threads()));
     return range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);

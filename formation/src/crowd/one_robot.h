@@ -96,7 +96,7 @@ class OneRobot {
   CrowdMotion straight(std::size_t robot, Vec2 preferred, crowd::Answers<T> in, std::size_t hard) const;
 
   /// Of a motion that does not keep all half-planes, or that wheels do not allow, another one nearby, or none. `hard`:
-  /// so many of the first lines are of edges and bodies at rest and of wheels.
+  /// this many of the first lines are of edges and bodies at rest and of wheels.
   CrowdMotion settled(std::size_t robot, const crowd::Answers<T>& in, std::uint8_t status, std::int32_t hard,
                       CrowdMotion m) const;
 

@@ -50,7 +50,7 @@ PairConstraints braking_pair(const Party& a, const Party& b, double braking_time
 /// memory from one time to the next.
 class NearestFirst {
  public:
-  /// Sorting so many allocates nothing then.
+  /// Sorting this many allocates nothing then.
   void reserve(std::size_t lines) { keys_.reserve(lines); }
   /// REQUIRES: half-planes against robots only.
   void sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
@@ -137,7 +137,7 @@ class Decider {
   /// Both must outlive it.
   Decider(const DecisionRules& rules, const vo::BodyTable& bodies) : rules_(&rules), bodies_(&bodies) {}
 
-  /// Room for decisions among so many half-planes: they allocate nothing then, unless doubles do not prove them.
+  /// Room for decisions among this many half-planes: they allocate nothing then, unless doubles do not prove them.
   void reserve(std::size_t constraints);
 
   /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `uncertified` and `own`; the

@@ -20,7 +20,7 @@ bool violates(const geometry::HalfPlane& h, Vec2 v);
 /// Grows on demand; each half-plane is the same bits as StaticField::constraints gives, in the same order.
 class NeededConstraints {
  public:
-  /// Room for so many half-planes.
+  /// Room for this many half-planes.
   void reserve(std::size_t lines) {
     lines_.reserve(lines);
     meetings_.met.reserve(lines);
@@ -55,7 +55,7 @@ class NeededConstraints {
 /// there, nearest first.
 class NearConstraints {
  public:
-  /// Room for so many bodies.
+  /// Room for this many bodies.
   void reserve(std::size_t bodies) {
     bodies_.reserve(bodies);
     candidates_.reserve(bodies);

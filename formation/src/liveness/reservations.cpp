@@ -55,7 +55,7 @@ constexpr double kStall = 2.5, kProgress = 0.2;
 constexpr double kFree = 1.0;
 /// Share of its greatest speed: a faster robot without a reservation passes by itself.
 constexpr double kInMotion = 0.35;
-/// After so many tries in vain the places of pushed robots come in changing order.
+/// After this many tries in vain the places of pushed robots come in changing order.
 constexpr std::uint32_t kShakeAfter = 10;
 /// So do they, less changed, for each fourth time that a robot is pushed off its goal: else some may push each other
 /// off their goals in a cycle for ever.

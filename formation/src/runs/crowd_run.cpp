@@ -44,10 +44,10 @@ constexpr std::size_t kLookAgain = 8;
 /// Neighbours of a robot, the number of RVO2's examples and of the published comparisons.
 constexpr int kNeighbours = 10;
 
-/// So many robots are named in an outcome.
+/// This many robots are named in an outcome.
 constexpr std::size_t kReasonsNamed = 3;
 
-/// The lattice reaches so many times as far as robots, goals and obstacles.
+/// The lattice reaches this many times as far as robots, goals and obstacles.
 constexpr double kReach = 2.0;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.

@@ -308,7 +308,7 @@ class KinematicSteps final : public Stepper {
     own_.choose({}, here_[i], joint_.others[i], schedule_.keeps_all(now_), asked_[i], step);
   }
 
-  /// The choice of a robot that is to stand after so many steps; nothing where half-planes leave it none. `from`: the
+  /// The choice of a robot that is to stand after this many steps; nothing where half-planes leave it none. `from`: the
   /// velocity that those against movers are to leave the most room.
   std::optional<RobotStep> within_steps(std::size_t i, std::size_t steps, Vec2 from, Vec2 preferred,
                                         const RobotStep& undecided) {

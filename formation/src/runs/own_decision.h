@@ -48,7 +48,7 @@ class OwnDecision {
   /// Both must outlive it.
   OwnDecision(const DecisionRules& rules, const vo::BodyTable& bodies) : rules_(rules), decider_(rules, bodies) {}
 
-  /// Room for so many static bodies and other ones within reach: decisions among them allocate nothing.
+  /// Room for this many static bodies and other ones within reach: decisions among them allocate nothing.
   void reserve(std::size_t statics, std::size_t others);
 
   /// At the static obstacles.

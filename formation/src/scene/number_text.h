@@ -10,7 +10,7 @@
 
 namespace exactvo::formation::detail {
 
-/// In at most so many significant digits.
+/// In at most this many significant digits.
 inline std::string number_text(double x, int digits) {
   return geometry::in_digits(x, digits);
 }

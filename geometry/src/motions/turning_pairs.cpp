@@ -19,7 +19,7 @@ namespace {
 /// What all roundings of poses come to, as a share of the lengths and with 1 rad for each of the angle: poses are
 /// placed at most three times, each by less than 2^-48 (twist_rounding), and a straight motion's velocity is rounded.
 constexpr double kPoseRounding = 0x1p-44;
-/// A piece of time that is undecided is halved down to this share of the whole, and so many times in all.
+/// A piece of time that is undecided is halved down to this share of the whole, and this many times in all.
 constexpr double kFinestShare = 0x1p-30;
 constexpr int kMostHalvings = 200;
 /// How often a separation is sought on from where the last one ended.

@@ -4,7 +4,7 @@
 namespace exactvo::geometry::routing {
 namespace {
 
-/// Parts that long pieces are cut into: so many of each piece in the mean.
+/// Parts that long pieces are cut into: this many of each piece in the mean.
 constexpr double kPartsOfPiece = 2.0;
 
 }  // namespace

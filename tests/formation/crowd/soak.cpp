@@ -275,7 +275,7 @@ int main(int argc, char** argv) {
     tools::ProgramOptions options("formation_crowd_soak",
                                   "Steps one crowd for a long time while robots, walls and bodies come and go.");
     options.whole_number("SECONDS", seconds, 1, "How long");
-    options.whole_number("ROBOTS", robots, 10, "At most so many at a time");
+    options.whole_number("ROBOTS", robots, 10, "At most this many at a time");
     options.whole_number("SEED", seed, 0, "Of the random numbers");
     if (!options.parse(argc, argv)) return 0;
     return formation::run(static_cast<double>(seconds) / 60.0, robots, seed);

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Differential tests against CGAL's exact parts: each topic compares so many random and so many constructed (tangent,
+/// Differential tests against CGAL's exact parts: each topic compares random and constructed (tangent,
 /// degenerate) cases and prints what differs, losslessly.
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// free_campaign [SCENES] [SEED] [CLASS]: compares FreeArrangement with the oracle on so many scenes of each class, and
-// prints those that differ as lines of the corpus (geometry/free_scenes.txt). Exit status 1 where one does.
+// free_campaign [SCENES] [SEED] [CLASS]: compares FreeArrangement with the oracle on SCENES scenes of each class, and
+// prints those that differ as lines of the corpus (geometry/free_scenes.txt). Exit status 1 if one does.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

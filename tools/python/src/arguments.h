@@ -62,7 +62,7 @@ Vec2 vector(py::handle object, const char* name);
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// An array of doubles with so many dimensions, C order; -1 among `shape` is any length. Copies where it must.
+/// An array of doubles with this many dimensions, C order; -1 among `shape` is any length. Copies where it must.
 Doubles doubles(py::handle object, const char* name, const std::vector<py::ssize_t>& shape);
 /// The rows of an n x 2 array, finite.
 std::vector<Vec2> points(py::handle object, const char* name);

@@ -15,7 +15,7 @@
 
 namespace exactvo::tools {
 
-/// Which overlaps a check would miss that looks at each move at so many moments, evenly spaced from its row on.
+/// Which overlaps a check would miss that looks at each move at this many moments, evenly spaced from its row on.
 class SampledMoves {
  public:
   SampledMoves(std::size_t samples, std::size_t agents) : samples_(samples), last_(agents) {}

@@ -63,8 +63,8 @@ struct JudgedAnswer {
   LpVerdict verdict = LpVerdict::missing;
   lp::Status truth = lp::Status::optimal;  ///< what the exact solver proves of the problem
   geometry::Vec2 best;                     ///< m/s, its velocity
-  /// m/s times |n|: by how much the velocity violates what it must satisfy, the speed bound included; of a relaxed
-  /// problem, by how much more than the least possible it violates the soft constraints, where that is more.
+  /// m/s times |n|: by how much the velocity violates what it must satisfy, the speed bound included; in a relaxed
+  /// problem also by how much more than necessary it violates the soft constraints, where that is more.
   std::optional<double> violation;
   /// m/s: how much farther it is from the preferred velocity than the best one (farthest: how much less far along);
   /// below 0 where it is outside of what it must satisfy.

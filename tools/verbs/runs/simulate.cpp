@@ -43,7 +43,7 @@ std::string run_summary(const datasets::RunInfo& info, const formation::Scenario
 
 /// Lines of a kind; metrics.json has all.
 constexpr std::size_t kMostLines = 10;
-/// Up to so many robots have a line each.
+/// Up to this many robots have a line each.
 constexpr std::size_t kMostRobots = 50;
 
 std::string or_dash(const std::optional<double>& value, const char* unit) {

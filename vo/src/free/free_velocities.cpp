@@ -36,7 +36,7 @@ Vec2 at_angle(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// A regular polygon of so many corners stays within the tolerance of its circle: 1 - cos(pi/k) <= (pi/k)^2 / 2.
+/// A regular polygon of this many corners stays within the tolerance of its circle: 1 - cos(pi/k) <= (pi/k)^2 / 2.
 int corners_of_circle(const Window& window) {
   const double asked = geometry::kPi / std::sqrt(2.0 * window.tolerance / window.speed);
   constexpr double kFewest = 16.0;

@@ -29,8 +29,8 @@
 ///                    wheels (10) asks that), the braking time is long enough to stop, nothing is relaxed, and in every
 ///                    row every robot could have braked from its choice on without touching anything: its way
 ///                    [x, x + tau v] keeps clear of obstacles, and so do the ways of two robots that brake alike, of
-///                    each other; of a footprint each disc of its chain keeps clear of obstacles on this way, at every
-///                    heading between that of the row and the choice, which (7) asks of the step too;
+///                    each other; each disc of the chain of a footprint keeps clear of obstacles on this way, at every
+///                    heading between that of the row and the choice, as (7) requires for the step;
 ///  (10) kinematics   for robots on wheels, heading and wheel speeds of each row follow from the constant twist that
 ///                    moves the reference point as chosen; wheel speeds, their changes, turning and reversing are
 ///                    within their limits; the disc about the reference point holds the body at every moment,

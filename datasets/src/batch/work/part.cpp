@@ -147,7 +147,7 @@ std::vector<Text*> texts_of(PartOf<Text>& part) {
   throw DataError(DataCode::format_syntax, path.string(), "", "no part of a batch", "what a batch has written");
 }
 
-/// So many more. A length that is no length must not be believed: what is there is taken bit by bit.
+/// This many more. A length that is no length must not be believed: what is there is taken bit by bit.
 std::string take_from(std::istream& bytes, std::uint64_t length, const std::filesystem::path& path) {
   std::string taken;
   char block[1 << 14];

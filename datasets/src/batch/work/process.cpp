@@ -11,7 +11,7 @@
 namespace exactvo::datasets::batch {
 namespace {
 
-/// A chunk ends at so many obstacles or vertices: some hundredths of a second of work.
+/// A chunk ends at this many obstacles or vertices: some hundredths of a second of work.
 constexpr std::size_t kItemsOfChunk = 512;
 constexpr std::size_t kVerticesOfChunk = 8192;
 /// What a vertex takes until its chunk is written: shapes, features, text. Measured: 3 to 5 kB with everything wanted.

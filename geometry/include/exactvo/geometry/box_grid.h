@@ -74,7 +74,7 @@ class BoxGrid {
   std::int32_t columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> start_;  ///< of a cell in `item_`
   std::vector<std::uint32_t> item_;
-  std::vector<std::uint32_t> large_;  ///< items in so many cells that every query checks them
+  std::vector<std::uint32_t> large_;  ///< items in this many cells that every query checks them
 };
 
 }  // namespace exactvo::geometry

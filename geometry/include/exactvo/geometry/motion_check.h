@@ -84,8 +84,8 @@ struct MotionEvent {
   Vec2 other_at;                             ///< m, rounded: the other body's; (0, 0) for an obstacle
   double turned = 0.0;                       ///< rad, rounded: how the body is turned at that moment
   double other_turned = 0.0;                 ///< rad, rounded: how the other body is
-  /// Two bodies of which one turns come nearer than clearance.high, and whether they overlap is not known. They touch
-  /// for certain where clearance.high is 0. The encounter is `contact`.
+  /// Undecided: two bodies, of which one turns, come nearer than clearance.high and may overlap. They touch for certain
+  /// if clearance.high is 0. The encounter is `contact`.
   bool is_open = false;
 };
 

@@ -79,8 +79,8 @@ EllipseAxes axes_of(const Ellipse& ellipse);
 /// Area pi |det L|, rounded.
 double area(const Ellipse& ellipse);
 
-/// Whether every number is finite, a disc's radius non-negative, and a convex polygon has at least one vertex and runs
-/// once round, counter-clockwise and nowhere turning right, or lies on one line. Repeated and collinear vertices are
+/// Whether every number is finite, the radius of a disc is non-negative, and a convex polygon has a vertex and either
+/// lies on one line or runs once round counter-clockwise and never turns right. Repeated and collinear vertices are
 /// tolerated. Exact; O(n) orientation tests for a polygon.
 bool is_valid(const ConvexShape& shape);
 

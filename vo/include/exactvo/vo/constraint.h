@@ -38,7 +38,7 @@ enum class BodyKind {
 /// A convex set to keep clear of.
 struct Body {
   BodyKind kind = BodyKind::enclosure;  ///< what it stands for
-  geometry::ConvexShape shape;          ///< m; of a robot or moving obstacle as it stands at present
+  geometry::ConvexShape shape;          ///< m; a robot or moving obstacle as it stands at present
   Vec2 velocity;                        ///< m/s, at present; 0 for what stands still
   /// Which obstacles of the scene it stands for, ascending; the one robot or moving obstacle it is.
   std::vector<std::size_t> owners;

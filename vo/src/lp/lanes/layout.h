@@ -13,7 +13,7 @@
 
 namespace exactvo::lp {
 
-/// The widest register holds so many numbers (float, 512 bits); blocks are multiples of it, so no pack crosses one.
+/// The widest register holds this many numbers (float, 512 bits); blocks are multiples of it, so no pack crosses one.
 inline constexpr std::size_t kMostLanes = 16;
 
 template <class T>
@@ -42,7 +42,7 @@ inline constexpr T kMostSquare = static_cast<T>(sizeof(T) == 8 ? 0x1p500 : 0x1p6
 template <class T>
 inline constexpr T kParallel = static_cast<T>(sizeof(T) == 8 ? 1e-300 : 1e-36);
 
-/// The number of a line stands in so many last digits of its violation; 2^16 of them leave it 36.
+/// The number of a line stands in this many last digits of its violation; 2^16 of them leave it 36.
 inline constexpr std::size_t kMostNumbered = std::size_t{1} << 16U;
 
 /// A violation as the search of one problem compares it with another, the later line first among equals.

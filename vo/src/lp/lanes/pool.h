@@ -21,14 +21,14 @@ inline constexpr std::size_t kPacks = 6;
 /// at twice as many bytes: twenty random lines 14.2, 13.2, 14.6; fifty 33.2, 29.1, 33.8; ten and a hundred alike.
 inline constexpr std::size_t kLinesUnderWay = kPacks * 10 * 3 * 64;
 
-/// Packs of so many lines that make their rounds together.
+/// Packs of this many lines that make their rounds together.
 template <class D>
 std::size_t packs_under_way(std::size_t lines) {
   const std::size_t pack = 3 * std::max<std::size_t>(1, lines) * hn::MaxLanes(D()) * sizeof(hn::TFromD<D>);
   return std::min(kPacks, (kLinesUnderWay + pack - 1) / pack);
 }
 
-/// With packs of so many lines the next group does not come from memory in time: blocks beyond it are asked for too,
+/// With packs of this many lines the next group does not come from memory in time: blocks beyond it are asked for too,
 /// into the second cache, in the order in which they lie. On an AMD EPYC, AVX2, ns a problem in double and float: fifty
 /// lines out of a set of 39 MB 193 and 105 without, 173 and 88 with; twenty lines, 16 MB, 98 and 52 without, 94 and 50
 /// with.

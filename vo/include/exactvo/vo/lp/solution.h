@@ -29,8 +29,8 @@ struct ActiveConstraint {
   double multiplier = 0.0;  ///< lambda, or nu of the disc; 0 or more, see Solution
 };
 
-/// With n_i the normals of what is active (of the side v_x <= X of the box: (-1, 0)), lambda_i their multipliers and nu
-/// that of the disc, the velocity v is stationary, up to rounding:
+/// Let n_i be the normals of the active constraints ((-1, 0) for the side v_x <= X of the box), lambda_i their
+/// multipliers and nu that of the disc. Then the velocity v is stationary, up to rounding:
 ///
 ///     sum of lambda_i n_i - nu v  =  v - preferred   optimal, Objective::nearest
 ///                                    -preferred      optimal, Objective::farthest

@@ -31,9 +31,9 @@ class SolveMemory {
   /// Without room.
   SolveMemory();
   ~SolveMemory();
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   SolveMemory(SolveMemory&&) noexcept;
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   SolveMemory& operator=(SolveMemory&&) noexcept;
 
   /// Room for problems with this many constraints.
