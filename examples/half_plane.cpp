@@ -5,15 +5,13 @@
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/velocity_obstacle.h"
 
-using exactvo::geometry::Vec2;
-
 int main() {
   // A robot of radius 0.5 m at the origin, an ellipse 6 m ahead, velocities to be safe for 2 s.
   const auto ellipse = exactvo::geometry::ellipse_from_axes({6.0, 0.5}, {3.0, 1.0, 1.2});
   const double horizon = 2.0;
   const exactvo::vo::VelocityObstacle obstacle(ellipse, {0.0, 0.0}, 0.5, horizon);
 
-  const Vec2 wanted{3.0, 0.0};
+  const exactvo::geometry::Vec2 wanted{3.0, 0.0};
   std::printf("(%g, %g) m/s collides within %g s: %s\n", wanted.x, wanted.y, horizon,
               obstacle.contains(wanted) ? "yes" : "no");
 

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <exception>
 #include <memory>
-#include <utility>
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>

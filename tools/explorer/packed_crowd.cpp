@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "exactvo/datasets/crowd_recording.h"
 #include "explorer/crowd_headings.h"
 #include "explorer/packed_run.h"
@@ -10,7 +8,6 @@
 
 namespace exactvo::tools {
 
-using datasets::CrowdRecordingHead;
 using datasets::CrowdRow;
 using geometry::Vec2;
 
@@ -18,7 +15,8 @@ namespace {
 
 /// The row as a step: of each robot its place, its mean velocity since the row before, where it heads, and whether it
 /// kept its half-planes.
-void put(const CrowdRow& row, const CrowdRecordingHead& head, const CrowdHeadings& headings, formation::Step& step) {
+void put(const CrowdRow& row, const datasets::CrowdRecordingHead& head, const CrowdHeadings& headings,
+         formation::Step& step) {
   const bool is_first = step.robots.empty();
   const double before = step.time;
   step.robots.resize(row.x.size());

@@ -17,7 +17,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"

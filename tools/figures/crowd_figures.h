@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/datasets/crowd_recording.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
 

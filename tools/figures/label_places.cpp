@@ -10,7 +10,6 @@ namespace exactvo::tools {
 
 namespace {
 
-using geometry::kPi;
 /// px: half of what six characters in 10 points take.
 constexpr double kHalfWidth = 22.0;
 constexpr double kHalfHeight = 8.0;
@@ -93,7 +92,7 @@ std::optional<Vec2> LabelPlaces::place_beside(Vec2 p, double radius, bool must) 
   for (const double out : {18.0, 30.0, 44.0}) {
     if (out > 30.0 && !must) break;  // so far off a time seems to be another robot's
     for (const int turn : {1, 7, 3, 5, 0, 4, 2, 6}) {
-      const double angle = 0.25 * kPi * turn, away = radius + out / scale_;
+      const double angle = 0.25 * geometry::kPi * turn, away = radius + out / scale_;
       places.push_back(p + Vec2{1.2 * away * std::cos(angle), away * std::sin(angle)});
     }
   }

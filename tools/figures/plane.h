@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/route_certificate.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
 

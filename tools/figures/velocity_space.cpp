@@ -14,7 +14,6 @@
 
 namespace exactvo::tools {
 
-using formation::ConstraintSource;
 using formation::DecisionConstraint;
 
 namespace {
@@ -139,7 +138,7 @@ class VelocitySpace {
     for (std::size_t i = 0; i < constraints().size(); ++i) {
       const DecisionConstraint& c = constraints()[i];
       const Cone cone{grown_shape(d_.seen[i]), c.time_horizon, d_.seen[i].velocity};
-      if ((c.source == ConstraintSource::robot) == robots && leg_normals(cone.shape)) result.push_back(cone);
+      if ((c.source == formation::ConstraintSource::robot) == robots && leg_normals(cone.shape)) result.push_back(cone);
     }
     return result;
   }

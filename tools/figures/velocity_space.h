@@ -7,7 +7,6 @@
 
 #include "explain/decision.h"
 #include "figures/figure.h"
-#include "figures/outlines.h"
 
 namespace exactvo::tools {
 

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "exactvo/datasets/metrics_file.h"

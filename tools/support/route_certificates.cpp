@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
@@ -16,14 +14,11 @@ namespace exactvo::tools {
 
 using geometry::Blocked;
 using geometry::ChainPoint;
-using geometry::EdgeName;
 using geometry::ExactPoint;
-using geometry::Obstacle;
 using geometry::Route;
 using geometry::RouteAnswer;
 using geometry::RouteQuestion;
 using geometry::Separated;
-using geometry::Vec2;
 
 namespace {
 
@@ -31,7 +26,7 @@ constexpr const char* kStatuses[] = {"route", "separated", "blocked"};  // in th
 
 // --- Writing ---
 
-OrderedJson json_of(Vec2 p) {
+OrderedJson json_of(geometry::Vec2 p) {
   return json_point(p);
 }
 
@@ -99,7 +94,7 @@ Blocked blocked_in(const OrderedJson& json) {
   const bool is_start = json.at("end") == "start", is_inside = json.at("inside").get<bool>();
   require_readable(is_start || json.at("end") == "goal");
   return {is_start ? Blocked::End::start : Blocked::End::goal, is_inside,
-          EdgeName{number_in(json.at("obstacle")), is_inside ? 0 : number_in(json.at("edge"))}};
+          geometry::EdgeName{number_in(json.at("obstacle")), is_inside ? 0 : number_in(json.at("edge"))}};
 }
 
 RouteAnswer answer_in(const OrderedJson& json) {

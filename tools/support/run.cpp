@@ -6,7 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -21,8 +20,6 @@
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
-using formation::Scenario;
-using formation::SimulationOptions;
 
 namespace {
 
@@ -68,8 +65,8 @@ RunOutput for_page(const PackedRunLimits& limits) {
   return output;
 }
 
-FinishedRun run(const Scenario& scenario, SimulationOptions options, const datasets::Provenance& provenance,
-                const RunOutput& output) {
+FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
+                const datasets::Provenance& provenance, const RunOutput& output) {
   options.progress = [&](double time) {
     if (output.progress) output.progress(time);
     return !interrupted();

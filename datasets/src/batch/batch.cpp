@@ -11,7 +11,6 @@
 namespace exactvo::datasets {
 namespace {
 
-using batch::Journal;
 using batch::Session;
 
 void require_sensible(const BatchConfiguration& configuration, const BatchRun& run) {
@@ -25,7 +24,7 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
 
 BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
-  if (session.journal().look(session.identity(), joins) == Journal::State::complete) {
+  if (session.journal().look(session.identity(), joins) == batch::Journal::State::complete) {
     return {BatchEnd::complete, batch::read_summary(run.out), true};
   }
   session.journal().begin(session.identity());

@@ -18,7 +18,6 @@
 namespace exactvo::datasets {
 namespace {
 
-using batch::Journal;
 using batch::Session;
 using formation::Ranks;
 
@@ -39,7 +38,7 @@ bool all_manage(Ranks& ranks, const Step& step) {
 
 /// A byte for each input: whether it is still to be done. Empty where the batch is complete.
 std::string open_output(const Session& session, bool resume) {
-  if (session.journal().look(session.identity(), resume) == Journal::State::complete) return {};
+  if (session.journal().look(session.identity(), resume) == batch::Journal::State::complete) return {};
   session.journal().begin(session.identity());
   std::string left;
   for (std::size_t k = 0; k < session.identity().inputs.size(); ++k)

@@ -7,8 +7,6 @@
 namespace exactvo::datasets {
 namespace {
 
-using geometry::Obstacle;
-using geometry::Polygon;
 using geometry::Ring;
 using geometry::Vec2;
 
@@ -108,7 +106,7 @@ Ring ell(int x0, int y0, int x1, int y1) {
   return {corner(x0, y0), corner(x1, y0), corner(x1, y), corner(x, y), corner(x, y1), corner(x0, y1)};
 }
 
-Polygon building(CounterRandom& random, int x0, int y0, int x1, int y1) {
+geometry::Polygon building(CounterRandom& random, int x0, int y0, int x1, int y1) {
   const bool has_room = x1 - x0 >= 12 && y1 - y0 >= 12;
   const int what = random.integer(0, 3);
   if (what == 0 && has_room) return {rectangle(x0, y0, x1, y1), {reversed(rectangle(x0 + 4, y0 + 4, x1 - 4, y1 - 4))}};

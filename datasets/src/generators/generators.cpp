@@ -96,7 +96,6 @@ std::uint64_t every_other_bit(std::uint64_t k) {
 
 using formation::Scenario;
 using geometry::Disc;
-using geometry::kPi;
 
 /// How circumcircles lie: drawn until `most` are placed or the tries are used up.
 struct Layout {
@@ -133,7 +132,7 @@ Vec2 on_grid(Vec2 v) {
 
 /// The point of the circle at `turn` revolutions.
 Vec2 on_circle(const Disc& c, double turn) {
-  const double angle = 2.0 * kPi * turn;
+  const double angle = 2.0 * geometry::kPi * turn;
   return on_grid(c.center + c.radius * Vec2{std::cos(angle), std::sin(angle)});
 }
 

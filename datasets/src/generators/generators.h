@@ -8,7 +8,6 @@
 
 #include "exactvo/geometry/shapes.h"
 #include "generators/counter_random.h"
-#include "readers/grid.h"
 
 namespace exactvo::datasets {
 

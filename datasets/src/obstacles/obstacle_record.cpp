@@ -10,9 +10,8 @@ namespace exactvo::datasets {
 namespace {
 
 using geometry::ObstacleShapes;
-using geometry::Verdict;
 
-void append_verdict(JsonWriter& json, const char* name, const Verdict& verdict) {
+void append_verdict(JsonWriter& json, const char* name, const geometry::Verdict& verdict) {
   json.key(name);
   if (verdict.certified) {
     json.value(true);

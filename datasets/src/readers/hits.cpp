@@ -86,7 +86,6 @@ void add_hits(const std::vector<geometry::Vec2>& hits, Collector& out) {
 
 // --- CARMEN logs: "FLASER n r1 .. rn x y theta odom_x odom_y odom_theta ..." among lines of other kinds ---
 
-using geometry::kPi;
 /// No laser of these logs has more beams.
 constexpr std::int64_t kMostBeams = 100000;
 
@@ -94,7 +93,7 @@ constexpr std::int64_t kMostBeams = 100000;
 /// out (180, 360).
 double beam_bearing(std::size_t beam, std::size_t beams) {
   const std::size_t gaps = beams % 2 == 1 && beams > 1 ? beams - 1 : beams;
-  return -kPi / 2 + kPi * static_cast<double>(beam) / static_cast<double>(gaps);
+  return -geometry::kPi / 2 + geometry::kPi * static_cast<double>(beam) / static_cast<double>(gaps);
 }
 
 void add_scan(const LineReader& lines, const std::vector<std::string_view>& words, std::vector<geometry::Vec2>& hits) {

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "readers/readers.h"
-
 namespace exactvo::datasets {
 
 class XmlFile {

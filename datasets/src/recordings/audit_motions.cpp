@@ -17,8 +17,6 @@
 namespace exactvo::datasets {
 
 using exact::Chord;
-using exact::exactly;
-using exact::ExactWay;
 using exact::Point;
 using exact::Rational;
 using exact::StepMotion;
@@ -200,7 +198,7 @@ class MotionAudit : public RowAudit {
                               exact::State{to_->moved[k], {}});
         pieces_[k].push_back({Rational(0), Rational(1), carried_[k].over(Rational(0), Rational(1))});
       } else {
-        for (const ExactWay::TimedChord& p : run_.ways[k].over(start_, Rational(to_->time)))
+        for (const exact::ExactWay::TimedChord& p : run_.ways[k].over(start_, Rational(to_->time)))
           pieces_[k].push_back({(p.start - start_) / passed_, (p.end - start_) / passed_, p.chord});
       }
       for (const Piece& piece : pieces_[k]) {
@@ -371,7 +369,7 @@ class MotionAudit : public RowAudit {
   void part(std::size_t row, double time, const std::vector<Vec2>& places) {
     const std::vector<formation::Robot>& robots = run_.scenario.robots;
     const auto overlap = [&](std::size_t i, std::size_t j) {
-      const Point d = exactly(places[i]) - exactly(places[j]);
+      const Point d = exact::exactly(places[i]) - exact::exactly(places[j]);
       const Rational reach = Rational(robots[i].radius) + Rational(robots[j].radius);
       return exact::dot(d, d) < reach * reach;
     };

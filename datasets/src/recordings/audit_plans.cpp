@@ -10,7 +10,6 @@ namespace {
 using exact::Point;
 using exact::Rational;
 using exact::Straight;
-using exact::Verdict;
 using formation::JointPlan;
 
 /// A move may come nearer than radii allow by this share of them, since plans are rounded: squared distances are

@@ -21,7 +21,6 @@ using exact::length_at_most;
 using exact::Point;
 using exact::Rational;
 using formation::RobotStep;
-using formation::Step;
 using formation::TimedPath;
 using geometry::Vec2;
 
@@ -83,7 +82,7 @@ class SequenceAudit : public RowAudit {
   }
 
   void check_row(const RowInRun& at) override {
-    const Step& step = at.row;
+    const formation::Step& step = at.row;
     const std::size_t row = at.number;
     ask(step.time == static_cast<double>(row) * run_.file.recording.time_step, row,
         "its time is not its number of time steps");

@@ -6,7 +6,6 @@
 // a small angle, grows by (K^2 - |m|^2) / |K + m conj(e)|^2 in a step at most, and moves wheels by less than 32 times
 // itself times |m| (K >= 2 |m|, b <= 16 D).
 #include <cmath>
-#include <utility>
 
 #include "recordings/audit_points.h"
 

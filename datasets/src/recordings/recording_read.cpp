@@ -15,8 +15,6 @@ namespace exactvo::datasets {
 
 namespace {
 
-using formation::DecisionConstraint;
-using formation::RobotStep;
 using formation::Step;
 
 constexpr std::string_view kKind = "exactvo-recording";
@@ -183,7 +181,7 @@ class RecordReader {
   }
 
   /// From its body, which must have a place in the row.
-  void take_source(const JsonCursor& at, const Step& step, DecisionConstraint& c) const {
+  void take_source(const JsonCursor& at, const Step& step, formation::DecisionConstraint& c) const {
     c.source = bodies_[known_body(at.at("body"))].kind;
     if (c.source == vo::BodyKind::moving_obstacle && step.moving.empty())
       at.refuse("no half-plane against what moves in a row without its place");

@@ -16,8 +16,6 @@ namespace exactvo::datasets {
 
 namespace {
 
-using formation::DecisionConstraint;
-using formation::GoalBodies;
 using formation::RobotStep;
 using formation::Step;
 
@@ -167,7 +165,7 @@ RecordingWriter::RecordingWriter(std::shared_ptr<AtomicFile> out, const Recordin
 
 RecordingWriter::~RecordingWriter() = default;
 
-void RecordingWriter::add(const GoalBodies& of_goal, const std::vector<vo::Body>& bodies) {
+void RecordingWriter::add(const formation::GoalBodies& of_goal, const std::vector<vo::Body>& bodies) {
   for (const std::size_t body : of_goal.bodies) state_->name_body(body, bodies);
   state_->line("goal_bodies", [&] {
     state_->json.begin_object().member("time", of_goal.time).member("robot", of_goal.robot);
@@ -183,7 +181,7 @@ void RecordingWriter::add(const formation::JointPlan& plan) {
 void RecordingWriter::add(const Step& row, const std::vector<vo::Body>& bodies,
                           const formation::LyapunovRow* lyapunov) {
   for (const RobotStep& robot : row.robots)
-    for (const DecisionConstraint& c : robot.constraints) state_->name_body(c.body, bodies);
+    for (const formation::DecisionConstraint& c : robot.constraints) state_->name_body(c.body, bodies);
   state_->line("row", [&] { append_row(state_->json, row, state_->has_leader, lyapunov); });
   ++state_->rows;
 }

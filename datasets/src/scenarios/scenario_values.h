@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 

@@ -6,7 +6,6 @@
 #include <boost/algorithm/string/join.hpp>
 #include <cctype>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 
 #include "exactvo/datasets/input_text.h"

@@ -5,7 +5,6 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/predicate.hpp>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include "exactvo/formation/lyapunov.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "control/consensus.h"

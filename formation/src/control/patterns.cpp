@@ -13,8 +13,6 @@
 namespace exactvo::formation {
 namespace {
 
-using geometry::kPi;
-
 constexpr geometry::Names<Pattern, 4> kNames{
     {{Pattern::line, "line"}, {Pattern::wedge, "wedge"}, {Pattern::circle, "circle"}, {Pattern::grid, "grid"}}};
 
@@ -30,7 +28,7 @@ Vec2 on_wedge(std::size_t k) {
 
 Vec2 on_circle(std::size_t k, std::size_t n) {
   if (n == 1) return {};
-  const double turn = 2.0 * kPi / static_cast<double>(n);
+  const double turn = 2.0 * geometry::kPi / static_cast<double>(n);
   const double radius = 0.5 / std::sin(0.5 * turn);
   const double angle = turn * static_cast<double>(k);
   return {radius * std::cos(angle), radius * std::sin(angle)};

@@ -12,7 +12,6 @@
 /// Bodies move by whole steps of the lattice: where they are at the end of a step is exact.
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "exactvo/formation/crowd.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "crowd/body.h"
 #include "exactvo/geometry/shape_numbers.h"

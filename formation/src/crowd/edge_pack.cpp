@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/edge_pack.h"
 
-#include <algorithm>
-
 #include "crowd/edge_rounding.h"
 #include "exactvo/geometry/infinity.h"
 

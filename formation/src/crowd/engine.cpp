@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "crowd/edge_pack.h"
 #include "crowd/hard_level.h"

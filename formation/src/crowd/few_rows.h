@@ -7,7 +7,6 @@
 /// stay below 2^44. The way that is rounded is heuristic in the last digits, like the linear program; every target
 /// gives the same bits.
 
-#include <cmath>
 #include <cstddef>
 
 #include "crowd/pair_row.h"

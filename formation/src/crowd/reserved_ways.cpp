@@ -2,7 +2,6 @@
 #include "crowd/reserved_ways.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace exactvo::formation::crowd {
 namespace {

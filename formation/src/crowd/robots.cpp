@@ -2,7 +2,6 @@
 #include "crowd/robots.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace exactvo::formation::crowd {

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "exactvo/formation/constraint_name.h"
-#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
 #include "scene/goals.h"
 #include "scene/near_pairs.h"

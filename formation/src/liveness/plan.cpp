@@ -2,7 +2,6 @@
 #include "liveness/plan.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace exactvo::formation::detail {

@@ -6,7 +6,6 @@
 /// more than any rounding, and half-planes decide in the end.
 
 #include <algorithm>
-#include <limits>
 
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/vec2.h"

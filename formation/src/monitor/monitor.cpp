@@ -11,12 +11,10 @@
 
 namespace exactvo::formation {
 
-using geometry::kInfinity;
 using geometry::norm;
 using geometry::Pose;
 using geometry::Twist;
 using geometry::Vec2;
-using monitored::kDown;
 using monitored::kUp;
 
 namespace {
@@ -212,9 +210,10 @@ MonitorVerdict Monitor::judged_beside_obstacles() {
     return verdict;
   }
   // A few roundings of lengths that are added up.
-  verdict.share = std::max(0.0, share_within(clear.until) * kDown - 0x1p-48);
+  verdict.share = std::max(0.0, share_within(clear.until) * monitored::kDown - 0x1p-48);
   verdict.proven = !is_trajectory_ || clear.until >= pace_at(0.0).length() * kUp;
-  if (clear.lost_by < kInfinity) verdict.not_above = std::min(1.0, share_within(clear.lost_by) * kUp + 0x1p-48);
+  if (clear.lost_by < geometry::kInfinity)
+    verdict.not_above = std::min(1.0, share_within(clear.lost_by) * kUp + 0x1p-48);
   clear.witness->time = full.moment(clear.until);
   verdict.witness = clear.witness;
   return verdict;

@@ -21,7 +21,6 @@
 namespace exactvo::formation {
 namespace {
 
-using detail::CoverWalls;
 using detail::GridSquare;
 using detail::kProductRoundedDown;
 using detail::SquareCover;
@@ -223,7 +222,7 @@ class Proofs {
 
   const Scenario& scenario_;
   Asked asked_;
-  CoverWalls walls_;
+  detail::CoverWalls walls_;
   detail::Reachability reach_;                   ///< makes its map where it is asked
   std::map<std::size_t, bool> is_out_of_reach_;  ///< of robots that were asked for
   std::deque<SquareCover> covers_;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <variant>
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"

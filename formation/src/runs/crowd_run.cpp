@@ -9,7 +9,6 @@
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "crowd/layout.h"
@@ -32,7 +31,6 @@ namespace exactvo::formation {
 namespace {
 
 using namespace detail;
-using crowd::refuse_snapshot;
 using crowd::SnapshotReader;
 using crowd::SnapshotWriter;
 using geometry::norm;
@@ -323,7 +321,7 @@ class CrowdSteps final : public Stepper {
 
   static bool is_at_end(std::istream& from) { return from.peek() == std::istream::traits_type::eof(); }
   static void require(bool holds) {
-    if (!holds) refuse_snapshot("other bytes", kSnapshotOfRun);
+    if (!holds) crowd::refuse_snapshot("other bytes", kSnapshotOfRun);
   }
 
   /// What adds up from step to step.

@@ -4,7 +4,6 @@
 // Robots on wheels do not track: their reference points drive at what the filter chooses, and brake as all robots on
 // wheels do (scene/braking.h).
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 

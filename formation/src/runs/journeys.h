@@ -20,7 +20,6 @@
 /// At any time a journey may also *rest*: another robot has taken the place where its way ends (goal_claims.h).
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>

@@ -2,7 +2,6 @@
 #include "runs/measuring.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "liveness/split_mix.h"
 #include "scene/step_limits.h"

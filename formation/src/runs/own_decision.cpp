@@ -7,8 +7,6 @@
 
 namespace exactvo::formation::detail {
 
-using geometry::norm;
-
 std::string passed_goal_words(std::size_t next) {
   return "goal " + std::to_string(next) + " passed: heads for the next";
 }

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "exactvo/formation/simulation.h"
 #include "exactvo/vo/constraint.h"
 
 namespace exactvo::formation::detail {

@@ -27,7 +27,6 @@ using exactvo::formation::CrowdExplanation;
 using exactvo::formation::CrowdKind;
 using exactvo::formation::CrowdOptions;
 using exactvo::formation::CrowdProblem;
-using exactvo::formation::KindId;
 using exactvo::formation::StepReport;
 using exactvo::formation::detail::KeepRight;
 using exactvo::geometry::Segment;
@@ -330,7 +329,7 @@ class RVOSimulator::State {
     }
     const std::vector<Vec2>& moves = state.moves;
     crowd.reserve(state.at.size());
-    std::map<Parameters, KindId> kinds;
+    std::map<Parameters, exactvo::formation::KindId> kinds;
     for (std::size_t i = 0; i < state.at.size(); ++i) {
       try {
         const Parameters& parameters = state.parameters[i];

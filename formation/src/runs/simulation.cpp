@@ -21,7 +21,6 @@ namespace exactvo::formation {
 namespace {
 
 using namespace detail;
-using geometry::norm;
 using Clock = std::chrono::steady_clock;
 
 std::vector<std::string> warnings_with(const Scenario& scenario, const SimulationOptions& options,
@@ -113,7 +112,7 @@ std::vector<ScenarioProblem> option_problems(const Scenario& scenario, const Sim
 std::string recentring_notice(const Scenario& scenario, const SimulationOptions& options) {
   if (!scenario.formation || scenario.formation->offsets.empty()) return "";
   const Vec2 moved = offsets_in_use(scenario, options).front() - scenario.formation->offsets.front();
-  if (!(norm(moved) > scenario.arrival_tolerance)) return "";
+  if (!(geometry::norm(moved) > scenario.arrival_tolerance)) return "";
   return "formation: recentre moves every slot by (" + number_text(moved.x, 4) + ", " + number_text(moved.y, 4) +
          "), so that their mean is 0; \"recentre\": false keeps them as they are";
 }

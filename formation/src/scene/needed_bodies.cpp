@@ -20,7 +20,6 @@
 namespace exactvo::formation::detail {
 
 using geometry::EnclosureGrade;
-using vo::BodyTable;
 
 namespace {
 
@@ -144,7 +143,7 @@ double room_of_ellipse(const geometry::Ellipse& e, Vec2 x, Vec2 u, double kept, 
 }  // namespace
 
 /// m/s: less than n.v - c of the body's half-plane at v = from.velocity. Not looked for any more where it is `enough`.
-double StaticField::room_of(BodyTable::Number body, const Viewpoint& from, double enough) const {
+double StaticField::room_of(vo::BodyTable::Number body, const Viewpoint& from, double enough) const {
   constexpr double kRounding = 1e-12;  // of the coordinates
   const geometry::Box& box = scene_->bodies().box(body);
   const double room = room_below(box, from);

@@ -19,7 +19,6 @@ namespace {
 
 using geometry::Enclosure;
 using geometry::EnclosureGrade;
-using vo::BodyKind;
 using vo::BodyTable;
 
 /// In real overlap nothing can be certified; the robot is asked to leave within this time, at a share of its speed.
@@ -75,7 +74,7 @@ void StaticField::take_enclosures(const std::vector<Enclosure>& enclosures) {
   for (std::size_t i = 0; i < enclosures.size(); ++i) {
     const Enclosure& e = enclosures[i];
     if (e.grade != EnclosureGrade::tight) {
-      enclosures_.push_back({scene_->bodies().add({BodyKind::enclosure, e.shape, {}, e.obstacles}), i, e.grade});
+      enclosures_.push_back({scene_->bodies().add({vo::BodyKind::enclosure, e.shape, {}, e.obstacles}), i, e.grade});
       continue;
     }
     const std::size_t obstacle = e.obstacles.front();

@@ -10,9 +10,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::RouteAnswer;
-using geometry::Segment;
-
 /// m: a route keeps this much more than the radius and the margin. Half-planes keep one skin more than both, so they
 /// close no gap that the route passes, and one skin is left for rounding.
 constexpr double kSkins = 2.0 * kContactSkin;
@@ -25,7 +22,7 @@ constexpr double kPlay = 1.25;
 bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
   constexpr double kThere = 1e-3;  // m
   if (next + 1 == course.points.size() || !(course.keeps[next + 1] < course.keeps[next])) return false;
-  const Segment piece{course.points[next], course.points[next + 1]};
+  const geometry::Segment piece{course.points[next], course.points[next + 1]};
   return norm(here - geometry::nearest_point(piece, here)) > kThere;
 }
 
@@ -97,7 +94,7 @@ Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to)
   // are not kept.
   const double widest = has_margin ? wanted : std::min(wanted, reach_.map().widest_radius(first, last));
   const double keeps = has_margin ? wanted : least + (widest - least) / kPlay;
-  const RouteAnswer answer =
+  const geometry::RouteAnswer answer =
       (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), widest)).query(first, last);
   Course course;
   course.to = to;

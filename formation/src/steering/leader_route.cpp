@@ -12,9 +12,6 @@
 namespace exactvo::formation {
 namespace {
 
-using detail::CourseAnswer;
-using detail::Guide;
-
 /// Where the robots are nearest to their slots.
 Vec2 middle_of(const Scenario& scenario, const std::vector<Vec2>& offsets) {
   Vec2 sum;
@@ -44,10 +41,10 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
   leader.why_short.clear();
   leader.note.clear();
   const double whole = radius_of_formation(scenario, offsets), single = detail::largest_radius(scenario.robots);
-  Guide guide(scenario, scenario.margins.obstacle, whole);
+  detail::Guide guide(scenario, scenario.margins.obstacle, whole);
   const detail::Destination to{goal.to};
   const bool fits = guide.can_go(whole, from, to);
-  CourseAnswer answer = guide.course(fits ? whole : single, from, to);
+  detail::CourseAnswer answer = guide.course(fits ? whole : single, from, to);
   const bool arrives = answer.course && !answer.nearest;
   if (!arrives)
     leader.why_short = "the leader cannot reach " + detail::printed_place(goal.to) + ": " +

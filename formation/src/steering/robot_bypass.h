@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "decision/decision.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "division/simplification.h"
-#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/shapes.h"
@@ -17,8 +16,6 @@
 
 namespace exactvo::geometry {
 namespace {
-
-using detail::Chain;
 
 // A chain of the obstacle without consecutive repeats, and which of its vertices the facades keep. A closed one starts
 // at its lexicographically least vertex, which is a corner wherever the ring was started.
@@ -151,7 +148,7 @@ double simplify(std::vector<Course>& courses, double tolerance) {
   const double largest = largest_coordinate(courses);
   const double budget = tolerance - 32.0 * kUnitRoundoff * largest;  // so that CGAL's choice passes the certified bound
   for (Course& course : courses) keep_only_ends(course);
-  std::vector<Chain> chains;
+  std::vector<detail::Chain> chains;
   for (const Course& course : courses) chains.push_back({&course.points, course.closed});
   if (budget > 0.0 && each_has_enough_points(courses) && !detail::find_contact(chains)) {
     const auto kept = detail::kept_vertices(chains, budget);

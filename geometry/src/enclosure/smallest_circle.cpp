@@ -7,7 +7,6 @@
 #include "enclosure/ellipse_solver.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
-#include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace {

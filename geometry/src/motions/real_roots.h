@@ -5,9 +5,7 @@
 /// Real roots of polynomials over the rationals, exactly (exact/integer_polynomial.h). From them, the times in [0, 1]
 /// at which polynomials are negative. The last stage: microseconds to milliseconds.
 
-#include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "exact/integer_polynomial.h"

@@ -46,9 +46,7 @@ using detail::filtered_sign;
 using detail::GrownPolygon;
 using detail::make;
 using detail::segment_disc_filter;
-using detail::sign_of;
 using detail::sign_of_double;
-using detail::sign_with_two_roots;
 using detail::squared;
 using detail::Vector;
 
@@ -130,7 +128,7 @@ struct Locator {
     count_exact();
     require_valid(s);
     const Vector<Exact> u = difference<Exact>(disc.center, s.origin) - make<Exact>(q);
-    return sign_of(dot(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
+    return detail::sign_of(dot(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
   }
   /// Sign of |centre - origin - q|^2 - (sum of the radii)^2.
   Sign disc_sign(const Disc& disc) const {
@@ -212,7 +210,7 @@ T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
   count_exact();
   require_valid(s);
   const SupportParts parts = parts_of(s, n);
-  return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
+  return detail::sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
 }
 
 }  // namespace

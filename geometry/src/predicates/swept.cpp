@@ -15,7 +15,6 @@
 namespace exactvo::geometry {
 namespace {
 
-using detail::difference;
 using detail::Exact;
 using detail::make;
 using detail::sign_of;

@@ -19,7 +19,6 @@
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/shapes.h"
-#include "exactvo/geometry/support.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {

@@ -290,7 +290,6 @@ namespace exactvo::geometry {
 namespace {
 
 using detail::Chain;
-using detail::Contact;
 using Problems = std::vector<RingProblem>;
 
 // A ring on its way through the checks: its distinct vertices and where each stood in the input.

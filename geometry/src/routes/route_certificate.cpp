@@ -14,7 +14,6 @@ namespace exactvo::geometry {
 namespace {
 
 using rational::cross;
-using rational::cross_properly;
 using rational::dot;
 using rational::east;
 using rational::exactly;
@@ -75,7 +74,7 @@ bool touch(const Stretch& s, const Stretch& t, bool a_may, bool b_may) {
   if ((a_on && !a_may) || (b_on && !b_may) || (a_on && b_on && !(s.from == s.to))) return true;
   for (const ExactPlace& p : {t.from, t.to})
     if (lies_on(p, s) && !(a_may && p == s.from) && !(b_may && p == s.to)) return true;
-  return cross_properly(s, t);
+  return rational::cross_properly(s, t);
 }
 
 /// By their angle from the direction to the right, counter-clockwise.

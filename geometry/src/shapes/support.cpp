@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exactvo/geometry/require.h"
-
 namespace exactvo::geometry {
 namespace {
 

@@ -2,7 +2,6 @@
 // Whether bodies on trajectories touch each other or a map: files and arrays.
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "exactvo/datasets/trajectory_pieces.h"
@@ -24,7 +23,6 @@ using datasets::TrajectoryReader;
 using datasets::TrajectoryRow;
 using datasets::TrajectorySurvey;
 using geometry::Between;
-using geometry::Bounds;
 using geometry::MotionEvent;
 using geometry::RigidBody;
 using tools::between_names;
@@ -173,7 +171,7 @@ Answer answer_of(TrajectoryReader& reader, TrajectorySurvey& survey, const tools
 
 // --- Answers as Python objects ---
 
-py::tuple as_tuple(const Bounds& b) {
+py::tuple as_tuple(const geometry::Bounds& b) {
   return py::make_tuple(b.low + 0.0, b.high + 0.0);  // -0.0 becomes 0.0
 }
 

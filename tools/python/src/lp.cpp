@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
-#include <limits>
 
 #include "arguments.h"
 #include "exactvo/vo/lp/certificate.h"

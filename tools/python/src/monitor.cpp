@@ -17,7 +17,6 @@ namespace {
 
 using formation::Monitor;
 using formation::MonitorSetup;
-using formation::MonitorVerdict;
 using formation::Mover;
 
 geometry::Pose pose_of(py::handle object, const char* name) {
@@ -89,7 +88,7 @@ class PythonMonitor {
     }
   }
 
-  static py::tuple as_tuple(const MonitorVerdict& v) {
+  static py::tuple as_tuple(const formation::MonitorVerdict& v) {
     py::object witness = py::none();
     if (v.witness)
       witness =

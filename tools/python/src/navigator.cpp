@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdint>
 
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"

@@ -20,7 +20,6 @@ using geometry::Disc;
 using geometry::Ellipse;
 using geometry::Obstacle;
 using geometry::Polygon;
-using geometry::Polyline;
 using geometry::Segment;
 using namespace py::literals;
 
@@ -132,7 +131,7 @@ py::dict ragged(const Obstacles& obstacles) {
       add(polygon->outer);
       for (const geometry::Ring& hole : polygon->holes) add(hole);
     } else {
-      add(std::get<Polyline>(shape).points);
+      add(std::get<geometry::Polyline>(shape).points);
     }
     obstacle_offsets.push_back(static_cast<std::int64_t>(ring_offsets.size()) - 1);
     ids.append(obstacles.list[k].id);

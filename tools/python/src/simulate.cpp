@@ -2,7 +2,6 @@
 // Scenarios run, and what happened as arrays: steps x robots.
 #include <pybind11/stl.h>
 
-#include <atomic>
 #include <memory>
 #include <set>
 

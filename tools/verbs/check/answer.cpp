@@ -15,9 +15,7 @@ namespace exactvo::tools {
 
 using datasets::AgentSurvey;
 using datasets::Extreme;
-using datasets::Move;
 using geometry::Approach;
-using geometry::Bounds;
 using geometry::counted;
 using geometry::Encounter;
 using geometry::MotionEvent;
@@ -74,7 +72,7 @@ OrderedJson number_or_null(double value) {
   return std::isfinite(value) ? OrderedJson(value + 0.0) : OrderedJson();  // -0.0 becomes 0.0
 }
 
-OrderedJson bounds_json(const Bounds& b) {
+OrderedJson bounds_json(const geometry::Bounds& b) {
   return OrderedJson::array({number_or_null(b.low), number_or_null(b.high)});
 }
 
@@ -162,7 +160,7 @@ void CheckAnswer::add(const MotionEvent& e) {
   put(shown(text + fmt::format(", at {}", place_text(e.place))) + "\n");
 }
 
-void CheckAnswer::look_at(const Move& move) {
+void CheckAnswer::look_at(const datasets::Move& move) {
   const bool is_gap = move.interval() > asked_.survey.gap_of(move.agent);
   const bool is_jump = move.speed() > asked_.jump_speed;
   jumps_ += is_jump ? 1 : 0;

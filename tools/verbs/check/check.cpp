@@ -18,7 +18,6 @@
 #include "support/check_page.h"
 #include "support/footprint.h"
 #include "support/parse_errors.h"
-#include "support/run.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -30,7 +29,6 @@
 
 namespace exactvo::tools {
 
-using datasets::DataCode;
 using datasets::DataError;
 using datasets::TrajectoryFile;
 using datasets::TrajectoryReader;
@@ -39,7 +37,6 @@ using datasets::TrajectorySurvey;
 using geometry::Between;
 using geometry::MetPair;
 using geometry::RigidBody;
-using geometry::Vec2;
 
 namespace {
 
@@ -121,7 +118,7 @@ Bodies footprints(const CheckFlags& flags, const TrajectoryReader& reader, const
     const datasets::AgentSurvey& agent = survey.agents()[k];
     some_turn |= agent.turns_at > 0;
     if (agent.turns_at > 0 && flags.between == "cubic")
-      reader.refuse(DataCode::out_of_range, agent.turns_at,
+      reader.refuse(datasets::DataCode::out_of_range, agent.turns_at,
                     fmt::format("agent {} at another heading than before", reader.file().agents[k]),
                     "one heading of an agent: on cubics, a footprint that turns is not decided");
     bodies.of_agent.push_back(footprint);

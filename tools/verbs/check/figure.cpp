@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "exactvo/geometry/counted.h"
@@ -13,7 +12,6 @@
 
 namespace exactvo::tools {
 
-using geometry::MotionEvent;
 using geometry::RigidBody;
 
 namespace {
@@ -56,7 +54,7 @@ void CheckPicture::add(const datasets::TrajectoryRow& row) {
   if (agent.way.empty() || norm(row.at - agent.way.back()) >= least_step_) agent.way.push_back(row.at);
 }
 
-void CheckPicture::add(const MotionEvent& event) {
+void CheckPicture::add(const geometry::MotionEvent& event) {
   if (event.encounter != geometry::Encounter::overlap) return;
   if (places_.size() < kMostPlaces) places_.push_back(event.place);
   if (close_.size() == kMostNear) return;

@@ -33,10 +33,8 @@ namespace exactvo::tools {
 namespace {
 
 using datasets::DataCode;
-using datasets::DataError;
 using datasets::Json;
 using datasets::JsonCursor;
-using datasets::JsonWriter;
 using formation::Command;
 using formation::Monitor;
 using formation::MonitorError;
@@ -44,7 +42,6 @@ using formation::MonitorProblem;
 using formation::MonitorSetup;
 using formation::MonitorVerdict;
 using formation::Mover;
-using formation::TimedPose;
 
 // The figure of `monitor`: the first lines, each with its way, what of it is proven clear, and what ends that.
 
@@ -166,7 +163,7 @@ struct MonitorQuestion {
   Json id;
   geometry::Pose pose;
   std::optional<Command> command;
-  std::vector<TimedPose> trajectory;
+  std::vector<formation::TimedPose> trajectory;
   std::vector<Mover> movers;
   std::vector<std::string> names;  ///< of the movers
 };
@@ -338,7 +335,7 @@ class Answers {
         picture_->add(
             {title_of(question, verdict), monitor.way(1.0), monitor.way(verdict.share), question.movers, verdict});
       if (proofs_ && verdict.proven) proofs_->add(number, monitor.way(verdict.share));
-    } catch (const DataError& error) {
+    } catch (const datasets::DataError& error) {
       put_error(code_name(error.code()), error.place(), error.found(), error.expected());
       is_right = false;
     } catch (const MonitorError& error) {
@@ -396,7 +393,7 @@ class Answers {
   const std::string& file_;
   MonitorPicture* picture_;
   ProofFile* proofs_;
-  JsonWriter json_{JsonWriter::Layout::compact};
+  datasets::JsonWriter json_{datasets::JsonWriter::Layout::compact};
 };
 
 MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obstacles) {

@@ -32,8 +32,6 @@ using datasets::BatchEnd;
 using datasets::BatchProgress;
 using datasets::BatchRun;
 using datasets::BatchSummary;
-using datasets::BatchTally;
-using geometry::Vec2;
 
 struct BatchFlags {
   std::vector<std::string> paths;
@@ -176,7 +174,7 @@ void show(const BatchProgress& progress, ProgressLine& line) {
   line.enabled() ? line.show(progress.share_done, text) : message(text);
 }
 
-std::string words_of(const BatchTally& tally, const char* what) {
+std::string words_of(const datasets::BatchTally& tally, const char* what) {
   std::string text = fmt::format("{}: {} done, {} repaired, {} rejected", counted(tally.read, what), tally.done,
                                  tally.repaired, tally.rejected_in_all());
   for (const auto& [code, count] : tally.rejected) text += fmt::format(", {} {}", code, count);

@@ -24,7 +24,6 @@ namespace exactvo::tools {
 using geometry::counted;
 
 using geometry::ObstacleShapes;
-using geometry::Vec2;
 
 namespace {
 
@@ -86,7 +85,7 @@ std::string records(const std::vector<Decomposed>& all) {
 
 OrderedJson positions(const Points& points) {
   OrderedJson list = OrderedJson::array();
-  for (const Vec2 p : points) list.push_back({p.x, p.y});
+  for (const geometry::Vec2 p : points) list.push_back({p.x, p.y});
   return list;
 }
 

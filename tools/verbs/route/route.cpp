@@ -23,8 +23,6 @@
 namespace exactvo::tools {
 
 using datasets::DataCode;
-using geometry::RouteMap;
-using geometry::RoutePlan;
 using geometry::Vec2;
 
 namespace {
@@ -229,9 +227,9 @@ class Answers {
 
   const AskedMap& asked_;
   const RouteFlags& flags_;
-  RouteMap routes_;
-  std::optional<RoutePlan> plan_;  ///< of the radius, or of a point where none is given
-  bool has_certificate_ = false;   ///< one was printed
+  geometry::RouteMap routes_;
+  std::optional<geometry::RoutePlan> plan_;  ///< of the radius, or of a point where none is given
+  bool has_certificate_ = false;             ///< one was printed
 };
 
 ExitCode answer_one(const AskedMap& map, const RouteFlags& flags) {

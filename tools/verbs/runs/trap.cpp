@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/trap.h"

@@ -14,9 +14,7 @@
 
 namespace exactvo::tools {
 
-using geometry::Bracket;
 using geometry::HalfPlane;
-using geometry::Sign;
 using vo::AlgebraicDirection;
 using vo::FreeArrangement;
 using vo::ShiftedCone;
@@ -195,7 +193,7 @@ OrderedJson exact_free_json(const ExactFree& exact, const VoQuestion& question) 
 std::string exact_free_words(const ExactFree& exact) {
   if (!exact.free) return fmt::format("exact result      none: {}\n", exact.why_not);
   const std::size_t pieces = exact.free->pieces().size();
-  const Bracket area = exact.free->area();
+  const geometry::Bracket area = exact.free->area();
   const std::string text = fmt::format("exact result      area {:.10g} to {:.10g} (m/s)^2, {}", area.low, area.high,
                                        geometry::counted(pieces, "connected part"));
   return text + (exact.region_inside

@@ -9,7 +9,6 @@
 
 namespace exactvo::tools {
 
-using geometry::dot;
 using geometry::HalfPlane;
 
 namespace {
@@ -123,7 +122,7 @@ std::vector<HalfPlane> that_bind(const std::vector<HalfPlane>& all, const Box& v
   std::vector<HalfPlane> binding;
   for (const HalfPlane& h : all) {
     const auto on_it = std::count_if(allowed.begin(), allowed.end(), [&](Vec2 v) {
-      return std::fabs(dot(h.normal, v) - h.offset) <= near * norm(h.normal);
+      return std::fabs(geometry::dot(h.normal, v) - h.offset) <= near * norm(h.normal);
     });
     if (on_it >= 2) binding.push_back(h);
   }

@@ -33,7 +33,6 @@
 
 namespace exactvo::tools {
 
-using geometry::ConvexPolygon;
 using geometry::ConvexShape;
 using geometry::Vec2;
 
@@ -171,7 +170,7 @@ datasets::ReadOptions whole_files(const ReadingFlags& reading) {
 }
 
 /// The hull of a robot that is its own hull.
-ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
+geometry::ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
   const std::vector<GivenObstacle> given = obstacles_in("--robot", text, whole_files(reading));
   if (given.size() != 1)
     throw UsageError("--robot", geometry::counted(given.size(), "geometry", "geometries"), "one convex polygon");

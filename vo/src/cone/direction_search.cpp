@@ -15,11 +15,8 @@
 namespace exactvo::vo::detail {
 namespace {
 
-using geometry::ConvexPolygon;
-using geometry::Disc;
 using geometry::Ellipse;
 using geometry::normalized;
-using geometry::Segment;
 
 Vec2 unit_or(Vec2 v, Vec2 fallback) {
   return v == Vec2{} ? fallback : normalized(v);
@@ -174,10 +171,11 @@ Normals EllipseNormals::all() const {
 
 Normals nearest_normals(const GrownShape& s, Vec2 y) {
   if (const auto* e = std::get_if<Ellipse>(&s.shape)) return EllipseNormals(*e, e->center - s.origin, y).all();
-  if (const auto* g = std::get_if<Segment>(&s.shape)) return of_segment(g->a - s.origin, g->b - s.origin, y);
-  if (const auto* p = std::get_if<ConvexPolygon>(&s.shape)) return of_polygon(p->vertices, s.origin, s.radius, y);
+  if (const auto* g = std::get_if<geometry::Segment>(&s.shape)) return of_segment(g->a - s.origin, g->b - s.origin, y);
+  if (const auto* p = std::get_if<geometry::ConvexPolygon>(&s.shape))
+    return of_polygon(p->vertices, s.origin, s.radius, y);
   Normals out;
-  out.add(unit_or(y - (std::get<Disc>(s.shape).center - s.origin), kAnyDirection));
+  out.add(unit_or(y - (std::get<geometry::Disc>(s.shape).center - s.origin), kAnyDirection));
   return out;
 }
 

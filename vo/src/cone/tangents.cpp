@@ -8,10 +8,8 @@
 namespace exactvo::vo::detail {
 namespace {
 
-using geometry::ConvexPolygon;
 using geometry::Disc;
 using geometry::Ellipse;
-using geometry::Segment;
 
 /// To the disc of radius r round p; side +1 is the left tangent. Nothing where the disc holds the origin.
 std::optional<Tangent> disc_tangent(Vec2 p, double r, double side) {
@@ -109,11 +107,11 @@ std::optional<Tangents> tangents(const GrownShape& s) {
   };
   if (const auto* d = std::get_if<Disc>(&s.shape)) return both(to_disc(*d, 1.0), to_disc(*d, -1.0));
   if (const auto* e = std::get_if<Ellipse>(&s.shape)) return ellipse_tangents(*e, e->center - s.origin, s.radius);
-  if (const auto* g = std::get_if<Segment>(&s.shape)) {
+  if (const auto* g = std::get_if<geometry::Segment>(&s.shape)) {
     const Vec2 ends[2] = {g->a, g->b};
     return to_polygon(ends, 2);
   }
-  const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
+  const std::vector<Vec2>& v = std::get<geometry::ConvexPolygon>(s.shape).vertices;
   return to_polygon(v.data(), v.size());
 }
 

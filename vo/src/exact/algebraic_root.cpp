@@ -2,7 +2,6 @@
 #include "exact/algebraic_root.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace exactvo::vo::detail {
 namespace {

@@ -6,15 +6,13 @@
 namespace exactvo::vo::detail {
 namespace {
 
-using geometry::Disc;
-using geometry::Ellipse;
 using geometry::detail::make;
 using geometry::detail::squared;
 
 ExactSum sum_of(const geometry::ConvexShape& shape) {
   const auto disc = [](double radius) { return Body{0, 0, 0, abs(Rational(radius))}; };
-  if (const auto* d = std::get_if<Disc>(&shape)) return {{make<Rational>(d->center)}, disc(d->radius)};
-  if (const auto* e = std::get_if<Ellipse>(&shape)) {
+  if (const auto* d = std::get_if<geometry::Disc>(&shape)) return {{make<Rational>(d->center)}, disc(d->radius)};
+  if (const auto* e = std::get_if<geometry::Ellipse>(&shape)) {
     const RationalVector c = make<Rational>(e->center);
     const Rational l11(e->l11), l21(e->l21), l22(e->l22);
     if (sgn(l22) == 0) return {{{c.x - l11, c.y - l21}, {c.x + l11, c.y + l21}}, {}};

@@ -320,8 +320,6 @@ Region cone_from_inside(const ShiftedCone& cone, const Window& window) {
 namespace exactvo::vo {
 namespace {
 
-using geometry::Bracket;
-using geometry::Polygon;
 using geometry::Region;
 
 detail::Window window_of(const FreeVelocityOptions& options) {
@@ -361,7 +359,7 @@ bool excludes(const HalfPlane& h, const ShiftedCone& cone) {
   return is_true({s.shape, s.origin, s.radius, cone.cone.time_horizon(), cone.apex, h});
 }
 
-Vec2 farthest_out(const Polygon& polygon, const HalfPlane& h) {
+Vec2 farthest_out(const geometry::Polygon& polygon, const HalfPlane& h) {
   return *std::max_element(polygon.outer.begin(), polygon.outer.end(),
                            [&](Vec2 a, Vec2 b) { return violation(h, a) < violation(h, b); });
 }
@@ -412,7 +410,7 @@ bool FreeVelocities::contains(Vec2 v) const {
                       [v](const ShiftedCone& c) { return c.cone.overlaps() || c.contains(v); });
 }
 
-Bracket FreeVelocities::area() const {
+geometry::Bracket FreeVelocities::area() const {
   return {inner_.area().low, outer_.area().high};
 }
 

@@ -12,11 +12,9 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::ConvexShape;
-using geometry::kUnitRoundoff;
 using geometry::VectorSum;
 
-VelocityObstacle cone_round(const ConvexShape& shape, const Encounter& e, double time_horizon) {
+VelocityObstacle cone_round(const geometry::ConvexShape& shape, const Encounter& e, double time_horizon) {
   if (e.robot) return {shape, e.position, *e.robot, time_horizon};
   return {shape, e.position, e.radius, time_horizon};
 }

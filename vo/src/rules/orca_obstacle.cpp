@@ -18,8 +18,6 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::Segment;
-
 /// REQUIRES of an edge that its ends differ: repeated vertices go first.
 std::vector<Vec2> without_repeats(std::vector<Vec2> vertices) {
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -186,7 +184,7 @@ std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::v
     const Edge edge = edge_at(chain, i, position);
     // The free side is on the right: from the left of an edge another edge is in front of it.
     if (cross(edge.direction, -edge.left) > 0.0) continue;
-    const VelocityObstacle obstacle(Segment{edge.left + position, edge.right + position}, position, radius,
+    const VelocityObstacle obstacle(geometry::Segment{edge.left + position, edge.right + position}, position, radius,
                                     time_horizon);
     if (covered(found, obstacle.grown(), time_horizon)) continue;
     std::optional<Vec2> normal;

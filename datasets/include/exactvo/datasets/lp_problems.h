@@ -19,7 +19,6 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/datasets/data_error.h"
 #include "exactvo/vo/lp/problem.h"
 
 namespace exactvo::datasets {

@@ -35,7 +35,6 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/local_plane.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/formation/scenario.h"

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "exactvo/datasets/provenance.h"
-#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::datasets {

@@ -13,7 +13,6 @@
 namespace exactvo::datasets::batch {
 namespace {
 
-using geometry::ConvexPolygon;
 using geometry::Ellipse;
 using geometry::ObstacleShapes;
 using geometry::Ring;
@@ -132,7 +131,7 @@ void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
   std::int64_t number = 0;
   for (const geometry::ConvexShape& piece : shapes.pieces) {
     const auto* segment = std::get_if<Segment>(&piece);
-    Ring ring = segment != nullptr ? Ring{segment->a, segment->b} : std::get<ConvexPolygon>(piece).vertices;
+    Ring ring = segment != nullptr ? Ring{segment->a, segment->b} : std::get<geometry::ConvexPolygon>(piece).vertices;
     Feature feature = flat_or_filled(kPieces, std::move(ring));
     feature.fields = piece_fields(head.key, number++);
     take(feature);

@@ -4,7 +4,6 @@
 /// \file
 /// summary.json of a batch, which is written last and says that all is there; and what it says in words.
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "batch/plan/input_record.h"
 #include "batch/plan/journal.h"

@@ -10,7 +10,6 @@
 /// (`kContactDepth`), is 0: contact. Where a robot overlaps an obstacle they are at most 0, and not its depth.
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <iosfwd>
 #include <memory>

@@ -15,9 +15,7 @@
 /// See also: motions.h (bodies that keep their heading), turning_pairs.h (moments and clearance; both move; certified,
 /// not exact).
 
-#include <cstddef>
 #include <optional>
-#include <vector>
 
 #include "exactvo/geometry/motion_certificate.h"
 #include "exactvo/geometry/motions.h"

@@ -6,7 +6,6 @@
 /// (docs/guide/codes.md).
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "exactvo/geometry/predicates.h"

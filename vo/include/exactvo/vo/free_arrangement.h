@@ -30,7 +30,6 @@
 ///  (5) what FreeVelocities::compare proves of half-planes, `yes` or `no`, `holds` says too.
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -2,10 +2,7 @@
 #include "exactvo/vo/lp/batch.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <type_traits>
-#include <vector>
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/seen_by_tsan.h"

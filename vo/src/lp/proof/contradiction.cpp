@@ -8,8 +8,6 @@
 namespace exactvo::lp {
 namespace {
 
-using geometry::kInfinity;
-
 struct Weighted {
   Binding binding;
   Exact multiplier;
@@ -34,7 +32,7 @@ std::vector<double> parts_of(Exact x) {
   std::vector<double> parts;
   while (sign_of(x) != 0) {
     const double part = x.to_double();
-    if (part == 0.0 || std::abs(part) == kInfinity) break;
+    if (part == 0.0 || std::abs(part) == geometry::kInfinity) break;
     parts.push_back(part);
     x = x - Exact(part);
   }

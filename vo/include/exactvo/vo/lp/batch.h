@@ -14,8 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "exactvo/vo/lp/solution.h"
-
 namespace exactvo::lp {
 
 /// Structure of arrays in blocks of `block` problems: line k of problem i stands at

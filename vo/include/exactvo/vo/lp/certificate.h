@@ -15,10 +15,7 @@
 ///  (4) nearest p: with nu >= 0 for the disc, |v - p|^2 >= |p|^2 + 2C - |p + w|^2/(1 + nu) - nu disc^2 (weak duality).
 /// The second objective of a relaxed answer (nearest among the least violating) is not part of the proof.
 
-#include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "exactvo/vo/lp/problem.h"
