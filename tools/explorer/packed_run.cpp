@@ -395,8 +395,6 @@ std::string whole(const Json& head, const std::string& columns) {
 
 }  // namespace
 
-// --- RunPacker ---
-
 void RunPacker::add_event(double time, std::size_t robot, const char* kind, const std::string& text) {
   if (events_.size() == kMostEvents) {
     ++events_left_out_;

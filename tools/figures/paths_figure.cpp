@@ -211,8 +211,6 @@ void add_scene(PanelLayers& to) {
            "no room to pass");
 }
 
-// --- Robots ---
-
 /// With more robots than this, only the middle time and the last are written, and smaller.
 constexpr int kFewRobots = 3;
 /// With more robots than this, not even the last time is written over something else.

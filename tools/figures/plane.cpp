@@ -65,8 +65,6 @@ Box square_round(const Box& box, double share) {
   return {middle - Vec2{half, half}, middle + Vec2{half, half}};
 }
 
-// --- LocalOrigin ---
-
 LocalOrigin::LocalOrigin(const Box& view) {
   const double extent = std::max(view.width(), view.height());
   if (view.is_empty() || !(extent > 0.0) || !std::isfinite(extent)) return;
@@ -110,8 +108,6 @@ void ChainLines::add(const std::vector<geometry::ChainPoint>& chain) {
     (chain[k].gap_follows ? across : along)
         .push_back({chain[k].point.rounded, chain[(k + 1) % chain.size()].point.rounded});
 }
-
-// --- Panel ---
 
 void Panel::curves(const std::string& title, const std::vector<Points>& curves, const std::string& style,
                    const std::string& key) {
@@ -195,8 +191,6 @@ SheetPanel Panel::on_sheet(const std::string& title) const {
 std::string velocity_plane(const std::string& title, const Box& view, const std::string& plot) {
   return filled("velocity_plane", {{"title", title}, {"ranges", axis_ranges(view)}, {"plot", plot}});
 }
-
-// --- MapLayers ---
 
 void MapLayers::curves(const std::string& title, const std::vector<Points>& curves, const std::string& style,
                        bool closed, bool in_key) {

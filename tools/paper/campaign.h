@@ -77,8 +77,6 @@ std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const std
 /// its version, commit and compiler.
 std::string program_key();
 
-// --- Campaigns ---
-
 struct CampaignOptions {
   std::filesystem::path folder;  ///< for the parts
   std::uint64_t fields = 0;      ///< 0 .. fields - 1 of each variant

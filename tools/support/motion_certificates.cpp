@@ -39,7 +39,6 @@ void append_body(JsonWriter& out, const RigidBody& body) {
   });
 }
 
-/// A body in motion.
 void append(JsonWriter& out, const BodyInMotion& moving) {
   if (const auto* straight = std::get_if<StraightMotion>(&moving.motion)) {
     append(out, "from", straight->from);

@@ -20,7 +20,6 @@
 
 namespace exactvo::tools {
 
-/// One motion of a body.
 struct BodyInMotion {
   geometry::Motion motion;
   const geometry::RigidBody* body = nullptr;

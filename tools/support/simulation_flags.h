@@ -58,7 +58,6 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags);
 /// below that either takes seconds.
 inline constexpr std::size_t kManyRobots = 200;
 
-/// What --decisions says.
 struct DecisionFlags {
   std::string recorded;  ///< "none", "binding", "all"; empty: as the scenario says
 };

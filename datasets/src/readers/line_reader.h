@@ -20,7 +20,6 @@
 
 namespace exactvo::datasets {
 
-/// The line at hand.
 class LineAtHand {
  public:
   explicit LineAtHand(std::string file) : file_(std::move(file)) {}

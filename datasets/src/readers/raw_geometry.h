@@ -59,7 +59,6 @@ struct ValidationResult {
 };
 ValidationResult validate(const RawGeometry& raw);
 
-/// The refusal that a finding is.
 DataError ring_refusal(const RingFinding& finding, const std::string& file);
 
 /// Throws DataError for the first finding that was not repaired.

@@ -75,7 +75,6 @@ inline bool are_apart(const geometry::Box& a, const geometry::Box& b, double r) 
   return a.low.x - b.high.x > r || b.low.x - a.high.x > r || a.low.y - b.high.y > r || b.low.y - a.high.y > r;
 }
 
-/// A disc as rationals.
 struct RationalDisc {
   explicit RationalDisc(const geometry::Disc& d) : disc(d), center(exact::exactly(d.center)), radius(d.radius) {}
   geometry::Disc disc;

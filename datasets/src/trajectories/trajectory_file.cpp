@@ -73,8 +73,6 @@ std::vector<std::string> trajectory_formats() {
   return names;
 }
 
-// --- The sink ---
-
 std::size_t TrajectorySink::agent(std::string_view id) {
   id_.assign(id);
   const auto [at, is_new] = numbers_.try_emplace(id_, numbers_.size());

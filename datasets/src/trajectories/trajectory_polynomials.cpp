@@ -75,7 +75,6 @@ std::size_t agent_of(const std::filesystem::path& path, TrajectorySink& out) {
   return out.agent(is_taken ? path.string() : stem);
 }
 
-/// The piece of a line.
 geometry::CurvedMotion piece_in(std::string_view text, const Header& header, double begin, std::uint64_t line,
                                 const TrajectorySink& out) {
   const std::vector<std::string_view> fields = fields_of(text, ',');

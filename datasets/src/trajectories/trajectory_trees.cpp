@@ -132,7 +132,6 @@ class XmlTags {
   bool is_new_open_ = false, has_root_ = false;
 };
 
-/// The attributes of one tag.
 class TagAttributes {
  public:
   TagAttributes(const std::string& tag, std::uint64_t line, const TrajectorySink& out) : line_(line), out_(out) {

@@ -70,7 +70,6 @@ class NearConstraints {
 
   /// The first that v violates, or null. Valid until the next question.
   const Constraint* first_violated(Vec2 v);
-  /// Whether v violates any.
   bool any_violated(Vec2 v);
   /// That of a body, or null. Valid until the next question.
   const Constraint* of_body(vo::BodyTable::Number body);

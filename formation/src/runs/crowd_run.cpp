@@ -101,7 +101,6 @@ bool has_reservations(const Scenario& s, Liveness liveness) {
   return liveness == Liveness::plan && !s.robots.empty() && s.moving_obstacles.empty() && drive_back;
 }
 
-/// A robot's drive as the wheels of a crowd.
 std::optional<CrowdWheels> wheels_of(const Robot& r) {
   if (!r.drive) return {};
   const DifferentialDrive& d = *r.drive;

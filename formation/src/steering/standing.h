@@ -45,7 +45,6 @@ class StandingObstacles {
   /// The first of those that stand which comes nearer than `radius` to the rest of the course from `here` on.
   std::optional<std::size_t> in_the_way(const Course& course, Vec2 here, double radius) const;
 
-  /// Round all that stand now.
   Detour detour() { return detour(now_); }
   Detour detour(const Standing& round);
 

@@ -170,7 +170,6 @@ struct Ends {
   Vec2 whole_goal;  ///< where it is
 };
 
-/// The points in one orientation.
 struct Orientation {
   TurnedPoints frame;
   Ends ends;  ///< in the frame

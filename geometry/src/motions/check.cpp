@@ -141,7 +141,6 @@ Chorded chorded(const Motion& motion) {
   return m;
 }
 
-/// The chord of an arc.
 Chorded chorded(const StraightMotion& piece, const TurningMotion& arc) {
   Chorded m{piece, nullptr};
   // The arc ends where the chord does up to the rounding of its twist: less than 2^-46 of the way.

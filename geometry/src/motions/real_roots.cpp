@@ -43,7 +43,6 @@ class Isolation {
   std::vector<RealNumber> roots_;
 };
 
-/// Whether p has a root in [low, high].
 bool has_root(const IntegerPolynomial& p, const mpq_class& low, const mpq_class& high) {
   if (p.size() <= 1) return false;
   if (sign_at(p, low) == 0) return true;

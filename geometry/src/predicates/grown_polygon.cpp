@@ -61,7 +61,6 @@ Sign rounded_distance(const Seen& q, const Seen& a, const Seen& b, double r, boo
 
 }  // namespace
 
-/// The sign of the turn a -> b -> c.
 Sign GrownPolygon::turn(const Seen& a, const Seen& b, const Seen& c) const {
   const double size_e = a.size + b.size;
   const double size_d = a.size + c.size;

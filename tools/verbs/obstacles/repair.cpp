@@ -80,7 +80,6 @@ bool same_origin(const ObstacleFile& a, const ObstacleFile& b) {
   return a.origin->longitude == b.origin->longitude && a.origin->latitude == b.origin->latitude;
 }
 
-/// The files that have obstacles.
 std::vector<const ObstacleFile*> with_obstacles(const std::vector<FileAnswer>& answers) {
   std::vector<const ObstacleFile*> files;
   for (const FileAnswer& answer : answers)

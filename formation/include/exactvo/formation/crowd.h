@@ -274,9 +274,9 @@ class Crowd {
   /// Without robots, kinds or obstacles. Throws CrowdError for options out of range.
   explicit Crowd(const CrowdOptions& options = {});
   ~Crowd();
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   Crowd(Crowd&&) noexcept;
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   Crowd& operator=(Crowd&&) noexcept;
 
   /// Numbered from 0. Throws CrowdError: `out_of_range`, `too_many`.

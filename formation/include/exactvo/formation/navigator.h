@@ -152,9 +152,9 @@ class Navigator {
   /// Goals are visited in order. Throws NavigatorError.
   Navigator(const NavigatorSetup& setup, std::vector<Vec2> goals);
   ~Navigator();
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   Navigator(Navigator&&) noexcept;
-  /// Moves; what is left behind can only be assigned to or destroyed.
+  /// Moves; the object moved from can only be assigned to or destroyed.
   Navigator& operator=(Navigator&&) noexcept;
 
   /// Other goals from the next decision on. Throws NavigatorError.

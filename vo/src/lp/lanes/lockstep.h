@@ -66,7 +66,6 @@ class Lockstep {
 
   static std::size_t stage_numbers(std::size_t lines) { return (3 * lines + 4) * kLanes; }
 
-  /// A pack on its state.
   struct PackState {
     Pack<D> pack;
     Rows<T> rows;
