@@ -179,10 +179,6 @@ void DataFile::row(const std::vector<double>& values) {
   empty_ = lifted_ = false;
 }
 
-void DataFile::rows(const std::vector<geometry::Vec2>& points) {
-  for (const geometry::Vec2 p : points) row({p.x, p.y});
-}
-
 void DataFile::curve(const std::vector<geometry::Vec2>& points) {
   rows(points);
   gap();
@@ -207,10 +203,6 @@ void DataFile::labelled_row(const std::vector<double>& values, const std::string
 void DataFile::gap() {
   if (!lifted_) text_ += '\n';  // two would end the data set
   lifted_ = true;
-}
-
-void DataFile::fill_if_empty() {
-  if (empty_) text_ += "NaN NaN NaN NaN\n";
 }
 
 void PlotCommand::data(int index, const std::string& what, const std::string& title) {

@@ -60,7 +60,9 @@ class DataFile {
   /// as many as it takes to read the same doubles back.
   void row(const std::vector<double>& values);
   /// One line per point.
-  void rows(const std::vector<geometry::Vec2>& points);
+  void rows(const std::vector<geometry::Vec2>& points) {
+    for (const geometry::Vec2 p : points) row({p.x, p.y});
+  }
   /// The same, with the pen lifted behind them.
   void curve(const std::vector<geometry::Vec2>& points);
   /// The same, closed; nothing of no points.
@@ -73,7 +75,9 @@ class DataFile {
 
  private:
   /// gnuplot does not count a data set without rows: it gets one that draws nothing.
-  void fill_if_empty();
+  void fill_if_empty() {
+    if (empty_) text_ += "NaN NaN NaN NaN\n";
+  }
 
   std::string text_;
   int count_ = 0;

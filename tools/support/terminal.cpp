@@ -151,10 +151,6 @@ bool ProgressLine::is_due() {
   return true;
 }
 
-double ProgressLine::elapsed() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
 void ProgressLine::show(double done, const std::string& doing) {
   const double seconds = elapsed(), rate = seconds > 0.0 ? done / seconds : 0.0;
   std::string text = fmt::format("{:.4g} of {:.4g} {}: {}", done, total_, unit_, doing);

@@ -90,7 +90,7 @@ class ProgressLine {
   /// seen and messages say it.
   bool is_due();
   /// s, since it was made.
-  double elapsed() const;
+  double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   /// Takes the line away, to print something else.
   void clear();
 

@@ -50,14 +50,6 @@ void CPL_STDCALL GdalComplaints::hear(CPLErr severity, CPLErrorNum, const char* 
   if (severity == CE_Warning) self.warnings_.emplace_back(words);
 }
 
-std::string GdalComplaints::take_failure() {
-  return std::exchange(failure_, {});
-}
-
-std::vector<std::string> GdalComplaints::take_warnings() {
-  return std::exchange(warnings_, {});
-}
-
 namespace {
 
 /// Words with a comma in them: what KML writes a point as, "longitude,latitude,height".

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/local_plane.h"
@@ -28,8 +29,8 @@ class GdalComplaints {
   GdalComplaints& operator=(const GdalComplaints&) = delete;
 
   /// The first failure since the last call, or "".
-  std::string take_failure();
-  std::vector<std::string> take_warnings();
+  std::string take_failure() { return std::exchange(failure_, {}); }
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
  private:
   static void CPL_STDCALL hear(CPLErr severity, CPLErrorNum number, const char* words);

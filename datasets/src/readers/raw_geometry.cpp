@@ -356,10 +356,6 @@ void Collector::reference_system(int srid, const std::string& place) {
   if (srid != *srid_) throw other_system(srid, *srid_, result_.file, place);
 }
 
-void Collector::progress(double share) const {
-  if (stream_ != nullptr && stream_->progress) stream_->progress(share);
-}
-
 void Collector::note(std::string place, std::string text) {
   result_.notes.push_back({std::nullopt, std::move(place), std::move(text)});
 }

@@ -99,7 +99,9 @@ class Collector {
   const std::optional<Extent>& extent() const { return result_.extent; }
   void set_coverage(Coverage coverage) { result_.coverage = coverage; }
   /// How much of the file is read, 0 to 1.
-  virtual void progress(double share) const;
+  virtual void progress(double share) const {
+    if (stream_ != nullptr && stream_->progress) stream_->progress(share);
+  }
 
   const std::string& file() const { return result_.file; }
   const ReadOptions& options() const { return options_; }

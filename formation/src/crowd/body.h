@@ -90,7 +90,7 @@ class CrowdBody {
   void follow_density();
   void require_apart() const;
   void require_on_lattice() const;
-  bool is_new(std::size_t at) const;
+  bool is_new(std::size_t at) const { return (core->robots.tag[at] & Robots::kSettled) == 0; }
 };
 
 /// snapshot.cpp. The crowd is ready.

@@ -275,10 +275,6 @@ void CrowdBody::require_apart() const {
   }
 }
 
-bool CrowdBody::is_new(std::size_t at) const {
-  return (core->robots.tag[at] & Robots::kSettled) == 0;
-}
-
 /// Edges, and corners of bodies.
 std::size_t CrowdBody::obstacle_size() const {
   std::size_t count = 0;

@@ -47,10 +47,6 @@ bool NeededConstraints::need(const Need& need) {
   return true;
 }
 
-bool NeededConstraints::need_within(double reach) {
-  return reach > have_.within && need({reach, have_.room});
-}
-
 /// With room r > 0 at the present velocity u, a half-plane is violated at v by |v - u| - r at most. Those without room
 /// may be violated by any amount.
 bool NeededConstraints::need_at(Vec2 v) {

@@ -40,7 +40,7 @@ class NeededConstraints {
   bool need_all();
 
  private:
-  bool need_within(double reach);
+  bool need_within(double reach) { return reach > have_.within && need({reach, have_.room}); }
   bool need(const Need& need);
 
   const StaticField* field_ = nullptr;

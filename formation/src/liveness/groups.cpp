@@ -169,10 +169,6 @@ void Groups::end_step(const Step& row) {
   }
 }
 
-std::string Groups::note(std::size_t robot) {
-  return std::exchange(notes_[robot], {});
-}
-
 // --- Whom a plan is for ---
 
 Groups::Members Groups::everyone() const {

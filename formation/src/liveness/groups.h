@@ -85,7 +85,7 @@ class Groups {
   /// group stands still in this step: its members want nothing. Whether there is such a group.
   bool halt_those_held_back(const Step& row);
   /// The robot's note for this row, which is often empty.
-  std::string note(std::size_t robot);
+  std::string note(std::size_t robot) { return std::exchange(notes_[robot], {}); }
 
   /// Takes a row with its decisions: who is stalled, and dead.
   void end_step(const Step& row);

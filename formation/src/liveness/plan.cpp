@@ -102,10 +102,6 @@ Following::Following(std::vector<PlannedMove> plan, std::vector<double> radii)
   }
 }
 
-bool Following::is_done(std::size_t move) const {
-  return rank_[move] < next_[plan_[move].robot];
-}
-
 bool Following::may_finish(std::size_t move) const {
   const std::vector<std::size_t>& after = plan_[move].after;
   return std::all_of(after.begin(), after.end(), [&](std::size_t k) { return is_done(k); });

@@ -47,7 +47,7 @@ class Following {
   Vec2 within_reach(std::size_t robot, const std::vector<Vec2>& at) const;
 
  private:
-  bool is_done(std::size_t move) const;
+  bool is_done(std::size_t move) const { return rank_[move] < next_[plan_[move].robot]; }
   bool may_finish(std::size_t move) const;
   double clear_share(std::size_t move, std::size_t earlier, double share, const std::vector<Vec2>& at) const;
 

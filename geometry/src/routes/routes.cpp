@@ -31,7 +31,7 @@ class GateTree {
  public:
   explicit GateTree(const CellMap& map);
 
-  bool connects(int one, int other) const;
+  bool connects(int one, int other) const { return root_of(one) == root_of(other); }
   /// The largest double radius for which the disc fits through all gates of some way between two cells; infinite if no
   /// gate is in the way. REQUIRES: `connects`.
   double widest_radius(int one, int other) const;
@@ -130,10 +130,6 @@ GateTree::GateTree(const CellMap& map) : map_(&map) {
 int GateTree::root_of(int cell) const {
   while (parent_[cell] != cell) cell = parent_[cell];
   return cell;
-}
-
-bool GateTree::connects(int one, int other) const {
-  return root_of(one) == root_of(other);
 }
 
 double GateTree::widest_radius(int one, int other) const {

@@ -14,7 +14,6 @@
 #include "exactvo/geometry/told_apart.h"
 #include "figures/plane.h"
 #include "support/escape.h"
-#include "support/obstacle_name.h"
 #include "support/robot_numbers.h"
 #include "support/route_certificates.h"
 #include "support/terminal.h"
@@ -257,10 +256,6 @@ std::string AskedMap::accepted_points() const {
   if (!cells) return "two numbers within 2^100, X,Y in m";
   return fmt::format("a cell of the map, which has {} columns and {} rows: X,Y, the first 0,0", cells->size.columns,
                      cells->size.rows);
-}
-
-std::string AskedMap::name_of(std::size_t obstacle) const {
-  return obstacle_name(obstacles[obstacle]);
 }
 
 AskedMap read_asked_map(const std::string& file, const datasets::ReadOptions& reading, const std::string& cell_point) {

@@ -14,6 +14,7 @@
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/route_certificate.h"
 #include "figures/figure.h"
+#include "support/obstacle_name.h"
 #include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
@@ -37,7 +38,7 @@ struct AskedMap {
   /// What `in_metres` accepts, in words.
   std::string accepted_points() const;
   /// An obstacle's id; "wall 7" or "polygon 7" where that is a number.
-  std::string name_of(std::size_t obstacle) const;
+  std::string name_of(std::size_t obstacle) const { return obstacle_name(obstacles[obstacle]); }
 };
 
 /// "middle" or "corner" of the cell.

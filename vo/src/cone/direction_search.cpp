@@ -145,10 +145,6 @@ EllipseNormals::EllipseNormals(const Ellipse& e, Vec2 centre, Vec2 y) : frame_(f
   }
 }
 
-Vec2 EllipseNormals::unfolded(Vec2 n, double sign_y) const {
-  return (n.x * sign_x_) * frame_.major + (n.y * sign_y) * frame_.minor;
-}
-
 // Foot x = (a n0' , b z1'), with n0' = n0/(s+r0-1), z1' = z1/s on the unit circle; its normal is (n0'/a, z1'/b).
 Vec2 EllipseNormals::normal_at(double s) const {
   const double cx = n0_ / (s + r0_ - 1.0);

@@ -195,10 +195,6 @@ fs::path Journal::input_facts(std::size_t input) const {
   return parts_.path() / (number_text(input) + ".input");
 }
 
-bool Journal::is_open() const {
-  return is_there(run_file());
-}
-
 bool Journal::another_finished(const Identity& identity) const {
   if (is_open() || !is_there(out_ / "summary.json")) return false;
   try {

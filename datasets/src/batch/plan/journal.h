@@ -80,7 +80,7 @@ class Journal {
   Lock lock(const std::function<bool()>& keep_waiting);
 
   /// Whether run.json still stands: no other process has put the parts together meanwhile.
-  bool is_open() const;
+  bool is_open() const { return is_there(run_file()); }
   /// Whether an output of just this batch stands in OUT and nothing is under way there.
   bool another_finished(const Identity& identity) const;
 
