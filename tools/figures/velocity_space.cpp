@@ -43,19 +43,24 @@ class VelocitySpace {
     add_allowed();
     add_cones_of(false, kStaticColour, "velocity obstacle of an obstacle");
     add_cones_of(true, kRobotColour, "velocity obstacle of a robot");
-    add_own_limits();
+    // What its acceleration or its wheels allow, as one polygon: their lines beyond it would hide all else.
+    panel_.half_planes("the robot's own limits", own_limits_,
+                       fmt::format("with lines lw 1.5 lc rgb '{}'", kSlackColour), line_style(1, kSlackColour),
+                       "its own limits", own_limits_);
     add_half_planes(Effect::slack, "lw 1.5", kSlackColour);
     add_half_planes(Effect::binding, "lw 3", kBindingColour);
     add_half_planes(Effect::violated, "lw 3 dt (8,4)", kViolatedColour);
-    add_hatching_key();
-    add_speed_bound();
+    if (!constraints().empty())
+      panel_.plot.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
+    panel_.rings("speed bound", {speed_bound_ring()}, line_style(1.5, "black", " dt (6,4)"), "speed bound");
     add_wheels();
     // The numbers of the printed explanation, beside the lines and in their colours; what is slack chooses last.
     add_numbers_of(Effect::binding, kBindingColour);
     add_numbers_of(Effect::violated, kViolatedColour);
     add_numbers_of(Effect::slack, kSlackNumber);
     add_arrows();
-    add_rim();
+    // Where a step changes the velocity by little, the rim is what is seen of what it allows: nothing lies upon it.
+    if (allowed_.size() >= 3) panel_.rings("rim of the allowed velocities", {allowed_}, line_style(2.5, kAllowedRim));
   }
 
   std::string data() const { return data_.text(); }
@@ -104,18 +109,6 @@ class VelocitySpace {
     if (allowed_.size() < 3) return;
     panel_.rings("allowed velocities", {allowed_}, solid_fill(kAllowedColour),
                  d_.has_all_half_planes ? "allowed velocities" : "allowed by the half-planes recorded");
-  }
-
-  /// Where a step changes the velocity by little, the rim is what is seen of what it allows: nothing lies upon it.
-  void add_rim() {
-    if (allowed_.size() >= 3) panel_.rings("rim of the allowed velocities", {allowed_}, line_style(2.5, kAllowedRim));
-  }
-
-  /// What its acceleration or its wheels allow, as one polygon: their lines beyond it would hide all else.
-  void add_own_limits() {
-    panel_.half_planes("the robot's own limits", own_limits_,
-                       fmt::format("with lines lw 1.5 lc rgb '{}'", kSlackColour), line_style(1, kSlackColour),
-                       "its own limits", own_limits_);
   }
 
   /// What wheels can hold for ever at their present heading, whatever they do now: the hull of a disc about 0 and a
@@ -233,10 +226,6 @@ class VelocitySpace {
                          own_limits_);
   }
 
-  void add_speed_bound() {
-    panel_.rings("speed bound", {speed_bound_ring()}, line_style(1.5, "black", " dt (6,4)"), "speed bound");
-  }
-
   void add_numbers_of(Effect effect, const char* colour) {
     std::vector<Label> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
@@ -276,11 +265,6 @@ class VelocitySpace {
     double least = panel_.view.diagonal();
     for (const Vec2 other : numbers_) least = std::min(least, norm(place - other));
     return least;
-  }
-
-  void add_hatching_key() {
-    if (!constraints().empty())
-      panel_.plot.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
   }
 
   /// `tip`: the size of the point at its end.

@@ -160,11 +160,6 @@ bool Session::look(const std::string& doing, double input_bytes) {
   return watch_(progress_);
 }
 
-void Session::count_input(std::size_t input) {
-  ++progress_.inputs_done;
-  bytes_done_ += identity_.inputs[input].size;
-}
-
 Counts Session::counted() const {
   const std::lock_guard<std::mutex> lock(counting_);
   return counts_;
@@ -219,7 +214,8 @@ void Session::read(std::size_t number, const GivePiece& give) {
       give(std::move(piece));
     }
   }
-  count_input(number);
+  ++progress_.inputs_done;
+  bytes_done_ += identity_.inputs[number].size;
 }
 
 void Session::work_on(Piece& piece) {
@@ -239,7 +235,13 @@ void Session::work_on(Piece& piece) {
 }
 
 void Session::finish_piece(Piece& piece) {
-  if (piece.has_changed) refuse_changed_input(piece.input);
+  // Parts of other bytes than the journal's must not be found by a resumption.
+  if (piece.has_changed) {
+    std::error_code ignored;
+    std::filesystem::remove_all(journal_.part(piece.input, 0).parent_path(), ignored);
+    throw DataError(DataCode::other_run, identity_.inputs[piece.input].name, "", "a file that changed under the batch",
+                    "files that stay as they are; another --out, or an empty one");
+  }
   if (piece.has_part && outputs_) merge(piece);
   if (piece.facts) finish_input(piece);
 }
@@ -257,14 +259,6 @@ void Session::finish_input(const Piece& last) {
   if (last.facts->chunks > 0 || last_merged_ != last.input) return;
   is_merging_ = false;
   outputs_.reset();
-}
-
-/// Parts of other bytes than the journal's must not be found by a resumption.
-void Session::refuse_changed_input(std::size_t input) {
-  std::error_code ignored;
-  std::filesystem::remove_all(journal_.part(input, 0).parent_path(), ignored);
-  throw DataError(DataCode::other_run, identity_.inputs[input].name, "", "a file that changed under the batch",
-                  "files that stay as they are; another --out, or an empty one");
 }
 
 // --- The end ---

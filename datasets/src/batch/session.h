@@ -41,7 +41,6 @@ class Session {
   void plan(const std::vector<std::size_t>& inputs);
   /// Asks the watch whether to go on, with so much of the input under way read.
   bool look(const std::string& doing, double input_bytes = 0.0);
-  void count_input(std::size_t input);
 
   // --- Work ---
 
@@ -70,7 +69,6 @@ class Session {
   void finish_piece(Piece& piece);
   void merge(const Piece& piece);
   void finish_input(const Piece& last);
-  [[noreturn]] void refuse_changed_input(std::size_t input);
   BatchSummary put_together(BatchResult& result);
   BatchSummary publish();
   Times times() const;

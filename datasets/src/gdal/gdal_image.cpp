@@ -38,7 +38,10 @@ class Decoder {
     if (bands == 2 || bands == 4) image_.is_transparent.resize(image_.brightness.size());
     for (std::size_t row = 0; row < image_.height; ++row) {
       decode_row(row, bands);
-      if (row % kRowsKept == kRowsKept - 1) forget_rows(bands);
+      // GDAL keeps what it has decoded, up to a 20th of the machine's memory. Whole rows go, of all bands: one that is
+      // wanted again is decoded from the first on.
+      if (row % kRowsKept == kRowsKept - 1)
+        for (int k = 1; k <= bands; ++k) data_->GetRasterBand(k)->FlushCache();
     }
     return std::move(image_);
   }
@@ -50,12 +53,6 @@ class Decoder {
     for (int k = 1; k <= colours; ++k) add_colour(*data_->GetRasterBand(k), row, pixels);
     for (std::size_t x = 0; x < image_.width; ++x) pixels[x] /= static_cast<float>(colours);
     if (!image_.is_transparent.empty()) read_alpha(*data_->GetRasterBand(bands), row);
-  }
-
-  /// GDAL keeps what it has decoded, up to a 20th of the machine's memory. Whole rows go, of all bands: one that is
-  /// wanted again is decoded from the first on.
-  void forget_rows(int bands) {
-    for (int k = 1; k <= bands; ++k) data_->GetRasterBand(k)->FlushCache();
   }
 
   const std::vector<float>& row_of(GDALRasterBand& band, std::size_t row) {

@@ -269,7 +269,8 @@ class VectorReader {
     layer.is_perhaps_metres = geojson_.has_value();
     layer.for_each_ring = [this](const auto& take) { for_each_ring(take); };
     if (geojson_) layer.box = geojson_->box();
-    note_units(plane_.settle(layer));
+    const std::string words = plane_.settle(layer);
+    if (!words.empty()) out_.note(layers() > 1 ? "layer " + layer_name() : "", words);
   }
 
   const OGRSpatialReference* system_of_layer() {
@@ -294,16 +295,6 @@ class VectorReader {
     OGRGeometry* geometry = nullptr;
     if (OGRGeometryFactory::createFromWkt(text.c_str() + end + 1, nullptr, &geometry) == OGRERR_NONE)
       feature.SetGeometryDirectly(geometry);
-  }
-
-  /// Refuses a row of a CSV whose SRID is not that of the first geometry.
-  void refuse_other_srid(const OGRFeature& feature, const std::string& place) const {
-    const int srid = srid_of(text_of_geometry(feature));
-    if (srid != csv_srid_.value_or(srid)) throw other_system(srid, *csv_srid_, path_.string(), place);
-  }
-
-  void note_units(const std::string& words) {
-    if (!words.empty()) out_.note(layers() > 1 ? "layer " + layer_name() : "", words);
   }
 
   /// Sets `reason_` as well.
@@ -351,7 +342,9 @@ class VectorReader {
       return out_.reject(*lost);
     if (!geojson_ && is_csv() && item.has_geometry()) {
       try {
-        refuse_other_srid(*item.feature, place);
+        // The SRID of each row of a CSV must be that of the first geometry.
+        const int srid = srid_of(text_of_geometry(*item.feature));
+        if (srid != csv_srid_.value_or(srid)) throw other_system(srid, *csv_srid_, path_.string(), place);
       } catch (const DataError& error) {
         return out_.reject(error);
       }

@@ -172,13 +172,6 @@ class Sequence {
     return c;
   }
 
-  /// REQUIRES: the byte that was taken last is the record's first one.
-  void begin_record() {
-    const bool is_behind_another = begin_line_ == line_;
-    begin_column_ = is_behind_another ? column_ - 1 : 1;
-    begin_line_ = line_;
-  }
-
   /// Sets where it begins. Blank at the end. What follows an object on its line is a record of its own if it is an
   /// object, and spoils the record otherwise.
   std::string next_text() {
@@ -196,7 +189,9 @@ class Sequence {
         continue;
       }
       if (!is_begun && !is_json_blank(c)) {
-        begin_record();
+        const bool is_behind_another = begin_line_ == line_;
+        begin_column_ = is_behind_another ? column_ - 1 : 1;
+        begin_line_ = line_;
         is_begun = true;
       }
       text += static_cast<char>(c);

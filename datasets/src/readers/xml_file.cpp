@@ -33,15 +33,13 @@ std::string XmlFile::place_of(const pugi::xml_node& node) const {
   const std::ptrdiff_t offset = node.offset_debug();
   if (offset < 0) return node.name();
   const auto byte = static_cast<std::size_t>(offset);
-  if (line_starts_.empty()) index_lines();
+  if (line_starts_.empty()) {
+    line_starts_.push_back(0);
+    for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
+      line_starts_.push_back(at + 1);
+  }
   const auto line = std::prev(std::upper_bound(line_starts_.begin(), line_starts_.end(), byte));
   return "line " + std::to_string(line - line_starts_.begin() + 1) + ", column " + std::to_string(byte - *line + 1);
-}
-
-void XmlFile::index_lines() const {
-  line_starts_.push_back(0);
-  for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
-    line_starts_.push_back(at + 1);
 }
 
 double XmlFile::number(const pugi::xml_node& node, const char* attribute) const {

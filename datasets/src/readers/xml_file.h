@@ -29,7 +29,6 @@ class XmlFile {
 
  private:
   void refuse_zero_bytes() const;
-  void index_lines() const;
 
   const std::string& file_;
   std::string text_;

@@ -129,7 +129,9 @@ class DecisionAudit : public RowAudit {
   }
 
   void check_step(const RowInRun& at) override {
-    place_moving(at.row);
+    moved_.clear();
+    for (std::size_t k = 0; k < run_.scenario.moving_obstacles.size() && k < at.row.moving.size(); ++k)
+      moved_.push_back(formation::hull_of(run_.scenario.moving_obstacles[k], at.row.moving[k].displacement));
     std::vector<Seen> all;
     for (std::size_t i = 0; i < at.row.robots.size(); ++i) all.push_back(seen(at, i));
     for (const Seen& s : all) {
@@ -179,12 +181,6 @@ class DecisionAudit : public RowAudit {
   }
 
   double wall_radius(std::size_t robot) const { return obstacle_radius(run_.scenario.robots[robot]); }
-
-  void place_moving(const Step& step) {
-    moved_.clear();
-    for (std::size_t k = 0; k < run_.scenario.moving_obstacles.size() && k < step.moving.size(); ++k)
-      moved_.push_back(formation::hull_of(run_.scenario.moving_obstacles[k], step.moving[k].displacement));
-  }
 
   // --- (3) Nothing is missing ---
 

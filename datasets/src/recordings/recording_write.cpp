@@ -58,11 +58,6 @@ struct CsvFile {
 
 // --- The trajectory as CSV ---
 
-/// Quoted where it must be.
-std::string csv_text(const std::string& text) {
-  return text.find_first_of(",\"\r\n") == std::string::npos ? text : csv_quoted(text);
-}
-
 void add_pair(GrowingText& row, geometry::Vec2 v) {
   row.add(',');
   row.add_number(v.x);
@@ -219,7 +214,8 @@ struct TrajectoryWriter::State : CsvFile {
   State(const std::filesystem::path& path, const formation::Scenario& scenario)
       : CsvFile(path), has_leader(scenario.formation.has_value()) {
     for (const formation::Robot& robot : scenario.robots) {
-      csv_ids.push_back(csv_text(robot.id));
+      // Quoted where it must be.
+      csv_ids.push_back(robot.id.find_first_of(",\"\r\n") == std::string::npos ? robot.id : csv_quoted(robot.id));
       has_wheels = has_wheels || robot.drive;
     }
   }

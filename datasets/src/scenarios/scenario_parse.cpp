@@ -130,10 +130,15 @@ class ScenarioReader {
     if (scenario.formation && tree.at("formation").at("leader").contains("to"))
       plan_leader_of(tree.at("formation").at("leader"), scenario, file_);
     if (advance) {
-      refuse_what_cannot_move(scenario);
+      // Paths and speeds of what moves by itself: they must be right before anything is moved along them.
+      for (const formation::ScenarioProblem& problem : formation::validate(scenario))
+        if (starts_with(problem.pointer, "/moving_obstacles") || starts_with(problem.pointer, "/formation"))
+          refuse(scenario, problem);
       advance(scenario);
     }
-    refuse_what_cannot_run(scenario);
+    // What no schema can say: robots that overlap, lists whose lengths must agree, ...
+    const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
+    if (!problems.empty()) refuse(scenario, problems.front());
     return scenario;
   }
 
@@ -330,19 +335,6 @@ class ScenarioReader {
     look("most", scenario.horizons.most);
     look("orca", scenario.horizons.orca);
     look("robots", scenario.horizons.robots);
-  }
-
-  /// What no schema can say: robots that overlap, lists whose lengths must agree, ...
-  void refuse_what_cannot_run(const Scenario& scenario) const {
-    const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
-    if (!problems.empty()) refuse(scenario, problems.front());
-  }
-
-  /// Paths and speeds of what moves by itself: they must be right before anything is moved along them.
-  void refuse_what_cannot_move(const Scenario& scenario) const {
-    for (const formation::ScenarioProblem& problem : formation::validate(scenario))
-      if (starts_with(problem.pointer, "/moving_obstacles") || starts_with(problem.pointer, "/formation"))
-        refuse(scenario, problem);
   }
 
   [[noreturn]] void refuse(const Scenario& scenario, const formation::ScenarioProblem& problem) const {

@@ -147,7 +147,10 @@ class CrowdSteps final : public Stepper {
 
   void decide() override {
     set_out_obstacles();
-    look_at_obstacles();
+    moved_obstacles_.clear();
+    for (const MovingObstacle& o : scenario_.moving_obstacles)
+      moved_obstacles_.push_back({displacement_at(o, report_.time), leader_at(o.motion, report_.time).velocity});
+    journeys_.look_at_moving_obstacles(report_.time, moved_obstacles_);
     for (std::size_t i = own_begin(); i < own_end(); ++i) look(i);
     if (journeys_.has_claims()) look_at_claims();
     if (reservations_) reserve();
@@ -155,7 +158,8 @@ class CrowdSteps final : public Stepper {
       preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
     if (options_.steering)
       steer_by(options_.steering, {own_begin(), own_end(), report_.time, at_, velocity_}, preferred_);
-    share_preferred();
+    // All preferred velocities to all.
+    if (ranks_) ranks_->share({{preferred_.data(), in_bytes(ends_, sizeof(Vec2))}});
     crowd_.set_preferred(preferred_);
   }
 
@@ -240,15 +244,12 @@ class CrowdSteps final : public Stepper {
   }
   std::size_t own_end() const { return ends_[ranks_ ? static_cast<std::size_t>(ranks_->rank()) : 0]; }
 
-  /// All preferred velocities to all.
-  void share_preferred() {
-    if (ranks_) ranks_->share({{preferred_.data(), in_bytes(ends_, sizeof(Vec2))}});
-  }
-
   /// All journeys come to the first rank. Returns whether it is this one.
   bool gather_journeys() {
     if (ranks_) {
-      require_same_states();
+      const auto digest = static_cast<std::int64_t>(crowd_.digest() >> 1U);
+      const std::int64_t least = ranks_->least(digest), most = -ranks_->least(-digest);
+      if (least < most) throw RanksDiffer();
       std::ostringstream own;
       SnapshotWriter to(own);
       for (std::size_t i = own_begin(); i < own_end(); ++i) put(to, i);
@@ -269,12 +270,6 @@ class CrowdSteps final : public Stepper {
   void get(SnapshotReader& from, std::size_t i) {
     journeys_.get(i, from);
     from.get(turned_[i]);
-  }
-
-  void require_same_states() const {
-    const auto digest = static_cast<std::int64_t>(crowd_.digest() >> 1U);
-    const std::int64_t least = ranks_->least(digest), most = -ranks_->least(-digest);
-    if (least < most) throw RanksDiffer();
   }
 
   // --- Snapshots: the run, the crowd, the sink, and a checksum ---
@@ -449,13 +444,6 @@ class CrowdSteps final : public Stepper {
           displacement_at(scenario_.moving_obstacles[k], end_of_step()) - crowd_.body_displacement(moving_[k]);
       crowd_.set_body_velocity(moving_[k], way / scenario_.time_step);
     }
-  }
-
-  void look_at_obstacles() {
-    moved_obstacles_.clear();
-    for (const MovingObstacle& o : scenario_.moving_obstacles)
-      moved_obstacles_.push_back({displacement_at(o, report_.time), leader_at(o.motion, report_.time).velocity});
-    journeys_.look_at_moving_obstacles(report_.time, moved_obstacles_);
   }
 
   const Scenario& scenario_;

@@ -230,17 +230,15 @@ Journal::Lock Journal::lock(const std::function<bool()>& keep_waiting) {
 }
 
 void Journal::start_final() const {
-  if (lock_file_ >= 0) remove_finals();
+  if (lock_file_ >= 0) {
+    std::error_code ignored;
+    for (const std::string& name : names_in(parts_.path())) {
+      if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_.path() / name, ignored);
+    }
+  }
   std::error_code error;
   fs::create_directory(final_, error);
   if (error) throw cannot_write(final_, error.value());
-}
-
-void Journal::remove_finals() const {
-  std::error_code ignored;
-  for (const std::string& name : names_in(parts_.path())) {
-    if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_.path() / name, ignored);
-  }
 }
 
 void Journal::publish(const std::string& last, const std::function<bool(const std::string&)>& is_output) const {

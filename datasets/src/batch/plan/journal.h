@@ -92,7 +92,6 @@ class Journal {
   void publish(const std::string& last, const std::function<bool(const std::string& name)>& is_output) const;
 
  private:
-  void remove_finals() const;
   std::filesystem::path run_file() const { return parts_.path() / "run.json"; }
   std::filesystem::path stale_parts() const { return out_ / ".parts.old"; }
 

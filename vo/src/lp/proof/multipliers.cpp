@@ -133,13 +133,6 @@ Normals normals_of(const Problem& problem, const Solution& s) {
   return normals;
 }
 
-/// (2) and (3) need no multiplier of the disc: it follows from the others.
-void complete_disc(const Problem& problem, Solution& s) {
-  if (s.status == Status::optimal && problem.objective == Objective::nearest) return;
-  if (s.status != Status::no_interior)
-    Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
-}
-
 /// But for those that are 0.
 bool are_among(const Multipliers& some, const Multipliers& all) {
   const auto is_there = [&](Binding binding, double value) {
@@ -239,7 +232,10 @@ void set_multipliers(const Problem& problem, const Multipliers& proof, Solution&
     for (std::size_t i = 0; i < proof.count; ++i)
       if (proof.binding[i] == s.active[k].binding) s.active[k].multiplier += proof.value[i];
   }
-  complete_disc(problem, s);
+  // (2) and (3) need no multiplier of the disc: it follows from the others.
+  if (s.status == Status::optimal && problem.objective == Objective::nearest) return;
+  if (s.status != Status::no_interior)
+    Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
 }
 
 }  // namespace exactvo::lp
