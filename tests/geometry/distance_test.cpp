@@ -52,6 +52,14 @@ TEST(Distance, NeitherOverflowsNorUnderflows) {
   EXPECT_EQ(nearest_point({{3, 4}, {3, 4}}, {0, 0}), (Vec2{3, 4}));
 }
 
+TEST(NearestOn, IsWithinTheSegmentAndNearest) {
+  EXPECT_EQ(nearest_share({1, 1}, {5, 1}, {2, 7}), 0.25);
+  EXPECT_EQ(nearest_on({1, 1}, {5, 1}, {2, 7}), (Vec2{2, 1}));
+  EXPECT_EQ(nearest_on({1, 1}, {5, 1}, {0, 0}), (Vec2{1, 1}));
+  EXPECT_EQ(nearest_on({1, 1}, {5, 1}, {9, 2}), (Vec2{5, 1}));
+  EXPECT_EQ(nearest_on({3, 4}, {3, 4}, {0, 0}), (Vec2{3, 4}));
+}
+
 /// Squares rule out three of the four lengths, and change no bit: at every scale, with ties, and where squares
 /// overflow.
 TEST(Distance, BetweenSegmentsIsTheLeastOfTheFourFromEnds) {

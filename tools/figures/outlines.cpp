@@ -79,13 +79,6 @@ std::array<HalfPlane, 4> sides_of(const Box& box) {
 /// Points looked at together: the time grows with their square where a curve is as jagged as can be.
 constexpr std::size_t kStretch = 2048;
 
-double distance_to_stretch(Vec2 a, Vec2 b, Vec2 p) {
-  const Vec2 way = b - a;
-  const double length = dot(way, way);
-  const double along = length > 0.0 ? std::clamp(dot(p - a, way) / length, 0.0, 1.0) : 0.0;
-  return norm(p - (a + along * way));
-}
-
 /// Marks the points between two that are kept.
 void keep_between(const Points& curve, std::size_t first, std::size_t last, std::vector<bool>& kept) {
   std::vector<std::pair<std::size_t, std::size_t>> open{{first, last}};
@@ -95,7 +88,7 @@ void keep_between(const Points& curve, std::size_t first, std::size_t last, std:
     double most = kThinning;
     std::size_t farthest = from;
     for (std::size_t k = from + 1; k < to; ++k) {
-      const double distance = distance_to_stretch(curve[from], curve[to], curve[k]);
+      const double distance = norm(curve[k] - nearest_on(curve[from], curve[to], curve[k]));
       if (distance > most) most = distance, farthest = k;
     }
     if (farthest == from) continue;

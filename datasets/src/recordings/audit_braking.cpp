@@ -125,10 +125,7 @@ class BrakingAudit : public RowAudit {
     geometry::Vec2 shortest = ends[0][0] - ends[1][0];
     for (const int side : {0, 1})
       for (const geometry::Vec2 p : ends[side]) {
-        const geometry::Vec2 from = ends[1 - side][0], along = ends[1 - side][1] - from;
-        const double square = squared_norm(along);
-        const double share = square > 0.0 ? std::clamp(dot(p - from, along) / square, 0.0, 1.0) : 0.0;
-        const geometry::Vec2 way = p - (from + share * along);
+        const geometry::Vec2 way = p - nearest_on(ends[1 - side][0], ends[1 - side][1], p);
         if (norm(way) < norm(shortest)) shortest = side == 0 ? way : -way;
       }
     return shortest;

@@ -111,9 +111,7 @@ class Sight {
     Vec2 best;
     double least = kInfinity;
     for (std::size_t k = 0; k < body_.corners.size(); ++k) {
-      const Vec2 a = corner(k), along = corner(k + 1 < body_.corners.size() ? k + 1 : 0) - a;
-      const double length = geometry::squared_norm(along);
-      const Vec2 p = a + (length > 0.0 ? std::clamp(dot(x - a, along) / length, 0.0, 1.0) : 0.0) * along;
+      const Vec2 p = nearest_on(corner(k), corner(k + 1 < body_.corners.size() ? k + 1 : 0), x);
       const double squared = geometry::squared_norm(x - p);
       if (squared < least) least = squared, best = p;
     }

@@ -12,10 +12,7 @@ namespace {
 
 /// Of the origin.
 double squared_distance(const Segment& s) {
-  const Vec2 along = s.b - s.a;
-  const double length = geometry::squared_norm(along);
-  const double share = length > 0.0 ? std::clamp(-dot(s.a, along) / length, 0.0, 1.0) : 0.0;
-  return geometry::squared_norm(s.a + share * along);
+  return geometry::squared_norm(nearest_on(s.a, s.b, {}));
 }
 
 }  // namespace

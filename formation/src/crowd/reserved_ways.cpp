@@ -9,13 +9,6 @@ namespace {
 /// m: by how much more than its radius a robot keeps off the capsules of others, where it has that room.
 constexpr double kCapsuleMargin = 0.0015;
 
-Vec2 nearest_of(const geometry::Segment& s, Vec2 p) {
-  const Vec2 along = s.b - s.a;
-  const double length = squared_norm(along);
-  if (!(length > 0.0)) return s.a;
-  return s.a + std::clamp(dot(p - s.a, along) / length, 0.0, 1.0) * along;
-}
-
 }  // namespace
 
 void ReservedWays::set(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved) {
@@ -51,7 +44,7 @@ void ReservedWays::add_lines(Vec2 at, double radius, double max_speed, double ho
   const double reach = radius + widest_ + kCapsuleMargin + max_speed * horizon;
   grid_.for_each_within(at, reach, [&](std::size_t k) {
     const Capsule& capsule = capsules_[k];
-    const Vec2 away = at - nearest_of(capsule.way, at);
+    const Vec2 away = at - nearest_on(capsule.way.a, capsule.way.b, at);
     const double distance = norm(away), together = radius + capsule.radius;
     if (distance < together || distance > together + kCapsuleMargin + max_speed * horizon) return;
     const double gap = std::max(0.0, distance - together - kCapsuleMargin);

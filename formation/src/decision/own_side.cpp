@@ -21,17 +21,11 @@ static_assert(24 >= 13 + 3 + 3);  // parts of a turn, one more in each of three 
 /// rad: more than angles of a cone are off by.
 constexpr double kBeyond = 1e-9;
 
-Vec2 nearest_on(const Segment& s, Vec2 p) {
-  const Vec2 along = s.b - s.a;
-  const double square = squared_norm(along);
-  return square == 0.0 ? s.a : s.a + std::clamp(dot(p - s.a, along) / square, 0.0, 1.0) * along;
-}
-
 /// From the nearest point of `other` to that of `own`; 0 where they cross.
 Vec2 shortest_between(const Segment& own, const Segment& other) {
-  Vec2 shortest = own.a - nearest_on(other, own.a);
-  for (const Vec2 between :
-       {own.b - nearest_on(other, own.b), nearest_on(own, other.a) - other.a, nearest_on(own, other.b) - other.b})
+  Vec2 shortest = own.a - nearest_on(other.a, other.b, own.a);
+  for (const Vec2 between : {own.b - nearest_on(other.a, other.b, own.b), nearest_on(own.a, own.b, other.a) - other.a,
+                             nearest_on(own.a, own.b, other.b) - other.b})
     if (norm(between) < norm(shortest)) shortest = between;
   return geometry::distance(own, other) > 0.0 ? shortest : Vec2{};
 }

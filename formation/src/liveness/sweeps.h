@@ -21,10 +21,7 @@ inline constexpr double kPlannedGap = 0.04;
 inline constexpr double kSweepRounding = 1e-9;
 
 inline double squared_distance(Vec2 p, Vec2 from, Vec2 to) {
-  const Vec2 way = to - from;
-  const double length2 = squared_norm(way);
-  const double t = length2 > 0.0 ? std::clamp(dot(p - from, way) / length2, 0.0, 1.0) : 0.0;
-  return squared_norm(p - (from + t * way));
+  return squared_norm(p - nearest_on(from, to, p));
 }
 
 inline bool cross_each_other(const Segment& s, const Segment& t) {

@@ -23,20 +23,14 @@ struct Directed {
   }
 };
 
-Vec2 nearest_on(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  return a + (length2 > 0.0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0.0) * e;
-}
-
 Vec2 direction_between(const std::vector<Vec2>& way, const std::vector<Vec2>& hull) {
   Directed best;
   const Vec2 from = way.front(), to = way.back();
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 a = hull[i], b = hull[(i + 1) % hull.size()];
-    best.take(nearest_on(a, from, to) - a);
-    best.take(from - nearest_on(from, a, b));
-    best.take(to - nearest_on(to, a, b));
+    best.take(nearest_on(from, to, a) - a);
+    best.take(from - nearest_on(a, b, from));
+    best.take(to - nearest_on(a, b, to));
   }
   return normalized(best.direction);
 }

@@ -35,13 +35,6 @@ struct Hull {
   const Target* target = nullptr;
 };
 
-/// A point of [a, b] nearest to p, as a share of the way.
-double share_of(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  return length2 > 0.0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0.0;
-}
-
 /// The point of a hull that is nearest to a point, which lies between two corners.
 struct Foot {
   double distance = kInfinity;  ///< 0 inside
@@ -56,7 +49,7 @@ Foot foot_of(const Hull& hull, Vec2 p) {
   for (std::size_t i = 0; i < (n == 2 ? 1 : n); ++i) {
     const Vec2 a = hull.vertices[i], b = hull.vertices[(i + 1) % n];
     if (cross(b - a, p - a) < 0.0) inside = false;
-    const double share = share_of(p, a, b);
+    const double share = nearest_share(a, b, p);
     const double distance = norm(p - (a + share * (b - a)));
     if (distance < foot.distance) foot = {distance, i, share};
   }
@@ -84,7 +77,7 @@ OnWay nearest_on_way(const Hull& hull, Vec2 a, Vec2 b) {
   const std::size_t n = hull.vertices.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 v = hull.vertices[i], w = hull.vertices[(i + 1) % n];
-    const double share = share_of(v, a, b);
+    const double share = nearest_share(a, b, v);
     take(norm(v - (a + share * (b - a))), share);
     if (n > 1 && cross_properly(a, b, v, w)) take(0.0, cross(w - v, v - a) / cross(w - v, b - a));
   }

@@ -17,12 +17,6 @@ constexpr std::size_t kMostSeparations = std::size_t{1} << 16;
 /// rad: `proves_clear` takes no more.
 constexpr double kMostTurned = 64.0;
 
-Vec2 nearest_on_edge(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  return a + (length2 > 0.0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0.0) * e;
-}
-
 /// From one hull to the other, between the points of both that are nearest.
 Vec2 direction_between(const std::vector<Vec2>& from, const std::vector<Vec2>& to) {
   Vec2 best;
@@ -35,8 +29,8 @@ Vec2 direction_between(const std::vector<Vec2>& from, const std::vector<Vec2>& t
   };
   for (std::size_t i = 0; i < to.size(); ++i)
     for (std::size_t k = 0; k < from.size(); ++k) {
-      take(to[i] - nearest_on_edge(to[i], from[k], from[(k + 1) % from.size()]));
-      take(nearest_on_edge(from[k], to[i], to[(i + 1) % to.size()]) - from[k]);
+      take(to[i] - nearest_on(from[k], from[(k + 1) % from.size()], to[i]));
+      take(nearest_on(to[i], to[(i + 1) % to.size()], from[k]) - from[k]);
     }
   return normalized(best);
 }

@@ -43,12 +43,6 @@ double least_along(Vec2 n, const std::vector<Vec2>& points) {
   return least;
 }
 
-Vec2 nearest_on(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  return a + (length2 > 0.0 ? std::clamp(dot(p - a, e) / length2, 0.0, 1.0) : 0.0) * e;
-}
-
 /// The gap's course along a direction while time passes from 0 on.
 struct Course {
   const Points& a;
@@ -210,7 +204,7 @@ LostGap GapKeeper::lose(const GapToKeep& q, const KeptGap& kept) {
   const auto nearest = [&](const std::vector<Vec2>& points, const std::vector<Vec2>& hull) {
     for (const Vec2 p : points)
       for (std::size_t i = 0; i < hull.size(); ++i) {
-        const Vec2 on = nearest_on(p, hull[i], hull[(i + 1) % hull.size()]);
+        const Vec2 on = nearest_on(hull[i], hull[(i + 1) % hull.size()], p);
         if (squared_norm(p - on) < least) {
           least = squared_norm(p - on);
           lost.place = 0.5 * (p + on);

@@ -10,16 +10,6 @@
 #include "routes/search.h"
 
 namespace exactvo::geometry::routing {
-namespace {
-
-Vec2 nearest_point(Vec2 a, Vec2 b, Vec2 x) {
-  const Vec2 d = b - a;
-  const double squared = squared_norm(d);
-  return squared > 0.0 ? a + std::clamp(dot(x - a, d) / squared, 0.0, 1.0) * d : a;
-}
-
-}  // namespace
-
 Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
   const double squared = squared_norm(d);
@@ -142,7 +132,7 @@ bool WaySearch::search_nearly_open(Vec2 s, const std::vector<int>& starts, Vec2 
       if (portal.right < 0 || !plan_.admits(portal)) continue;
       const ShrunkPortal& q = plan_.shrunk(p.portal);
       const int to = p.is_left ? portal.right : portal.left;
-      const Vec2 next = nearest_point(q.from, q.to, reached[cell].at);
+      const Vec2 next = nearest_on(q.from, q.to, reached[cell].at);
       const Cost there{cost.first + (q.nearly ? 0 : 1), cost.second + norm(next - reached[cell].at)};
       if (!(there < reached[to].cost)) continue;
       reached[to] = {there, p.portal, next};

@@ -4,7 +4,6 @@
 /// \file
 /// The local minima over |n| = 1 of f(n) = h_S(n) - n.y: the outward normals of S at the points nearest to y. Rounded.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,13 +29,6 @@ inline constexpr Vec2 kAnyDirection{1.0, 0.0};  // where every direction is as g
 inline Vec2 unit(Vec2 v) {
   const double length = v.x == 0.0 || v.y == 0.0 ? std::fabs(v.x) + std::fabs(v.y) : std::hypot(v.x, v.y);
   return length > 0.0 ? v / length : Vec2{};
-}
-
-inline Vec2 nearest_on(Vec2 a, Vec2 b, Vec2 x) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  if (!(length2 > 0.0)) return a;
-  return a + std::clamp(dot(x - a, e) / length2, 0.0, 1.0) * e;
 }
 
 /// The unit normal on the left of a segment.

@@ -6,6 +6,7 @@
 /// x forward, y left, counter-clockwise positive (REP-103). A finite double *is* a rational number: predicates over
 /// these types (predicates.h) are exact for the numbers given; the operations here are plain rounded arithmetic.
 
+#include <algorithm>
 #include <cmath>
 
 namespace exactvo::geometry {
@@ -54,6 +55,13 @@ inline Vec2 normalized(Vec2 a) {
   const double length = std::hypot(a.x, a.y);
   return length > 0.0 ? a / length : Vec2{};
 }
+/// In [0, 1], rounded: the share of the segment from a to b at which it is nearest to p; 0 if |b - a|^2 is 0.
+inline double nearest_share(Vec2 a, Vec2 b, Vec2 p) {
+  const double length2 = squared_norm(b - a);
+  return length2 > 0.0 ? std::clamp(dot(p - a, b - a) / length2, 0.0, 1.0) : 0.0;
+}
+/// The point of the segment from a to b nearest to p. Rounded; `nearest_point` (distance.h) is good beyond 1e150 m too.
+inline Vec2 nearest_on(Vec2 a, Vec2 b, Vec2 p) { return a + nearest_share(a, b, p) * (b - a); }
 /// Whether neither coordinate is NaN or infinite.
 inline bool is_finite(Vec2 a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
