@@ -67,18 +67,14 @@ double one_norm(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
 }
 
-double largest(const Box& b) {
-  return std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y)});
-}
-
 /// Holds what is nearer to the box than r.
 Box round_box(const Box& box, double r) {
-  return box.grown(kRoundedUp * r + geometry::rounding_of_distance(largest(box) + r));
+  return box.grown(kRoundedUp * r + geometry::rounding_of_distance(box.largest_coordinate() + r));
 }
 
 /// `distance`: of things in these boxes, rounded.
 bool is_surely_more(double distance, const Box& a, const Box& b, double r) {
-  return distance - geometry::rounding_of_distance(largest(a) + largest(b)) > kRoundedUp * r;
+  return distance - geometry::rounding_of_distance(a.largest_coordinate() + b.largest_coordinate()) > kRoundedUp * r;
 }
 
 class MotionAudit : public RowAudit {

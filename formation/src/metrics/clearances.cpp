@@ -31,15 +31,12 @@ using geometry::kInfinity;
 /// Covers the roundings of a few operations.
 constexpr double kWider = 1.0 + 1e-9;
 
-double largest(Vec2 v) {
-  return std::max(std::fabs(v.x), std::fabs(v.y));
+double largest_coordinate(const Segment& s) {
+  return std::max(largest_coordinate(s.a), largest_coordinate(s.b));
 }
-double largest(const Segment& s) {
-  return std::max(largest(s.a), largest(s.b));
-}
-double largest(const geometry::Obstacle& shape) {
+double largest_coordinate(const geometry::Obstacle& shape) {
   double most = 0.0;
-  for (Vec2 p : geometry::vertices_of(shape)) most = std::max(most, largest(p));
+  for (Vec2 p : geometry::vertices_of(shape)) most = std::max(most, geometry::largest_coordinate(p));
   return most;
 }
 
@@ -47,7 +44,7 @@ double largest(const geometry::Obstacle& shape) {
 /// displacement, the stray and the radii: fewer than 64 roundings of at most the coordinates between them, and the
 /// bound is 128 units of them.
 double rounding(double shape, const Segment& chord, double others) {
-  return 2.0 * geometry::rounding_of_distance(std::max(shape, largest(chord)) + others);
+  return 2.0 * geometry::rounding_of_distance(std::max(shape, largest_coordinate(chord)) + others);
 }
 
 /// Who may not be touched: an obstacle, a moving obstacle or another robot, by its number.
@@ -98,7 +95,7 @@ class ClearanceSweep::Sweep {
       : scenario_(scenario), run_(run), least_(scenario.robots.size(), kInfinity) {
     std::vector<geometry::Box> boxes;
     for (const SceneObstacle& o : scenario.obstacles) {
-      largest_.push_back(largest(o.shape));
+      largest_.push_back(largest_coordinate(o.shape));
       cores_.push_back(core_of(o));
       geometry::Box& box = boxes.emplace_back();
       for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
@@ -110,7 +107,7 @@ class ClearanceSweep::Sweep {
     constexpr double kToTheEnd = std::numeric_limits<double>::max();
     for (const MovingObstacle& o : scenario.moving_obstacles) {
       ways_.push_back(way_of(o.motion, kToTheEnd));
-      moving_largest_.push_back(largest(o.shape));
+      moving_largest_.push_back(largest_coordinate(o.shape));
       moving_cores_.push_back(core_of(o));
     }
   }
@@ -262,7 +259,8 @@ class ClearanceSweep::Sweep {
     quiet.place = motions_[robot].chord(0.0, 1.0).b;
     double room = most;
     for (const std::size_t o : near_obstacles(robot, most)) {
-      const double rounding = 2.0 * geometry::rounding_of_distance(std::max(largest_[o], largest(quiet.place)));
+      const double rounding =
+          2.0 * geometry::rounding_of_distance(std::max(largest_[o], largest_coordinate(quiet.place)));
       const double off = rounding + cores_[o].grown;
       room = std::min(room, index_of(o).swept_distance({quiet.place, quiet.place}, most + off) - off);
       if (room < worth) break;
@@ -415,7 +413,7 @@ class ClearanceSweep::Sweep {
           const double t0 = time + start * motion.decay.duration, t1 = time + stop * motion.decay.duration;
           const Segment chord = motion.chord(start, stop);
           const Segment seen{chord.a - piece.at(t0), chord.b - piece.at(t1)};
-          const double others = radius + motion.reach() + largest(chord);
+          const double others = radius + motion.reach() + largest_coordinate(chord);
           const double bend = std::fabs(piece.rate) * (t1 - t0) * (t1 - t0) / 8.0;
           return ChordClearance{
               geometry::swept_distance(core.shape, seen) - off - rounding(moving_largest_[obstacle], seen, others),
@@ -437,7 +435,7 @@ class ClearanceSweep::Sweep {
       starts_.push_back(m.from);
       const double way = ways_of_step_.emplace_back(strays(m));
       longest = std::isnan(way) ? kInfinity : std::max(longest, way);
-      farthest = std::max({farthest, largest(m.from), largest(m.to)});
+      farthest = std::max({farthest, largest_coordinate(m.from), largest_coordinate(m.to)});
       most_reach = std::max(most_reach, m.reach());
     }
     for (const Robot& r : scenario_.robots) largest_radius = std::max(largest_radius, r.radius);
@@ -471,7 +469,8 @@ class ClearanceSweep::Sweep {
 
   static double pair_clearance(const Motion& a, const Motion& b, double radii, double enough) {
     const Motion motion = relative(a, b);
-    const double coordinates = std::max({largest(a.from), largest(a.to), largest(b.from), largest(b.to)});
+    const double coordinates = std::max(
+        {largest_coordinate(a.from), largest_coordinate(a.to), largest_coordinate(b.from), largest_coordinate(b.to)});
     const Segment still{{0.0, 0.0}, {0.0, 0.0}};
     return least_clearance(
         [&](double start, double end) {

@@ -23,10 +23,6 @@ using geometry::EnclosureGrade;
 
 namespace {
 
-double largest_coordinate(const geometry::Box& b) {
-  return std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y)});
-}
-
 /// The largest distance along a few axes by which the path from x to x + u and the box are separated: never more than
 /// their distance.
 double distance_below(const geometry::Box& box, Vec2 x, Vec2 u) {
@@ -61,7 +57,7 @@ void StaticField::for_each_shape_meeting(const geometry::Box& window, const Visi
 /// m/s: less than n.v - c of the half-plane against whatever the box holds.
 double StaticField::room_below(const geometry::Box& box, const Viewpoint& from) const {
   constexpr double kRounding = 1e-12;  // of the coordinates
-  const double kept = margin_ + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position));
+  const double kept = margin_ + kContactSkin + kRounding * (box.largest_coordinate() + norm(from.position));
   const double nearest = geometry::distance_below(box, from.position) - from.radius;
   const double speed = norm(from.velocity);
   const double slow = (nearest - kept) / horizon(nearest, from) - speed;
@@ -149,7 +145,7 @@ double StaticField::room_of(vo::BodyTable::Number body, const Viewpoint& from, d
   const double room = room_below(box, from);
   if (room >= enough) return room;
   const double kept =
-      from.radius + margin_ + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position) + from.radius);
+      from.radius + margin_ + kContactSkin + kRounding * (box.largest_coordinate() + norm(from.position) + from.radius);
   const auto tau_of = [&](double distance) { return (1.0 + kRounding) * horizon(distance - from.radius, from); };
   const geometry::ConvexShape& shape = scene_->bodies()[body].shape;
   if (const auto* s = std::get_if<geometry::Segment>(&shape))
@@ -237,7 +233,7 @@ StaticField::NearBody StaticField::near_body(const Shape& shape) const {
   NearBody b;
   static_cast<Shape&>(b) = shape;
   b.box = scene_->bodies().box(shape.body);
-  b.largest_coordinate = largest_coordinate(b.box);
+  b.largest_coordinate = b.box.largest_coordinate();
   if (const auto* s = std::get_if<geometry::Segment>(&scene_->bodies()[shape.body].shape)) {
     b.is_segment = true;
     b.a = s->a;

@@ -248,9 +248,9 @@ struct Seconds {
 /// moment.
 double trial_run_rounding(const BoundaryFollower::Situation& s) {
   constexpr double kUnit = 0x1p-53, kLeast = 1e-6;
-  const auto largest = [](Vec2 p) { return std::max(std::fabs(p.x), std::fabs(p.y)); };
   const double fastest = s.robot.max_speed, horizon = kTrialRunHorizon * s.moment;
-  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * horizon;
+  const double farthest =
+      std::max(largest_coordinate(s.robot.position), largest_coordinate(s.goal)) + fastest * horizon;
   const double steps = horizon / s.time_step + 2.0;
   const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + horizon));
   return std::max(kLeast * s.moment, 2.0 * steps * a_step);

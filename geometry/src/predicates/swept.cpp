@@ -43,12 +43,6 @@ double size_of(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
 }
 
-/// No point of the shape has a larger coordinate.
-double extent_of(const ConvexShape& shape) {
-  const Box box = box_of(shape);
-  return std::max({std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x), std::fabs(box.high.y)});
-}
-
 Exact finite_time(double t_max, const Point& d, double extent) {
   if (std::isfinite(t_max)) return Exact(t_max);
   return is_zero(d) ? Exact(0) : detail::beyond(d, extent);
@@ -146,7 +140,7 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
   EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && s.radius >= 0.0 && std::isfinite(s.radius),
                   excerpt(s.shape));
   const Point d = exact_sum(direction);
-  const double extent = extent_of(s.shape) + size_of(s.origin) + s.radius;
+  const double extent = box_of(s.shape).largest_coordinate() + size_of(s.origin) + s.radius;
   const Vec2 whole = rounded(direction);
   // A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.
   const double fastest = std::max(std::fabs(whole.x), std::fabs(whole.y));
@@ -163,7 +157,7 @@ bool sweep_meets(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 p
   EXACTVO_REQUIRE(is_valid(ConvexShape{robot}) && is_finite(position), excerpt(robot.vertices));
   detail::count_exact();
   const Point d = exact_sum(direction);
-  const double extent = extent_of(obstacle) + extent_of(robot) + size_of(position);
+  const double extent = box_of(obstacle).largest_coordinate() + box_of(robot).largest_coordinate() + size_of(position);
   const Exact t = finite_time(t_max, d, extent);
   Sweep sweep{{}, {t * d.x, t * d.y}};
   for (const Vec2 b : robot.vertices) sweep.start.push_back(make<Exact>(b) + make<Exact>(position));

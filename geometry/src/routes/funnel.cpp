@@ -59,7 +59,8 @@ std::vector<Turn> turns_through(const PortalRow& row, Vec2 s, Vec2 t) {
       while (!mine.empty()) {
         const FunnelEnd last = end_of(mine.back(), left);
         const FunnelEnd before = mine.size() > 1 ? end_of(mine[mine.size() - 2], left) : apex;
-        const bool is_same = norm(end.at - last.at) <= kSame * std::max(largest_of(end.at), largest_of(last.at));
+        const bool is_same =
+            norm(end.at - last.at) <= kSame * std::max(largest_coordinate(end.at), largest_coordinate(last.at));
         if (!is_same && sense * turn_of(before, last, end) > 0.0) break;
         mine.pop_back();
       }

@@ -122,7 +122,7 @@ ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
   if (low > high) low = high = 0.5 * (low + high);  // rounding has turned the interval over
   out.from = v + low * u;
   out.to = v + high * u;
-  out.size = std::max({largest_of(v), largest_of(out.from), largest_of(out.to), link.length});
+  out.size = std::max({largest_coordinate(v), largest_coordinate(out.from), largest_coordinate(out.to), link.length});
   out.from_corner = portal.piece == 0 || begins < radius_ || out.tight ? link.vertex : -1;
   out.from_moved = portal.piece == 0 || low != begins;
   out.to_moved = last || high != ends;
@@ -170,9 +170,9 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
   out.to_corner = to.corner;
   out.from_turns = from.turns;
   out.to_turns = to.turns;
-  out.size = largest_of(x);  // of an end where nothing turns it does not matter
-  if (from.turns) out.size = std::max({out.size, largest_of(out.from), std::fabs(from.at)});
-  if (to.turns) out.size = std::max({out.size, largest_of(out.to), std::fabs(to.at)});
+  out.size = largest_coordinate(x);  // of an end where nothing turns it does not matter
+  if (from.turns) out.size = std::max({out.size, largest_coordinate(out.from), std::fabs(from.at)});
+  if (to.turns) out.size = std::max({out.size, largest_coordinate(out.to), std::fabs(to.at)});
   out.from_moved = from.moved || gap < 0.0;
   out.to_moved = to.moved || gap < 0.0;
   return out;

@@ -17,11 +17,6 @@ namespace exactvo::geometry::routing {
 /// Of the radius: portals that are emptier by less count as open, and by a thousand times that as nearly open.
 inline constexpr double kOpenSlack = 1e-9;
 
-/// The larger coordinate: doubles about p are rounded as numbers of this size are.
-inline double largest_of(Vec2 p) {
-  return std::max(std::fabs(p.x), std::fabs(p.y));
-}
-
 /// The part of a portal where a centre can be, as its left cell sees it.
 struct ShrunkPortal {
   Vec2 from, to;

@@ -106,7 +106,7 @@ class TautCurve {
     for (const Turn& turn : turns_) points_.push_back(row.end(turn.at, turn.left));
     points_.push_back(t.at);
     for (std::size_t k = 1; k < points_.size(); ++k) length_ += norm(points_[k] - points_[k - 1]);
-    for (const Vec2 p : points_) size_ = std::max(size_, largest_of(p));
+    for (const Vec2 p : points_) size_ = std::max(size_, largest_coordinate(p));
   }
 
   double length() const { return length_; }

@@ -131,7 +131,7 @@ void WaySearch::open_start(Vec2 s, const std::vector<int>& starts) {
     for (const Passage& p : plan_.passages(start)) {
       if (!may_pass(p, start) || std::find(starts.begin(), starts.end(), p.to) != starts.end()) continue;
       add({p.to, p.portal, -1, -1, p.left, p.right, s, p.left - s, p.right - s, p.left_turns, p.right_turns,
-           p.from_left, 0, 0.0, largest_of(s)},
+           p.from_left, 0, 0.0, largest_coordinate(s)},
           p);
     }
   }

@@ -19,10 +19,6 @@ bool are_apart(const Box& a, const Box& b, double distance) {
   return x * x + y * y > kRounding * (distance * distance);
 }
 
-double largest(Vec2 v) {
-  return std::max(std::fabs(v.x), std::fabs(v.y));
-}
-
 }  // namespace
 
 ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
@@ -34,7 +30,7 @@ ObstacleIndex::ObstacleIndex(const Obstacle& obstacle)
   for (const Segment& e : edges_) {
     boxes.push_back(box_of(e));
     box_.add(boxes.back());
-    largest_ = std::max({largest_, largest(e.a), largest(e.b)});
+    largest_ = std::max({largest_, largest_coordinate(e.a), largest_coordinate(e.b)});
   }
   edges_by_place_ = BoxGrid(std::move(boxes));
 }
@@ -54,7 +50,8 @@ double ObstacleIndex::edge_distance(const Segment& path, double enough) const {
   constexpr double kRounding = 1e-9;  // of a reach
   const Box round = box_of(path);
   const Vec2 size = round.high - round.low;
-  const double rounding = rounding_of_distance(std::max({largest_, largest(path.a), largest(path.b)}));
+  const double rounding =
+      rounding_of_distance(std::max({largest_, largest_coordinate(path.a), largest_coordinate(path.b)}));
   double least = kInfinity;
   const auto look_at = [&](std::size_t e) {
     if (!are_apart(edges_by_place_.box(e), round, std::min(least, enough) + 2.0 * rounding))

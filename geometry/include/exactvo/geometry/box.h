@@ -30,6 +30,10 @@ struct Box {
   }
   /// Larger by that on every side, m. Rounded.
   Box grown(double by) const { return {low - Vec2{by, by}, high + Vec2{by, by}}; }
+  /// The largest |coordinate| of its points, m; infinite of an empty one.
+  double largest_coordinate() const {
+    return std::max(geometry::largest_coordinate(low), geometry::largest_coordinate(high));
+  }
   /// Whether it holds no point.
   bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
   /// Whether it holds p. Exact.

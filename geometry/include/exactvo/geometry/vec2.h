@@ -42,6 +42,8 @@ constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 constexpr double squared_norm(Vec2 a) { return dot(a, a); }
 /// |a|. Rounded; infinite or 0 where |a|^2 leaves the range of doubles.
 inline double norm(Vec2 a) { return std::sqrt(squared_norm(a)); }
+/// The larger of |x| and |y|.
+inline double largest_coordinate(Vec2 a) { return std::max(std::fabs(a.x), std::fabs(a.y)); }
 /// `a` turned by +90 degrees.
 constexpr Vec2 perp(Vec2 a) { return {-a.y, a.x}; }
 /// `a` turned by `angle` radians, counter-clockwise.
