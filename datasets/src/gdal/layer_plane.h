@@ -82,7 +82,6 @@ class LayerPlane {
   bool numbers_are_degrees_ = true;
   std::optional<ProjectionOrigin> origin_;  ///< one for all layers
   double semi_minor_ = 0.0;                 ///< m; of the ellipsoid of the plane; 0: it is not ours, or nowhere
-  double farthest_ = 0.0;                   ///< m; from the origin
   std::optional<Distortion> distortion_;    ///< of all layers
   std::unique_ptr<OGRCoordinateTransformation> to_metres_;
   std::unique_ptr<OGRCoordinateTransformation> from_metres_;  ///< made when a place is to be named

@@ -6,7 +6,8 @@
 ///
 /// A cell is the quadrilateral of its four lattice points *as rounded*; neighbours share them. With no yaw the lattice
 /// lines are axis-parallel, so the polygons contain every cell exactly. With a yaw a lattice line is straight only up
-/// to the rounding of its points: a polygon whose long edge skips them may miss a cell by that much, kLatticeError.
+/// to the rounding of its points: a polygon whose long edge skips them may miss a cell by that much, at most 4 u of the
+/// largest coordinate (two products, a sum and the sum with the origin, each rounded once).
 
 #include <cstddef>
 #include <cstdint>
@@ -33,9 +34,6 @@ struct GridPlacement {
   std::int64_t first_column = 0;
   std::int64_t first_row = 0;
 };
-
-/// Two products, a sum and the origin's sum, each rounded once: at most 4 u of the largest coordinate.
-inline constexpr double kLatticeError = 4 * 0x1p-53;
 
 geometry::Vec2 lattice_point(const GridPlacement& placement, std::size_t column, std::size_t row);
 

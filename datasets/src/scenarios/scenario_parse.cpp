@@ -104,7 +104,7 @@ class ScenarioReader {
 
   LoadedScenario read(const Json& tree, const AdvanceScenario& advance = {}) {
     Scenario scenario = read_scenario(tree, advance);
-    return {std::move(scenario), std::move(notes_), std::move(files_), tree.contains("liveness")};
+    return {std::move(scenario), std::move(notes_), std::move(files_)};
   }
 
  private:

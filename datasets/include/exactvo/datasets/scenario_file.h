@@ -29,7 +29,6 @@ struct LoadedScenario {
   /// What a run depends on: the scenario file (unless it was parsed from text), then every obstacle file it names, each
   /// followed by the files that are read with it (input_files.h), such as the picture of a ROS map.
   std::vector<std::filesystem::path> files = {};
-  bool names_liveness = false;  ///< else `scenario.liveness` is the default
 };
 
 /// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: if such a
