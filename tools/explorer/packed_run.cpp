@@ -9,9 +9,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/notices.h"

@@ -9,8 +9,6 @@
 #include <set>
 #include <sstream>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/require.h"

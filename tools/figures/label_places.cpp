@@ -2,7 +2,6 @@
 #include "figures/label_places.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "exactvo/geometry/pi.h"
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figures/outlines.h"
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <numeric>
-#include <utility>
 
 #include "exactvo/geometry/pi.h"
 

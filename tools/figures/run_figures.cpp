@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <map>
 
 #include "exactvo/formation/metrics.h"
-#include "figures/outlines.h"
 
 namespace exactvo::tools {
 

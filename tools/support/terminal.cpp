@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/terminal.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gdal/gdal_session.h"
 
-#include <cpl_conv.h>
-
 #include <cmath>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <utility>
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"

@@ -12,7 +12,6 @@
 #include "files/file_names.h"
 #include "files/text_file.h"
 #include "gdal/gdal_session.h"
-#include "gdal/geojson_geometry.h"
 
 namespace exactvo::datasets {
 namespace {

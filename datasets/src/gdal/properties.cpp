@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include "json/json_text.h"
 #include "readers/readers.h"
 
 namespace exactvo::datasets {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "readers/line_reader.h"
 
-#include <algorithm>
-
 #include "files/text_file.h"
 
 namespace exactvo::datasets {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/robots.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace exactvo::formation::crowd {

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "decision/own_side.h"
-#include "exactvo/vo/lp/solve.h"
-#include "exactvo/vo/reciprocal.h"
 #include "motion/differential.h"
 #include "scene/braking.h"
 #include "scene/near_pairs.h"

@@ -2,7 +2,6 @@
 #include "decision/own_side.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "exactvo/geometry/distance.h"

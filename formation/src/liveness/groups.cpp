@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "liveness/groups.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/geometry/infinity.h"

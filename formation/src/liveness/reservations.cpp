@@ -2,7 +2,6 @@
 #include "liveness/reservations.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

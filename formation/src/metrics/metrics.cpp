@@ -11,7 +11,6 @@
 #include "control/lyapunov_accumulator.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stability.h"
-#include "exactvo/formation/stuck.h"
 #include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/infinity.h"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrics/metrics_accumulator.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "metrics/divergence.h"
 #include "scene/goals.h"
 #include "scene/near_pairs.h"

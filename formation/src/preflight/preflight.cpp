@@ -7,7 +7,6 @@
 
 #include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/notices.h"
-#include "exactvo/formation/passing.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"

@@ -6,10 +6,8 @@
 #include <limits>
 #include <set>
 #include <variant>
-#include <vector>
 
 #include "exactvo/formation/constraint_name.h"
-#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/round_polygon.h"

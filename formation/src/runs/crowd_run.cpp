@@ -9,11 +9,9 @@
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "crowd/layout.h"
 #include "exactvo/formation/recording.h"
-#include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/told_apart.h"

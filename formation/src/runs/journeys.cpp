@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
-#include <utility>
 
 #include "exactvo/geometry/infinity.h"
 #include "motion/leader.h"

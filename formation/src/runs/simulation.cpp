@@ -2,7 +2,6 @@
 #include "exactvo/formation/simulation.h"
 
 #include <chrono>
-#include <string>
 #include <utility>
 
 #include "control/consensus.h"

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/scenario.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "exactvo/formation/disc_obstacle.h"

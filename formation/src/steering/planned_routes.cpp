@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/planned_routes.h"
 
-#include <optional>
-
 #include "scene/goals.h"
 #include "steering/guide.h"
 

@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 #include "division/simplification.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/support.h"
 #include "rings/ring_contacts.h"
 

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The smallest ellipse round some points at which a robot cannot come to rest: a search over orientation, offset and
 // semi-minor axis.
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
 
 #include "enclosure/ellipse_solver.h"
 #include "enclosure/trap_free_fit.h"
 #include "exactvo/geometry/distance.h"
-#include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/infinity.h"
-#include "exactvo/geometry/pi.h"
-#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <queue>
-#include <vector>
 
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pieces.h"

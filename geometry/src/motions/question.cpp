@@ -3,16 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "exact/stages.h"
-#include "exactvo/geometry/motions.h"
 #include "exactvo/geometry/require.h"
-#include "motions/path.h"
 #include "motions/real_roots.h"
-#include "motions/straight.h"
 
 namespace exactvo::geometry::motions {
 namespace {

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "enclosure/ellipse_solver.h"
 #include "exact/running_error.h"

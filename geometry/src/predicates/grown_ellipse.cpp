@@ -15,7 +15,6 @@
 
 #include <cmath>
 
-#include "exact/exact_vector.h"
 #include "exactvo/geometry/support.h"
 #include "predicates/exact_sweep.h"
 

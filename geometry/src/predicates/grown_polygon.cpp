@@ -2,7 +2,6 @@
 #include "predicates/grown_polygon.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "exact/exact_vector.h"

@@ -15,10 +15,8 @@
 #include <map>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "exactvo/geometry/require.h"
-#include "exactvo/geometry/shapes.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {

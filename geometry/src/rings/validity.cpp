@@ -2,18 +2,15 @@
 #include "exactvo/geometry/validity.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
 #include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
-#include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/too_many_contacts.h"
 #include "rings/ring_contacts.h"
 #include "shapes/edge_crossing.h"

@@ -2,7 +2,6 @@
 #include "routes/cell_map.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "routes/links.h"
 #include "routes/signs.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "routes/plan.h"
 
-#include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
 
 #include "routes/signs.h"

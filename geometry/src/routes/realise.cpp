@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "exactvo/geometry/pi.h"
 #include "routes/plan.h"

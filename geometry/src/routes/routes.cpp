@@ -8,7 +8,6 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <vector>
 
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"

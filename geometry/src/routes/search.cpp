@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "routes/search.h"
 
-#include <algorithm>
 #include <functional>
 
 namespace exactvo::geometry::routing {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/rounding.h"
 

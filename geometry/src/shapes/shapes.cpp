@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <variant>
 
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"

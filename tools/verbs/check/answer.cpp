@@ -8,7 +8,6 @@
 
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
-#include "support/json_layout.h"
 #include "support/obstacle_name.h"
 
 namespace exactvo::tools {

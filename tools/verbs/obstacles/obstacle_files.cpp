@@ -15,7 +15,6 @@
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/files.h"
-#include "support/json_layout.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 

@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <locale>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -29,7 +28,6 @@
 #include "readers/line_reader.h"
 #include "support/robot_numbers.h"
 #include "support/usage.h"
-#include "verbs/obstacles/obstacle_files.h"
 
 namespace exactvo::tools {
 

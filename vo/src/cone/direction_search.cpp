@@ -8,7 +8,6 @@
 #include "cone/direction_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 

@@ -9,11 +9,9 @@
 
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
-#include "exactvo/geometry/region.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/rounding.h"
 #include "exactvo/vo/certificate.h"
-#include "exactvo/vo/family.h"
 
 namespace exactvo::vo::detail {
 namespace {

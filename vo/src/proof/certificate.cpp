@@ -9,12 +9,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <limits>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>

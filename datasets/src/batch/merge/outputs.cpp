@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/merge/outputs.h"
 
-#include <utility>
-
 #include "batch/formats/features.h"
 #include "gdal/vector_library.h"
 

@@ -4,7 +4,6 @@
 #include <CGAL/Mpzf.h>
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 
 #include "lp/proof/double_double.h"

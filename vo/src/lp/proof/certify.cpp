@@ -12,7 +12,6 @@
 #include "lp/problem/region.h"
 #include "lp/proof/duality.h"
 #include "lp/proof/multipliers.h"
-#include "lp/proof/rounded_gap.h"
 
 namespace exactvo::lp {
 namespace {
