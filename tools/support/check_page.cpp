@@ -19,7 +19,6 @@
 namespace exactvo::tools {
 
 using geometry::MotionEvent;
-using geometry::Vec2;
 
 namespace {
 

@@ -20,8 +20,6 @@
 
 namespace exactvo::formation::crowd {
 
-using geometry::Vec2;
-
 /// A body where it was added, and how far it has come since.
 struct Body {
   ObstacleId id = 0;

@@ -32,8 +32,6 @@
 
 namespace exactvo::formation::detail {
 
-using geometry::Vec2;
-
 /// What reservations look at of a robot before a step.
 struct RobotUnderWay {
   static constexpr std::size_t kMostAhead = 4;

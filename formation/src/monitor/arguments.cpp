@@ -12,8 +12,6 @@
 
 namespace exactvo::formation::monitored {
 
-using geometry::Vec2;
-
 namespace {
 
 std::string digits_of(Vec2 v) {

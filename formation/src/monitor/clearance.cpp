@@ -16,7 +16,6 @@ using geometry::GapToKeep;
 using geometry::KeptGap;
 using geometry::kInfinity;
 using geometry::norm;
-using geometry::Vec2;
 using monitored::kUp;
 
 namespace {

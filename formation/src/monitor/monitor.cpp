@@ -14,7 +14,6 @@ namespace exactvo::formation {
 using geometry::norm;
 using geometry::Pose;
 using geometry::Twist;
-using geometry::Vec2;
 using monitored::kUp;
 
 namespace {

@@ -9,7 +9,6 @@
 namespace exactvo::formation::detail {
 
 using geometry::Segment;
-using geometry::Vec2;
 
 ObstacleSpace::ObstacleSpace(const std::vector<SceneObstacle>& obstacles) {
   std::vector<geometry::Box> boxes;

@@ -25,7 +25,6 @@ using geometry::Blocked;
 using geometry::ChainPoint;
 using geometry::Route;
 using geometry::Separated;
-using geometry::Vec2;
 
 namespace {
 

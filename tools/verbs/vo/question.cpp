@@ -32,7 +32,6 @@
 namespace exactvo::tools {
 
 using geometry::ConvexShape;
-using geometry::Vec2;
 
 namespace {
 
