@@ -229,7 +229,7 @@ TEST(BadInput, AGoalInsideAnObstacleIsSaidAndStated) {
   EXPECT_GT(m.min_obstacle_clearance.value(), 0.0);
 }
 
-TEST(BadInput, AGoalNearerToAWallThanTheRadiusIsSaid) {
+TEST(BadInput, AGoalNearerToAWallThanTheRadiusIsReported) {
   Scenario s = paper_scene("A6");
   s.robots[0].goals = {{8.3, 3.0}};
   s.time_limit = 10.0;
@@ -240,7 +240,7 @@ TEST(BadInput, AGoalNearerToAWallThanTheRadiusIsSaid) {
   EXPECT_TRUE(simulate(s).warnings.empty());
 }
 
-TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
+TEST(BadInput, TwoGoalsInOnePlaceAreReported) {
   Scenario s = paper_scene("A0");
   s.robots[1].goals = s.robots[0].goals;
   s.time_limit = 1.0;
@@ -252,7 +252,7 @@ TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
 
 /// Neither too near nor with the margin between them: who came second pressed against the first for ever, and nothing
 /// had been said.
-TEST(BadInput, GoalsNearerThanTheMarginAreSaid) {
+TEST(BadInput, GoalsNearerThanTheMarginAreReported) {
   Scenario s;
   for (const double x : {-5.0, 5.0}) {
     Robot& robot = s.robots.emplace_back();
@@ -272,7 +272,7 @@ TEST(BadInput, GoalsNearerThanTheMarginAreSaid) {
   EXPECT_THAT(warnings_before(s), testing::ElementsAre(HasSubstr("too near to each other")));
 }
 
-TEST(BadInput, AGoalOnTheWayInWhichAnotherRobotIsToRestIsSaid) {
+TEST(BadInput, AGoalOnTheWayInWhichAnotherRobotIsToRestIsReported) {
   Scenario s;
   for (const double x : {-5.0, 5.0}) {
     Robot& robot = s.robots.emplace_back();
@@ -327,7 +327,7 @@ TEST(BadInput, AGoalInAClosedRoomEndsWithTheFullCircleStated) {
   EXPECT_GT(r.metrics.min_obstacle_clearance.value(), 0.0);
 }
 
-TEST(BadInput, ASlotInsideAnObstacleIsSaid) {
+TEST(BadInput, ASlotInsideAnObstacleIsReported) {
   Scenario s = paper_scene("B1");
   s.obstacles = {{"block", geometry::Polygon{{{22, 22}, {28, 22}, {28, 28}, {22, 28}}, {}}}};
   const Recording r = simulate(s);

@@ -402,7 +402,7 @@ TEST(Liveness, ALargerRobotElsewhereDoesNotKeepSmallOnesFromTheirPlan) {
 }
 
 /// A corridor in which nobody can pass: the run ends at its time limit and says that there is no plan.
-TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
+TEST(Liveness, WhereThereIsNoPlanItIsReported) {
   Scenario s;
   s.time_limit = 30.0;
   test_scenes::add_wall(s, {{-8, 0}, {8, 0}, {8, 1.4}, {-8, 1.4}, {-8, 0}});
@@ -650,7 +650,7 @@ TEST(Liveness, PlansKeepTheMarginWhereTheFreeSpaceAllowsIt) {
   }
 }
 
-TEST(Liveness, WhereNoPlanKeepsTheMarginOneWithoutItIsSaid) {
+TEST(Liveness, WhereNoPlanKeepsTheMarginOneWithoutItIsReported) {
   // A street in which two have room side by side, but not with the margin between them.
   Scenario s;
   s.name = "pass";

@@ -52,8 +52,8 @@ struct Sight {
     return random.uniform(0.0, 1.0) < 0.5 ? anywhere : along_edge(random);
   }
 
-  /// As a robot stands and moves that follows a boundary: beside an edge or a corner of it, at the margin or within
-  /// rounding of it, along the edge or a little off.
+  /// The view of a robot that follows a boundary: next to an edge or a corner of it, at the margin or within rounding
+  /// of it; it moves along the edge or a little off.
   Viewpoint along_edge(datasets::CounterRandom& random) const {
     const auto pick = [&](std::size_t n) {
       return std::min(n - 1, static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(n))));

@@ -256,7 +256,7 @@ TEST(Passing, AProofAboutTwoIsSaidWhateverElseIsOfOthers) {
 }
 
 /// Corridors of 2 m to 2.06 m for robots 1 m wide are passed by no plan, and nothing was said.
-TEST(Passing, WhereOnlyTheGapsOfPlansAreMissingThatIsSaid) {
+TEST(Passing, WhereOnlyTheGapsOfPlansAreMissingThatIsReported) {
   const auto head_on = [](double width, double margin) {
     Scenario s = corridor(12.0, width);
     s.margins.obstacle = margin;

@@ -179,7 +179,7 @@ TEST(Stuck, RobotsThatStandHeadOnAreNotSlidingOffABoundary) {
   }
 }
 
-TEST(Stuck, WhatTheRobotInTheWayDoesIsSaid) {
+TEST(Stuck, WhatTheRobotInTheWayDoesIsReported) {
   auto ends = head_on();
   ends[1].constraints.clear();
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is at rest"));

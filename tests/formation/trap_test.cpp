@@ -444,7 +444,7 @@ Scenario overlapping_pair(bool is_mirrored) {
 
 /// The direction to the goal is outside the cone of rest by 5e-4 rad; the tie-break turns the robot by 1e-3 into it,
 /// against enclosure 0, and it stands for the rest of the minute.
-TEST(Trap, ARestThatTheTieBreakMakesIsForetold) {
+TEST(Trap, ARestThatTheTieBreakMakesIsPredicted) {
   const Scenario s = overlapping_pair(false);
   const test::PairOutcome outcome = test::outcome_of(s);
   EXPECT_FALSE(outcome.arrived);
@@ -465,7 +465,7 @@ Scenario mirrored_pair_with_depth(double depth) {
   return s;
 }
 
-TEST(Trap, ARestThatTheTieBreakEndsIsNotForetold) {
+TEST(Trap, ARestThatTheTieBreakEndsIsNotPredicted) {
   for (const double depth : {1e-4, 5e-4, 9e-4}) {
     const Scenario s = mirrored_pair_with_depth(depth);
     const auto findings = trap_test(s, test::pair_options());
@@ -475,7 +475,7 @@ TEST(Trap, ARestThatTheTieBreakEndsIsNotForetold) {
   }
 }
 
-TEST(Trap, BeyondTheReachOfTheTieBreakTheRestIsForetold) {
+TEST(Trap, BeyondTheReachOfTheTieBreakTheRestIsPredicted) {
   const Scenario s = mirrored_pair_with_depth(1.1e-3);
   const test::PairOutcome outcome = test::outcome_of(s);
   EXPECT_FALSE(outcome.arrived);

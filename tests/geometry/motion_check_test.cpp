@@ -517,7 +517,7 @@ TEST(MotionScenes, BoxesThatChangePlacesCollideOnTheWay) {
   EXPECT_NEAR(events[0].last.high, 0.6, 1e-9);
 }
 
-TEST(MotionScenes, ABoxThatPassesABoxAtRestIsFoundAndContactIsTold) {
+TEST(MotionScenes, ABoxThatPassesABoxAtRestIsFoundAndContactIsReported) {
   // Both poses that a planner gives are clear. Conservative advancement misses the box between them with some bounds.
   const Trajectory rest{{{0, {0, 0}}, {1, {0, 0}}}, kBox};
   for (const double y : {1.5, 2.0, 2.0000000000000004}) {

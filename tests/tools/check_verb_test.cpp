@@ -247,7 +247,7 @@ TEST(CheckVerb, CountsWhatSamplesMiss) {
               HasSubstr("misses 0 of 1"));
 }
 
-TEST(CheckVerb, ContactIsClearAndIsSaid) {
+TEST(CheckVerb, ContactIsClearAndIsReported) {
   const Outcome outcome = checked("t,id,x,y\n0,A,0,0\n1,A,4,0\n0,B,2,1\n1,B,2,1\n", "--radius 0.5");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("contact: A and B, at 0.5 s, at (2, 0.5)"), HasSubstr("1 contact,")));

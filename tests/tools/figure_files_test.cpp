@@ -72,7 +72,7 @@ void write_gnuplot(const Workplace& here, const std::string& body) {
 
 const std::string kFakeFirst = "PATH=\"$PWD/fake:$PATH\"";
 
-TEST(FigureFiles, WithoutTheTerminalPdfcairoTheRestIsDrawnAndThatIsSaid) {
+TEST(FigureFiles, WithoutTheTerminalPdfcairoTheRestIsDrawnAndThatIsReported) {
   const Workplace here;
   fs::create_directories(here.path() / "fake");
   write_gnuplot(here, "sed 's/GPVAL_TERMINALS/\" png pngcairo svg x11 \"/g' | gnuplot \"$@\"");

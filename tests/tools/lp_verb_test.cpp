@@ -479,7 +479,7 @@ TEST(Lp, TheWorstViolationIsTheLargestOfTheAnswers) {
 }
 
 /// How long is another matter, of the machine.
-TEST(Lp, WhatIsTimedIsSaid) {
+TEST(Lp, WhatIsTimedIsReported) {
   const Workplace here;
   EXPECT_THAT(here.run("lp --help").out, AllOf(HasSubstr("the solver alone"), HasSubstr("bench_lp --instances FILE")));
   here.write("p.jsonl", on_one_line(kGood));

@@ -202,7 +202,7 @@ TEST(ObstacleVerbs, AMessageSaysThatDegreesBecameMetres) {
   EXPECT_THAT(here.run(vo + " --units metres").out, HasSubstr("nearest boundary"));
 }
 
-TEST(ObstacleVerbs, NotesOnWholeFilesAreSaid) {
+TEST(ObstacleVerbs, NotesOnWholeFilesAreReported) {
   const Workplace here;
   here.write("table.csv", "id,WKT\n1,\"POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\"\n");
   for (const std::string arguments : {"validate table.csv", "segment table.csv", "repair table.csv --out u.wkt",

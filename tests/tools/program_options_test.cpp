@@ -75,7 +75,7 @@ TEST(ProgramOptions, WhatIsMissingIsNamed) {
   EXPECT_EQ(refusal({}, true), "FILE is missing");
 }
 
-TEST(ProgramOptions, HelpIsPrintedWhateverElseIsSaid) {
+TEST(ProgramOptions, HelpIsPrintedWhateverElseIsAsked) {
   testing::internal::CaptureStdout();
   EXPECT_FALSE(parse({"--rounds", "abc", "--help"}).parsed);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("--rounds N"), std::string::npos);

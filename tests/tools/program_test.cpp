@@ -391,7 +391,7 @@ TEST(Simulate, ARobotThatDoesNotArriveIsSaidToMachines) {
   EXPECT_EQ(here.run("simulate shut.json --decisions none --fail-unless-arrived").status, 1);
 }
 
-TEST(Simulate, MarginsThatAreNotKeptAndSlotsThatMoveAreSaid) {
+TEST(Simulate, MarginsThatAreNotKeptAndSlotsThatMoveAreReported) {
   const Workplace here;
   here.write("near.json", R"({ "name": "near", "time_limit": 5, "margins": { "robot": 0.3 },
     "robots": [ { "id": "a", "position": [0, 0], "goal": [8, 0] }, { "id": "b", "position": [0, 1.1], "goal": [8, 1.1] } ] })");

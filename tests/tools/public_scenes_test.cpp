@@ -118,7 +118,7 @@ TEST(PublicScenes, Fcl_555_BoxesThatComeTowardsEachOtherMeet) {
 }
 
 // ZJU-FAST-Lab/EGO-Planner-v2 59: two drones meet sooner than one can brake, and the check plans anew before it brakes.
-TEST(PublicScenes, EgoPlanner2_59_NotEnoughTimeToBrakeIsSaid) {
+TEST(PublicScenes, EgoPlanner2_59_NotEnoughTimeToBrakeIsReported) {
   // 2 m/s, 1 m/s^2: 2 m to brake. The wall is 1 m ahead.
   const std::string limits = "--radius 0.2 --period 0.1 --latency 0.1 --max-deceleration 1";
   const std::string line = R"({"trajectory": [[0, 0, 0, 0], [1, 2, 0, 0]]})";

@@ -697,7 +697,7 @@ TEST(RouteVerb, PointsAreReadAsTheNumbersOfTables) {
     EXPECT_EQ(rooms.route(std::string("--to 3,1 --radius 0.4 --from ") + start).status, 2) << start;
 }
 
-TEST(RouteVerb, DegreesAreProjectedAndItIsSaid) {
+TEST(RouteVerb, DegreesAreProjectedAndItIsReported) {
   const Rooms rooms;
   rooms.here.write(
       "yard.geojson",

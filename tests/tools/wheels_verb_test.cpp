@@ -187,7 +187,7 @@ TEST(WheelsVerb, CrowdsOnWheelsAreProvenAndExplained) {
 }
 
 /// What bodies may be off by is said wherever results are.
-TEST(WheelsVerb, WhatIsAssumedOfBodiesIsSaid) {
+TEST(WheelsVerb, WhatIsAssumedOfBodiesIsReported) {
   const Workplace here;
   const char* const words = "no body is farther than 0.02 m from where the run has it";
   EXPECT_THAT(here.run("simulate " + data_file("robots/burgers_tube.json") + " --no-figures --out run").out,

@@ -161,7 +161,7 @@ TEST(VerbAuditOfCertificates, TheClaimThatIsPrintedIsTheCertificatesOwn) {
   EXPECT_EQ(place.run("audit --certificate vo.json").out, judged);
 }
 
-TEST(VerbAuditOfCertificates, JsonThatSaysThatThereIsNoneIsCounted) {
+TEST(VerbAuditOfCertificates, AnswersWithoutACertificateAreCounted) {
   const json overlap =
       json_of("--obstacle 'DISC(0.5 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
   json without = overlap;

@@ -222,7 +222,7 @@ TEST_F(Batches, WhatAnInputIsReadWithBelongsToIt) {
   EXPECT_EQ(rest.summary.files.read, 8u) << "the picture is none of them";
 }
 
-TEST_F(Batches, AnInputThatChangesUnderTheBatchIsSaid) {
+TEST_F(Batches, AnInputThatChangesUnderTheBatchIsReported) {
   const fs::path few = folder_ / "in" / "few.wkt";
   const std::string there = text_of(few);
   BatchRun run = run_to("out");
@@ -377,7 +377,7 @@ TEST_F(Batches, FilesThatCantBeReadAreRejectedAndTheRestGoesOn) {
   EXPECT_EQ(result.summary.files.done, 2u);
 }
 
-TEST_F(Batches, AFolderRemovedUnderTheBatchIsSaid) {
+TEST_F(Batches, AFolderRemovedUnderTheBatchIsReported) {
   const BatchRun run = run_to("out");
   int looks = 0;
   const auto removes = [&](const BatchProgress&) {

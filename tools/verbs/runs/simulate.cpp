@@ -438,7 +438,7 @@ void declare_simulate(CLI::App& app, SimulateFlags& flags) {
   app.add_flag("--json", flags.json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
   app.add_flag("--fail-on-collision", flags.fail_on_collision,
-               "Exit status 1 if a robot overlaps anything; without decisions of at most 2000 robots");
+               "Exit status 1 if a robot overlaps anything; with --decisions none for at most 2000 robots");
   app.add_flag("--fail-unless-arrived", flags.fail_unless_arrived,
                "Exit status 1 if a robot did not arrive: at its last goal, or, in a formation, at its slot with the "
                "leader at its end");

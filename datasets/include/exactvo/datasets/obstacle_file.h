@@ -16,7 +16,7 @@
 /// `ReadOptions::units`. One that `write_obstacles` wrote in degrees names its plane in `"local_metres"`
 /// (obstacle_write.h) and is brought to that. A GeoJSON file that says nothing and has a coordinate beyond +-180 or
 /// +-90 degrees, by more than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL
-/// say how its units were decided, round what centre it was projected, and its extent.
+/// say how its units were decided, which point is the centre of the projection, and how far the file extends.
 ///
 /// Heights (Z, M) are dropped. Points are no obstacles: skipped, with a note. A coordinate beyond
 /// kLargestCoordinate is refused (E_RANGE), whatever the format.
@@ -149,8 +149,8 @@ struct ReadCounts {
   std::size_t rejected = 0;     ///< refused, each with a code
 };
 
-/// The coverage of a grid or a scan. Its polygons are the union of the occupied cells, which they contain whole. For a
-/// grid nothing is gained in area; for a scan, whose hits are points, all of the area is.
+/// The coverage of a grid or a scan. Its polygons are the union of the occupied cells, which they contain whole. They
+/// add no area to a grid; hits of a scan are points, without area.
 struct Coverage {
   std::size_t cells = 0;     ///< of the whole grid
   std::size_t occupied = 0;  ///< of them

@@ -3,8 +3,8 @@
 
 /// \file
 /// A scenario as plain data: robots, obstacles, and, for a formation, the topology and the leader.
-/// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md, but for `guidance` and
-/// `liveness`, which the paper has not. SI units throughout.
+/// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md, except `guidance` and
+/// `liveness`, which the paper does not have. SI units throughout.
 ///
 /// See also: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
 

@@ -7,7 +7,8 @@
 /// at which no robot can stall, and measurements.
 ///
 /// Every verdict is decided by exact predicates on the doubles that are returned: `certified` never rests on how a
-/// shape was found. All are decided here, but for a polygon's pieces, which hull.h proves before it returns them.
+/// shape was found. All are decided here except those of the pieces of a polygon, which hull.h proves before it returns
+/// them.
 /// Nothing throws for an obstacle, valid or not: an invalid one has its problems and nothing else, and a shape that
 /// can't be had has a failed verdict that says why. Deterministic; no time in it.
 ///

@@ -23,7 +23,7 @@ inline void gives_tasks() {
 inline void has_waited() {
   __tsan_acquire(&tasks_done);
 }
-/// Lives as long as a task does its work: before it nothing of what was handed over is read.
+/// Lives while a task works. What was handed over must not be read before.
 struct TaskAtWork {
   TaskAtWork() { __tsan_acquire(&tasks_given); }
   ~TaskAtWork() { __tsan_release(&tasks_done); }

@@ -47,7 +47,7 @@ inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of cu
 inline constexpr double kLeastArrangedNumber = 0x1p-60;
 /// The greatest size, m, s or m/s.
 inline constexpr double kMostArrangedNumber = 0x1p30;
-/// Of half-planes: their normals are computed, and what should be 0 may be what is left of two roundings or three.
+/// For half-planes only: their normals are computed, so two or three roundings may leave a tiny number instead of 0.
 inline constexpr double kLeastOfHalfPlane = 0x1p-200;
 
 /// Why a scene has no FreeArrangement.
