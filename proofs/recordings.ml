@@ -198,6 +198,9 @@ let report t what rows robots obstacles not_covered incomplete =
   List.iter (fun s -> Printf.printf "  %s\n" s) not_covered;
   t.edges_clear = t.asked && not incomplete
 
+let within_tracking = "that bodies are within the tracking error of where rows have them: that is assumed"
+let of_wheels = "of robots on wheels more than discs about their reference points; audit checks that bodies and wheels follow"
+
 let recording file text =
   let scenario = ref Json.Null and obstacles = ref [] and discs = ref [] and sizes = ref [] and bits = ref 0 in
   let last = ref None and rows = ref 0 and ended = ref false and robots = ref 0 and not_covered = ref [] and curved = ref false in
@@ -217,9 +220,9 @@ let recording file text =
     let on_wheels = List.exists (fun r -> Wheels.drive r <> None) Json.(arr (get "robots" (get "scenario" h))) in
     scenario := Wheels.as_discs (Json.get "scenario" h);
     robots := List.length Json.(arr (get "robots" !scenario));
-    if Wheels.tracking (Json.get "scenario" h) > 0. then not_covered := !not_covered @ ["that bodies are within the tracking error of where rows have them: that is assumed"];
+    if Wheels.tracking (Json.get "scenario" h) > 0. then not_covered := !not_covered @ [within_tracking];
     if List.exists Wheels.has_footprint Json.(arr (get "robots" !scenario)) then not_covered := !not_covered @ ["that robots keep clear of obstacles: some have footprints, which turn; audit checks this"];
-    if on_wheels then not_covered := !not_covered @ ["of robots on wheels more than discs about their reference points; audit checks that bodies and wheels follow"];
+    if on_wheels then not_covered := !not_covered @ [of_wheels];
     let measures = match Json.find "uncertainty" !scenario with
       | Some (Json.Obj _ as bounds) -> not (List.mem (Json.find "measurements" bounds) [None; Some Json.Null])
       | _ -> false in
@@ -290,15 +293,33 @@ let crowd file s =
     end in
   let list n f = List.init n (fun _ -> f ()) in
   let head () =
-    ignore (need (u32 ())); ignore (f64 ());
+    ignore (need (u32 ()));
+    let time_step = f64 () in
     let q = f64 () in let every = u32 () in
-    let kinds = Array.of_list (list (u32 ()) (fun () -> let r = f64 () in ignore (f64 ()); r)) in
+    let kinds = Array.of_list (list (u32 ()) (fun () -> let r = f64 () in (r, f64 ()))) in
     let kind_of = list (u32 ()) (fun () -> let k = u16 () in if k >= Array.length kinds then bad !pos "a robot of an unknown kind" else k) in
     let edges = list (u32 ()) (fun () -> let x = f64 () in let y = f64 () in let u = f64 () in (x, y, u, f64 ())) in
-    (q, every, (kinds, kind_of), edges, if version >= 2 then u32 () else 0) in
+    let bodies = if version >= 2 then u32 () else 0 in
+    if version >= 5 then for _ = 1 to bodies do ignore (need 2); ignore (need (8 * u32 ())) done;
+    let length () = let x = f64 () in if x < 0. then bad !pos "a length below 0" else x in
+    let tracking = if version >= 5 then length () else 0. in
+    let on_wheels = ref false in
+    (* Whether the disc of a kind holds its body. *)
+    let holds (radius, speed) =
+      let body = length () in
+      let left = Q.sub (Q.of_float radius) (Q.of_float tracking) in
+      if u8 () = 0 then Q.leq (Q.of_float body) left
+      else begin
+        on_wheels := true;
+        let ahead = f64 () in
+        ignore (need 32);
+        Wheels.disc_fits left body ahead speed time_step
+      end in
+    let held = if version >= 5 then List.map holds (Array.to_list kinds) else [] in
+    (q, every, (Array.map fst kinds, kind_of), edges, bodies, (tracking, !on_wheels, held)) in
   match block head with
   | None -> bad 8 "its end within the head"
-  | Some (step, _, (kinds, kind_of), edges, bodies) ->
+  | Some (step, _, (kinds, kind_of), edges, bodies, (tracking, on_wheels, held)) ->
     let n = List.length kind_of in
     let numbers = step :: Array.to_list kinds @ List.concat_map (fun (a, b, c, d) -> [a; b; c; d]) edges in
     let q = fractions numbers in
@@ -327,12 +348,15 @@ let crowd file s =
         | _ -> bad !pos "what begins neither a row nor the end" in
     let count, cut_off = rows 0 None in
     let ok = report t "the first row and each step or row after it" count n ("one of " ^ counted (List.length walls) "edge")
-      ((if bodies > 0 then [Printf.sprintf "that robots are clear of %d %s, moving or at rest," bodies (if bodies = 1 then "body" else "bodies")] else []) @ ["speeds"]) cut_off in
+      ((if bodies > 0 then [Printf.sprintf "that robots are clear of %d %s, moving or at rest," bodies (if bodies = 1 then "body" else "bodies")] else [])
+       @ (if tracking > 0. then [within_tracking] else []) @ (if on_wheels then [of_wheels] else []) @ ["speeds"]) cut_off in
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
-    ok
+    if held <> [] then Printf.printf "kinds whose discs hold bodies, arcs of a step on wheels, and the tracking error: %d asked, %d proven\n"
+      (List.length held) (List.length (List.filter Fun.id held));
+    ok && List.for_all Fun.id held
 
 (* --- Any of them --- *)
-let is_crowd text = String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && text.[7] >= '1' && text.[7] <= '3'
+let is_crowd text = String.starts_with ~prefix:"EXACTVR" text && String.length text > 8 && String.contains "1235" text.[7]
 (* Whether all of the file is verified. *)
 let judge file =
   let text = read file in

@@ -24,8 +24,7 @@ let corners robot = match Json.find "footprint" robot with
     cs
   | None -> []
 
-let disc_fits left robot ahead speed step =
-  let body = number "radius" robot in
+let disc_fits left body ahead speed step =
   let q = Exact.fractions [body; ahead; speed; step] in
   Checked.wheels_fit { body_reach = q body; ahead = q ahead; most_speed = q speed; time_step = q step } (Exact.of_q left)
 
@@ -41,7 +40,7 @@ let corners_fit left cs ahead speed step =
 let holds radius robot ahead speed step tracking =
   let left = Q.sub (Q.of_float radius) (Q.of_float tracking) in
   match corners robot with
-  | [] -> disc_fits left robot ahead speed step
+  | [] -> disc_fits left (number "radius" robot) ahead speed step
   | cs -> corners_fit left cs ahead speed step
 
 let rounded_up = 1. +. Float.ldexp 1. (-50)

@@ -562,7 +562,7 @@ TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {
   }
   for (const char* mark : {"EXACTVR1", "EXACTVR2"})  // with a head of the present version
     EXPECT_EQ(refusal_of([&] { rows_of(put("b.evr", mark + whole.substr(8))); }).code(), DataCode::format_syntax);
-  expect_refusal(refusal_of([&] { rows_of(put("b.evr", "EXACTVR5" + whole.substr(8))); }), DataCode::format_syntax,
+  expect_refusal(refusal_of([&] { rows_of(put("b.evr", "EXACTVR6" + whole.substr(8))); }), DataCode::format_syntax,
                  "byte 0");
 }
 
@@ -664,7 +664,7 @@ TEST_F(ForgedCrowds, WhatIsNotJudgedIsCountedAndSaid) {
   const AuditReport audit = audit_of(crowd);
   EXPECT_EQ(audit.ends_only, 2U);
   EXPECT_TRUE(says(audit, "of 2 motions only the ends are judged"));
-  EXPECT_TRUE(says(audit, "radii, speed limits, wheels, edges and bodies"));
+  EXPECT_TRUE(says(audit, "radii, speed limits, wheels, the tracking error, edges and bodies"));
   EXPECT_FALSE(says(audit, "--sample"));
   const AuditReport some = audit_of(crowd, 1);
   EXPECT_EQ(some.steps + some.left_out, 4U);

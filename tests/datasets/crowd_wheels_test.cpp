@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenarios of robots on wheels on a crowd: what is recorded of them, and what the audit proves of it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -28,7 +29,7 @@ using formation::SimulationOptions;
 /// Burgers on a square, each to the place opposite of its own, one that goes straight ahead far from them, and a robot
 /// that moves in any direction.
 constexpr std::size_t kOnWheels = 17;
-Scenario burgers(const std::string& more = "") {
+Scenario burgers(const std::string& more = "", const std::string& keys = "") {
   std::string robots;
   const auto add = [&](const std::string& id, double x, double y, double goal_x, double goal_y, int heading) {
     robots += R"({"id": ")" + id + R"(", "position": [)" + std::to_string(x) + ", " + std::to_string(y) +
@@ -43,7 +44,8 @@ Scenario burgers(const std::string& more = "") {
   }
   add("L", 0.0, 20.0, 2.9544, 20.5209, 10);
   return parse_scenario(R"({"name": "burgers", "guidance": "none", "time_step": 0.25, "time_limit": 150,
-      "arrival_tolerance": 0.05, "horizons": {"least": 0.5, "orca": 3}, "robots": [)" +
+      "arrival_tolerance": 0.05, "horizons": {"least": 0.5, "orca": 3}, )" +
+                            keys + R"("robots": [)" +
                             robots + R"({"id": "O", "position": [-1, 1.7], "goal": [5, 1.7],
       "radius": 0.15, "max_speed": 0.3}], "obstacles": [{"polyline": [[-1, -0.5], [5, -0.5]]}]})",
                         "burgers.json", {});
@@ -122,7 +124,7 @@ TEST_F(CrowdsOnWheels, ArriveAndTheAuditProvesWhatTheyDrove) {
 TEST_F(CrowdsOnWheels, WhatIsReadIsWhatWasWritten) {
   const Scenario scenario = burgers(R"(, "max_angular_speed": 2, "max_backward_speed": 0.1, "reference": 0.07)");
   record(scenario);
-  EXPECT_EQ(bytes_of(folder_ / "c.evr").substr(0, 8), "EXACTVR4");
+  EXPECT_EQ(bytes_of(folder_ / "c.evr").substr(0, 8), "EXACTVR5");
   CrowdRecordingReader reader(folder_ / "c.evr");
   const CrowdRecordingHead& head = reader.head();
   ASSERT_EQ(head.half_headings.size(), kOnWheels + 1);
@@ -135,6 +137,9 @@ TEST_F(CrowdsOnWheels, WhatIsReadIsWhatWasWritten) {
   EXPECT_EQ((std::vector<double>{w.reference, w.wheel_separation, w.max_wheel_acceleration, w.max_angular_speed,
                                  w.max_backward_speed}),
             (std::vector<double>{0.07, 0.16, 1.0, 2.0, 0.1}));
+  EXPECT_EQ(head.kinds[0].body_radius, 0.105);
+  EXPECT_EQ(head.kinds[1].body_radius, 0.15);
+  EXPECT_EQ(head.tracking, 0.0);
   EXPECT_EQ(head.ids.back(), "O");
   EXPECT_TRUE(audit_recording(folder_ / "c.evr").clean());
 }
@@ -155,7 +160,62 @@ TEST_F(CrowdsOnWheels, TheAuditRefutesOtherHeadingsLimitsAndRadii) {
   EXPECT_FALSE(softer.clean()) << "wheels farther apart run faster";
   const double radius = burgers().robots[0].radius;
   const AuditReport smaller = audit_with([&](std::string& head) { replace(head, radius, 0.004); });
-  EXPECT_EQ(found(smaller, "have no room for the arc of a step"), 1U);
+  EXPECT_EQ(found(smaller, "have no room for body, tracking error and the arc of a step"), 1U);
+  EXPECT_FALSE(audit_with([](std::string& head) { replace(head, 0.105, 0.105 + 1e-9); }).clean()) << "a larger body";
+}
+
+constexpr const char* kTube = R"("uncertainty": {"tracking": 0.02}, )";
+
+TEST_F(CrowdsOnWheels, DiscsHoldBodiesAndTheTrackingErrorThatTheRecordingNames) {
+  record(burgers("", kTube));
+  {
+    CrowdRecordingReader reader(folder_ / "c.evr");
+    EXPECT_EQ(reader.head().tracking, 0.02);
+    const Scenario scene = scene_of(reader.head()).scenario;
+    EXPECT_EQ(tracking_error_of(scene), 0.02);
+    EXPECT_EQ(scene.robots.back().body_radius, 0.15);
+  }
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
+  EXPECT_TRUE(audit.clean());
+  EXPECT_THAT(not_audited(audit), testing::Contains(testing::HasSubstr("up to the tracking error")));
+  const AuditReport farther = audit_with([](std::string& head) { replace(head, 0.02, 0.02 + 1e-9); });
+  EXPECT_EQ(found(farther, "kind 0 have no room for body, tracking error and the arc of a step"), 1U);
+  EXPECT_EQ(found(farther, "kind 1 have no room for body and tracking error"), 1U);
+  EXPECT_FALSE(audit_with([](std::string& head) { replace(head, 0.15, 0.15 + 1e-9); }).clean()) << "a larger body";
+}
+
+TEST_F(CrowdsOnWheels, ATrackingErrorIsRecordedOfRobotsWithoutWheelsToo) {
+  Scenario scenario = burgers("", kTube);
+  scenario.robots.erase(scenario.robots.begin(), scenario.robots.end() - 1);
+  record(scenario);
+  EXPECT_EQ(bytes_of(folder_ / "c.evr").substr(0, 8), "EXACTVR5");
+  CrowdRecordingReader reader(folder_ / "c.evr");
+  EXPECT_TRUE(reader.head().half_headings.empty());
+  EXPECT_EQ(reader.head().name_of(0), "O");
+  const AuditReport audit = audit_recording(folder_ / "c.evr");
+  EXPECT_TRUE(audit.clean());
+  EXPECT_EQ(audit[AuditPoint::kinematics].proven, 1U);
+  const AuditReport farther = audit_with([](std::string& head) { replace(head, 0.02, 0.03); });
+  EXPECT_EQ(farther[AuditPoint::kinematics].refuted, 1U);
+}
+
+/// Without the tracking error and the radii of bodies.
+TEST_F(CrowdsOnWheels, RecordingsOfTheVersionBeforeAreRead) {
+  const RunReport report = record(burgers());
+  const std::string was = with_head(bytes_of(folder_ / "c.evr"), [](std::string& head) {
+    const std::size_t kinds = 2, bodies = head.find(in_bytes(0.0) + in_bytes(0.105));
+    ASSERT_NE(bodies, std::string::npos);
+    head.erase(bodies, sizeof(double));
+    for (std::size_t k = 0, at = bodies; k < kinds; ++k, at += 1 + 5 * sizeof(double)) head.erase(at, sizeof(double));
+  });
+  std::ofstream(folder_ / "d.evr", std::ios::binary) << "EXACTVR4" << was.substr(8);
+  CrowdRecordingReader reader(folder_ / "d.evr");
+  EXPECT_EQ(reader.head().kinds.at(0).body_radius, 0.0);
+  EXPECT_EQ(reader.head().half_headings.at(3), formation::half_heading_of(75.0));
+  EXPECT_EQ(reader.head().ids.back(), "O");
+  const AuditReport audit = audit_recording(folder_ / "d.evr");
+  EXPECT_TRUE(audit.clean());
+  EXPECT_EQ(audit[AuditPoint::kinematics].proven, 1 + 2 * kOnWheels * report.steps);
 }
 
 TEST_F(CrowdsOnWheels, TheAuditRefutesWheelsThatChangeTheirSpeedTooMuch) {
@@ -220,6 +280,7 @@ TEST_F(CrowdsOnWheels, DamagedHeadsAreRefused) {
   };
   refused([](std::string& head) { replace(head, 0.16, -0.16); });
   refused([](std::string& head) { replace(head, 0.08, 0.001); });
+  refused([](std::string& head) { replace(head, 0.105, -0.105); });
   refused([](std::string& head) { replace(head, formation::half_heading_of(75.0).x, 7.0); });
   refused([](std::string& head) { replace(head, 1.0, std::nan("")); });
   refused([](std::string& head) { head.pop_back(); });

@@ -488,6 +488,21 @@ def recordings(tools):
         status, _, words = tools.verified("changed.evr", data[:at] + bytes([data[at] ^ 4]) + data[at + 1:])
         require(status in (1, 2), "a changed byte was overlooked:", at, words)
 
+    # On wheels and with a tracking error: discs hold bodies, and no longer do where either is larger than it was.
+    wheels = {"type": "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}
+    scene = {"name": "wheels", "time_step": 0.25, "time_limit": 10, "horizons": {"least": 0.5}, "uncertainty": {"tracking": 0.02},
+             "obstacles": [{"id": "post", "disc": {"centre": [0.1, 0.2], "radius": 0.3}}],
+             "robots": [{"circle": {"count": 8, "radius": 2}, "radius": 0.105, "kinematics": wheels},
+                        {"id": "other", "position": [5, 0], "goal": [-5, 0.5], "radius": 0.15, "max_speed": 0.3}]}
+    run(tools.program, "simulate", tools.file("wheels.json", json.dumps(scene)), "--decisions", "none", "--record", evr, check=True)
+    data = evr.read_bytes()
+    (size,) = struct.unpack_from("<Q", data, 8)
+    for was, larger, held in ((0.02, 0.02, 2), (0.02, 0.02 + 1e-9, 0), (0.105, 0.105 + 1e-9, 1), (0.15, 0.15 + 1e-9, 1)):
+        head = data[24:24 + size].replace(struct.pack("<d", was), struct.pack("<d", larger), 1)
+        status, _, words = tools.verified("wheels.evr", data[:8] + block(head) + data[24 + size:])
+        require(status == (held != 2) and f"and the tracking error: 2 asked, {held} proven" in words, was, larger, words)
+        require("within the tracking error" in words and "of robots on wheels more than discs" in words, words)
+
     # Robots that just touch, and that come nearer than that by one lattice step, at an end or on the way.
     half = [0.5, 0.5]
     for rows, holds in (([[(0, 0), (1024, 0)]] * 2, True), ([[(0, 0), (1023, 0)]] * 2, False),

@@ -41,7 +41,9 @@ class CrowdHeadings {
     drive.wheel_separation = kind.wheels->wheel_separation;
     drive.max_wheel_speed = kind.max_speed;
     drive.reference = kind.wheels->reference;
-    drive.body_radius = std::max(0.0, kind.radius - drive.reference - stray_of(drive, head_.time_step));
+    drive.body_radius = kind.body_radius;
+    if (drive.body_radius == 0.0)  // the file does not say
+      drive.body_radius = std::max(0.0, kind.radius - drive.reference - stray_of(drive, head_.time_step));
     return drive;
   }
 

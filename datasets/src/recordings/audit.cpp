@@ -438,14 +438,17 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (report.has_places) {
     words.emplace_back("decisions and goals of recordings without them, and whether their runs are whole");
     words.emplace_back(
-        "that radii, speed limits, wheels, edges and bodies in a recording of a crowd are those of its scenario, and "
-        "its marks "
-        "of half-planes that were kept");
+        "that radii, speed limits, wheels, the tracking error, edges and bodies in a recording of a crowd are those of "
+        "its scenario, and its marks of half-planes that were kept");
   }
   if (report.ends_only > 0)
     words.emplace_back("how robots came from one row to the next where these are several steps apart: of " +
                        geometry::counted(report.ends_only, "motion") + " only the ends are judged");
   if (report.left_out > 0) words.push_back(geometry::counted(report.left_out, "motion") + " that --sample left out");
+  if (report.has_tube)
+    words.emplace_back(
+        "that bodies are where rows have them, up to the tracking error of the scenario, which is assumed: what is "
+        "proven holds in every world in which they are");
   if (report.has_places && report[AuditPoint::scenario].asked() == 0) return words;
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
@@ -465,10 +468,6 @@ std::vector<std::string> not_audited(const AuditReport& report) {
     words.emplace_back(
         "that robots on wheels could not have chosen better velocities than their recorded limits allow, and that "
         "their wheels did as recorded");
-  if (report.has_tube)
-    words.emplace_back(
-        "that bodies are where rows have them, up to the tracking error of the scenario, which is assumed: what is "
-        "proven holds in every world in which they are");
   if (report.has_measurements)
     words.emplace_back(
         "that robots of the world measure within the bounds of the scenario, as those of the rows do, which is "

@@ -44,10 +44,14 @@ struct Driven {
 class WheelsAudit : public RowAudit {
  public:
   WheelsAudit(const AuditedRun& run, const CrowdRecordingHead& head) : run_(run), head_(head) {
-    for (std::size_t k = 0; k < head.kinds.size(); ++k)
-      if (head.kinds[k].wheels)
-        run.tally.ask(AuditPoint::kinematics, has_room_to_stray(head.kinds[k]),
-                      "the discs of kind " + std::to_string(k) + " have no room for the arc of a step");
+    run.tally.report.has_tube = head.tracking > 0.0;
+    for (std::size_t k = 0; k < head.kinds.size(); ++k) {
+      if (!head.kinds[k].wheels && !run.tally.report.has_tube) continue;
+      run.tally.ask(AuditPoint::kinematics, holds_its_body(head.kinds[k]),
+                    "the discs of kind " + std::to_string(k) + " have no room for " +
+                        (head.kinds[k].wheels ? "body, tracking error and the arc of a step"
+                                              : "body and tracking error"));
+    }
     robots_.resize(head.half_headings.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       if (!head.kinds[head.kind_of[i]].wheels || !run.is_asked(0, i)) continue;
@@ -75,10 +79,12 @@ class WheelsAudit : public RowAudit {
  private:
   const formation::CrowdWheels& wheels_of(std::size_t i) const { return *head_.kinds[head_.kind_of[i]].wheels; }
 
-  /// (W T)^2 / (4 (2 D - W T)) is less than the radius: the rest of it is the body's.
-  bool has_room_to_stray(const CrowdKindRecord& kind) const {
-    const Rational way = Rational(kind.max_speed) * run_.duration, ahead = 2 * Rational(kind.wheels->reference);
-    return 2 * way <= ahead && way * way < 4 * (ahead - way) * Rational(kind.radius);
+  /// The body and the tracking error; on wheels the body is D behind, and strays by (W T)^2 / (4 (2 D - W T)).
+  bool holds_its_body(const CrowdKindRecord& kind) const {
+    const Rational left = Rational(kind.radius) - Rational(kind.body_radius) - Rational(head_.tracking);
+    if (!kind.wheels) return sgn(left) >= 0;
+    const Rational way = Rational(kind.max_speed) * run_.duration, ahead(kind.wheels->reference);
+    return way <= ahead && way * way <= 4 * (2 * ahead - way) * (left - ahead);
   }
 
   std::string words(std::size_t row, std::size_t i, const char* what) const {

@@ -15,8 +15,9 @@
 
 namespace exactvo::datasets {
 
-/// EXACTVR1 has no bodies, EXACTVR2 no ids, EXACTVR4 wheels. EXACTVR1 is read, and no longer written.
-inline constexpr std::string_view kCrowdMarks[] = {"EXACTVR1", "EXACTVR2", "EXACTVR3", "EXACTVR4"};
+/// EXACTVR1 has no bodies, EXACTVR2 no ids, EXACTVR4 wheels, EXACTVR5 also the tracking error and the radii of robots'
+/// bodies. EXACTVR1 and EXACTVR4 are read, and no longer written.
+inline constexpr std::string_view kCrowdMarks[] = {"EXACTVR1", "EXACTVR2", "EXACTVR3", "EXACTVR4", "EXACTVR5"};
 inline constexpr std::size_t kCrowdMarkSize = kCrowdMarks[0].size();
 
 /// The version that a mark is of, from 1; 0 where it is none.
@@ -104,8 +105,10 @@ class CrowdBytes {
 /// bytes where ids have a prefix and a number.
 void append_id(std::string& to, std::string_view id, std::string_view before);
 
-/// `ids`: those of all robots, as `append_id` writes them, or none; head.ids is not looked at. With wheels it is of
-/// version 4, else of 3 or, without ids, of 2.
+/// The version of a head: 5 with wheels or a tracking error, else 3 or, without ids, 2.
+unsigned version_of(const CrowdRecordingHead& head, bool has_ids);
+
+/// `ids`: those of all robots, as `append_id` writes them, or none; head.ids is not looked at.
 std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids);
 
 /// Throws DataError where it is not as `to_bytes` writes it, or did in an earlier version (E_FORMAT_SYNTAX), or has

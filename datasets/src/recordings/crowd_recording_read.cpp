@@ -90,6 +90,11 @@ void append_id(std::string& to, std::string_view id, std::string_view before) {
   to += id.substr(shared);
 }
 
+unsigned version_of(const CrowdRecordingHead& head, bool has_ids) {
+  if (!head.half_headings.empty() || head.tracking > 0.0) return 5;
+  return has_ids ? 3 : 2;
+}
+
 std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
   std::string out;
   append(out, static_cast<std::uint32_t>(head.scenario.size()));
@@ -112,8 +117,10 @@ std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
     append(out, static_cast<std::uint32_t>(numbers.size()));
     for (const double v : numbers) append(out, v);
   }
-  if (head.half_headings.empty()) return out += ids;
+  if (version_of(head, !ids.empty()) < 5) return out += ids;
+  append(out, head.tracking);
   for (const CrowdKindRecord& kind : head.kinds) {
+    append(out, kind.body_radius);
     append(out, static_cast<std::uint8_t>(kind.wheels.has_value()));
     if (!kind.wheels) continue;
     const formation::CrowdWheels& w = *kind.wheels;
@@ -153,11 +160,20 @@ double limit_of(CrowdBytes& in) {
   return value;
 }
 
-void get_wheels(CrowdBytes& in, CrowdRecordingHead& head) {
+void get_wheels(CrowdBytes& in, bool has_bodies, CrowdRecordingHead& head) {
+  const auto length = [&](const char* what) {
+    const double value = has_bodies ? in.number(what) : 0.0;
+    in.require(value >= 0.0, "a length below 0");
+    return value;
+  };
+  head.tracking = length("a tracking error");
+  bool any = false;
   for (CrowdKindRecord& kind : head.kinds) {
+    kind.body_radius = length("a radius of a body");
     const auto has_wheels = in.get<std::uint8_t>();
     in.require(has_wheels <= 1, "a kind that neither has wheels nor has none");
     if (has_wheels == 0) continue;
+    any = true;
     formation::CrowdWheels& w = kind.wheels.emplace();
     w.reference = in.number("a reference");
     w.wheel_separation = in.number("a wheel separation");
@@ -166,6 +182,7 @@ void get_wheels(CrowdBytes& in, CrowdRecordingHead& head) {
     for (double* limit : {&w.max_wheel_acceleration, &w.max_angular_speed, &w.max_backward_speed})
       *limit = limit_of(in);
   }
+  if (!any) return;
   for (const std::uint16_t kind : head.kind_of) {
     geometry::Vec2& half = head.half_headings.emplace_back(geometry::Vec2{1.0, 0.0});
     if (!head.kinds[kind].wheels) continue;
@@ -212,7 +229,7 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
     in.require(bodies <= kMostEdges, "more than 2^24 bodies");
     for (std::uint32_t k = 0; k < bodies; ++k) head.bodies.push_back(get_body(in));
   }
-  if (version >= 4) get_wheels(in, head);
+  if (version >= 4) get_wheels(in, version >= 5, head);
   const std::uint8_t has_ids = version >= 4 ? in.get<std::uint8_t>() : version == 3;
   in.require(has_ids <= 1, "robots that neither have ids nor have none");
   if (has_ids == 1) get_ids(in, head);
@@ -282,7 +299,7 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   const unsigned version = whole ? crowd_version({mark, sizeof mark}) : 0;
   if (version == 0)
     throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
-                    "\"EXACTVR1\" to \"EXACTVR4\", of a recording of a crowd");
+                    "\"EXACTVR1\" to \"EXACTVR5\", of a recording of a crowd");
   if (!p.read_block()) p.bytes().refuse("its end within the head");
   p.head = to_head(p.bytes(), version);
   p.sum = checksum(p.block);

@@ -96,12 +96,15 @@ RecordingFile scene_of(const CrowdRecordingHead& head) {
   file.info.provenance = make_provenance({}, 0);
   file.scenario.time_step = file.recording.time_step = head.time_step;
   file.scenario.obstacles = walls_of(head.edges);
+  if (head.tracking > 0.0) file.scenario.uncertainty = formation::Uncertainty{head.tracking};
   add_bodies(head, file.scenario);
   for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
     formation::Robot& robot = file.scenario.robots.emplace_back();
     robot.id = head.name_of(i);
-    robot.radius = head.kinds[head.kind_of[i]].radius;
-    robot.max_speed = head.kinds[head.kind_of[i]].max_speed;
+    const CrowdKindRecord& kind = head.kinds[head.kind_of[i]];
+    robot.radius = kind.radius;
+    robot.max_speed = kind.max_speed;
+    if (head.tracking > 0.0 && !kind.wheels) robot.body_radius = kind.body_radius;
   }
   return file;
 }

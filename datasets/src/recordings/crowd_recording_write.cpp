@@ -8,6 +8,7 @@
 
 #include "exactvo/geometry/require.h"
 #include "recordings/crowd_recording_format.h"
+#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 
@@ -23,6 +24,7 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
     const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
   }
+  head_.tracking = tracking_error_of(scenario);
   const bool has_wheels = std::any_of(scenario.robots.begin(), scenario.robots.end(),
                                       [](const formation::Robot& robot) { return robot.drive.has_value(); });
   for (std::size_t i = 0; has_wheels && i < robots_; ++i) {
@@ -35,6 +37,7 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
     ids_differ_ = seen.insert(robot.id).second && ids_differ_;
     append_id(ids_, robot.id, before);
     before = robot.id;
+    body_radii_.push_back(robot.drive ? robot.drive->body_radius : body_radius_of(robot));
   }
 }
 
@@ -48,7 +51,8 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   head_.time_step = crowd.options().time_step;
   head_.position_step = crowd.options().position_step;
   const std::size_t robots = crowd.id_end();
-  EXACTVO_REQUIRE(head_.half_headings.empty() || robots == robots_, "a crowd of other robots on wheels");
+  EXACTVO_REQUIRE(version_of(head_, false) < 5 || robots == robots_,
+                  "a crowd of other robots, on wheels or with a tracking error");
   std::size_t kinds = 0;
   for (std::size_t i = 0; i < robots; ++i) {
     head_.kind_of.push_back(crowd.kind_of(static_cast<formation::RobotId>(i)));
@@ -57,6 +61,10 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   for (std::size_t k = 0; k < kinds; ++k) {
     const formation::CrowdKind& kind = crowd.kind(static_cast<formation::KindId>(k));
     head_.kinds.push_back({kind.radius, kind.max_speed, kind.wheels});
+  }
+  for (std::size_t i = 0; i < std::min(robots, robots_); ++i) {
+    double& body = head_.kinds[head_.kind_of[i]].body_radius;
+    body = std::max(body, body_radii_[i]);
   }
   for (const formation::CrowdBodyState& body : crowd.bodies()) {
     head_.bodies.push_back({body.shape, body.moves});
@@ -71,8 +79,7 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   row_.kept.assign(robots, 1);
   const bool has_ids = robots == robots_ && ids_differ_;  // of another number the crowd is not the scenario's
   const std::string head = to_bytes(head_, has_ids ? ids_ : std::string());
-  const std::size_t version = !head_.half_headings.empty() ? 4 : has_ids ? 3 : 2;
-  std::string out(kCrowdMarks[version - 1]);
+  std::string out(kCrowdMarks[version_of(head_, has_ids) - 1]);
   append(out, static_cast<std::uint64_t>(head.size()));
   head_sum_ = sum_ = checksum(head);
   append(out, sum_);

@@ -34,8 +34,9 @@
 ///  (10) kinematics   for robots on wheels, heading and wheel speeds of each row follow from the constant twist that
 ///                    moves the reference point as chosen; wheel speeds, their changes, turning and reversing are
 ///                    within their limits; the disc about the reference point holds the body at every moment,
-///                    and the chain of discs its footprint. In a recording of a crowd both follow from the first
-///                    headings and from places.
+///                    and the chain of discs its footprint. In a recording of a crowd heading and wheels follow from
+///                    the first headings and from places, and discs of robots without wheels hold bodies and
+///                    tracking error.
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or

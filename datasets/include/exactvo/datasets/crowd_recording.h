@@ -33,6 +33,8 @@ struct CrowdKindRecord {
   double radius = 0.0;                                ///< m
   double max_speed = 0.0;                             ///< m/s
   std::optional<formation::CrowdWheels> wheels = {};  ///< as the crowd had them
+  /// m: of the disc that holds the body, on wheels about the axle; 0 where the file does not say.
+  double body_radius = 0.0;
 };
 
 /// A solid body that a recording keeps, as it stood at the start.
@@ -54,6 +56,7 @@ struct CrowdRecordingHead {
   std::vector<geometry::Segment> edges;  ///< of obstacles
   std::vector<CrowdBodyRecord> bodies;   ///< those that the crowd had at the start
   std::vector<std::string> ids;          ///< of each robot; empty in files of earlier versions
+  double tracking = 0.0;                 ///< m, >= 0: no point of a body is farther from where rows have it
   /// Where each robot on wheels headed at first, as `half_heading_of` has it; (1, 0) of the others. Empty where no kind
   /// has wheels. Where every step is a row, later headings follow from this and from places (crowd/wheels.h).
   std::vector<geometry::Vec2> half_headings;
@@ -106,6 +109,7 @@ class CrowdRecorder : public formation::RunSink {
   CrowdRecordingHead head_;  ///< without ids
   std::size_t robots_ = 0;   ///< of the scenario
   std::string ids_;          ///< as they stand in the file
+  std::vector<double> body_radii_;  ///< m, of the robots of the scenario
   bool ids_differ_ = true;   ///< all of them
   CrowdRow row_, last_;      ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
