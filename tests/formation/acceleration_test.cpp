@@ -589,6 +589,7 @@ TEST(Acceleration, ForgeriesAreRefuted) {
   };
   EXPECT_GT(refuted(AuditPoint::half_planes, [&](auto& f) { limit_of(f).half_plane.offset += 0.01; }), 0u);
   EXPECT_GT(refuted(AuditPoint::half_planes, [&](auto& f) { limit_of(f).index += 1; }), 0u);
+  EXPECT_GT(refuted(AuditPoint::half_planes, [&](auto& f) { limit_of(f).time_horizon *= 2.0; }), 0u);
   EXPECT_GT(refuted(AuditPoint::choices, [&](auto& f) { limit_of(f).multiplier *= 0.5; }), 0u);
 }
 

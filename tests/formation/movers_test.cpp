@@ -357,7 +357,7 @@ TEST(Movers, TheAuditRefusesARobotThatTouchesAMoverWhileItMoves) {
 TEST(Movers, TheAuditRefusesEditsOfWhatHoldsMoversOff) {
   const RecordingFile file = recorded(chased(to_and_fro(), 23, 0.22));
   ASSERT_TRUE(audit(file).clean());
-  int fewer = 0, nearer = 0, dropped = 0;
+  int fewer = 0, nearer = 0, other_horizons = 0, dropped = 0;
   for (std::size_t row = 0; row + 1 < file.recording.steps.size() && fewer < 4; ++row) {
     const RobotStep& chosen = file.recording.steps[row].robots.front();
     const auto refuses = [&](RobotStep step, AuditPoint point) {
@@ -377,12 +377,20 @@ TEST(Movers, TheAuditRefusesEditsOfWhatHoldsMoversOff) {
     step.constraints[static_cast<std::size_t>(binds - chosen.constraints.begin())].half_plane.offset -= 1e-3;
     EXPECT_TRUE(refuses(step, AuditPoint::half_planes)) << row;
     ++nearer;
+    // Nothing is decided by it, but the page and `explain` print it.
+    for (const double by : {0x1p-52, 1e-3, -0.5}) {
+      step = chosen;
+      step.constraints[static_cast<std::size_t>(binds - chosen.constraints.begin())].time_horizon *= 1.0 + by;
+      EXPECT_TRUE(refuses(step, AuditPoint::half_planes)) << row << ", " << by;
+      ++other_horizons;
+    }
     step = chosen;
     step.stopping_steps = 0;
     EXPECT_TRUE(refuses(step, AuditPoint::braking)) << row;
     ++dropped;
   }
-  std::printf("%d edits of steps, %d of offsets, %d of what stands\n", fewer, nearer, dropped);
+  std::printf("%d edits of steps, %d of offsets, %d of horizons, %d of what stands\n", fewer, nearer, other_horizons,
+              dropped);
   EXPECT_EQ(fewer, 4);
 }
 

@@ -273,6 +273,14 @@ TEST(MeasuredAudit, RefusesMeasurementsBeyondTheBoundsAndChoicesBeyondTheSide) {
     EXPECT_GT(datasets::audit(forged)[AuditPoint::braking].refuted, 0u) << "edit " << k;
   }
   EXPECT_GT(edits, 50u);
+  std::size_t lines = 0;
+  for (std::size_t row = 20; row < 60; row += 8)
+    for (std::size_t k = 0; k < file.recording.steps[row].robots[0].constraints.size(); ++k, ++lines) {
+      datasets::RecordingFile forged = file;
+      forged.recording.steps[row].robots[0].constraints[k].time_horizon += 0.1;
+      EXPECT_GT(datasets::audit(forged)[AuditPoint::half_planes].refuted, 0u) << row << ", line " << k;
+    }
+  EXPECT_GT(lines, 3u);
   // The half-planes of pairs that tell each other where they are let a robot follow another: not here.
   datasets::RecordingFile told = file;
   Scenario others = s;

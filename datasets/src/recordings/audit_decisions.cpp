@@ -278,9 +278,12 @@ class DecisionAudit : public RowAudit {
   /// Then nothing is promised to it against what moves in any way.
   static bool stands(const Seen& s) { return s.state->stopping_steps == 0 && s.state->chosen == Vec2{}; }
 
-  /// Lemma 8 (accelerations): n.x >= c, and n.(x + (k + 1) / 2 T u) >= c + U k T for all u of the half-plane.
+  /// Lemma 8 (accelerations): n.x >= c, and n.(x + (k + 1) / 2 T u) >= c + U k T for all u of the half-plane. Its
+  /// horizon is (k + 1) / 2 T, rounded once.
   bool keeps_from_mover(const Seen& s, const DecisionConstraint& c) const {
     if (!has_numbers(c.half_plane) || s.state->stopping_steps == 0) return false;
+    const auto half_steps = static_cast<double>(s.state->stopping_steps + 1);
+    if (c.time_horizon != 0.5 * half_steps * run_.file.recording.time_step) return false;
     const auto& disc = std::get<geometry::Disc>(moved_[c.index]);
     const Rational steps(s.state->stopping_steps), away = s.radius + Rational(disc.radius);
     const Rational by_then =
@@ -418,7 +421,7 @@ class DecisionAudit : public RowAudit {
   /// else a choice could be made the best by a limit. (Whether the change is kept is asked of the choice.)
   bool leaves_its_change(const Seen& s, const DecisionConstraint& c) const {
     constexpr double kInside = 0.99144;  // less than cos(pi / 24)
-    if (!has_numbers(c.half_plane)) return false;
+    if (!has_numbers(c.half_plane) || c.time_horizon != run_.file.recording.time_step) return false;
     if (run_.scenario.robots[s.robot].drive) return true;  // what wheels allow is asked of the choice alone
     const Point n = exactly(c.half_plane.normal);
     const Rational left = exact::dot(n, exactly(s.state->velocity)) - Rational(c.half_plane.offset);
@@ -449,7 +452,7 @@ class DecisionAudit : public RowAudit {
   /// the other's way of braking may be from the foreseen one and l for the distance of that, the way of the choice goes
   /// no more than (l - E - R) / 2, or 0, beyond the robot's own way of braking.
   bool is_own_side(const Seen& s, const DecisionConstraint& c) const {
-    if (!has_numbers(c.half_plane)) return false;
+    if (!has_numbers(c.half_plane) || c.time_horizon != braking_time_of(run_.scenario)) return false;
     const auto same = std::find_if(s.state->measured.begin(), s.state->measured.end(),
                                    [&](const formation::MeasuredRobot& m) { return m.robot == c.index; });
     if (same == s.state->measured.end() || !geometry::is_finite(same->position) ||
