@@ -45,8 +45,7 @@ Scenario burgers(const std::string& more = "", const std::string& keys = "") {
   add("L", 0.0, 20.0, 2.9544, 20.5209, 10);
   return parse_scenario(R"({"name": "burgers", "guidance": "none", "time_step": 0.25, "time_limit": 150,
       "arrival_tolerance": 0.05, "horizons": {"least": 0.5, "orca": 3}, )" +
-                            keys + R"("robots": [)" +
-                            robots + R"({"id": "O", "position": [-1, 1.7], "goal": [5, 1.7],
+                            keys + R"("robots": [)" + robots + R"({"id": "O", "position": [-1, 1.7], "goal": [5, 1.7],
       "radius": 0.15, "max_speed": 0.3}], "obstacles": [{"polyline": [[-1, -0.5], [5, -0.5]]}]})",
                         "burgers.json", {});
 }

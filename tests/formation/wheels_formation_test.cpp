@@ -246,6 +246,9 @@ TEST(WheeledFormation, WhatItsProofLacksIsRefused) {
             "/formation/controller_options/acceleration_bound");
   EXPECT_EQ(pointer_of([](Scenario& o) { o.formation->controller_options.filter_last = false; }),
             "/formation/controller_options/filter_last");
+  EXPECT_EQ(pointer_of([](Scenario& o) { o.formation->controller_options.brake_point = true; }),
+            "/formation/controller_options/brake_point");
+  EXPECT_EQ(pointer_of([](Scenario& o) { o.formation->controller_options.brake_point = false; }), "");
   EXPECT_EQ(pointer_of([](Scenario& o) {
               o.moving_obstacles.push_back({"cart", geometry::Polyline{{{20.0, 0.0}, {21.0, 0.0}}}, {{{0.0, 0.0}}}});
             }),

@@ -235,7 +235,8 @@ TEST(WheelsVerb, FormationsAreDrawnWithHeadings) {
   EXPECT_THAT(here.read("run/explorer.html"), HasSubstr("drawOnWheels"));
   EXPECT_THAT(here.run("explain run --robot R1 --time 21").out, AllOf(HasSubstr("heading "), HasSubstr("left wheel ")));
   EXPECT_EQ(here.run("audit run").status, 0);
-  for (const char* flags : {"--controller paper-signs", "--integrator euler", "--controller-option filter_last=off"}) {
+  for (const char* flags : {"--controller paper-signs", "--integrator euler", "--controller-option filter_last=off",
+                            "--controller-option brake_point=on"}) {
     const Outcome refused = here.run("simulate " + data_file("robots/B1_huskies.json") + " " + flags);
     EXPECT_EQ(refused.status, 2) << flags;
     EXPECT_THAT(refused.err, HasSubstr("with robots on wheels")) << flags;
@@ -260,6 +261,8 @@ TEST(WheelsVerb, FormationsThatAreNotProvenOnWheelsAreRefused) {
               AllOf(HasSubstr("/formation/controller_options/acceleration_bound"), HasSubstr("E_SCENARIO")));
   EXPECT_THAT(refusal("\"recentre\": true", options + "{\"filter_last\": false}"),
               AllOf(HasSubstr("/formation/controller_options/filter_last"), HasSubstr("E_SCENARIO")));
+  EXPECT_THAT(refusal("\"recentre\": true", options + "{\"brake_point\": true}"),
+              AllOf(HasSubstr("/formation/controller_options/brake_point"), HasSubstr("E_SCENARIO")));
 }
 
 struct BadWheels {

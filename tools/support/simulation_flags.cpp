@@ -12,6 +12,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/formation/crowd_run.h"
+#include "exactvo/formation/stability.h"
 #include "support/escape.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -154,6 +155,10 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
   for (const formation::ScenarioProblem& p : option_problems(scenario, simulation_options(flags)))
     throw UsageError("--" + p.pointer, p.found, p.expected);
+  for (const std::string& option : flags.switches)
+    if (scenario.formation && !tracks_choices(scenario) && option == "brake_point=on")
+      throw UsageError("--controller-option", option + ", with robots on wheels",
+                       "brake_point=off, or none: they drive at what they choose and have no brake point ahead");
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
   if (scenario.formation && flags.liveness == "bias")

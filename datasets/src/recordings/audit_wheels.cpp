@@ -47,10 +47,10 @@ class WheelsAudit : public RowAudit {
     run.tally.report.has_tube = head.tracking > 0.0;
     for (std::size_t k = 0; k < head.kinds.size(); ++k) {
       if (!head.kinds[k].wheels && !run.tally.report.has_tube) continue;
-      run.tally.ask(AuditPoint::kinematics, holds_its_body(head.kinds[k]),
-                    "the discs of kind " + std::to_string(k) + " have no room for " +
-                        (head.kinds[k].wheels ? "body, tracking error and the arc of a step"
-                                              : "body and tracking error"));
+      run.tally.ask(
+          AuditPoint::kinematics, holds_its_body(head.kinds[k]),
+          "the discs of kind " + std::to_string(k) + " have no room for " +
+              (head.kinds[k].wheels ? "body, tracking error and the arc of a step" : "body and tracking error"));
     }
     robots_.resize(head.half_headings.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) {

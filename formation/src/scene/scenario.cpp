@@ -364,6 +364,8 @@ void check_formation_on_wheels(const Scenario& s, Checker& c) {
               "a robot that moves in any direction, in a formation with '" + s.robots[*driven].id + "' on wheels",
               "all robots of a formation on wheels, or none");
   const AskedControllerOptions& asked = s.formation->controller_options;
+  c.require(!asked.brake_point.value_or(false), "/formation/controller_options/brake_point", "true",
+            "false or none with robots on wheels, which drive at what they choose and have no brake point ahead");
   const std::string option = detail::unfit_for_wheels(switched({}, asked));
   if (option.empty()) return;
   const bool is_bound = option == "acceleration_bound";

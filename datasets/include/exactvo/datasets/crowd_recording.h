@@ -106,12 +106,12 @@ class CrowdRecorder : public formation::RunSink {
   void write_row();
 
   AtomicFile file_;
-  CrowdRecordingHead head_;  ///< without ids
-  std::size_t robots_ = 0;   ///< of the scenario
-  std::string ids_;          ///< as they stand in the file
+  CrowdRecordingHead head_;         ///< without ids
+  std::size_t robots_ = 0;          ///< of the scenario
+  std::string ids_;                 ///< as they stand in the file
   std::vector<double> body_radii_;  ///< m, of the robots of the scenario
-  bool ids_differ_ = true;   ///< all of them
-  CrowdRow row_, last_;      ///< the next one, and the one before it
+  bool ids_differ_ = true;          ///< all of them
+  CrowdRow row_, last_;             ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
   std::vector<geometry::Vec2> body_start_;
   std::vector<std::uint8_t> kept_;

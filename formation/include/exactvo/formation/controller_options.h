@@ -20,7 +20,7 @@ struct ControllerOptions {
   bool saturation = true;           ///< v_pref slows towards the slot; the paper's keeps its magnitude
   bool horizon_clamp = true;        ///< horizons within their bounds; the paper's tau = dist / |v|
   bool filter_last = true;          ///< consensus goes into v_pref, what is tracked is safe; the paper adds it behind
-  bool brake_point = true;          ///< velocity obstacles at x + v / k3, whose velocity is what is tracked
+  bool brake_point = true;          ///< velocity obstacles at x + v / k3, which moves as tracked; off on wheels
   bool margins = true;              ///< the scenario's margins; without it the robots' is 0
   bool side_commitment = true;      ///< a side is chosen once and kept while blocked
   bool smoothing = false;           ///< v_pref averaged with the last tracked velocity, 1 to 4, before the projection
