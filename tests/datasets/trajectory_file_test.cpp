@@ -290,6 +290,54 @@ TEST(TrajectoryFile, PlacesOfCsvInCentimetresAreReadAsSuch) {
   EXPECT_TRUE(std::isnan(c.rows[1].velocity.x));
 }
 
+TEST(TrajectoryFile, UnitsInNamesOfColumnsAreReadAndNoted) {
+  struct Named {
+    const char* header;
+    const char* row;
+    const char* note;
+  };
+  const Named all[] = {
+      {"t_ms,id,x_mm,y_mm,vx_mm_s,vy_mm_s", "1500,A,100,250,1000,-500",
+       R"(read by their names: "t_ms" in ms, "x_mm" in mm, "y_mm" in mm, "vx_mm_s" in mm/s, "vy_mm_s" in mm/s)"},
+      {"Time [ms];id;X (mm);Y (mm);vx [cm/s];vy [cm/s]", "1500;A;100;250;100;-50",
+       R"(read by their names: "Time [ms]" in ms, "X (mm)" in mm, "Y (mm)" in mm, "vx [cm/s]" in cm/s, "vy [cm/s]" in cm/s)"},
+      {"t/us,id,pos_x_cm,pos_y_cm,v_x/m/s,v_y/m/s", "1500000,A,10,25,1,-0.5",
+       R"(read by their names: "t/us" in us, "pos_x_cm" in cm, "pos_y_cm" in cm)"},
+      {"timestamp_ns,id,/odom/position/x [cm],/odom/position/y [cm],vx (m/s),vy (m/s)", "1500000000,A,10,25,1,-0.5",
+       R"(read by their names: "timestamp_ns" in ns, "/odom/position/x [cm]" in cm, "/odom/position/y [cm]" in cm)"}};
+  for (const Named& named : all) {
+    const Content c = content_of(std::string(named.header) + "\n" + named.row + "\n");
+    ASSERT_EQ(c.rows.size(), 1u) << named.header;
+    expect_row(c.rows[0], 0, 1.5, 0.1, 0.25, 2);
+    EXPECT_EQ(c.rows[0].velocity, (geometry::Vec2{1.0, -0.5})) << named.header;
+    EXPECT_THAT(c.file.notes, ElementsAre(named.note));
+  }
+  EXPECT_THAT(content_of("time_s,id,x_m,y [m],theta_rad\n1,A,2,3,4\n").file.notes, ElementsAre());
+  EXPECT_EQ(content_of("t,id,x_mm,y_cm\n1,A,2000,300\n").rows[0].at, (geometry::Vec2{2.0, 3.0}));
+  EXPECT_EQ(content_of("t,id,x_mm,y_mm\n0,A,70,7\n").rows[0].at, (geometry::Vec2{0.07, 0.007})) << "rounded once";
+}
+
+/// The scale is that of numbers whose unit nothing states.
+TEST(TrajectoryFile, AScaleBesideAUnitIsRefused) {
+  EXPECT_THAT(refusal_of("t,id,x_mm,y_mm\n0,A,1,2\n", {"", 0.0, 0.001}).what(),
+              HasSubstr("found the scale 0.001 for \"x_mm\", expected no scale"));
+  EXPECT_EQ(content_of("t_ms,id,x,y\n500,A,1,2\n", {"", 0.0, 2.0}).rows[0].at, (geometry::Vec2{2.0, 4.0}));
+}
+
+TEST(TrajectoryFile, VelocitiesWhoseUnitNothingTellsAreLeftOutWithANote) {
+  for (const char* names : {"x_mm,y_mm,vx,vy", "x,y,vx_m_s,vy"}) {
+    const Content c = content_of(std::string("t,id,") + names + "\n0,A,1,2,3,4\n");
+    EXPECT_TRUE(std::isnan(c.rows.at(0).velocity.x)) << names;
+    EXPECT_THAT(c.file.notes, Contains(HasSubstr("are left out, since their names do not state the unit"))) << names;
+  }
+}
+
+TEST(TrajectoryFile, TimesBeyondAnyDateInSecondsAreNoted) {
+  EXPECT_THAT(content_of("timestamp,id,x,y\n1700000000000,A,1,2\n").file.notes,
+              ElementsAre(HasSubstr("times are read in seconds, and reach 1700000000000 s")));
+  EXPECT_THAT(content_of("timestamp,id,x,y\n1700000000,A,1,2\n").file.notes, ElementsAre());
+}
+
 /// As `numpy.savetxt` writes one.
 TEST(TrajectoryFile, AHeaderMayStandInAComment) {
   for (const char* text : {"# t id x y\n0 7 1 2\n1 7 3 4\n", "# of a planner\n#t,id,x,y\n0,7,1,2\n# half\n1,7,3,4\n"}) {
@@ -440,10 +488,15 @@ TEST(TrajectoryFile, RefusalsNameTheLine) {
       {"t,id,x,y\n0,\"A,1,2\n", DataCode::format_syntax, "quotation mark"},
       {"", DataCode::format_unknown, "an empty file"},
       {"hello\n", DataCode::format_unknown, "--format"},
-      {"time [s];agent;X (m);Y (m)\n0;A;1;2\n", DataCode::format_unknown,
-       "found \"time [s];agent;X (m);Y (m)\", expected a header with the columns t,id,x,y and, where there is one, "
+      {"time [h];agent;X (ft);Y (ft)\n0;A;1;2\n", DataCode::format_unknown,
+       "found \"time [h];agent;X (ft);Y (ft)\", expected a header with the columns t,id,x,y and, where there is one, "
        "theta: it has no t, no x, no y"},
-      {"t,id,x_mm,y_mm\n0,A,1,2\n", DataCode::format_unknown, "it has no x, no y"},
+      {"t,id,x_in,y_in\n0,A,1,2\n", DataCode::format_unknown, "it has no x, no y"},
+      {"t_m,id,x,y\n0,A,1,2\n", DataCode::format_unknown, "it has no t"},
+      {"t,id,x,x_mm,y\n0,A,1,2,3\n", DataCode::not_an_option, "line 1: found the columns \"x\" and \"x_mm\""},
+      {"t_s,t_ms,id,x,y\n0,0,A,1,2\n", DataCode::not_an_option, "the columns \"t_s\" and \"t_ms\""},
+      {"t,id,x_mm,y\n0,A,1,2\n", DataCode::not_an_option, "\"x_mm\" and \"y\", of which one states no unit"},
+      {"# id frame x/cm x/m y/m\n#framerate: 8\n1 0 1 1 1\n", DataCode::not_an_option, "differ in the unit alone"},
       {"{\n\"name\": \"a\",\n\"robots\": []\n}\n", DataCode::format_unknown, "found a scenario, which is no run yet"},
       {"t,robot name,x,y\n1,A,1,2\n1,B,1,3\n", DataCode::out_of_range, "the table has no column of ids, such as id"},
       {"#framerate: x\n#ID FR X Y\n", DataCode::number, "line 1"},

@@ -138,6 +138,12 @@ void TrajectorySink::has_no_ids() {
 void TrajectorySink::finish() {
   if (2 * large_headings_ > headings_)
     file_.notes.emplace_back("most headings are beyond 2 pi: they are read in radians, not in degrees");
+  constexpr double kAfterAllDates = 1e11;  // s: milliseconds since 1970 are more
+  double latest = 0.0;
+  for (const Last& last : last_) latest = std::max(latest, last.time);
+  if (latest > kAfterAllDates)
+    file_.notes.push_back("times are read in seconds, and reach " + number_text(latest) +
+                          " s: a name such as t_ms, t_us or t_ns says another unit");
 }
 
 double TrajectorySink::time_of_frame(double frame, double of_file) {

@@ -11,6 +11,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "files/file_names.h"
 #include "files/text_file.h"
+#include "json/json_text.h"
 #include "readers/line_reader.h"
 #include "trajectories/trajectory_readers.h"
 
@@ -69,26 +70,57 @@ enum Column : std::size_t {
   kColumnKinds
 };
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
-using Columns = std::array<std::size_t, kColumnKinds>;
 
-/// The column of times that rostopic writes.
+/// A unit that the name of a column may state: how many of it make one m, s, m/s or rad.
+struct Unit {
+  const char* word;
+  double in_si;
+};
+using Units = std::vector<Unit>;
+const Units kLengths{{"m", 1.0}, {"cm", 1e2}, {"mm", 1e3}};
+const Units kTimes{{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"\u00b5s", 1e6}, {"\u03bcs", 1e6}, {"ns", 1e9}};
+const Units kSpeeds{{"m/s", 1.0}, {"cm/s", 1e2}, {"mm/s", 1e3}};
+const Units kAngles{{"rad", 1.0}};
+constexpr Unit kNotStated{"", 1.0};
+
+/// The column of times that rostopic writes, in ns.
 constexpr const char* kNanoseconds = "%time";
 
-/// The names by which columns are known, the best first. A name with a dot is also the end of a longer one, if of one
-/// column alone: exports of ROS bags have the topic and the message's parts before it, parted by dots or slashes.
-const std::array<std::vector<std::string>, kColumnKinds> kColumnNames{
-    {{"t", "time", "time_s", "timestamp", "timestamp_s", "t_s", "time/s", "t/s", "__time", kNanoseconds},
-     {"frame", "frame_id", "fr", "f"},
-     {"id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"},
-     {"x", "x_m", "x/m", "pos_x", "position_x", "x/cm", "position.x", "translation.x"},
-     {"y", "y_m", "y/m", "pos_y", "position_y", "y/cm", "position.y", "translation.y"},
-     {"theta", "heading", "yaw", "theta_rad", "heading_rad", "yaw_rad", "psi_rad"},
-     {"vx", "v_x", "vx_m_s", "vel_x", "velocity_x"},
-     {"vy", "v_y", "vy_m_s", "vel_y", "velocity_y"},
-     {"qx", "orientation.x", "rotation.x"},
-     {"qy", "orientation.y", "rotation.y"},
-     {"qz", "orientation.z", "rotation.z"},
-     {"qw", "orientation.w", "rotation.w"}}};
+/// Where each column stands, and the unit that its name states.
+struct Columns {
+  std::array<std::size_t, kColumnKinds> at;
+  std::array<Unit, kColumnKinds> units;
+  std::string clash;  ///< two columns that differ in their units alone, in words; empty if there are none
+
+  Columns() {
+    at.fill(kNoColumn);
+    units.fill(kNotStated);
+  }
+  std::size_t& operator[](std::size_t column) { return at[column]; }
+  std::size_t operator[](std::size_t column) const { return at[column]; }
+  bool states_unit(Column column) const { return *units[column].word != '\0'; }
+};
+
+struct ColumnNames {
+  std::vector<std::string> names;  ///< the best first
+  Units units = {};                ///< that may follow a name: x_mm, x/mm, "x [mm]", "x (mm)"
+};
+
+/// The names by which columns are known. A name with a dot is also the end of a longer one, if of one column alone:
+/// exports of ROS bags have the topic and the message's parts before it, parted by dots or slashes.
+const std::array<ColumnNames, kColumnKinds> kColumnNames{
+    {{{"t", "time", "timestamp", "__time", kNanoseconds}, kTimes},
+     {{"frame", "frame_id", "fr", "f"}},
+     {{"id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"}},
+     {{"x", "pos_x", "position_x", "position.x", "translation.x"}, kLengths},
+     {{"y", "pos_y", "position_y", "position.y", "translation.y"}, kLengths},
+     {{"theta", "heading", "yaw", "psi_rad"}, kAngles},
+     {{"vx", "v_x", "vel_x", "velocity_x"}, kSpeeds},
+     {{"vy", "v_y", "vel_y", "velocity_y"}, kSpeeds},
+     {{"qx", "orientation.x", "rotation.x"}},
+     {{"qy", "orientation.y", "rotation.y"}},
+     {{"qz", "orientation.z", "rotation.z"}},
+     {{"qw", "orientation.w", "rotation.w"}}}};
 
 /// In names of columns that are no heading in radians, and may be meant as one.
 constexpr std::array<std::string_view, 6> kHeadingWords{"theta", "heading", "yaw", "angle", "orient", "bearing"};
@@ -100,29 +132,68 @@ bool ends_in_part(const std::string& name, const std::string& end) {
   return last == "." + end;
 }
 
-/// Where each column stands; a name of `kColumnNames` that comes twice counts the first time.
+bool ends_in(std::string_view text, std::string_view end) {
+  return text.size() > end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/// A name of a column in lower case, without the unit that it states.
+struct BareName {
+  std::string name;
+  Unit unit;
+};
+
+BareName without_unit(const std::string& name, const Units& units) {
+  const bool has_brackets = ends_in(name, "]") || ends_in(name, ")");
+  const std::size_t open = has_brackets ? name.find_last_of("[(") : std::string::npos;
+  for (const Unit& unit : units) {
+    std::string plain = unit.word;
+    std::replace(plain.begin(), plain.end(), '/', '_');  // vx_m_s
+    if (open != std::string::npos) {
+      const std::string_view within = trimmed(std::string_view(name).substr(open + 1, name.size() - open - 2));
+      if (within != unit.word && within != plain) continue;
+      const std::string_view before = trimmed(std::string_view(name).substr(0, open));
+      return {std::string(ends_in(before, "_") ? before.substr(0, before.size() - 1) : before), unit};
+    }
+    for (const std::string& end : {"_" + plain, "/" + plain, "/" + std::string(unit.word)})
+      if (ends_in(name, end)) return {name.substr(0, name.size() - end.size()), unit};
+  }
+  return {name, name == kNanoseconds ? kTimes.back() : kNotStated};
+}
+
+/// Where a column stands that has one of `known.names`: the same name twice counts the first time.
+void find_column(std::size_t column, const std::vector<std::string>& header, Columns& columns) {
+  const ColumnNames& known = kColumnNames[column];
+  std::vector<BareName> bare;
+  for (const std::string& name : header) bare.push_back(without_unit(name, known.units));
+  for (const std::string& name : known.names) {
+    std::vector<std::size_t> found, longer;
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      if (header[k] == name || bare[k].name == name) found.push_back(k);
+      if (ends_in_part(bare[k].name, name)) longer.push_back(k);
+    }
+    if (found.empty() && longer.size() == 1) found = longer;
+    if (found.empty()) continue;
+    columns.at[column] = found.front();
+    columns.units[column] =
+        header[found.front()] == name && name != kNanoseconds ? kNotStated : bare[found.front()].unit;
+    for (const std::size_t k : found)
+      if (header[k] != header[found.front()])
+        columns.clash = "the columns \"" + header[found.front()] + "\" and \"" + header[k] + "\"";
+    return;
+  }
+}
+
 Columns columns_in(const std::vector<std::string_view>& header) {
   Columns columns;
-  columns.fill(kNoColumn);
   std::vector<std::string> names;
   for (const std::string_view field : header) names.push_back(lower_case(std::string(field)));
-  for (std::size_t c = 0; c < kColumnKinds; ++c)
-    for (const std::string& name : kColumnNames[c]) {
-      auto at = std::find(names.begin(), names.end(), name);
-      const auto is_long = [&](const std::string& one) { return ends_in_part(one, name); };
-      if (at == names.end() && std::count_if(names.begin(), names.end(), is_long) == 1)
-        at = std::find_if(names.begin(), names.end(), is_long);
-      if (at == names.end()) continue;
-      columns[c] = static_cast<std::size_t>(at - names.begin());
-      break;
-    }
+  for (std::size_t c = 0; c < kColumnKinds; ++c) find_column(c, names, columns);
   return columns;
 }
 
 /// The columns of rows without a header: frames, ids and places alone.
 Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y) {
   Columns columns;
-  columns.fill(kNoColumn);
   columns[kFrameColumn] = frame;
   columns[kIdColumn] = id;
   columns[kXColumn] = x;
@@ -139,10 +210,9 @@ void note_headings_left_out(const std::vector<std::string_view>& header, const C
     const bool is_like_one = std::any_of(kHeadingWords.begin(), kHeadingWords.end(),
                                          [&](std::string_view word) { return name.find(word) != std::string::npos; });
     if (!is_like_one && name != "psi" && name != "qz" && name != "rz") continue;
-    std::string known;
-    for (const std::string& one : kColumnNames[kHeadingColumn]) known += (known.empty() ? "" : ", ") + one;
     file.notes.push_back("the column \"" + std::string(field) +
-                         "\" is not read as headings; those, in radians, are called " + known);
+                         "\" is not read as headings; those, in radians, are called " +
+                         boost::join(kColumnNames[kHeadingColumn].names, ", "));
   }
 }
 
@@ -167,19 +237,19 @@ class TableRows {
     if (columns_[kIdColumn] == kNoColumn) out.has_no_ids();
   }
 
-  /// Frames a second, where the file says; units of length in m.
-  double frame_rate = 0.0, unit = 1.0;
-  double time_unit = 1.0;  ///< s
-  bool has_names = false;  ///< a row has no more fields than the header; an empty one may follow
+  double frame_rate = 0.0;  ///< frames a second, where the file says
+  bool has_names = false;   ///< a row has no more fields than the header; an empty one may follow
 
   void add(const std::vector<std::string_view>& fields, std::uint64_t line) {
     const bool ends_in_a_comma = fields.size() == count_ + 1 && fields.back().empty();
     if (fields.size() < count_ || (has_names && fields.size() > count_ && !ends_in_a_comma))
       out_.refuse(DataCode::wrong_count, line, std::to_string(fields.size()) + " fields",
                   std::to_string(count_) + " fields, as the header has");
-    const auto number = [&](Column c, const char* what) { return out_.number(fields[columns_[c]], what, line); };
+    const auto number = [&](Column c, const char* what) {
+      return out_.number(fields[columns_[c]], what, line) / columns_.units[c].in_si;
+    };
     const double time = columns_[kTimeColumn] != kNoColumn
-                            ? time_unit * number(kTimeColumn, "a time")
+                            ? number(kTimeColumn, "a time")
                             : out_.time_of_frame(number(kFrameColumn, "a frame"), frame_rate);
     const auto has = [&](Column c) { return columns_[c] != kNoColumn && !trimmed(fields[columns_[c]]).empty(); };
     double heading = std::numeric_limits<double>::quiet_NaN();
@@ -197,9 +267,8 @@ class TableRows {
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
     geometry::Vec2 velocity = TrajectoryRow().velocity;
     if (columns_[kVxColumn] != kNoColumn && columns_[kVyColumn] != kNoColumn)
-      velocity = {unit * number(kVxColumn, "a velocity"), unit * number(kVyColumn, "a velocity")};
-    out_.row(out_.agent(id), time, {unit * number(kXColumn, "x"), unit * number(kYColumn, "y")}, line, heading,
-             velocity);
+      velocity = {number(kVxColumn, "a velocity"), number(kVyColumn, "a velocity")};
+    out_.row(out_.agent(id), time, {number(kXColumn, "x"), number(kYColumn, "y")}, line, heading, velocity);
   }
 
  private:
@@ -210,9 +279,34 @@ class TableRows {
   std::string memory_;
 };
 
-/// m, of a unit of length of the places, which their names tell.
-double unit_in(const std::vector<std::string_view>& header, const Columns& columns) {
-  return lower_case(std::string(header[columns[kXColumn]])) == "x/cm" ? 0.01 : 1.0;
+/// Refuses units that are ambiguous, leaves out velocities whose unit nothing tells, and notes what is read in another
+/// unit than m, s or rad.
+void settle_units(const std::vector<std::string_view>& header, std::uint64_t line, Columns& columns,
+                  TrajectorySink& out) {
+  const auto named = [&](Column c) { return "\"" + std::string(header[columns[c]]) + "\""; };
+  const auto is_other = [&](Column c) { return columns.units[c].in_si != 1.0; };
+  const auto refuse = [&](const std::string& found, const char* expected) {
+    out.refuse(DataCode::not_an_option, line, found, expected);
+  };
+  if (!columns.clash.empty()) refuse(columns.clash, "one of them, since their names differ in the unit alone");
+  const bool x_states = columns.states_unit(kXColumn), y_states = columns.states_unit(kYColumn);
+  if (x_states != y_states && (is_other(kXColumn) || is_other(kYColumn)))
+    refuse(named(kXColumn) + " and " + named(kYColumn) + ", of which one states no unit",
+           "a unit in both names, or in none");
+  if (out.scale() != 1.0 && (x_states || y_states))
+    refuse("the scale " + number_text(out.scale()) + " for " + named(x_states ? kXColumn : kYColumn),
+           "no scale where the name of a column states the unit");
+  const bool has_velocities = columns[kVxColumn] != kNoColumn && columns[kVyColumn] != kNoColumn;
+  const bool vx_states = columns.states_unit(kVxColumn);
+  if (has_velocities && (vx_states != columns.states_unit(kVyColumn) || (!vx_states && is_other(kXColumn)))) {
+    out.file().notes.push_back(named(kVxColumn) + " and " + named(kVyColumn) +
+                               " are left out, since their names do not state the unit (vx_mm_s, \"vx [cm/s]\")");
+    columns[kVxColumn] = columns[kVyColumn] = kNoColumn;
+  }
+  std::vector<std::string> others;
+  for (const Column c : {kTimeColumn, kXColumn, kYColumn, kVxColumn, kVyColumn})
+    if (columns[c] != kNoColumn && is_other(c)) others.push_back(named(c) + " in " + columns.units[c].word);
+  if (!others.empty()) out.file().notes.push_back("read by their names: " + boost::join(others, ", "));
 }
 
 /// Rows of numbers without a header.
@@ -250,7 +344,9 @@ std::string words_of_header(const Columns& columns) {
   if (columns[kXColumn] == kNoColumn) missing.emplace_back("x");
   if (columns[kYColumn] == kNoColumn) missing.emplace_back("y");
   return "a header with the columns t,id,x,y and, where there is one, theta: it has no " +
-         boost::join(missing, ", no ") + " (also time, frame, x_m, x/cm; of another length --scale says the metres)";
+         boost::join(missing, ", no ") +
+         " (also time, frame; units m, cm, mm and s, ms, us, ns as in x_mm, x/mm, \"x [mm]\"; of another length "
+         "--scale says the metres)";
 }
 
 }  // namespace
@@ -306,12 +402,9 @@ void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out)
       out.refuse(DataCode::format_syntax, lines.number(), excerpt(line, 0, 60), words_of_header(columns));
     }
     note_headings_left_out(fields, columns, out.file());
-    const double unit = unit_in(fields, columns);
-    if (unit != 1.0) columns[kVxColumn] = columns[kVyColumn] = kNoColumn;  // whose unit no name tells
+    settle_units(fields, lines.number(), columns, out);
     rows.emplace(columns, fields.size(), Ids::texts, out);
-    rows->unit = unit;
     rows->has_names = true;
-    if (columns[kTimeColumn] != kNoColumn && fields[columns[kTimeColumn]] == kNanoseconds) rows->time_unit = 1e-9;
   }
 }
 
@@ -326,7 +419,7 @@ bool looks_like_jupedsim_text(std::string_view beginning) {
 void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) {
   Columns columns = numbered(1, 0, 2, 3);
   std::size_t count = 4;
-  double frame_rate = 0.0, unit = 1.0;
+  double frame_rate = 0.0;
   TextLines lines(path.string(), kLongestRow);
   std::optional<TableRows> rows;
   std::vector<std::string_view> fields;
@@ -337,7 +430,6 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
       if (!rows) {
         rows.emplace(columns, count, Ids::texts, out);
         rows->frame_rate = frame_rate;
-        rows->unit = unit;
       }
       split(line, ' ', fields);
       rows->add(fields, lines.number());
@@ -359,10 +451,10 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     if (!has_place_and_time(named) || named[kIdColumn] == kNoColumn) continue;
     columns = named;
     columns[kHeadingColumn] = kNoColumn;  // JuPedSim's ANGLE is that of an ellipse of its model
-    std::fill(columns.begin() + kVxColumn, columns.end(), kNoColumn);
+    std::fill(columns.at.begin() + kVxColumn, columns.at.end(), kNoColumn);
+    settle_units(fields, lines.number(), columns, out);
     count = 1 + std::max({named[kIdColumn], named[kXColumn], named[kYColumn],
                           named[kTimeColumn] == kNoColumn ? named[kFrameColumn] : named[kTimeColumn]});
-    unit = unit_in(fields, named);
   }
 }
 
