@@ -128,6 +128,14 @@ ObstacleFile read_in_its_system(const std::string& name, const std::string& form
   }
 }
 
+bool may_be_another_format(const std::filesystem::path& path) {
+  const FormatProbe probe{path, lower_extension(path), read_beginning(path, kProbeLength)};
+  const std::string name = reader_for(path).name;
+  if (name == "gdal") return probe.extension == ".json" || probe.extension == ".csv";
+  constexpr std::array<const char*, 5> kLikely{"movingai-map", "counted-rings", "pslg", "ompl-circles", "points-csv"};
+  return std::find(kLikely.begin(), kLikely.end(), name) != kLikely.end();
+}
+
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> kReaders{
       {"wkt", looks_like_wkt, read_wkt},

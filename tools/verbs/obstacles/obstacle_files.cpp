@@ -153,7 +153,7 @@ std::string guessed_format(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return "";  // a pipe is empty by now
   try {
-    return datasets::format_of(file);
+    return datasets::may_be_another_format(file) ? datasets::format_of(file) : "";
   } catch (const DataError&) {
     return "";
   }

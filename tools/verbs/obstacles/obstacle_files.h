@@ -40,7 +40,7 @@ struct FileAnswer {
   std::string file;
   std::optional<datasets::ObstacleFile> content;
   std::optional<datasets::DataError> error;
-  std::string guessed_format{};  ///< of a file that could not be read: as what, if nobody said
+  std::string guessed_format{};  ///< of a file that could not be read: as what, if that was a guess
 
   bool is_whole() const { return content && content->counts.rejected == 0; }
 };
@@ -69,11 +69,12 @@ void write_or_print(const std::string& out, const std::vector<formation::SceneOb
 /// The format to write: `to`, or as the extension of `out` says; wkt for "-". Throws DataError.
 std::string output_format(const std::string& out, const std::string& to);
 
-/// "; read as pslg, which is guessed from its content and name: --format names another"; empty if the format was given,
-/// or none was found. `option`: the one that would name it.
+/// "; read as pslg, which is guessed from its content and name: --format names another"; empty if the format was given
+/// or is certain, or none was found. `option`: the one that would name it.
 std::string guess_words(const FileAnswer& answer, const std::string& option = "--format");
 
-/// The format that a file is taken for when none is named; empty if none is found, or the file cannot be read twice.
+/// The format that a file is taken for when none is named; empty if there is no doubt, none is found, or the file
+/// cannot be read twice.
 std::string guessed_format(const std::string& file);
 
 /// Reads every file; a DataError of a file becomes its answer. Says the notes of each (say_notes).

@@ -217,6 +217,9 @@ ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, co
 
 /// The format that a file's content and name tell. Throws DataError where they tell none.
 std::string format_of(const std::filesystem::path& path);
+/// Whether that is a guess, by the name or by lines of numbers that files of other formats may have too. Throws as
+/// `format_of`.
+bool may_be_another_format(const std::filesystem::path& path);
 
 /// The names that `ReadOptions::format` takes in this build.
 std::vector<std::string> readable_formats();
