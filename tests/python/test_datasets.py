@@ -123,6 +123,33 @@ def test_a_wrong_argument_is_named(floor, call, where):
     assert caught.value.where == where
 
 
+def test_errors_name_arguments_and_no_options_of_the_program(tmp_path):
+    mystery = tmp_path / "mystery.xyz"
+    mystery.write_text("abc\n")
+    with pytest.raises(exactvo.DataError, match="name it with `format`: wkt") as caught:
+        exactvo.datasets.read(mystery)
+    assert "`format`" in caught.value.expected and "--" not in str(caught.value)
+    with pytest.raises(exactvo.DataError, match="name it with `format`: ") as caught:
+        exactvo.check(mystery, radius=0.1)
+    assert "--" not in str(caught.value)
+    table = tmp_path / "t.csv"
+    table.write_text("t,id,x_in,y_in\n0,A,0,0\n")
+    with pytest.raises(exactvo.DataError, match="`scale` says the metres") as caught:
+        exactvo.check(table, radius=0.1)
+    assert "--" not in str(caught.value)
+    table.write_text("0 1 0 0\n1 1 1 0\n")
+    (note,) = exactvo.check(table, radius=0.1).notes
+    assert note.endswith("one frame counts as 1 s (`frame_rate`)")
+    folder = tmp_path / "batch"
+    folder.mkdir()
+    (folder / "other").write_text("")
+    walls = tmp_path / "walls.wkt"
+    walls.write_text("LINESTRING (0 0, 1 0)\n")
+    with pytest.raises(exactvo.DataError, match="another `out`, or an empty one") as caught:
+        exactvo.datasets.batch(walls, folder)
+    assert "--" not in str(caught.value)
+
+
 def test_files_that_cannot_be_used_are_refused(tmp_path):
     with pytest.raises(FileNotFoundError):
         datasets.read(tmp_path / "absent.geojson")

@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from . import _exactvo, datasets
 from ._calls import explain_calls
-from .errors import ArgumentError, DataError
+from .errors import ArgumentError, DataError, with_arguments
 from .explorer import ExplorerPage
 from .shapes import Obstacles, ShapeLike, obstacles
 from .simulation import Recording
@@ -263,7 +263,7 @@ def check(
         approaches=tuple(Approach(*a) for a in native["approaches"]),
         findings=tuple(Finding(*f) for f in native["findings"]),
         bodies=tuple(BodySummary(b[0], b[1], b[2], b[3], Extreme(*b[4]), Extreme(*b[5])) for b in native["bodies"]),
-        notes=(*native["notes"], *notes),
+        notes=(*(with_arguments(note) for note in native["notes"]), *notes),
     )
 
 

@@ -77,6 +77,15 @@ def _extension_missing() -> ImportError:
     )
 
 
+#: Options of the program in texts of the library, unless they name one of its commands; the arguments have the same names.
+_OPTION = re.compile(r"(?<!simulate )(?<!MAP )--(format|frame-rate|scale|map|footprint|out|resume)\b( \(convert: --from\))?")
+
+
+def with_arguments(text: str) -> str:
+    """The text of an error or a note with the names of arguments instead of the program's options: "`frame_rate`"."""
+    return _OPTION.sub(lambda option: f"`{option[1].replace('-', '_')}`", text)
+
+
 def _suggestion(found: str, expected: str) -> str:
     word = found.strip('"')
     near = difflib.get_close_matches(word, re.findall(r'"([^"]+)"', expected), n=1, cutoff=0.5) if found[:1] == '"' else []
@@ -95,6 +104,7 @@ class DataError(ExactVOError, ValueError):
     """Wrong data in a file: which file, where in it, what stands there and what should. ``code`` as in docs/guide/codes.md."""
 
     def __init__(self, code: str, file: str, where: str, found: str, expected: str) -> None:
+        expected = with_arguments(expected)
         place = "".join(f"{part}: " for part in (file, where) if part)
         super().__init__(
             f"{place}found {found}, expected {expected} [{code}]", code=code, file=file, where=where, found=found, expected=expected
