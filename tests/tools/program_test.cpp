@@ -942,6 +942,13 @@ TEST(Explain, ATimeAfterTheEndIsRefused) {
   EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.jpg").status, 2);
 }
 
+TEST(Explain, TheEndOfTheRunIsSaidWithoutARoundingError) {
+  const Workplace here;
+  here.write("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [3, 0]}],
+    "time_step": 0.1, "time_limit": 0.3})");
+  EXPECT_THAT(here.run("explain s.json --time 1000 --robot R").err, HasSubstr("expected at most 0.3 s, when"));
+}
+
 TEST(Explain, ARecordingSaysWhatTheRunSays) {
   const Workplace here;
   here.write("s.json", kOneRobot);

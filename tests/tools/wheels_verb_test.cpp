@@ -87,6 +87,25 @@ TEST(WheelsVerb, ExplainGivesTheLimitsOfWheelsAndThoseThatOthersRelyOnThatMeasur
               AllOf(HasSubstr("at most 0.22 m/s and 1 m/s^2"), Not(HasSubstr("reference point: "))));
 }
 
+/// In a dead end, its goal behind it: in every row, not only where it begins.
+TEST(WheelsVerb, ExplainSaysOfLaterRowsThatAFootprintHasNoRoomToTurn) {
+  const Workplace here;
+  here.write("end.json", R"({"name": "end", "time_step": 0.05, "time_limit": 6,
+    "robots": [{"id": "R1", "position": [0.5, 0], "heading": 0, "goal": [-4, 0],
+      "kinematics": {"type": "differential", "wheel_separation": 0.5, "max_wheel_speed": 1.5,
+                     "max_wheel_acceleration": 2.4, "reference": 0.25},
+      "footprint": {"polygon": [[-0.527, -0.296], [0.296, -0.296], [0.296, 0.296], [-0.527, 0.296]]}}],
+    "obstacles": [{"polygon": [[-2, 0.36], [2, 0.36], [2, 0.5], [-2, 0.5]]},
+                  {"polygon": [[-2, -0.5], [2, -0.5], [2, -0.36], [-2, -0.36]]},
+                  {"polygon": [[2, -0.5], [2.2, -0.5], [2.2, 0.5], [2, 0.5]]}]})");
+  ASSERT_EQ(here.run("simulate end.json --no-figures --out end").status, 0);
+  for (const char* what : {"end", "end.json"})
+    for (const char* time : {"3", "5.9"})
+      EXPECT_THAT(here.run(std::string("explain ") + what + " --robot R1 --time " + time).out,
+                  HasSubstr("Turning: obstacles leave its footprint no room to turn"))
+          << what << " at " << time;
+}
+
 TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
   const Workplace here;
   std::size_t scenes = 0, formations = 0;

@@ -121,6 +121,7 @@ void members(Codec& json, For<Codec, formation::RobotStep>& robot) {
   json.member("mode", robot.mode).member_if(robot.side != 0, "side", robot.side);
   json.member_if(robot.turned_right != 0.0, "turned_right", robot.turned_right);
   json.member_if(!robot.note.empty(), "note", robot.note);
+  json.member_if(robot.lacks_room_to_turn, "lacks_room_to_turn", robot.lacks_room_to_turn);
   json.member_if(robot.stopping_steps != 0, "stopping_steps", robot.stopping_steps);
   json.member_if(robot.uncertified != 0, "uncertified", robot.uncertified);
   json.member_if(!robot.constraints.empty(), "constraints", robot.constraints);

@@ -69,6 +69,7 @@ class WheelsOfRun {
       return is_clear;
     });
     if (!has_room && has_room_[i]) add_note(step.note, kNoRoom);
+    step.lacks_room_to_turn = !has_room;
     has_room_[i] = has_room;
   }
 

@@ -229,7 +229,7 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
 void check_time(std::size_t rows, double end, double time_step, double time) {
   if (rows < 2) throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
   if (time > end + 0.5 * time_step)
-    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {} s, when the run ends", end));
+    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.10g} s, when the run ends", end));
 }
 
 /// The last row in which a decision was taken: the final row of a recording has none.
@@ -239,7 +239,7 @@ const formation::Step& last_decision(const formation::Recording& recording) {
 
 struct Explained {
   Decision decision;
-  std::vector<std::string> remarks;                 ///< of the run so far
+  std::vector<std::string> remarks = {};            ///< of the run so far
   std::optional<formation::RouteAhead> ahead = {};  ///< of a robot along a route, or whose goal is out of reach
 };
 
@@ -253,15 +253,18 @@ std::optional<formation::RouteAhead> route_ahead_of(const Decision& d, const for
   return route_ahead(d.scenario, *options, d.robot, goal, d.step.position);
 }
 
-/// Warnings of the run, and, of a robot that hardly moves, what it rests on. `stuck`: who is, at that time.
-std::vector<std::string> remarks_on(const Scenario& scenario, const formation::Recording& recording,
-                                    const std::vector<formation::StuckReport>& stuck, std::size_t robot) {
+/// Warnings of the run, what keeps the robot from turning, and, if it hardly moves, what it rests on. `stuck`: which
+/// robots are, at that time.
+std::vector<std::string> remarks_on(const Decision& decision, const formation::Recording& recording,
+                                    const std::vector<formation::StuckReport>& stuck) {
   constexpr double kAtRest = 0.01;  // of its greatest speed
   std::vector<std::string> remarks;
   for (const std::string& warning : recording.warnings) remarks.push_back("Warning: " + warning + ".");
   for (const formation::StuckReport& report : stuck)
-    if (report.robot == robot && report.speed < kAtRest * scenario.robots[robot].max_speed)
+    if (report.robot == decision.robot && report.speed < kAtRest * decision.who().max_speed)
       remarks.push_back("Stuck: " + report.text + ".");
+  if (decision.step.lacks_room_to_turn)
+    remarks.push_back("Turning: obstacles leave its footprint no room to turn towards where it wants to go.");
   return remarks;
 }
 
@@ -276,8 +279,8 @@ Explained decide(const ExplainFlags& flags, const Scenario& scenario) {
   check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
              flags.time);
   Explained explained{decision_of(scenario, method_words(datasets::run_info(scenario, options, {})), robot,
-                                  last_decision(recording), recording.bodies, true),
-                      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
+                                  last_decision(recording), recording.bodies, true)};
+  explained.remarks = remarks_on(explained.decision, recording, formation::explain_stuck(scenario, recording));
   explained.ahead = route_ahead_of(explained.decision, recording, options);
   return explained;
 }
@@ -328,8 +331,8 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
   const std::size_t robot = find_robot(file.scenario, flags.robot);
   check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
   Explained explained{decision_of(file.scenario, method_words(file.info), robot, until.decision(),
-                                  file.recording.bodies, file.recording.all_half_planes),
-                      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
+                                  file.recording.bodies, file.recording.all_half_planes)};
+  explained.remarks = remarks_on(explained.decision, file.recording, until.stuck(file.recording));
   explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
@@ -350,7 +353,8 @@ Explained decided_in_crowd(const ExplainFlags& flags, const CrowdMade& made, con
   const std::string how = method_words(datasets::run_info(scenario, made.options, {}, false));
   CrowdDecision found = crowd_decision(scenario, made.options, how, robot, flags.time);
   if (!found.decision)
-    throw UsageError("--time", fmt::format("{}", flags.time), fmt::format("below {} s, when the run ends", found.end));
+    throw UsageError("--time", fmt::format("{}", flags.time),
+                     fmt::format("below {:.10g} s, when the run ends", found.end));
   return {std::move(*found.decision), std::move(found.remarks)};
 }
 

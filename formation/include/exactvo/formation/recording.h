@@ -70,10 +70,11 @@ struct Decision {
   /// No double multipliers prove the choice, so they stay 0. The exact ones follow from the half-planes
   /// (lp::solve_exact). This happens where robots rest in contact and their half-planes leave a rounding error of room.
   bool exact_multipliers = false;
-  Mode mode = Mode::direct;   ///< how `preferred` was formed
-  int side = 0;               ///< +1 left, -1 right, 0 none: the side kept while blocked
-  double turned_right = 0.0;  ///< rad: how far rule R1 (liveness) turned `preferred`, to avoid other robots
-  std::string note;           ///< why a mode began or ended, empty otherwise
+  Mode mode = Mode::direct;         ///< how `preferred` was formed
+  int side = 0;                     ///< +1 left, -1 right, 0 none: the side kept while blocked
+  double turned_right = 0.0;        ///< rad: how far rule R1 (liveness) turned `preferred`, to avoid other robots
+  std::string note;                 ///< why a mode began or ended, empty otherwise
+  bool lacks_room_to_turn = false;  ///< on wheels: obstacles keep its footprint from turning as `preferred` asks
   /// Among moving obstacles with a `max_speed`: the robot can stand after this many steps, this one included, and is
   /// proven to meet none of them before. 0: it stands in this step.
   std::size_t stopping_steps = 0;
