@@ -56,6 +56,17 @@ TEST(FigureFiles, HelpNamesAllThree) {
     EXPECT_THAT(here.run(std::string("help ") + verb).out, HasSubstr("FILE.svg, FILE.png or FILE.pdf")) << verb;
 }
 
+TEST(FigureFiles, CharactersThatNoFontHasAreNamed) {
+  const Workplace here;
+  const auto drawn = [&](const std::string& id) {
+    here.write("s.json", R"({"name": "s", "robots": [{"id": ")" + id + R"(", "position": [0, 0], "goal": [3, 0]}]})");
+    return here.run("explain s.json --time 1 --robot 0 --out x.svg").err;
+  };
+  const std::string private_use = "\xf4\x8f\xbf\xbd";
+  EXPECT_THAT(drawn("R" + private_use), HasSubstr("no font on this machine has " + private_use + ": PNG and PDF"));
+  EXPECT_THAT(drawn("R\xc3\xa4\xe2\x80\xa6\xe2\x80\x8d"), Not(HasSubstr("no font"))) << "usual, or not to be seen";
+}
+
 TEST(FigureFiles, APdfIsTheSameAtAnyTime) {
   const Workplace here;
   ASSERT_EQ(here.run(std::string(kVo) + "a.pdf", "TZ=Asia/Kolkata").status, 0);

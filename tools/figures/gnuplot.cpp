@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "figures/missing_glyphs.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 
@@ -214,6 +215,11 @@ void draw(const std::vector<fs::path>& scripts, const std::string& what) {
   if (!missing.empty())
     message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
                         fmt::join(missing, " and ")));
+  if (const std::vector<std::string> boxes = characters_without_font(scripts); !boxes.empty())
+    message(
+        fmt::format("note: no font on this machine has {}: PNG and PDF figures show a box in the place of each, SVG "
+                    "leaves them to the viewer (Debian: fonts-noto-cjk, fonts-noto-color-emoji, fonts-unifont)",
+                    fmt::join(boxes, " ")));
   for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
 }
 
