@@ -9,10 +9,14 @@
 #include <filesystem>
 #include <map>
 #include <new>
+#include <optional>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "support/parse_errors.h"
+#include "support/run.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -48,6 +52,49 @@ std::string all_examples() {
   return text;
 }
 
+/// Words that users take for verbs, and the verbs that do what they mean.
+const std::map<std::string, std::vector<std::string>> kOtherWords{
+    {"run", {"simulate"}},        {"start", {"simulate"}},     {"verify", {"audit"}},       {"prove", {"audit"}},
+    {"test", {"audit", "check"}}, {"plot", {"draw", "view"}},  {"figure", {"draw"}},        {"figures", {"draw"}},
+    {"show", {"view", "serve"}},  {"open", {"view", "serve"}}, {"page", {"view", "serve"}}, {"why", {"explain"}},
+    {"collide", {"check"}},       {"collisions", {"check"}},   {"path", {"route"}},         {"plan", {"route"}},
+    {"lint", {"validate"}},       {"fix", {"repair"}},         {"export", {"convert"}},     {"import", {"convert"}}};
+
+/// The verbs for a file or the folder of a run; none where it is neither.
+std::vector<std::string> verbs_for(const std::string& path) {
+  std::error_code error;
+  const std::vector<std::string> for_runs = {"audit", "draw", "view"};
+  try {
+    const std::optional<std::filesystem::path> recording = recording_at(path);
+    if (std::filesystem::is_directory(path, error))
+      return recording && std::filesystem::is_regular_file(*recording, error) ? for_runs : std::vector<std::string>();
+    if (!std::filesystem::is_regular_file(path, error)) return {};
+    const std::string trajectories = datasets::recognised_trajectory_format(path);
+    if (trajectories == "recording" || trajectories == "crowd-recording") return for_runs;
+    if (!trajectories.empty()) return {"check"};
+    return {datasets::format_of(path) == "scenario" ? "simulate" : "validate"};
+  } catch (const datasets::DataError&) {
+    return {};
+  }
+}
+
+/// What was meant by a word that is no verb: "; did you mean 'exactvo simulate mine.json'?".
+std::string meant_by(const std::string& word, const std::vector<std::string>& names) {
+  std::vector<std::string> meant;
+  if (const auto other = kOtherWords.find(word); other != kOtherWords.end()) meant = other->second;
+  for (const std::string& name : names)
+    if (word.size() > 1 && meant.empty() && name.rfind(word, 0) == 0) meant = {name};
+  if (meant.empty() && suggestion(word, names).empty())
+    for (const std::string& verb : verbs_for(word)) meant.push_back("exactvo " + verb + " " + word);
+  if (meant.empty()) return suggestion(word, names);
+  return fmt::format("; did you mean '{}'?", fmt::join(meant, "' or '"));
+}
+
+void require_verb(const std::string& where, const std::string& word, const std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    throw UsageError(where, word, fmt::format("one of {}{}", fmt::join(names, " "), meant_by(word, names)));
+}
+
 /// What the parser is given: `help VERB` is `VERB --help`. Refuses an unknown verb before the parser does, to suggest a
 /// known one.
 std::vector<std::string> parsed_words() {
@@ -57,11 +104,11 @@ std::vector<std::string> parsed_words() {
   if (verb == words.end()) return words;
   if (*verb != kHelp) {
     names.push_back(kHelp);
-    require_known("verb", *verb, names);
+    require_verb("verb", *verb, names);
     return words;
   }
   if (verb + 1 == words.end() || (verb + 1)->empty()) return {words.front(), "--help"};
-  require_known("help", *(verb + 1), names);
+  require_verb("help", *(verb + 1), names);
   return {words.front(), *(verb + 1), "--help"};
 }
 

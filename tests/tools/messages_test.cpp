@@ -24,6 +24,7 @@ Workplace& place() {
   static Workplace here;
   here.write("s.json", kScenario);
   here.write("p.wkt", kSquare);
+  here.write("t.csv", "t,id,x,y\n0,A,0,0\n1,A,1,0\n");
   return here;
 }
 
@@ -114,24 +115,29 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Velocities, Mistyped,
-    testing::Values(Mistake{"vo", "missing option --obstacle: "},
-                    Mistake{"vo --obstacle", "--obstacle: no value given"},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)'", "missing option --position: "},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --radius x", "--radius: found 'x', expected a number"},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --responsibility half",
-                            "--responsibility: found 'half', expected a number"},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --raduis 1", "did you mean '--radius'?"},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0 0 --velocity 1,0 --time-horizon 3 --radius 1",
-                            "--position 0 0: found two words, expected X,Y in one: --position=0,0"},
-                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity -1 -2 --time-horizon 3 --radius 1",
-                            "--velocity -1 -2: found two words, expected X,Y in one: --velocity=-1,-2"},
-                    Mistake{"lp", "missing argument file: "},
-                    Mistake{"lp s.json t.json", "unexpected argument 't.json'"},
-                    Mistake{"lp s.json --certfy", "did you mean '--certify'?"},
-                    Mistake{"audit o --certificate", "--certificate: no value given"},
-                    Mistake{"audit o p", "unexpected argument 'p'"}, Mistake{"--verison", "did you mean '--version'?"},
-                    Mistake{"-x", "unknown option '-x'"}, Mistake{"--quiet", "no verb was given"},
-                    Mistake{"help simulte", "help: found 'simulte'"}),
+    testing::Values(
+        Mistake{"vo", "missing option --obstacle: "}, Mistake{"vo --obstacle", "--obstacle: no value given"},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)'", "missing option --position: "},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)' --radius x", "--radius: found 'x', expected a number"},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)' --responsibility half",
+                "--responsibility: found 'half', expected a number"},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)' --raduis 1", "did you mean '--radius'?"},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0 0 --velocity 1,0 --time-horizon 3 --radius 1",
+                "--position 0 0: found two words, expected X,Y in one: --position=0,0"},
+        Mistake{"vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity -1 -2 --time-horizon 3 --radius 1",
+                "--velocity -1 -2: found two words, expected X,Y in one: --velocity=-1,-2"},
+        Mistake{"lp", "missing argument file: "}, Mistake{"lp s.json t.json", "unexpected argument 't.json'"},
+        Mistake{"lp s.json --certfy", "did you mean '--certify'?"},
+        Mistake{"audit o --certificate", "--certificate: no value given"},
+        Mistake{"audit o p", "unexpected argument 'p'"}, Mistake{"--verison", "did you mean '--version'?"},
+        Mistake{"-x", "unknown option '-x'"}, Mistake{"--quiet", "no verb was given"},
+        Mistake{"help simulte", "help: found 'simulte'"},
+        Mistake{"s.json", "; did you mean 'exactvo simulate s.json'?"},
+        Mistake{"p.wkt", "; did you mean 'exactvo validate p.wkt'?"},
+        Mistake{"t.csv", "; did you mean 'exactvo check t.csv'?"}, Mistake{"run s.json", "; did you mean 'simulate'?"},
+        Mistake{"sim s.json", "did you mean 'simulate'?"}, Mistake{"verify out", "; did you mean 'audit'?"},
+        Mistake{"plot out", "; did you mean 'draw' or 'view'?"},
+        Mistake{"help plot", "; did you mean 'draw' or 'view'?"}),
     name_of);
 
 TEST(Help, OfAVerbComesEitherWay) {
@@ -508,6 +514,27 @@ TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
   place().write("empty.geojson", "");
   EXPECT_THAT(place().run("convert empty.geojson o.wkt").err,
               AllOf(HasSubstr("found an empty file"), Not(HasSubstr("guessed"))));
+}
+
+TEST(Messages, AFormatThatIsCertainIsNoGuess) {
+  place().write("bad.json", R"({"name": "a", "robots": []})");
+  place().write("cut.geojson", R"({"type": "FeatureCollection", "features": [)");
+  place().write("cut.xml", "<Experiment><ObstacleSet>");
+  for (const char* file : {"bad.json", "cut.geojson", "cut.xml"})
+    EXPECT_THAT(place().run(std::string("validate ") + file).out, AllOf(HasSubstr("[E_"), Not(HasSubstr("guessed"))))
+        << file;
+  place().write("cut.json", R"({"type": "FeatureCollection", "features": [)");
+  EXPECT_THAT(place().run("validate cut.json").out, HasSubstr("read as gdal, which is guessed"));
+}
+
+TEST(Messages, ARecordingInThePlaceOfAVerbIsSentToItsVerbs) {
+  const std::string words = "; did you mean 'exactvo audit {0}' or 'exactvo draw {0}' or 'exactvo view {0}'?";
+  ASSERT_EQ(place().run("simulate s.json --no-figures --out done").status, 0);
+  for (const std::string recording : {"done", "done/recording.jsonl"}) {
+    const Outcome outcome = place().run(recording);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(std::regex_replace(words, std::regex("\\{0\\}"), recording)));
+  }
 }
 
 TEST(Messages, PointsMayHaveAnyUsualSeparator) {
