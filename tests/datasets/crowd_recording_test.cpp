@@ -376,7 +376,7 @@ TEST_F(CrowdRecordings, EllipsesAreLeftOutWhereOverlapsAreDecided) {
   TrajectoryReader reader(path.string(), {});
   reader.read([](const TrajectoryRow&) {});
   ASSERT_EQ(reader.file().obstacles.size(), 1U);
-  EXPECT_EQ(reader.file().obstacles[0].id, body_name(1));
+  EXPECT_EQ(reader.file().obstacles[0].id, "body 2");
   EXPECT_THAT(reader.file().notes, testing::Contains("1 ellipse left out"));
 }
 
@@ -477,7 +477,7 @@ TEST_F(CrowdRecordings, ABodyThatMovesAndIsSaidToRestIsRefuted) {
   const std::string forged =
       first + whole.substr(24 + size, at - 24 - size) + "E" + in_bytes(seal.size()) + in_bytes(fnv1a(seal)) + seal;
   const AuditReport audit = audit_recording(put("forged.evr", forged));
-  EXPECT_GT(found(audit, "body 1 has moved, and stands still"), 10U);
+  EXPECT_GT(found(audit, "tram has moved, and stands still"), 10U);
 }
 
 /// The same recording as an earlier version wrote it: the first `head_size` bytes of the head, and another mark.
@@ -536,14 +536,52 @@ TEST_F(CrowdRecordings, RobotsOfOneIdAreRecordedWithoutIds) {
   Scenario scenario = crossing();
   scenario.robots[70].id = scenario.robots[3].id;
   record(scenario, 40);
+  const CrowdRecordingReader reader(folder_ / "c.evr");
+  EXPECT_TRUE(reader.head().ids.empty());
+  EXPECT_EQ(reader.head().name_of(70), "#71");
+  scenario.obstacles.clear();
+  record(scenario, 40);
   EXPECT_EQ(content_of(folder_ / "c.evr").substr(0, 8), "EXACTVR2");
-  EXPECT_EQ(CrowdRecordingReader(folder_ / "c.evr").head().name_of(70), "#71");
+}
+
+TEST_F(CrowdRecordings, ObstaclesKeepTheirIds) {
+  Scenario scenario = traffic();
+  scenario.obstacles[0].id = "R, \"wall\"";
+  scenario.obstacles.push_back({"desk", geometry::Polygon{{{20, 20}, {21, 20}, {21, 21}}, {}}});
+  const geometry::Disc post{{20.0, 0.0}, 0.5};
+  scenario.obstacles.push_back({"post", geometry::Polygon{{{20, 0}, {20.5, 0}, {20, 0.5}}, {}}, post});
+  record(scenario, 40);
+  EXPECT_EQ(content_of(folder_ / "c.evr").substr(0, 8), "EXACTVR5");
+  const RecordingFile scene = scene_of(CrowdRecordingReader(folder_ / "c.evr").head());
+  std::vector<std::string> still, moving;
+  for (const auto& o : scene.scenario.obstacles) still.push_back(o.id);
+  for (const auto& o : scene.scenario.moving_obstacles) moving.push_back(o.id);
+  EXPECT_THAT(still, testing::ElementsAre("R, \"wall\"", "desk", "post"));
+  EXPECT_THAT(moving, testing::ElementsAre("tram", "bar"));
+  EXPECT_TRUE(audit_recording(folder_ / "c.evr").clean());
+}
+
+/// A file that was changed says that obstacles have other edges than there are.
+TEST_F(CrowdRecordings, ObstaclesOfOtherEdgesAreRefused) {
+  Scenario scenario = crossing();
+  scenario.obstacles[1].id = "last";
+  record(scenario, 40);
+  const std::string whole = content_of(folder_ / "c.evr");
+  const std::size_t size = number_at(whole, 8);
+  std::string head = whole.substr(24, size);
+  const std::size_t edges = head.rfind("last") - 6;  // a number of four bytes, then two lengths
+  ASSERT_EQ(head[edges], 2);
+  head[edges] = 3;
+  const std::string changed =
+      whole.substr(0, 8) + in_bytes(size) + in_bytes(fnv1a(head)) + head + whole.substr(24 + size);
+  EXPECT_THAT(refusal_of([&] { rows_of(put("other.evr", changed)); }).what(),
+              testing::HasSubstr("obstacles of another number of edges than there are"));
 }
 
 TEST_F(CrowdRecordings, RecordingsOfEarlierVersionsAreReadWithoutIds) {
   record(crossing(), 25);
   const std::string whole = content_of(folder_ / "c.evr");
-  ASSERT_EQ(whole.substr(0, 8), "EXACTVR3");
+  ASSERT_EQ(whole.substr(0, 8), "EXACTVR5");
   // Name, three numbers, two kinds, 120 robots, six edges; then bodies, of which there are none.
   const std::size_t before_bodies = 4 + 8 + 8 + 8 + 4 + 4 + 2 * 16 + 4 + 120 * 2 + 4 + 6 * 32;
   for (const auto& [mark, size] : {std::pair("EXACTVR1", before_bodies), std::pair("EXACTVR2", before_bodies + 4)}) {

@@ -198,7 +198,7 @@ TEST_F(CrowdsOnWheels, ATrackingErrorIsRecordedOfRobotsWithoutWheelsToo) {
   EXPECT_EQ(farther[AuditPoint::kinematics].refuted, 1U);
 }
 
-/// Without the tracking error and the radii of bodies.
+/// Without the tracking error, the radii of bodies and the ids of obstacles.
 TEST_F(CrowdsOnWheels, RecordingsOfTheVersionBeforeAreRead) {
   const RunReport report = record(burgers());
   const std::string was = with_head(bytes_of(folder_ / "c.evr"), [](std::string& head) {
@@ -206,6 +206,8 @@ TEST_F(CrowdsOnWheels, RecordingsOfTheVersionBeforeAreRead) {
     ASSERT_NE(bodies, std::string::npos);
     head.erase(bodies, sizeof(double));
     for (std::size_t k = 0, at = bodies; k < kinds; ++k, at += 1 + 5 * sizeof(double)) head.erase(at, sizeof(double));
+    const std::string one = in_bytes(std::uint32_t{1});
+    head.erase(head.rfind(one + one));  // an obstacle, of an edge
   });
   std::ofstream(folder_ / "d.evr", std::ios::binary) << "EXACTVR4" << was.substr(8);
   CrowdRecordingReader reader(folder_ / "d.evr");

@@ -15,8 +15,8 @@
 
 namespace exactvo::datasets {
 
-/// EXACTVR1 has no bodies, EXACTVR2 no ids, EXACTVR4 wheels, EXACTVR5 also the tracking error and the radii of robots'
-/// bodies. EXACTVR1 and EXACTVR4 are read, and no longer written.
+/// EXACTVR1 has no bodies, EXACTVR2 no ids, EXACTVR4 wheels, EXACTVR5 also the tracking error, the radii of robots'
+/// bodies and the ids of obstacles. EXACTVR1 and EXACTVR4 are read, and no longer written.
 inline constexpr std::string_view kCrowdMarks[] = {"EXACTVR1", "EXACTVR2", "EXACTVR3", "EXACTVR4", "EXACTVR5"};
 inline constexpr std::size_t kCrowdMarkSize = kCrowdMarks[0].size();
 
@@ -105,7 +105,7 @@ class CrowdBytes {
 /// bytes where ids have a prefix and a number.
 void append_id(std::string& to, std::string_view id, std::string_view before);
 
-/// The version of a head: 5 with wheels or a tracking error, else 3 or, without ids, 2.
+/// The version of a head: 5 with obstacles, wheels or a tracking error, else 3 or, without ids, 2.
 unsigned version_of(const CrowdRecordingHead& head, bool has_ids);
 
 /// `ids`: those of all robots, as `append_id` writes them, or none; head.ids is not looked at.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
@@ -91,9 +92,38 @@ void append_id(std::string& to, std::string_view id, std::string_view before) {
 }
 
 unsigned version_of(const CrowdRecordingHead& head, bool has_ids) {
-  if (!head.half_headings.empty() || head.tracking > 0.0) return 5;
+  const bool has_names = !head.obstacles.empty() || std::any_of(head.bodies.begin(), head.bodies.end(),
+                                                                [](const auto& body) { return !body.id.empty(); });
+  if (has_names || !head.half_headings.empty() || head.tracking > 0.0) return 5;
   return has_ids ? 3 : 2;
 }
+
+namespace {
+
+void append_bodies_and_wheels(std::string& out, const CrowdRecordingHead& head) {
+  append(out, head.tracking);
+  for (const CrowdKindRecord& kind : head.kinds) {
+    append(out, kind.body_radius);
+    append(out, static_cast<std::uint8_t>(kind.wheels.has_value()));
+    if (!kind.wheels) continue;
+    const formation::CrowdWheels& w = *kind.wheels;
+    for (const double v :
+         {w.reference, w.wheel_separation, w.max_wheel_acceleration, w.max_angular_speed, w.max_backward_speed})
+      append(out, v);
+  }
+  for (std::size_t i = 0; i < head.half_headings.size(); ++i)
+    if (head.kinds[head.kind_of[i]].wheels) append(out, head.half_headings[i].x), append(out, head.half_headings[i].y);
+}
+
+void append_obstacle_ids(std::string& out, const CrowdRecordingHead& head) {
+  append(out, static_cast<std::uint32_t>(head.obstacles.size()));
+  std::string_view before;
+  const auto append_next = [&](std::string_view id) { append_id(out, id, std::exchange(before, id)); };
+  for (const CrowdObstacleRecord& obstacle : head.obstacles) append(out, obstacle.edges), append_next(obstacle.id);
+  for (const CrowdBodyRecord& body : head.bodies) append_next(body.id);
+}
+
+}  // namespace
 
 std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
   std::string out;
@@ -118,37 +148,51 @@ std::string to_bytes(const CrowdRecordingHead& head, std::string_view ids) {
     for (const double v : numbers) append(out, v);
   }
   if (version_of(head, !ids.empty()) < 5) return out += ids;
-  append(out, head.tracking);
-  for (const CrowdKindRecord& kind : head.kinds) {
-    append(out, kind.body_radius);
-    append(out, static_cast<std::uint8_t>(kind.wheels.has_value()));
-    if (!kind.wheels) continue;
-    const formation::CrowdWheels& w = *kind.wheels;
-    for (const double v :
-         {w.reference, w.wheel_separation, w.max_wheel_acceleration, w.max_angular_speed, w.max_backward_speed})
-      append(out, v);
-  }
-  for (std::size_t i = 0; i < head.half_headings.size(); ++i)
-    if (head.kinds[head.kind_of[i]].wheels) append(out, head.half_headings[i].x), append(out, head.half_headings[i].y);
+  append_bodies_and_wheels(out, head);
   append(out, static_cast<std::uint8_t>(!ids.empty()));
-  return out += ids;
+  out += ids;
+  append_obstacle_ids(out, head);
+  return out;
 }
 
 namespace {
 
-void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
+/// The id behind `id`, as `append_id` writes it.
+void get_next_id(CrowdBytes& in, std::string& id) {
   constexpr std::int64_t kLongest = 1 << 16;
+  const std::int64_t shared = in.difference(), rest = in.difference();
+  in.require(shared >= 0 && shared <= static_cast<std::int64_t>(id.size()) && rest >= 0 && rest <= kLongest,
+             "an id of no length");
+  id = id.substr(0, static_cast<std::size_t>(shared)) + in.text(static_cast<std::size_t>(rest));
+  in.require(id.size() <= kLongest, "an id of more than 2^16 bytes");
+}
+
+void get_ids(CrowdBytes& in, CrowdRecordingHead& head) {
   std::string id;
   std::unordered_set<std::string_view> seen;  // of ids, whose texts stay where they are: memory is reserved
   head.ids.reserve(head.kind_of.size());
   while (head.ids.size() < head.kind_of.size()) {
-    const std::int64_t shared = in.difference(), rest = in.difference();
-    in.require(shared >= 0 && shared <= static_cast<std::int64_t>(id.size()) && rest >= 0 && rest <= kLongest,
-               "an id of no length");
-    id = id.substr(0, static_cast<std::size_t>(shared)) + in.text(static_cast<std::size_t>(rest));
-    in.require(id.size() <= kLongest, "an id of more than 2^16 bytes");
+    get_next_id(in, id);
     head.ids.push_back(id);
     in.require(seen.insert(head.ids.back()).second, "an id that another robot has");
+  }
+}
+
+void get_obstacle_ids(CrowdBytes& in, CrowdRecordingHead& head) {
+  std::string id;
+  std::uint64_t edges = 0;
+  const auto obstacles = in.get<std::uint32_t>();
+  in.require(obstacles <= kMostEdges, "more than 2^24 obstacles");
+  for (std::uint32_t k = 0; k < obstacles; ++k) {
+    const auto count = in.get<std::uint32_t>();
+    get_next_id(in, id);
+    head.obstacles.push_back({id, count});
+    edges += count;
+  }
+  in.require(edges == head.edges.size(), "obstacles of another number of edges than there are");
+  for (CrowdBodyRecord& body : head.bodies) {
+    get_next_id(in, id);
+    body.id = id;
   }
 }
 
@@ -233,6 +277,7 @@ CrowdRecordingHead to_head(CrowdBytes in, unsigned version) {
   const std::uint8_t has_ids = version >= 4 ? in.get<std::uint8_t>() : version == 3;
   in.require(has_ids <= 1, "robots that neither have ids nor have none");
   if (has_ids == 1) get_ids(in, head);
+  if (version >= 5) get_obstacle_ids(in, head);
   in.require_end();
   return head;
 }

@@ -13,20 +13,34 @@ using geometry::Vec2;
 
 namespace {
 
-/// Edges that follow one another as one wall; long ones in parts, of which few are near to a robot.
-std::vector<formation::SceneObstacle> walls_of(const std::vector<geometry::Segment>& edges) {
+/// Edges that follow one another as one wall; long ones in parts, of which few are near to a robot. `id`: of all; where
+/// it is empty each has a number.
+void add_walls(const geometry::Segment* edge, const geometry::Segment* end, const std::string& id,
+               std::vector<formation::SceneObstacle>& walls) {
   constexpr std::size_t kMostPoints = 33;
-  std::vector<formation::SceneObstacle> walls;
-  for (const geometry::Segment& edge : edges) {
-    if (!walls.empty()) {
+  const std::size_t before = walls.size();
+  for (; edge != end; ++edge) {
+    if (walls.size() > before) {
       std::vector<Vec2>& points = std::get<geometry::Polyline>(walls.back().shape).points;
-      if (points.back() == edge.a && points.size() < kMostPoints) {
-        points.push_back(edge.b);
+      if (points.back() == edge->a && points.size() < kMostPoints) {
+        points.push_back(edge->b);
         continue;
       }
     }
-    walls.push_back({"wall " + std::to_string(walls.size() + 1), geometry::Polyline{{edge.a, edge.b}}});
+    const std::string name = id.empty() ? "wall " + std::to_string(walls.size() + 1) : id;
+    walls.push_back({name, geometry::Polyline{{edge->a, edge->b}}});
   }
+}
+
+std::vector<formation::SceneObstacle> walls_of(const CrowdRecordingHead& head) {
+  std::vector<formation::SceneObstacle> walls;
+  const geometry::Segment* edge = head.edges.data();
+  const geometry::Segment* end = edge + head.edges.size();
+  for (const CrowdObstacleRecord& obstacle : head.obstacles) {
+    add_walls(edge, edge + obstacle.edges, obstacle.id, walls);
+    edge += obstacle.edges;
+  }
+  add_walls(edge, end, "", walls);  // all, where no ids are known
   return walls;
 }
 
@@ -60,7 +74,7 @@ geometry::Obstacle outline_of(const geometry::ConvexShape& shape) {
 void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
   for (std::size_t k = 0; k < head.bodies.size(); ++k) {
     const CrowdBodyRecord& body = head.bodies[k];
-    const std::string id = body_name(k);
+    const std::string id = head.body_name(k);
     std::optional<geometry::Disc> disc;
     if (const auto* d = std::get_if<geometry::Disc>(&body.shape)) disc = *d;
     if (body.moves)
@@ -72,8 +86,8 @@ void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
 
 }  // namespace
 
-std::string body_name(std::size_t body) {
-  return "body " + std::to_string(body + 1);
+std::string CrowdRecordingHead::body_name(std::size_t body) const {
+  return bodies[body].id.empty() ? "body " + std::to_string(body + 1) : bodies[body].id;
 }
 
 std::string CrowdRecordingHead::name_of(std::size_t robot) const {
@@ -95,7 +109,7 @@ RecordingFile scene_of(const CrowdRecordingHead& head) {
   file.info.decisions = "none";
   file.info.provenance = make_provenance({}, 0);
   file.scenario.time_step = file.recording.time_step = head.time_step;
-  file.scenario.obstacles = walls_of(head.edges);
+  file.scenario.obstacles = walls_of(head);
   if (head.tracking > 0.0) file.scenario.uncertainty = formation::Uncertainty{head.tracking};
   add_bodies(head, file.scenario);
   for (std::size_t i = 0; i < head.kind_of.size(); ++i) {

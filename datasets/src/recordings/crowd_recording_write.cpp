@@ -20,11 +20,16 @@ CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation:
   head_.scenario = scenario.name;
   head_.every = every;
   for (const formation::SceneObstacle& o : scenario.obstacles) {
-    if (o.disc) continue;  // a body
+    if (o.disc) {  // a body
+      disc_names_.push_back(o.id);
+      continue;
+    }
     const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
     head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
+    head_.obstacles.push_back({o.id, static_cast<std::uint32_t>(edges.size())});
   }
   head_.tracking = tracking_error_of(scenario);
+  for (const formation::MovingObstacle& o : scenario.moving_obstacles) moving_names_.push_back(o.id);
   const bool has_wheels = std::any_of(scenario.robots.begin(), scenario.robots.end(),
                                       [](const formation::Robot& robot) { return robot.drive.has_value(); });
   for (std::size_t i = 0; has_wheels && i < robots_; ++i) {
@@ -46,12 +51,21 @@ void CrowdRecorder::put(const std::string& bytes) {
   bytes_ += bytes.size();
 }
 
+/// Bodies that move, and discs at rest, stand in the crowd in the order of the scenario, if they are its bodies.
+void CrowdRecorder::name_bodies() {
+  const auto moving = static_cast<std::size_t>(
+      std::count_if(head_.bodies.begin(), head_.bodies.end(), [](const CrowdBodyRecord& body) { return body.moves; }));
+  if (moving != moving_names_.size() || head_.bodies.size() - moving != disc_names_.size()) return;
+  auto next_moving = moving_names_.begin(), next_disc = disc_names_.begin();
+  for (CrowdBodyRecord& body : head_.bodies) body.id = body.moves ? *next_moving++ : *next_disc++;
+}
+
 /// Takes the head and what follows from it.
 std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   head_.time_step = crowd.options().time_step;
   head_.position_step = crowd.options().position_step;
   const std::size_t robots = crowd.id_end();
-  EXACTVO_REQUIRE(version_of(head_, false) < 5 || robots == robots_,
+  EXACTVO_REQUIRE((head_.half_headings.empty() && head_.tracking == 0.0) || robots == robots_,
                   "a crowd of other robots, on wheels or with a tracking error");
   std::size_t kinds = 0;
   for (std::size_t i = 0; i < robots; ++i) {
@@ -71,6 +85,7 @@ std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
     body_ids_.push_back(body.id);
     body_start_.push_back(body.displacement);
   }
+  name_bodies();
   row_.body_x.assign(head_.bodies.size(), 0);
   last_.body_x = last_.body_y = row_.body_y = row_.body_x;
   row_.x.assign(robots, 0);

@@ -191,7 +191,7 @@ void leave_out_ellipses(const CrowdRecordingHead& head, TrajectoryFile& file) {
   std::set<std::string> ellipses;
   for (std::size_t k = 0; k < head.bodies.size(); ++k)
     if (!head.bodies[k].moves && std::holds_alternative<geometry::Ellipse>(head.bodies[k].shape))
-      ellipses.insert(body_name(k));
+      ellipses.insert(head.body_name(k));
   if (ellipses.empty()) return;
   std::vector<formation::SceneObstacle>& obstacles = file.obstacles;
   obstacles.erase(std::remove_if(obstacles.begin(), obstacles.end(),

@@ -41,6 +41,13 @@ struct CrowdKindRecord {
 struct CrowdBodyRecord {
   geometry::ConvexShape shape;  ///< m
   bool moves = false;           ///< what is promised of one that moves is promised of kept robots
+  std::string id = {};          ///< of the obstacle, or moving obstacle; empty in files of earlier versions
+};
+
+/// An obstacle that is no body.
+struct CrowdObstacleRecord {
+  std::string id;           ///< as in the scenario
+  std::uint32_t edges = 0;  ///< how many
 };
 
 struct CrowdRow;
@@ -54,15 +61,19 @@ struct CrowdRecordingHead {
   std::vector<CrowdKindRecord> kinds;    ///< by number, as in the crowd
   std::vector<std::uint16_t> kind_of;    ///< of each robot
   std::vector<geometry::Segment> edges;  ///< of obstacles
-  std::vector<CrowdBodyRecord> bodies;   ///< those that the crowd had at the start
-  std::vector<std::string> ids;          ///< of each robot; empty in files of earlier versions
-  double tracking = 0.0;                 ///< m, >= 0: no point of a body is farther from where rows have it
+  /// Whose the edges are, one after the other; empty in files of earlier versions.
+  std::vector<CrowdObstacleRecord> obstacles;
+  std::vector<CrowdBodyRecord> bodies;  ///< those that the crowd had at the start
+  std::vector<std::string> ids;         ///< of each robot; empty in files of earlier versions
+  double tracking = 0.0;                ///< m, >= 0: no point of a body is farther from where rows have it
   /// Where each robot on wheels headed at first, as `half_heading_of` has it; (1, 0) of the others. Empty where no kind
   /// has wheels. Where every step is a row, later headings follow from this and from places (crowd/wheels.h).
   std::vector<geometry::Vec2> half_headings;
 
   /// A robot's id; "#1" and so on where there are none. REQUIRES: a robot of the recording.
   std::string name_of(std::size_t robot) const;
+  /// A body's id; "body 1" and so on where it has none. REQUIRES: a body of the recording.
+  std::string body_name(std::size_t body) const;
   /// m, where it is. Exact.
   geometry::Vec2 place(const CrowdRow& row, std::size_t robot) const;
   /// m, how far a body has come. Exact.
@@ -101,6 +112,7 @@ class CrowdRecorder : public formation::RunSink {
 
  private:
   std::string head_of(const formation::Crowd& crowd);
+  void name_bodies();
   void put(const std::string& bytes);
   void take(const formation::RunState& now);
   void write_row();
@@ -113,6 +125,7 @@ class CrowdRecorder : public formation::RunSink {
   bool ids_differ_ = true;          ///< all of them
   CrowdRow row_, last_;             ///< the next one, and the one before it
   std::vector<formation::ObstacleId> body_ids_;
+  std::vector<std::string> moving_names_, disc_names_;  ///< of the scenario's bodies, in its order
   std::vector<geometry::Vec2> body_start_;
   std::vector<std::uint8_t> kept_;
   std::uint64_t bytes_ = 0, rows_ = 0;
@@ -150,12 +163,10 @@ struct CrowdTable {
 /// recording has none.
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
 
-/// The scene as other recordings have it, without what is not recorded: goals, motions of bodies, rows. Edges that
-/// follow one another are a wall; an ellipse is the polygon of 48 corners round it.
+/// The scene as other recordings have it, without what is not recorded: goals, motions of bodies, rows. Edges of one
+/// obstacle that follow one another are a wall, in parts of at most 32; an ellipse is the polygon of 48 corners round
+/// it.
 RecordingFile scene_of(const CrowdRecordingHead& head);
-
-/// What a body is called there, by its number from 0: "body 1" is the first.
-std::string body_name(std::size_t body);
 
 /// Whether a file is one by its name, FILE.evr.
 bool is_crowd_recording(const std::filesystem::path& path);
