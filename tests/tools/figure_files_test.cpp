@@ -64,6 +64,11 @@ TEST(FigureFiles, CharactersThatNoFontHasAreNamed) {
   };
   const std::string private_use = "\xf4\x8f\xbf\xbd";
   EXPECT_THAT(drawn("R" + private_use), HasSubstr("no font on this machine has " + private_use + ": PNG and PDF"));
+  // Pango draws the number of such a character in a box as large as the picture; a square is as small as a letter.
+  const std::string picture = here.read("x.png"), svg = here.read("x.svg");
+  EXPECT_THAT(svg, HasSubstr(private_use));
+  drawn("R\xe2\x96\xa1");
+  EXPECT_EQ(here.read("x.png"), picture);
   EXPECT_THAT(drawn("R\xc3\xa4\xe2\x80\xa6\xe2\x80\x8d"), Not(HasSubstr("no font"))) << "usual, or not to be seen";
 }
 

@@ -14,11 +14,13 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "figures/missing_glyphs.h"
+#include "support/files.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 
@@ -36,36 +38,33 @@ TemporaryFile temporary_file() {
   return file;
 }
 
-/// A gnuplot string of exactly these bytes, each by its octal number: a folder may be called anything, and gnuplot runs
-/// what stands between backticks.
-std::string exact_string(const std::string& bytes) {
-  std::string text;
-  for (const char c : bytes) text += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
-  return '"' + text + '"';
-}
-
 struct Format {
   const char* name;
   const char* terminal;
   const char* in_words;
 };
+constexpr const char* kSvg = "svg";
 /// Those of templates/frame.gp.
-constexpr Format kFormats[] = {{"svg", "svg", "SVG (its terminal svg)"},
+constexpr Format kFormats[] = {{"svg", kSvg, "SVG (its terminal svg)"},
                                {"png", "pngcairo", "PNG (its terminal pngcairo)"},
                                {"pdf", "pdfcairo", "PDF (its terminal pdfcairo)"}};
 
 /// One format of one script.
-using Picture = std::pair<const fs::path*, const Format*>;
+struct Picture {
+  const fs::path* script;
+  const Format* format;
+  fs::path loaded;  ///< the script itself, or a copy
+};
 
 /// Absolute folders begin with a slash and scripts have plain names: neither is taken for a command. A script draws
 /// `formats`, none where this gnuplot was built without the terminal; "reset session" forgets it.
 std::string driver_text(const std::vector<Picture>& pictures) {
   std::string text;
-  for (const auto& [script, format] : pictures)
+  for (const auto& [script, format, loaded] : pictures)
     text += fmt::format(
         "reset session\nformats = strstrt(' ' . GPVAL_TERMINALS . ' ', ' {} ') ? '{}' : ''\ncd {}\nload {}\n",
         format->terminal, format->name, exact_string(fs::absolute(*script).parent_path().string()),
-        exact_string(script->filename().string()));
+        exact_string(loaded.string()));
   return text;
 }
 
@@ -177,16 +176,30 @@ void undate(const fs::path& pdf) {
 
 }  // namespace
 
+std::string exact_string(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) text += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  return '"' + text + '"';
+}
+
 void draw(const std::vector<fs::path>& scripts, const std::string& what) {
   if (scripts.empty()) return;
   ProgressLine line(0.0, "");
   line.say("drawing figures" + (what.empty() ? "" : " of " + what));
   remove_pictures(scripts);  // those of earlier figures
+  const std::set<char32_t> boxed = characters_without_font(scripts);
+  std::optional<StagedFolder> copies;
+  if (!boxed.empty()) copies.emplace(fs::temp_directory_path() / "exactvo");
   const std::size_t pictures = scripts.size() * std::size(kFormats);
   std::vector<Process> processes(process_count(pictures));
   std::vector<std::vector<Picture>> shares(processes.size());
-  for (std::size_t k = 0; k < pictures; ++k)
-    shares[k % shares.size()].push_back({&scripts[k / std::size(kFormats)], &kFormats[k % std::size(kFormats)]});
+  for (std::size_t k = 0; k < pictures; ++k) {
+    const fs::path& script = scripts[k / std::size(kFormats)];
+    const Format& format = kFormats[k % std::size(kFormats)];
+    fs::path loaded = script.filename();
+    if (copies && format.terminal != kSvg) loaded = copy_with_squares(script, boxed, copies->path(), std::to_string(k));
+    shares[k % shares.size()].push_back({&script, &format, std::move(loaded)});
+  }
   int error = 0;
   {
     KillChildrenOnSignal until_they_end;
@@ -215,11 +228,11 @@ void draw(const std::vector<fs::path>& scripts, const std::string& what) {
   if (!missing.empty())
     message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
                         fmt::join(missing, " and ")));
-  if (const std::vector<std::string> boxes = characters_without_font(scripts); !boxes.empty())
+  if (!boxed.empty())
     message(
-        fmt::format("note: no font on this machine has {}: PNG and PDF figures show a box in the place of each, SVG "
+        fmt::format("note: no font on this machine has {}: PNG and PDF figures have squares in their place, SVG "
                     "leaves them to the viewer (Debian: fonts-noto-cjk, fonts-noto-color-emoji, fonts-unifont)",
-                    fmt::join(boxes, " ")));
+                    names_of(boxed)));
   for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
 }
 
