@@ -282,6 +282,7 @@ def test_findings():
         ({}, {"radius": 1}, "trajectories"),
         ({"x": [1], "y": [2]}, {"radius": 1}, "trajectories"),
         ({"t": [0], "x": [1, 2], "y": [2]}, {"radius": 1}, "x"),
+        ({"t": [0], "id": ["A"], "x_mm": [1], "y_mm": [2]}, {"radius": 1}, "trajectories"),
         (np.zeros((2, 3)), {"radius": 1}, "trajectories"),
         (np.zeros((2, 3, 2)), {"radius": 1}, "trajectories"),
         (np.zeros((2, 3, 2)), {"radius": 1, "time": [0]}, "time"),

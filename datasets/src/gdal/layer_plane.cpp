@@ -341,8 +341,9 @@ void LayerPlane::add_distortion(const Distortion& distortion) {
 void LayerPlane::note_extent() {
   if (!out_.extent()) return;
   const auto [low, high] = *out_.extent();
-  out_.note("", "extent " + number_text(low.x) + " to " + number_text(high.x) + " m, " + number_text(low.y) + " to " +
-                    number_text(high.y) + " m");
+  const auto in_millimetres = [](double x) { return number_text(std::nearbyint(1e3 * x) / 1e3); };
+  out_.note("", "extent " + in_millimetres(low.x) + " to " + in_millimetres(high.x) + " m, " + in_millimetres(low.y) +
+                    " to " + in_millimetres(high.y) + " m");
   if (!distortion_) return;
   out_.set_distortion(*distortion_);
   out_.note("", words_of(*distortion_));

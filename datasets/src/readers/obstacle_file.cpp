@@ -47,7 +47,11 @@ const Reader& reader_named(const std::string& name, const std::filesystem::path&
 /// What would help with a file that no reader takes by itself.
 std::string hint_for(const FormatProbe& probe) {
   for (const char* image : {".pgm", ".png", ".pnm", ".bmp", ".tif"})
-    if (probe.extension == image) return "; of a ROS map give the .yaml that names its image";
+    if (probe.extension == image)
+      return "; of a ROS map give the .yaml that names its image; for another picture write one: image, resolution (m "
+             "a "
+             "pixel), origin";
+  if (probe.extension == ".svg") return "; of a drawing, its shapes in metres as WKT, GeoJSON or DXF";
   if (probe.extension == ".scen") return "; tasks of Moving AI are for exactvo route MAP --queries";
   return "; if its format is one of these, name it with --format (convert: --from): " + all_names();
 }

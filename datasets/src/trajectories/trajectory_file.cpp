@@ -35,6 +35,8 @@ const TrajectoryFormat& format_for(std::string_view beginning, const std::string
   if (!lacks.empty())
     throw DataError(DataCode::format_unknown, file, "",
                     excerpt(beginning.substr(0, beginning.find_first_of("\r\n")), 0, 60), lacks);
+  if (beginning.find("\"last_arrival_time\"") != std::string_view::npos)
+    throw DataError(DataCode::format_unknown, file, "", "the metrics of a run", "the folder of the run");
   const bool has_robots = beginning.find("\"robots\"") != std::string_view::npos;
   if (has_robots && beginning.find_first_not_of(" \t\r\n") == beginning.find('{'))
     throw DataError(DataCode::format_unknown, file, "", "a scenario, which is no run yet",
@@ -162,7 +164,10 @@ void TrajectorySink::refuse(DataCode code, std::uint64_t line, const std::string
 
 double TrajectorySink::number(std::string_view field, const char* what, std::uint64_t line) const {
   double value = 0.0;
-  if (!parse_whole(field, value)) refuse(DataCode::number, line, excerpt(field, 0), std::string("a number as ") + what);
+  if (!parse_whole(field, value))
+    refuse(DataCode::number, line, excerpt(field, 0),
+           std::string("a number as ") + what +
+               (field.find(',') == std::string_view::npos ? "" : ", with a decimal point"));
   if (!std::isfinite(value))
     refuse(DataCode::not_finite, line, excerpt(field, 0), std::string("a finite number as ") + what);
   return value;

@@ -356,7 +356,8 @@ def _source(given: Any, time: Any) -> tuple[Union[list[str], Columns], list[str]
     columns = None
     if isinstance(given, Mapping):
         _no_time(time)
-        columns = _table(given, list(given)) if {"x", "y"} <= {str(key).lower() for key in given} else _by_id(given)
+        is_table = {"x", "y"} <= {str(key).lower() for key in given} or all(_is_regular(column) and np.ndim(column) == 1 for column in given.values())
+        columns = _table(given, list(given)) if is_table and given else _by_id(given)
     elif hasattr(given, "columns") and hasattr(given, "__getitem__"):
         _no_time(time)
         columns = _table(given, list(given.columns))
@@ -388,7 +389,9 @@ def _table(table: Any, names: list[Any]) -> Columns:
     found = {column: next((known[word] for word in words if word in known), None) for column, words in _NAMES.items()}
     for column in ("t", "x", "y"):
         if found[column] is None:
-            raise ArgumentError("trajectories", f"columns {', '.join(str(n) for n in names)[:60]}", "columns t, id, x, y")
+            raise ArgumentError(
+                "trajectories", f"columns {', '.join(str(n) for n in names)[:60]}", "columns t, id, x, y, in s and in m, or in another unit with scale"
+            )
 
     def column_of(column: str) -> Any:
         return None if found[column] is None else _floats(table[found[column]], column, 1)

@@ -88,7 +88,7 @@ def with_arguments(text: str) -> str:
 
 def _suggestion(found: str, expected: str) -> str:
     word = found.strip('"')
-    near = difflib.get_close_matches(word, re.findall(r'"([^"]+)"', expected), n=1, cutoff=0.5) if found[:1] == '"' else []
+    near = difflib.get_close_matches(word.lower(), re.findall(r'"([^"]+)"', expected), n=1, cutoff=0.5) if found[:1] == '"' else []
     return f'; did you mean "{near[0]}"?' if near and near[0] != word else ""
 
 
