@@ -516,6 +516,26 @@ TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
               AllOf(HasSubstr("found an empty file"), Not(HasSubstr("guessed"))));
 }
 
+TEST(Messages, WhatAnotherVerbOrKeyTakesIsSaid) {
+  EXPECT_THAT(place().run("simulate t.csv").err,
+              HasSubstr("found a file of trajectories, format csv, expected a scenario in JSON; check takes"));
+  place().write("mystery.xyz", "abc\n");
+  place().write("with.json", R"({"name": "w", "robots": [{"id": "R", "position": [0, 0], "goal": [1, 0]}],
+    "obstacles": [{"file": "mystery.xyz"}]})");
+  EXPECT_THAT(place().run("simulate with.json").err,
+              AllOf(HasSubstr("/obstacles/0/file: "), HasSubstr("name it with the key \"format\": wkt")));
+  place().write("d.svg", "<svg/>");
+  EXPECT_THAT(place().run("validate d.svg").out, HasSubstr("of a drawing, its shapes in metres as WKT"));
+  place().write("p.png", "\x89PNG");
+  EXPECT_THAT(place().run("validate p.png").out, HasSubstr("for another picture write one: image, resolution"));
+  place().write("comma.csv", "t;id;x;y\n0,5;A;1;2\n");
+  EXPECT_THAT(place().run("check comma.csv --radius 1").err,
+              HasSubstr("found \"0,5\", expected a number as a time, with a decimal point"));
+  ASSERT_EQ(place().run("simulate s.json --no-figures --out ran").status, 0);
+  EXPECT_THAT(place().run("check ran/metrics.json --radius 1").err, HasSubstr("found the metrics of a run"));
+  EXPECT_THAT(place().run("monitor --radius 1", "echo '{\"speed\": 1}' | ").out, HasSubstr("known are id, pose, velocity"));
+}
+
 TEST(Messages, AFormatThatIsCertainIsNoGuess) {
   place().write("bad.json", R"({"name": "a", "robots": []})");
   place().write("cut.geojson", R"({"type": "FeatureCollection", "features": [)");

@@ -11,6 +11,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_at.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/trajectory_file.h"
 #include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/simulation.h"
 #include "files/text_file.h"
@@ -81,6 +82,9 @@ void refuse_other_formats(const std::filesystem::path& path, const std::string& 
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   std::error_code error;
   if (first == std::string::npos || text[first] == '{' || !std::filesystem::is_regular_file(path, error)) return;
+  if (const std::string rows = recognised_trajectory_format(path.string()); !rows.empty())
+    throw DataError(DataCode::format_unknown, path.string(), "", "a file of trajectories, format " + rows,
+                    "a scenario in JSON; check takes trajectories");
   std::string format;
   try {
     format = format_of(path);
@@ -284,8 +288,15 @@ class ScenarioReader {
       const bool is_its_format = error.place() == "format";
       if (!is_its_format && !error.place().empty()) throw;
       throw DataError(error.code(), file_, pointer + (is_its_format ? "/format" : "/file"),
-                      error.found() + " (" + path.string() + ")", error.expected());
+                      error.found() + " (" + path.string() + ")", with_the_key(error.expected()));
     }
+  }
+
+  /// A reader names the program's option for the format, which here is a key.
+  static std::string with_the_key(std::string expected) {
+    const std::string option = "--format (convert: --from)";
+    const std::size_t at = expected.find(option);
+    return at == std::string::npos ? expected : expected.replace(at, option.size(), "the key \"format\"");
   }
 
   void add_notes(const ObstacleFile& file) {

@@ -189,9 +189,12 @@ void refuse_unknown_keys(const JsonCursor& object, const std::vector<std::string
   for (const std::string& name : known)
     if (!object.has(name)) missing.push_back(name);
   for (const auto& [key, value] : object.json().items())
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      object.at(key).refuse(fmt::format("a known key, which \"{}\" is not{}", key, suggestion(key, missing)),
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string near = suggestion(key, missing);
+      object.at(key).refuse(fmt::format("a known key, which \"{}\" is not{}", key,
+                                        near.empty() ? fmt::format("; known are {}", fmt::join(known, ", ")) : near),
                             DataCode::key_unknown);
+    }
 }
 
 /// From the place `first` of the list on: x, y, heading.
