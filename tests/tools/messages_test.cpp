@@ -370,7 +370,11 @@ TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {
   place().write("header.csv", "# from a survey\nx,y\n1,2\n3,4\n");
   EXPECT_THAT(place().run("validate header.csv").err, HasSubstr("points-csv, 2 read: 2 valid"));
   place().write("three.csv", "x,y,z\n1,2,3\n");
-  EXPECT_THAT(place().run("validate three.csv").err, HasSubstr("--format points-csv"));
+  EXPECT_THAT(place().run("validate three.csv").out,
+              AllOf(HasSubstr("found a table without a column of geometry"), HasSubstr("--format points-csv")));
+  for (const char* command : {"route three.csv --from 0,0 --to 1,1 --radius 0.1", "convert three.csv o.wkt",
+                              "check t.csv --radius 0.1 --map three.csv", "segment three.csv"})
+    EXPECT_EQ(place().run(command).status, 2) << command << ": no way is clear of a map that was not read";
 }
 
 TEST(Messages, AnImageIsReferredToItsMap) {
@@ -533,7 +537,8 @@ TEST(Messages, WhatAnotherVerbOrKeyTakesIsSaid) {
               HasSubstr("found \"0,5\", expected a number as a time, with a decimal point"));
   ASSERT_EQ(place().run("simulate s.json --no-figures --out ran").status, 0);
   EXPECT_THAT(place().run("check ran/metrics.json --radius 1").err, HasSubstr("found the metrics of a run"));
-  EXPECT_THAT(place().run("monitor --radius 1", "echo '{\"speed\": 1}' | ").out, HasSubstr("known are id, pose, velocity"));
+  EXPECT_THAT(place().run("monitor --radius 1", "echo '{\"speed\": 1}' | ").out,
+              HasSubstr("known are id, pose, velocity"));
 }
 
 TEST(Messages, AFormatThatIsCertainIsNoGuess) {

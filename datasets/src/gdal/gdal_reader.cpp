@@ -182,6 +182,7 @@ class VectorReader {
   }
 
   void read() {
+    refuse_bare_tables();
     for (int k = 0; k < layers(); ++k) {
       layer_ = geojson_ ? nullptr : data_->GetLayer(k);
       settle_coordinates();
@@ -202,6 +203,15 @@ class VectorReader {
       check_json_syntax(read_text_file(path_), path_.string());
     throw DataError(DataCode::library, path_.string(), place,
                     words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
+  }
+
+  /// Rows without any geometry would be a map without obstacles, on which every way is clear.
+  void refuse_bare_tables() {
+    if (geojson_ || layers() == 0) return;
+    for (int k = 0; k < layers(); ++k)
+      if (data_->GetLayer(k)->GetLayerDefn()->GetGeomFieldCount() > 0) return;
+    throw DataError(DataCode::format_syntax, path_.string(), "", "a table without a column of geometry",
+                    "a column of geometry as WKT; of points two columns, x and y in metres, and --format points-csv");
   }
 
   /// A feature of a layer, or a record of GeoJSON.

@@ -241,14 +241,8 @@ std::string lines_of(const FileAnswer& answer) {
 std::string counts_line(const FileAnswer& answer, const std::string& repaired) {
   if (!answer.content) return shown(answer.file) + ": refused";
   const datasets::ReadCounts& n = answer.content->counts;
-  const std::string text =
-      fmt::format("{}: {}, {} read: {} valid, {} {}, {} skipped, {} rejected", shown(answer.file),
-                  answer.content->format, n.read, n.done, n.repaired, repaired, n.passed_over, n.rejected);
-  // A table without geometry is what a list of points looks like.
-  const bool is_table = answer.content->format == "gdal" && std::filesystem::path(answer.file).extension() == ".csv";
-  if (!is_table || n.read == 0 || n.passed_over < n.read) return text;
-  return text +
-         "; it has no column of geometry: of points give two columns, x and y in metres, and --format points-csv";
+  return fmt::format("{}: {}, {} read: {} valid, {} {}, {} skipped, {} rejected", shown(answer.file),
+                     answer.content->format, n.read, n.done, n.repaired, repaired, n.passed_over, n.rejected);
 }
 
 std::string repair_hint(const FileAnswer& answer) {
