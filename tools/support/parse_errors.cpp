@@ -10,6 +10,7 @@
 #include <functional>
 #include <iterator>
 
+#include "exactvo/datasets/scenario_file.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -62,14 +63,27 @@ const CLI::Option* subject_of(const std::vector<const CLI::Option*>& options, co
   return found;
 }
 
-/// An option whose name is not known: what it was, and the nearest one.
+/// Where a verb takes a scenario, and a name is that of one of its keys: "; a scenario has the key "time_step" for it".
+std::string key_words(const std::vector<const CLI::Option*>& options, const std::string& name) {
+  std::string key = name.substr(std::min(name.find_first_not_of('-'), name.size()));
+  std::replace(key.begin(), key.end(), '-', '_');
+  const bool takes_scenario = std::any_of(options.begin(), options.end(), [](const CLI::Option* option) {
+    return option->get_positional() && option->get_name() == "scenario";
+  });
+  const bool is_key = datasets::scenario_schema().find('"' + key + "\": {") != std::string::npos;
+  return takes_scenario && is_key ? "; a scenario has the key \"" + key + "\" for it" : "";
+}
+
+/// An option whose name is not known: what it was, and the nearest one, or the key of a scenario.
 std::string unknown_option(const std::vector<const CLI::Option*>& options, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
     const bool is_long = name.rfind("--", 0) == 0 && name.size() > 2;
     const bool is_short = name.size() == 2 && name[0] == '-' && std::isalpha(static_cast<unsigned char>(name[1])) != 0;
-    if ((is_long || is_short) && !option_named(options, name))
-      return fmt::format("unknown option '{}'{}", name, suggestion(name, long_names(options)));
+    if ((is_long || is_short) && !option_named(options, name)) {
+      const std::string key = key_words(options, name);
+      return fmt::format("unknown option '{}'{}", name, key.empty() ? suggestion(name, long_names(options)) : key);
+    }
   }
   return "";
 }
@@ -146,6 +160,7 @@ std::string surplus_words(const std::vector<const CLI::Option*>& options, const 
     if (option->get_positional() && option->results().size() == 1)
       text += fmt::format(": the {} is '{}'", option->get_name(), option->results().front());
   if (option_named(options, "--scenario")) text += "; a scenario goes behind --scenario";
+  if (option_named(options, "--out")) text += "; a place for results goes behind --out";
   return text;
 }
 
