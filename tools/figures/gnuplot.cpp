@@ -41,7 +41,7 @@ TemporaryFile temporary_file() {
 struct Format {
   const char* name;
   const char* terminal;
-  const char* in_words;
+  const char* listed_characters;
 };
 constexpr const char* kSvg = "svg";
 /// Those of templates/frame.gp.
@@ -224,7 +224,7 @@ void draw(const std::vector<fs::path>& scripts, const std::string& what) {
   }
   std::vector<std::string> missing;
   for (const Format& format : kFormats)
-    if (!fs::exists(picture_of(scripts.front(), format))) missing.push_back(format.in_words);
+    if (!fs::exists(picture_of(scripts.front(), format))) missing.push_back(format.listed_characters);
   if (!missing.empty())
     message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
                         fmt::join(missing, " and ")));
@@ -232,7 +232,7 @@ void draw(const std::vector<fs::path>& scripts, const std::string& what) {
     message(
         fmt::format("note: no font on this machine has {}: PNG and PDF figures have squares in their place, SVG "
                     "leaves them to the viewer (Debian: fonts-noto-cjk, fonts-noto-color-emoji, fonts-unifont)",
-                    names_of(boxed)));
+                    listed_characters(boxed)));
   for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
 }
 

@@ -97,7 +97,7 @@ std::string with_squares(const std::string& text, const std::set<char32_t>& miss
   return result;
 }
 
-std::string names_of(const std::set<char32_t>& characters) {
+std::string listed_characters(const std::set<char32_t>& characters) {
   constexpr std::size_t kMostNamed = 10;
   std::string names;
   std::size_t named = 0;

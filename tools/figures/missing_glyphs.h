@@ -20,7 +20,7 @@ std::set<char32_t> characters_without_font(const std::vector<std::filesystem::pa
 std::string with_squares(const std::string& text, const std::set<char32_t>& missing);
 
 /// At most ten of them, in UTF-8: "A B C and 2 more".
-std::string names_of(const std::set<char32_t>& characters);
+std::string listed_characters(const std::set<char32_t>& characters);
 
 /// Writes a copy of the script that draws the same pictures in the same place with squares for `missing`, and of its
 /// data, into `folder` with this name. Returns the script.

@@ -72,16 +72,16 @@ enum Column : std::size_t {
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 /// A unit that the name of a column may state: how many of it make one m, s, m/s or rad.
-struct Unit {
+struct ColumnUnit {
   const char* word;
   double in_si;
 };
-using Units = std::vector<Unit>;
-const Units kLengths{{"m", 1.0}, {"cm", 1e2}, {"mm", 1e3}};
-const Units kTimes{{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"\u00b5s", 1e6}, {"\u03bcs", 1e6}, {"ns", 1e9}};
-const Units kSpeeds{{"m/s", 1.0}, {"cm/s", 1e2}, {"mm/s", 1e3}};
-const Units kAngles{{"rad", 1.0}};
-constexpr Unit kNotStated{"", 1.0};
+using ColumnUnits = std::vector<ColumnUnit>;
+const ColumnUnits kLengths{{"m", 1.0}, {"cm", 1e2}, {"mm", 1e3}};
+const ColumnUnits kTimes{{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"\u00b5s", 1e6}, {"\u03bcs", 1e6}, {"ns", 1e9}};
+const ColumnUnits kSpeeds{{"m/s", 1.0}, {"cm/s", 1e2}, {"mm/s", 1e3}};
+const ColumnUnits kAngles{{"rad", 1.0}};
+constexpr ColumnUnit kNotStated{"", 1.0};
 
 /// The column of times that rostopic writes, in ns.
 constexpr const char* kNanoseconds = "%time";
@@ -89,7 +89,7 @@ constexpr const char* kNanoseconds = "%time";
 /// Where each column stands, and the unit that its name states.
 struct Columns {
   std::array<std::size_t, kColumnKinds> at;
-  std::array<Unit, kColumnKinds> units;
+  std::array<ColumnUnit, kColumnKinds> units;
   std::string clash;  ///< two columns that differ in their units alone, in words; empty if there are none
 
   Columns() {
@@ -103,7 +103,7 @@ struct Columns {
 
 struct ColumnNames {
   std::vector<std::string> names;  ///< the best first
-  Units units = {};                ///< that may follow a name: x_mm, x/mm, "x [mm]", "x (mm)"
+  ColumnUnits units = {};          ///< that may follow a name: x_mm, x/mm, "x [mm]", "x (mm)"
 };
 
 /// The names by which columns are known. A name with a dot is also the end of a longer one, if of one column alone:
@@ -139,13 +139,13 @@ bool ends_in(std::string_view text, std::string_view end) {
 /// A name of a column in lower case, without the unit that it states.
 struct BareName {
   std::string name;
-  Unit unit;
+  ColumnUnit unit;
 };
 
-BareName without_unit(const std::string& name, const Units& units) {
+BareName without_unit(const std::string& name, const ColumnUnits& units) {
   const bool has_brackets = ends_in(name, "]") || ends_in(name, ")");
   const std::size_t open = has_brackets ? name.find_last_of("[(") : std::string::npos;
-  for (const Unit& unit : units) {
+  for (const ColumnUnit& unit : units) {
     std::string plain = unit.word;
     std::replace(plain.begin(), plain.end(), '/', '_');  // vx_m_s
     if (open != std::string::npos) {
