@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/route_certificate.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
 

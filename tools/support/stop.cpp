@@ -77,6 +77,9 @@ RemoveFolderOnSignal::~RemoveFolderOnSignal() {
   mine.is_taken = false;
 }
 
+void KillChildrenOnSignal::add(pid_t child) {
+  children.at(count_++) = child;
+}
 KillChildrenOnSignal::~KillChildrenOnSignal() {
   for (std::atomic<pid_t>& child : children) child = 0;
 }

@@ -52,7 +52,7 @@ class KillChildrenOnSignal {
   KillChildrenOnSignal& operator=(const KillChildrenOnSignal&) = delete;
 
   /// REQUIRES: fewer than kMostChildren so far.
-  void add(pid_t child) { children.at(count_++) = child; }
+  void add(pid_t child);
 
  private:
   std::size_t count_ = 0;

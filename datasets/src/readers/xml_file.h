@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "readers/readers.h"
+
 namespace exactvo::datasets {
 
 class XmlFile {

@@ -5,6 +5,7 @@
 /// Convex shapes in rationals, for the audit: what lies in them, and how far points are from them. Exact.
 
 #include "exactvo/geometry/shapes.h"
+#include "recordings/exact_plane.h"
 
 namespace exactvo::datasets::exact {
 

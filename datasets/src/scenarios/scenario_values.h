@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 

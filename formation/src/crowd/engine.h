@@ -16,6 +16,8 @@
 
 #include "crowd/bodies.h"
 #include "crowd/edges.h"
+#include "crowd/kinds.h"
+#include "crowd/lines.h"
 #include "crowd/reserved_ways.h"
 #include "crowd/robots.h"
 #include "crowd/wheels.h"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "exactvo/formation/simulation.h"
 #include "exactvo/vo/constraint.h"
 
 namespace exactvo::formation::detail {

@@ -153,7 +153,7 @@ std::vector<std::pair<double, std::size_t>> nearest_first(const OrcaChain& chain
   order.reserve(edges.size());
   for (const std::size_t i : edges) {
     const Vec2 a = chain.vertices[i], b = chain.vertices[(i + 1) % chain.vertices.size()];
-    order.emplace_back(norm(position - detail::nearest_on(a, b, position)), i);
+    order.emplace_back(norm(position - nearest_on(a, b, position)), i);
   }
   std::sort(order.begin(), order.end());
   return order;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/geometry/shapes.h"
+
 namespace exactvo::datasets {
 
 /// Longitude and latitude that became (0, 0), degrees.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "batch/plan/journal.h"
+#include "batch/work/part.h"
 #include "exactvo/datasets/batch.h"
 #include "json/json_text.h"
 
