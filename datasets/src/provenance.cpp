@@ -15,6 +15,7 @@
 #include "files/sha256.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
+#include "provenance_json.h"
 
 namespace exactvo::datasets {
 namespace {

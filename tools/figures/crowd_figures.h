@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "figures/figure.h"
 #include "figures/outlines.h"
 

@@ -14,6 +14,7 @@
 #include "exactvo/geometry/require.h"
 #include "support/escape.h"
 #include "support/files.h"
+#include "support/run.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 

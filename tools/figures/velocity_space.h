@@ -7,6 +7,7 @@
 
 #include "explain/decision.h"
 #include "figures/figure.h"
+#include "figures/outlines.h"
 
 namespace exactvo::tools {
 

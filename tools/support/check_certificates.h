@@ -10,6 +10,7 @@
 
 #include "exactvo/datasets/atomic_file.h"
 #include "support/checked_file.h"
+#include "support/json_layout.h"
 
 namespace exactvo::tools {
 

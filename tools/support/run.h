@@ -14,6 +14,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
 #include "figures/figure.h"
+#include "figures/gnuplot.h"
 #include "support/run_recorder.h"
 
 namespace exactvo::tools {

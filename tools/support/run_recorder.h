@@ -18,6 +18,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
 #include "explorer/packed_run.h"
 
 namespace exactvo::tools {

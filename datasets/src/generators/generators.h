@@ -8,6 +8,7 @@
 
 #include "exactvo/geometry/shapes.h"
 #include "generators/counter_random.h"
+#include "readers/grid.h"
 
 namespace exactvo::datasets {
 

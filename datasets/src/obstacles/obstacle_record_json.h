@@ -6,6 +6,7 @@
 
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "json/json_text.h"
+#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 

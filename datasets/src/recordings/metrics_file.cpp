@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "json/json_text.h"
+#include "recordings/codec.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
+#include "motion/leader.h"
 
 namespace exactvo::formation::detail {
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/infinity.h"
 #include "scene/goals.h"
 #include "scene/near_pairs.h"

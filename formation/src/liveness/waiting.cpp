@@ -7,6 +7,7 @@
 #include "motion/leader.h"
 #include "scene/goals.h"
 #include "scene/near_pairs.h"
+#include "scene/number_text.h"
 #include "scene/step_limits.h"
 #include "steering/last_places.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/disc_obstacle.h"
 #include "exactvo/formation/notices.h"
 #include "exactvo/formation/speed_profile.h"

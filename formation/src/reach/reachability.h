@@ -18,6 +18,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
 #include "scene/edges_by_place.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 

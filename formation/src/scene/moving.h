@@ -9,6 +9,7 @@
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/shapes.h"
 #include "exactvo/vo/constraint.h"
 
 namespace exactvo::formation::detail {

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "exactvo/formation/recording.h"
 #include "exactvo/geometry/enclosure.h"
 #include "scene/decision_rules.h"
 #include "scene/scene.h"

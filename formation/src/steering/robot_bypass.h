@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "decision/decision.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "division/simplification.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"

@@ -16,6 +16,7 @@
 #include "exactvo/geometry/facades.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {

@@ -7,6 +7,7 @@
 #include "enclosure/ellipse_solver.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace {

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/support.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {

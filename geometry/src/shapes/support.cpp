@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/require.h"
+
 namespace exactvo::geometry {
 namespace {
 

@@ -18,6 +18,7 @@
 #include "support/check_page.h"
 #include "support/footprint.h"
 #include "support/parse_errors.h"
+#include "support/run.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"

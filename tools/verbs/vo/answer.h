@@ -18,6 +18,7 @@
 #include "exactvo/vo/free_arrangement.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure.h"
+#include "support/json_layout.h"
 #include "verbs/vo/question.h"
 
 namespace exactvo::tools {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "exact/algebraic_root.h"
+#include "exact/exact_sum.h"
 #include "exact/exact_vector.h"
 #include "exactvo/vo/free_arrangement.h"
 

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/vo/lp/problem.h"
 
 namespace exactvo::datasets {

@@ -35,6 +35,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/local_plane.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/formation/scenario.h"

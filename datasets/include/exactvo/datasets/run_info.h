@@ -8,6 +8,7 @@
 #include <string>
 
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/formation/crowd_run.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::datasets {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "batch/formats/features.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "exactvo/vo/lp/solution.h"
 #include "lp/proof/exact_points.h"
 
 namespace exactvo::lp {

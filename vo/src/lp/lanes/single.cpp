@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/lanes/layout.h"
 #include "lp/lanes/vertex.h"

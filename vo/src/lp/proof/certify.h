@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
+#include "lp/proof/exact_points.h"
 #include "lp/proof/rounded_gap.h"
 
 namespace exactvo::lp {

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "exactvo/vo/lp/solution.h"
+
 namespace exactvo::lp {
 
 /// Structure of arrays in blocks of `block` problems: line k of problem i stands at
