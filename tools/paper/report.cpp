@@ -168,12 +168,16 @@ void add_table_two(const ReportData& data, Document& d) {
 
 // --- Section V.A ---
 
+std::optional<double> arrival_of(const Json& run) {
+  return run["all_arrived"].get<bool>() ? value_of(run, "last_arrival_time") : std::nullopt;
+}
+
 /// What was seen, what is expected of it, and a word where they differ. That nothing is touched is expected of every
 /// method but `orca`.
 template <class Kept>
 std::string avoidance_cell(const Json& run, const std::string& expected, const Kept& kept, bool may_touch = false) {
   if (run.is_null()) return "not run";
-  const std::optional<double> seen = run["all_arrived"].get<bool>() ? value_of(run, "last_arrival_time") : std::nullopt;
+  const std::optional<double> seen = arrival_of(run);
   const bool touched = formation::touched(least_clearance(run));
   return fmt::format("{}{} / {}{}", seen ? fmt::format("{:.1f}", *seen) : "X", touched ? "!" : "", expected,
                      unless(kept(seen.value_or(kStuck)) && (may_touch || !touched)));
@@ -292,6 +296,11 @@ void add_section_b(const ReportData& data, Document& d) {
 
 // --- The campaigns ---
 
+/// Whether every field was reached safely.
+bool all_reached(const Json& row) {
+  return row.is_null() || row["reached_and_safe"] == row["fields"];
+}
+
 std::string share(const Json& row) {
   if (row.is_null()) return "-";
   return fmt::format("{} of {}", row["reached_and_safe"].get<std::uint64_t>(), row["fields"].get<std::uint64_t>());
@@ -307,12 +316,10 @@ void add_random(const ReportData& data, Document& d) {
                           data.random()["seed"].get<std::uint64_t>(),
                           data.random()["fields"].get<std::uint64_t>() - 1));
   Rows rows;
-  for (const char* kind : {"convex", "open", "formation"}) {
-    const Json& ours = data.random(kind, "ivo");
+  for (const char* kind : {"convex", "open", "formation"})
     rows.push_back({kind, share(data.random(kind, "orca")), share(data.random(kind, "ivo-edge")),
                     share(data.random(kind, "ivo-cluster")),
-                    share(ours) + unless(ours.is_null() || ours["reached_and_safe"] == ours["fields"])});
-  }
+                    share(data.random(kind, "ivo")) + unless(all_reached(data.random(kind, "ivo")))});
   d.table({"fields", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo"}, rows);
 }
 

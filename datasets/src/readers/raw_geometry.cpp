@@ -216,7 +216,7 @@ ValidationResult validate(const RawGeometry& raw) {
 DataError ring_refusal(const RingFinding& finding, const std::string& file) {
   const bool is_pointer = finding.place.rfind('/', 0) == 0;  // of JSON, which names no vertex
   const std::string vertex = is_pointer ? "vertex " + std::to_string(finding.vertex) + ", " : "";
-  return {finding.code, file, finding.place, words_for(finding.code).found + " at " + vertex + words_of_place(finding),
+  return {finding.code, file, finding.place, words_for(finding.code).found + (" at " + vertex) + words_of_place(finding),
           words_for(finding.code).expected};
 }
 
