@@ -92,6 +92,12 @@ def test_a_mistyped_keyword_gets_the_nearest_one(calls):
         two_robots().step(colour=3)
 
 
+def test_a_word_in_capitals_gets_the_one_that_is_meant():
+    scenario = {"name": "one", "robots": [{"id": "R", "position": [0, 0], "goal": [1, 0]}]}
+    with pytest.raises(exactvo.ArgumentError, match='did you mean "ivo"'):
+        exactvo.simulate(scenario, method="IVO")
+
+
 def test_a_half_step_is_refused_by_name():
     with pytest.raises(exactvo.ArgumentError, match=r"^count: found 1\.5, expected a whole number$"):
         two_robots().step(1.5)

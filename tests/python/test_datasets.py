@@ -140,13 +140,11 @@ def test_errors_name_arguments_and_no_options_of_the_program(tmp_path):
     table.write_text("0 1 0 0\n1 1 1 0\n")
     (note,) = exactvo.check(table, radius=0.1).notes
     assert note.endswith("one frame counts as 1 s (`frame_rate`)")
-    folder = tmp_path / "batch"
-    folder.mkdir()
-    (folder / "other").write_text("")
     walls = tmp_path / "walls.wkt"
     walls.write_text("LINESTRING (0 0, 1 0)\n")
+    exactvo.datasets.batch(walls, tmp_path / "batch", progress=lambda done: False)
     with pytest.raises(exactvo.DataError, match="another `out`, or an empty one") as caught:
-        exactvo.datasets.batch(walls, folder)
+        exactvo.datasets.batch(walls, tmp_path / "batch", repair=True, resume=True)
     assert "--" not in str(caught.value)
 
 
