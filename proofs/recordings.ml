@@ -347,12 +347,12 @@ let crowd file s =
             | Some c -> if Int64.to_int c <> count || !pos <> String.length s then bad !pos "an end of other rows than these"; (count, false))
         | _ -> bad !pos "what begins neither a row nor the end" in
     let count, cut_off = rows 0 None in
+    if held <> [] then Printf.printf "kinds whose discs hold bodies, arcs of a step on wheels, and the tracking error: %d asked, %d proven\n"
+      (List.length held) (List.length (List.filter Fun.id held));
     let ok = report t "the first row and each step or row after it" count n ("one of " ^ counted (List.length walls) "edge")
       ((if bodies > 0 then [Printf.sprintf "that robots are clear of %d %s, moving or at rest," bodies (if bodies = 1 then "body" else "bodies")] else [])
        @ (if tracking > 0. then [within_tracking] else []) @ (if on_wheels then [of_wheels] else []) @ ["speeds"]) cut_off in
     if cut_off then Printf.printf "%s: the file was cut off after the last row\n" file;
-    if held <> [] then Printf.printf "kinds whose discs hold bodies, arcs of a step on wheels, and the tracking error: %d asked, %d proven\n"
-      (List.length held) (List.length (List.filter Fun.id held));
     ok && List.for_all Fun.id held
 
 (* --- Any of them --- *)
