@@ -378,12 +378,12 @@ TEST(Movers, TheAuditRefusesEditsOfWhatHoldsMoversOff) {
     EXPECT_TRUE(refuses(step, AuditPoint::half_planes)) << row;
     ++nearer;
     // Nothing is decided by it, but the page and `explain` print it.
-    for (const double by : {0x1p-52, 1e-3, -0.5}) {
-      step = chosen;
-      step.constraints[static_cast<std::size_t>(binds - chosen.constraints.begin())].time_horizon *= 1.0 + by;
-      EXPECT_TRUE(refuses(step, AuditPoint::half_planes)) << row << ", " << by;
-      ++other_horizons;
-    }
+    constexpr double kBy[] = {0x1p-52, 1e-3, -0.5, -1.0};
+    step = chosen;
+    step.constraints[static_cast<std::size_t>(binds - chosen.constraints.begin())].time_horizon *=
+        1.0 + kBy[other_horizons];
+    EXPECT_TRUE(refuses(step, AuditPoint::half_planes)) << row << ", " << kBy[other_horizons];
+    ++other_horizons;
     step = chosen;
     step.stopping_steps = 0;
     EXPECT_TRUE(refuses(step, AuditPoint::braking)) << row;
