@@ -435,6 +435,36 @@ class PageItself(Page):
         self.assertIn("of 2 m/s", self.text("#tip"))
         self.assertEqual(self.run_script("return exactvo.ui.pinned"), 0, "kept")
 
+    def test_a_robot_that_stands_beside_movers_is_said_to(self):
+        self.run_program("view", ARGS.data / "robots" / "burger_movers.json", "--out", "movers.html")
+        self.open("movers.html", "#t=8&robot=R1")
+        self.assertEqual(self.text("[data-fact=stands]"), "nothing is promised to it against moving obstacles")
+        self.assertIn("It stands, since a moving obstacle could reach it while it moves", self.text("#why"))
+        self.assertNotIn("proven route", self.text("#why"))
+        self.assertRegex(self.text("#collisions"), r"R1: stood and was hit by moving obstacle \w+, .* deep at")
+        self.assertIn("it stood and was hit", self.text("#world-legend"))
+        self.open("movers.html", "#t=2&robot=R1")
+        explained = self.run_program("explain", ARGS.data / "robots" / "burger_movers.json", "--robot", "R1", "--time", "2").stdout
+        stands = self.text("[data-fact=stands]")
+        self.assertRegex(stands, "after .* s if it brakes: proven to touch no moving obstacle before")
+        self.assertIn(stands, explained)
+        judged = self.run_script('''  // of each half-plane against a mover, as it is and with edits
+            const run = exactvo.page.run, edits = [(h) => 0, (h) => h.c -= 1e-3, (h) => h.steps += 1, (h) => h.mostSpeed *= 1.1, (h) => h.nx *= -1];
+            const judged = edits.map(() => [0, 0]);
+            for (let row = 0; row < run.decisionTime.length; ++row)
+              for (const k of run.decision(row, 0).halfPlanes.keys())
+                edits.forEach((edit, e) => {
+                  const d = run.decision(row, 0), h = d.halfPlanes[k];
+                  if (h.kind !== 'moving' || !h.active) return;
+                  edit(h);
+                  ++judged[e][exactvo.checkConstraint(run, d, h).ok ? 0 : 1];
+                });
+            return judged''')
+        self.assertGreater(judged[0][0], 5)
+        self.assertEqual(judged[0][1], 0, "a half-plane of the run is not proven")
+        for proven, refuted in judged[1:]:
+            self.assertEqual((proven, refuted), (0, judged[0][0]))
+
     def test_who_waits_for_whom(self):
         scenario = {"name": "narrow", "time_limit": 12, "guidance": "none",
                     "robots": [{"id": "left", "position": [-4, 0], "goal": [4, 0]}, {"id": "right", "position": [4, 0], "goal": [-4, 0]}],

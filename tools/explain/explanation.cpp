@@ -158,9 +158,19 @@ std::string limit_words(const Decision& d) {
          (measures_others(d.scenario) ? "; reference point: " + change() : "");
 }
 
+/// Against what moves in any way, lemma 8.
+bool is_of_mover(const Decision& d, const DecisionConstraint& c) {
+  return meets_movers(d.scenario) && c.source == formation::ConstraintSource::moving_obstacle;
+}
+
 std::string contact_words(const Decision& d, std::size_t i) {
   const DecisionConstraint& c = d.step.constraints[i];
   if (formation::is_own_limit(c)) return limit_words(d);
+  if (is_of_mover(d, c))
+    return fmt::format("{} m from the robot's rim, comes {} m nearer at most until the robot stands",
+                       number(c.clearance),
+                       number(*d.scenario.moving_obstacles[c.index].max_speed *
+                              static_cast<double>(d.step.stopping_steps) * d.scenario.time_step));
   const Vec2 preferred = d.step.preferred;
   const geometry::GrownShape s = grown_shape(d.seen[i]);
   const double distance = distance_to(s);
@@ -178,6 +188,7 @@ std::string contact_words(const Decision& d, std::size_t i) {
 
 std::string proof_words(const Decision& d, const DecisionConstraint& c) {
   if (!c.certified) return "not certified";
+  if (is_of_mover(d, c)) return "proven to keep it off until the robot stands";
   if (formation::is_own_limit(c)) return "a side of the polygon within what its acceleration, or its wheels, allow";
   if (c.source != formation::ConstraintSource::robot) return "proven to exclude the velocity obstacle";
   return measures_others(d.scenario) ? "keeps to its own side of a line that may be between the ways of braking"

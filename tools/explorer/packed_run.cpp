@@ -170,7 +170,12 @@ Json robots_json(const formation::Scenario& scenario) {
 Json scene_json(const formation::Scenario& scenario) {
   Json obstacles = Json::array(), moving = Json::array();
   for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.push_back(to_json(o.id, o.shape));
-  for (const formation::MovingObstacle& o : scenario.moving_obstacles) moving.push_back(to_json(o.id, o.shape));
+  for (const formation::MovingObstacle& o : scenario.moving_obstacles) {
+    moving.push_back(to_json(o.id, o.shape));
+    if (!o.max_speed || !o.disc) continue;
+    moving.back()["max_speed"] = *o.max_speed;
+    moving.back().update(to_json(*o.disc));
+  }
   return {{"robots", robots_json(scenario)}, {"obstacles", std::move(obstacles)}, {"moving", std::move(moving)}};
 }
 
@@ -214,7 +219,8 @@ Json about_json(const datasets::RecordingFile& file) {
                                   {"until", c.until},
                                   {"at", c.deepest_at},
                                   {"depth", c.depth},
-                                  {"place", to_json(c.place)}});
+                                  {"place", to_json(c.place)},
+                                  {"standing", c.standing}});
   return json;
 }
 
@@ -353,6 +359,8 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("decision.own_stage", each<std::uint8_t>(robots, &RobotStep::own_stage), 0);
   columns.add("decision.half_planes",
               each<std::uint32_t>(robots, [](const RobotStep& r) { return r.constraints.size(); }));
+  if (meets_movers(scenario))
+    columns.add("decision.stopping_steps", each<std::uint32_t>(robots, &RobotStep::stopping_steps));
   columns.add("decision.parts", each<std::uint32_t>(robots, [](const RobotStep& r) { return r.bound.size(); }));
   columns.add("decision.moving", moving, 0);
   columns.add("decision.waits", waits);

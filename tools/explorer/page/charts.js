@@ -128,7 +128,7 @@ function collisionWords(c) {
   const depth = c.depth === null ? '' : `, ${c.depth.toPrecision(2)} m deep`;
   const isNumbered = /^(polygon|wall) [-\d]/.test(c.with);
   const other = c.kind === 'robot' ? c.with : isNumbered ? `the ${c.with} of the map` : `${c.kind} ${c.with}`;
-  return `collision with ${other}${depth} at ${c.at.toFixed(2)} s`;
+  return `${c.standing ? 'stood and was hit by' : 'collision with'} ${other}${depth} at ${c.at.toFixed(2)} s`;
 }
 
 // Events of the run as {time, robot, kind, text}; collisions among them.

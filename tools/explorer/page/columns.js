@@ -119,6 +119,7 @@ class Run {
     this.decisionTime = columns['decision.time'];
     this.starts = startsOf(columns['decision.half_planes']);
     this.partStarts = startsOf(columns['decision.parts']);
+    this.hasMovers = Boolean(columns['decision.stopping_steps']);
     this.unreachable = [];  // world.js, unreachableOf
   }
 
@@ -172,6 +173,8 @@ class Run {
       velocity: [s[at + 6], s[at + 7]], preferred: [s[at + 8], s[at + 9]], chosen: [s[at + 10], s[at + 11]],
       violation: c['decision.violation'][k], status: this.head.statuses[c['decision.status'][k]],
       hasExactMultipliers: c['decision.exact_multipliers'][k] !== 0, isOfUser: c['decision.own_stage'][k] !== 0, halfPlanes: [], parts: [],
+      // s: beside movers, after what time it can stand; 0: it stands. Else null.
+      standsAfter: this.hasMovers ? c['decision.stopping_steps'][k] * this.about.time_step : null,
     };
     for (let i = this.starts[k]; i < this.starts[k + 1]; ++i) decision.halfPlanes.push(this.halfPlane(i, row, robot));
     for (let i = this.partStarts[k]; i < this.partStarts[k + 1]; ++i)
@@ -197,6 +200,7 @@ class Run {
     h.isOwnLimit = h.kind === 'robot' && h.hard;  // of what follows
     h.limited = this.robots[robot].on_wheels ? 'wheels' : 'acceleration';
     Object.assign(h, this.placed(h, row));
+    if (h.kind === 'moving' && this.hasMovers) this.keepOff(h, row, robot);
     return h;
   }
 
@@ -212,6 +216,17 @@ class Run {
     for (const ring of this.moving[h.index].rings)
       for (let k = 0; k < ring.length; k += 2) points.push(ring[k] + m[at], ring[k + 1] + m[at + 1]);
     return {shape: {polygon: points}, ux: m[at + 2], uy: m[at + 3]};
+  }
+
+  // A mover may go anywhere: how far until the robot stands, h.reach, m, as explain has it.
+  keepOff(h, row, robot) {
+    const mover = this.moving[h.index], m = this.columns['decision.moving'], at = 4 * (row * this.moving.length + h.index);
+    h.steps = this.columns['decision.stopping_steps'][row * this.n + robot];
+    h.mostSpeed = mover.max_speed;
+    h.reach = mover.max_speed * h.steps * this.about.time_step;
+    h.shape = {disc: [mover.disc[0] + m[at], mover.disc[1] + m[at + 1], mover.disc[2]]};
+    h.ux = h.uy = 0;
+    h.radius += h.reach;
   }
 
   // In words, as the program has them.

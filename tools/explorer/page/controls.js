@@ -13,7 +13,7 @@ import {changeSpeed, setPlaying, stepBy, toEvent} from './playing.js';
 import {film, saveAnimation, saveMoment} from './saving.js';
 
 function fillLegends() {
-  worldLegend($('world-legend'), ui.colours, live.server !== null, page.run?.about.method === 'check');
+  worldLegend($('world-legend'), ui.colours, live.server !== null, page.run?.about.method === 'check', page.run?.hasMovers);
   spaceLegend($('space-legend'), ui.colours);
 }
 

@@ -123,6 +123,16 @@ function tracePoints(ctx, view, points, closed) {
   if (closed) ctx.closePath();
 }
 
+// With its tip up.
+function triangle(ctx, x, y, reach) {
+  ctx.beginPath();
+  ctx.moveTo(x - reach, y + 0.7 * reach);
+  ctx.lineTo(x + reach, y + 0.7 * reach);
+  ctx.lineTo(x, y - reach);
+  ctx.closePath();
+  ctx.stroke();
+}
+
 function arrow(ctx, x1, y1, x2, y2, head) {
   const length = Math.hypot(x2 - x1, y2 - y1);
   line(ctx, x1, y1, x2, y2);
@@ -254,4 +264,4 @@ function shortName(text, most) {
   return plain.length > most ? plain.slice(0, most - 1) + '\u2026' : plain;
 }
 
-export {PALETTES, View, SvgRecorder, tickStep, shortNumber, drawGrid, line, label, tracePoints, arrow, escapeXml, shortName};
+export {PALETTES, View, SvgRecorder, tickStep, shortNumber, drawGrid, line, label, tracePoints, arrow, triangle, escapeXml, shortName};

@@ -2,7 +2,7 @@
 // The words beside the pictures: facts of a decision, and its half-planes as cards.
 import {checkChoice, checkConstraint} from './proof.js';
 import {shortName} from './draw.js';
-import {contactWords, effectOf, effectWords, lineWords, modeWords, number, pair, speedWords, statusWords, waitWords, whyWords} from './words.js';
+import {contactWords, effectOf, effectWords, lineWords, modeWords, number, pair, speedWords, standsWords, statusWords, waitWords, whyWords} from './words.js';
 import {planWords} from './plans.js';
 import {$, element, isolated, page, shownPositions, shownRun, ui} from './state.js';
 import {currentDecision} from './views.js';
@@ -56,6 +56,8 @@ function fillWords() {
   fact(facts, 'preferred', speedWords(d.preferred), 'preferred');
   fact(facts, 'chosen', speedWords(d.chosen), 'chosen');
   fact(facts, 'difference', shift < 0.005 ? 'the preferred one itself' : `${number(shift)} m/s from the preferred one`);
+  const stands = standsWords(d);
+  if (stands) fact(facts, 'stands', stands, 'stands');
   fact(facts, 'status', statusWords(d), 'status');
   const waits = waitWords(run, d.row, ui.robot);
   if (waits) fact(facts, 'waiting', waits, 'waiting');

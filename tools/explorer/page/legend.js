@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the signs of the two pictures mean: each drawn as it is there, with a word.
-import {arrow, line} from './draw.js';
+import {arrow, line, triangle} from './draw.js';
 
 function entry(text, colours, draw) {
   const span = document.createElement('span'), canvas = document.createElement('canvas');
@@ -89,12 +89,19 @@ function plussed(ctx, colours) {
   line(ctx, 13, 1, 13, 13);
 }
 
+function triangled(ctx, colours) {
+  ctx.strokeStyle = colours.active;
+  ctx.lineWidth = 1.8;
+  triangle(ctx, 13, 8, 6);
+}
+
 // `isCheck`: of trajectories that were checked, which have neither goals nor decisions.
-function worldLegend(element, colours, isServed, isCheck) {
+function worldLegend(element, colours, isServed, isCheck, hasMovers) {
   const entries = isCheck ? [['collision', plussed]] : [['goal', crossed(false)], ['goal out of reach', crossed(true)], ['route', stroked('text', 1.4, [8, 3, 2, 3])], ['path of a joint plan', stroked('text', 2.4, [2, 3])],
     ['enclosure that the robot sees', stroked('enclosure', 1.4, [5, 4])], ['facade, piece', stroked('enclosure', 1.4, [])],
     ['presses on the robot', stroked('active', 4, [])], ['on whom a robot presses', arrowed('active', 1.4, [3, 3])], ['waits for', arrowed('bad', 3, [])],
     ['collision', plussed]];
+  if (hasMovers) entries.push(['it stood and was hit', triangled]);
   if (isServed) entries.push(['drag it', squared]);
   element.replaceChildren(...entries.map(([text, draw]) => entry(text, colours, draw)));
 }

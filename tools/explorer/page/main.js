@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page from its beginning.
-import {checkDecision, checkHalfOfPair, checkHalfPlane} from './proof.js';
+import {checkConstraint, checkDecision, checkHalfOfPair, checkHalfPlane} from './proof.js';
 import {DataProblem} from './columns.js';
 import {obstacleClearance} from './shapes.js';
 import {page, report, ui} from './state.js';
@@ -33,6 +33,6 @@ async function start() {
 }
 
 // For the console and for tests.
-window.exactvo = {page, ui, live, changed, editOfMoment, obstacleClearance, seek, chooseRobot, openRun, checkAll, checkDecision, checkHalfPlane, checkHalfOfPair, svgOfMoment, svgOfRun};
+window.exactvo = {page, ui, live, changed, editOfMoment, obstacleClearance, seek, chooseRobot, openRun, checkAll, checkDecision, checkConstraint, checkHalfPlane, checkHalfOfPair, svgOfMoment, svgOfRun};
 
 window.exactvo.ready = start().catch(report);

@@ -157,6 +157,21 @@ function checkHalfOfPair(claim, velocities, halves) {
   return halves.some(completes) ? PROVEN : refuted('it takes less than its half of the pair');
 }
 
+// Lemma 8 of docs/guide/accelerations.md: with k steps of T until the robot stands and c for how far along n the grown
+// disc reaches, n.x >= c and n.(x + (k + 1) / 2 T u) >= c + U k T for all u of the half-plane.
+// claim: {shape: {disc}, x, y, radius, nx, ny, c, steps, mostSpeed, timeStep}.
+function checkMover(claim) {
+  const {shape, x, y, radius, nx, ny, steps, mostSpeed, timeStep} = claim;
+  if (!isWellFormed(claim) || !(steps > 0)) return refuted('the claim is not well formed');
+  const n = exactVector(nx, ny), length = exactDot(n, n), step = Exact.of(timeStep);
+  const from = exactDot(n, {x: Exact.of(shape.disc[0]).minus(Exact.of(x)), y: Exact.of(shape.disc[1]).minus(Exact.of(y))});
+  const radii = Exact.of(shape.disc[2]).plus(Exact.of(radius));
+  const way = Exact.of((steps + 1) / 2).times(step).times(Exact.of(claim.c));
+  const gone = Exact.of(steps).times(step).times(Exact.of(mostSpeed));
+  const meets = (along, reach) => sumOfRootsIsPositive(along, ZERO, reach.squared().times(length));
+  return meets(from, radii) || meets(from.minus(way), radii.plus(gone)) ? refuted('the mover could meet the robot before it stands') : PROVEN;
+}
+
 function isWellFormed({shape, x, y, radius, timeHorizon, ux, uy, nx, ny, c}) {
   const numbers = shape.disc || shape.segment || shape.polygon || shape.ellipse || [];
   return [x, y, radius, ux, uy, nx, ny, c, ...numbers].every(Number.isFinite) && radius >= 0 && timeHorizon > 0 &&
@@ -247,6 +262,10 @@ function checkConstraint(run, d, h) {
   if (h.isOwnLimit) return {ok: null, why: 'a limit of its own: nothing is claimed'};
   const claim = {shape: h.shape, x: d.anchor[0], y: d.anchor[1], radius: h.radius, timeHorizon: h.timeHorizon, ux: h.ux, uy: h.uy,
     nx: h.nx, ny: h.ny, c: h.c};
+  if (h.reach !== undefined) {
+    const {steps, mostSpeed} = h;
+    return checkMover({...claim, radius: run.robots[d.robot].radius, steps, mostSpeed, timeStep: run.about.time_step});
+  }
   if (h.kind !== 'robot' || !run.robots[h.index].cooperates) return checkHalfPlane(claim);
   const other = run.decision(d.row, h.index);
   const halves = other.halfPlanes.filter((o) => o.kind === 'robot' && o.index === d.robot && !o.isOwnLimit);

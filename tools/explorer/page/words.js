@@ -50,6 +50,8 @@ function statusWords(d) {
 
 function contactWords(d, h) {
   if (h.isOwnLimit) return `a side of the polygon within what its ${h.limited === 'wheels' ? 'wheels allow' : 'acceleration allows'}`;
+  if (h.reach !== undefined)
+    return `${number(h.clearance)} m from the robot's rim, comes ${number(h.reach)} m nearer at most until the robot stands`;
   const distance = distanceOf(h, d.anchor);
   if (distance < 0) return `the robot overlaps it by ${number(-distance)} m: no cone exists`;
   const contact = timeToContact(h, d.anchor, d.preferred[0] - h.ux, d.preferred[1] - h.uy);
@@ -70,6 +72,13 @@ function lineWords(h) {
 function modeWords(run, row, robot) {
   const side = run.side(row, robot);
   return run.mode(row, robot) + (side > 0 ? ', keeping left' : side < 0 ? ', keeping right' : '');
+}
+
+// Beside movers; empty elsewhere.
+function standsWords(d) {
+  if (d.standsAfter === null) return '';
+  return d.standsAfter === 0 ? 'nothing is promised to it against moving obstacles'
+    : `after ${number(d.standsAfter)} s if it brakes: proven to touch no moving obstacle before`;
 }
 
 function enumerated(words) {
@@ -123,6 +132,8 @@ function relaxedWords(d) {
 function whyWords(run, d, mode) {
   if (d.status === 'relaxed') return [relaxedWords(d)];
   if (d.status !== 'optimal') return [];
+  if (d.standsAfter === 0)
+    return ['It stands, since a moving obstacle could reach it while it moves, at any velocity from which it stands again after a time step.'];
   const turned = TURNED[mode] || '';
   const shift = Math.hypot(d.chosen[0] - d.preferred[0], d.chosen[1] - d.preferred[1]);
   if (shift < NOT_SEEN)
@@ -154,4 +165,4 @@ function coveredWords(run) {
   return `exactvo-verify, whose checkers are proven in Coq, covers of ${of}`;
 }
 
-export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords, coveredWords};
+export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, standsWords, waitWords, whyWords, coveredWords};

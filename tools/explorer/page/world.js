@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The world: obstacles, enclosures, robots with heading and trail, goals, who presses on whom.
-import {drawGrid, label, line, arrow, shortName, tracePoints} from './draw.js';
+import {drawGrid, label, line, arrow, triangle, shortName, tracePoints} from './draw.js';
 import {distanceToSegment} from './shapes.js';
 import {drawPlan} from './plans.js';
 
@@ -420,11 +420,15 @@ function drawPinnedBody(ctx, view, colours, ui, decision) {
 }
 
 function drawCollisions(ctx, view, colours, run, t) {
-  ctx.strokeStyle = colours.bad;
-  ctx.lineWidth = 2.5;
   for (const c of run.about.collisions) {
     if (c.from > t + 1e-9) continue;
     const x = view.px(c.place[0]), y = view.py(c.place[1]);
+    ctx.strokeStyle = c.standing ? colours.active : colours.bad;
+    ctx.lineWidth = c.standing ? 1.8 : 2.5;
+    if (c.standing) {  // nothing is promised to it
+      triangle(ctx, x, y, 7);
+      continue;
+    }
     line(ctx, x - 7, y, x + 7, y);
     line(ctx, x, y - 7, x, y + 7);
   }
