@@ -13,11 +13,12 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
-#include "explorer/crowd_headings.h"
+#include "support/crowd_headings.h"
 
 namespace exactvo::tools {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 class CrowdFigures : public testing::Test {
@@ -86,7 +87,14 @@ TEST(CrowdHeadings, FollowThoseOfTheCrowdWhereEveryStepIsARow) {
       turned += norm(expected[judged] - expected[i]) > 0.5;
     }
   }
+  const CrowdCourse course = course_of(path);
   std::filesystem::remove(path);
+  ASSERT_EQ(course.headings.size(), 9U);
+  ASSERT_EQ(course.headings[4].size(), course.paths[4].size());
+  EXPECT_LT(norm(course.headings[4].back() - expected.at(expected.size() - 5)), 1e-7);
+  EXPECT_NEAR(course.drives[4]->body_radius, 0.105, 1e-9);
+  const std::string drawn = crowd_figures(course)[4].data;
+  EXPECT_THAT(drawn, AllOf(HasSubstr("where it headed"), HasSubstr("its body there")));
   EXPECT_EQ(judged, expected.size());
   EXPECT_GT(turned, 100U);
   EXPECT_NEAR(headings.drive(0).body_radius, 0.105, 1e-9);
@@ -144,6 +152,7 @@ TEST_F(CrowdFigures, ScriptsNameTheirUnitsAndDataHasEmptyCells) {
   EXPECT_THAT(figures[1].body, HasSubstr("robots / (m s)"));
   EXPECT_THAT(figures[2].body, HasSubstr("'m/s'"));
   EXPECT_THAT(figures[4].shows, HasSubstr("the ways of 60 of them"));
+  EXPECT_THAT(figures[4].data, testing::Not(HasSubstr("where it headed"))) << "they move in any direction";
 }
 
 TEST_F(CrowdFigures, ABodyAtTheRimIsDrawnWholeAndOneThatIsFarAwayChangesNoPicture) {

@@ -23,6 +23,7 @@
 namespace exactvo::tools {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -214,6 +215,10 @@ TEST(PathsFigure, MarksACollisionWithWhatMovesBetweenTwoRows) {
   run.collisions = measure(run.scenario, run.recording).collisions;
   ASSERT_FALSE(run.collisions.empty());
   EXPECT_THAT(paths_figure(run).body, HasSubstr("title 'collision'"));
+  run.collisions[0].standing = true;
+  EXPECT_THAT(paths_figure(run).body, AllOf(HasSubstr("title 'hit, it stood'"), Not(HasSubstr("title 'collision'"))));
+  EXPECT_THAT(paths_sheet("sheet", "a run", {{"a", &run}}, 1).body,
+              AllOf(HasSubstr("'hit, it stood'"), Not(HasSubstr("'collision'"))));
   bool has_distances = false;
   for (const Figure& figure : run_figures(run)) has_distances |= figure.name == "obstacle_distance";
   EXPECT_TRUE(has_distances) << "with moving obstacles alone";

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "exactvo/datasets/crowd_recording.h"
-#include "explorer/crowd_headings.h"
 #include "explorer/packed_run.h"
+#include "support/crowd_headings.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {

@@ -11,6 +11,7 @@
 
 #include "exactvo/geometry/counted.h"
 #include "figures/plane.h"
+#include "support/crowd_headings.h"
 
 namespace exactvo::tools {
 
@@ -116,8 +117,13 @@ Box plane_of(const CrowdCourse& course) {
   return plane.grown(0.02 * norm(plane.high - plane.low));
 }
 
+/// px a metre of the plane.
+double pixels_a_metre(const Box& plane) {
+  return kLongestSide / std::max(plane.width(), plane.height());
+}
+
 Canvas canvas_for(const Box& plane) {
-  const double scale = kLongestSide / std::max(plane.width(), plane.height());
+  const double scale = pixels_a_metre(plane);
   const auto side = [&](double length, double least) { return static_cast<int>(std::max(scale * length, least)); };
   return {side(plane.width(), 300.0) + 180, side(plane.height(), 160.0) + 110};
 }
@@ -184,6 +190,34 @@ Figure map_figure(const CrowdCourse& course, const std::string& name, const std:
                                {"plane", panel.body(quoted(shortened(title, characters_in(canvas.width - 60.0))))}})};
 }
 
+/// Bodies along a path, at most; each farther from the one before than its disc is wide.
+constexpr std::size_t kMostHeadings = 6;
+/// px: shorter arrows are not seen to point anywhere.
+constexpr double kLeastArrowLength = 9.0;
+
+/// The body of a robot on wheels at some points of its path, the last among them, and an arrow ahead from its axle.
+void add_headings(const CrowdCourse& course, std::size_t p, Panel& panel) {
+  if (!course.drives[p]) return;
+  const formation::DifferentialDrive& drive = *course.drives[p];
+  const std::vector<Vec2>& path = course.paths[p];
+  const double least = kLeastArrowLength / pixels_a_metre(panel.view);
+  std::vector<Points> bodies;
+  const int index = panel.data.begin("where it headed", "x [m], y [m] of the axle, then of the arrow");
+  std::optional<Vec2> before;
+  for (std::size_t k = 0; k < kMostHeadings && !path.empty(); ++k) {
+    const std::size_t at = (path.size() - 1) * (kMostHeadings - 1 - k) / (kMostHeadings - 1);
+    if (before && norm(path[at] - *before) < std::max(least, 2.0 * (drive.reference + drive.body_radius))) continue;
+    before = path[at];
+    const Vec2 e = course.headings[p][at], axle = path[at] - drive.reference * e;
+    const Vec2 arrow = std::max(drive.reference, least) * e;
+    bodies.push_back(outline(geometry::Disc{axle, drive.body_radius}));
+    panel.data.row({axle.x, axle.y, arrow.x, arrow.y});
+  }
+  panel.draw(index, fmt::format("with vectors head filled size screen 0.005,20 lw 1.2 lc rgb '{}'", series_colour(p)),
+             "", ":3:4");
+  panel.rings("its body there", bodies, line_style(0.8, series_colour(p)));
+}
+
 Figure paths_of_some(const CrowdCourse& course) {
   DataFile data;
   Panel panel(plane_of(course), data);
@@ -191,7 +225,8 @@ Figure paths_of_some(const CrowdCourse& course) {
   for (std::size_t p = 0; p < course.paths.size(); ++p) {
     const std::vector<Vec2>& path = course.paths[p];
     panel.curves("the way of a robot", {path}, line_style(1.2, series_colour(p)));
-    if (!path.empty())
+    add_headings(course, p, panel);
+    if (!path.empty() && !course.drives[p])
       panel.points("where it was at the end", {path.back()},
                    fmt::format("with points pt 7 ps 0.4 lc rgb '{}'", series_colour(p)));
   }
@@ -253,11 +288,19 @@ CrowdCourse course_of(const std::filesystem::path& recording) {
 
   CrowdRecordingReader reader(recording);
   const CrowdRecordingHead& head = reader.head();
+  CrowdHeadings headings(head);
+  course.headings.resize(course.paths.size());
+  for (std::size_t p = 0; p < course.paths.size(); ++p)
+    course.drives.push_back(headings.has(shown(p)) ? std::optional(headings.drive(shown(p))) : std::nullopt);
   CrowdRow before, now;
   std::vector<double> speeds;
   for (std::size_t k = 0; k < rows && reader.next(now); ++k) {
+    headings.follow(now);
     if (k % stride == 0 || k + 1 == rows)
-      for (std::size_t p = 0; p < course.paths.size(); ++p) course.paths[p].push_back(head.place(now, shown(p)));
+      for (std::size_t p = 0; p < course.paths.size(); ++p) {
+        course.paths[p].push_back(head.place(now, shown(p)));
+        if (course.drives[p]) course.headings[p].push_back(headings.of(shown(p)).heading);
+      }
     if (k > 0) {
       const double time = head.time_step * (now.step - before.step);
       speeds.clear();

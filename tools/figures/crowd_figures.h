@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,13 @@ struct CrowdCourse {
   double duration = 0.0;  ///< s
   Box view;               ///< m, of all places of robots
   CellGrid grid;
-  std::vector<CellCourse> cells;              ///< by number
-  std::vector<SpeedsThen> speeds;             ///< at most kMostRowsOver
-  std::vector<std::vector<Vec2>> paths;       ///< m, of robots spread evenly over the numbers
+  std::vector<CellCourse> cells;         ///< by number
+  std::vector<SpeedsThen> speeds;        ///< at most kMostRowsOver
+  std::vector<std::vector<Vec2>> paths;  ///< m, of robots spread evenly over the numbers
+  /// Of the same robots, those on wheels whose headings are known (support/crowd_headings.h): the drive, and where it
+  /// heads at the points of the path, unit vectors; empty of others.
+  std::vector<std::optional<formation::DifferentialDrive>> drives;
+  std::vector<std::vector<Vec2>> headings;
   std::vector<geometry::Segment> edges;       ///< of obstacles
   std::vector<geometry::ConvexShape> bodies;  ///< where they stood at the start
   bool cut_off = false;                       ///< the recording is

@@ -98,10 +98,18 @@ std::optional<Vec2> LabelPlaces::place_beside(Vec2 p, double radius, bool must) 
   return best_of(places, must);
 }
 
-std::optional<Vec2> LabelPlaces::place_at_side(Vec2 p, double half_width, bool must) {
-  const double away = half_width + (kHalfWidth + kEnough + 1.0) / scale_;
-  const double below = 2.0 * kHalfHeight / scale_;
-  return best_of({p + Vec2{away, 0.0}, p - Vec2{away, 0.0}, p + Vec2{0.0, below}, p - Vec2{0.0, below}}, must);
+std::optional<Vec2> LabelPlaces::place_at_side(Vec2 p, Vec2 half, bool must) {
+  const Vec2 label{(kHalfWidth + kEnough + 1.0) / scale_, (kHalfHeight + kEnough + 1.0) / scale_};
+  const double inside = 2.0 * kHalfHeight / scale_;
+  Points places;
+  for (const double round : {0.71, 1.0})  // at a corner that is round, and at one that is none
+    for (const double x : {1.0, -1.0}) {
+      if (round < 1.0) places.push_back(p + Vec2{x * (half.x + label.x), 0.0});
+      for (const double y : {1.0, -1.0})
+        places.push_back(p + Vec2{x * (round * half.x + label.x), y * (round * half.y + label.y)});
+    }
+  for (const double y : {half.y + label.y, -half.y - label.y, inside, -inside}) places.push_back(p + Vec2{0.0, y});
+  return best_of(places, must);
 }
 
 }  // namespace exactvo::tools

@@ -25,8 +25,8 @@ class LabelPlaces {
   /// where one must be written, the place with the most room.
   std::optional<Vec2> place_beside(Vec2 p, double radius, bool must);
 
-  /// The same beside or inside an object `2 * half_width` wide, centred at `p`.
-  std::optional<Vec2> place_at_side(Vec2 p, double half_width, bool must);
+  /// The same beside or inside an object centred at `p`; `half`: m, half of its width and of its height.
+  std::optional<Vec2> place_at_side(Vec2 p, Vec2 half, bool must);
 
  private:
   void add_point(Vec2 p);

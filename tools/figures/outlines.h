@@ -41,6 +41,7 @@ inline const char* series_dash(std::size_t i) {
 inline constexpr std::size_t kColours = 7, kStyles = 28;
 
 inline constexpr const char* kCollisionColour = "#e00000";
+inline constexpr const char* kHitColour = "#a05a00";        ///< a robot that stood and was hit
 inline constexpr const char* kSeparatorColour = "#b2182b";  ///< what separates a goal out of reach
 inline constexpr const char* kRouteColour = "#0072B2";
 inline constexpr const char* kGoalColour = "#CC79A7";

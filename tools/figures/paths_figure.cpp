@@ -62,7 +62,7 @@ struct PanelLayers : Panel {
 
   const RecordingFile& run;
   bool detailed;  ///< with a legend, enclosures, routes and times
-  bool has_collisions = false;
+  bool has_collisions = false, has_hits = false;
 };
 
 /// px a metre of the plane in the SVG.
@@ -211,6 +211,18 @@ void add_scene(PanelLayers& to) {
            "no room to pass");
 }
 
+std::string collision_style(bool detailed) {
+  return fmt::format("with points pt 1 ps {} lw {} lc rgb '{}'", detailed ? 2.5 : 1.2, detailed ? 4 : 2,
+                     kCollisionColour);
+}
+
+std::string hit_style(bool detailed) {
+  return fmt::format("with points pt 8 ps {} lw {} lc rgb '{}'", detailed ? 2.5 : 1.2, detailed ? 2.5 : 1.5,
+                     kHitColour);
+}
+
+constexpr const char* kHitKey = "hit, it stood";
+
 /// With more robots than this, only the middle time and the last are written, and smaller.
 constexpr int kFewRobots = 3;
 /// With more robots than this, not even the last time is written over something else.
@@ -265,10 +277,10 @@ class RobotLayers {
         const bool is_end = k == 0 || k + 1 == marks_.size();
         const Vec2 p = middle_at(obstacle, marks_[k]->time);
         if (!to_.is_drawable(p)) continue;
-        double half_width = 0.0;
+        Vec2 half{};
         for (const Vec2 q : vertices_at(obstacle, marks_[k]->time))
-          half_width = std::max(half_width, std::fabs(q.x - p.x));
-        if (const std::optional<Vec2> place = times_.place_at_side(p, half_width, is_end))
+          half = {std::max(half.x, std::fabs(q.x - p.x)), std::max(half.y, std::fabs(q.y - p.y))};
+        if (const std::optional<Vec2> place = times_.place_at_side(p, half, is_end))
           times.push_back({*place, fmt::format("{:.3g} s", marks_[k]->time)});
       }
     }
@@ -424,8 +436,14 @@ class RobotLayers {
         if (to_.is_drawable(step.leader_position)) way.push_back(step.leader_position);
       times_.keep_off(way, false);
     }
-    for (const auto& obstacle : to_.run.scenario.moving_obstacles)
-      for (const Step* mark : marks_) times_.keep_off(vertices_at(obstacle, mark->time), true);
+    for (const auto& obstacle : to_.run.scenario.moving_obstacles) {
+      Points way;
+      for (const Step* mark : marks_) {
+        times_.keep_off(vertices_at(obstacle, mark->time), true);
+        way.push_back(middle_at(obstacle, mark->time));
+      }
+      times_.keep_off(way, false);
+    }
   }
 
   /// Where, and what: the time; nothing where it would lie on something, unless it is the robot's last.
@@ -438,15 +456,15 @@ class RobotLayers {
     return {*place, fmt::format("{:.3g} s", time)};
   }
 
+  /// Hits of robots that stood, which nothing promises against, have a mark of their own.
   void add_collisions() {
-    Points marks;
+    Points collisions, hits;
     for (const formation::Collision& c : to_.run.collisions)
-      if (to_.is_drawable(c.place)) marks.push_back(c.place);
-    to_.has_collisions = !marks.empty();
-    to_.points("collisions: where they were deepest", marks,
-               fmt::format("with points pt 1 ps {} lw {} lc rgb '{}'", to_.detailed ? 2.5 : 1.2, to_.detailed ? 4 : 2,
-                           kCollisionColour),
-               to_.key("collision"));
+      if (to_.is_drawable(c.place)) (c.standing ? hits : collisions).push_back(c.place);
+    to_.has_collisions = !collisions.empty();
+    to_.has_hits = !hits.empty();
+    to_.points("collisions: where they were deepest", collisions, collision_style(to_.detailed), to_.key("collision"));
+    to_.points("hits of robots that stood: where they were deepest", hits, hit_style(to_.detailed), to_.key(kHitKey));
   }
 
   void add_goals() {
@@ -595,7 +613,8 @@ std::string name_in_all(const std::vector<PathsPanel>& panels, std::size_t i) {
 }
 
 /// What any panel has, in the styles of PanelLayers without details.
-std::vector<std::pair<std::string, std::string>> sheet_legend(const std::vector<PathsPanel>& panels, bool collisions) {
+std::vector<std::pair<std::string, std::string>> sheet_legend(const std::vector<PathsPanel>& panels, bool collisions,
+                                                              bool hits) {
   std::size_t robots = 0;
   bool polygons = false, walls = false, moving = false, leader = false, goals = false;
   for (const PathsPanel& panel : panels) {
@@ -620,7 +639,8 @@ std::vector<std::pair<std::string, std::string>> sheet_legend(const std::vector<
   if (leader) add("lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
   add("points pt 6 ps 1.3 lc rgb '#222222'", "start, end");
   if (goals) add("points pt 2 ps 0.8 lw 1.5 lc rgb '#222222'", "goal");
-  if (collisions) add(fmt::format("points pt 1 ps 1.2 lw 2 lc rgb '{}'", kCollisionColour), "collision");
+  if (collisions) all.emplace_back("keyentry " + collision_style(false), "collision");
+  if (hits) all.emplace_back("keyentry " + hit_style(false), kHitKey);
   return all;
 }
 
@@ -638,14 +658,15 @@ Figure paths_sheet(const std::string& name, const std::string& title, const std:
   sheet.panel_width = columns > 2 ? 250.0 : 380.0;
   sheet.panel_height = sheet.panel_width * views.front().height() / views.front().width();
   DataFile data;
-  bool collisions = false;
+  bool collisions = false, hits = false;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const PanelLayers paths = drawn(*panels[i].run, views[i], data, false);
     collisions = collisions || paths.has_collisions;
+    hits = hits || paths.has_hits;
     const std::string words = letter_of(i) + " " + panels[i].title + paths.origin.in_title();
     sheet.panels.push_back(paths.on_sheet(quoted(shortened(words, kPanelTitle))));
   }
-  sheet.legend = sheet_legend(panels, collisions);
+  sheet.legend = sheet_legend(panels, collisions, hits);
   return sheet_figure(name, data.text(), title + ".", sheet);
 }
 
