@@ -82,6 +82,7 @@ function fillStateOnly(run) {
   const isThere = run.isThere(i, ui.t);
   fact(facts, 'position', isThere ? `${pair([run.x(row, i), run.y(row, i)])} m` : 'not there', 'position');
   if (isThere) fact(facts, 'moving at', speedWords([run.vx(row, i), run.vy(row, i)]), 'velocity');
+  if (run.about.assumed) fact(facts, 'assumed', run.about.assumed.replace('assumed: ', ''), 'assumed');
   $('facts').replaceChildren(...facts);
   const checked = 'Trajectories that exactvo check decided on, in continuous time: bounds of moments and depths are in its answer. The page draws straight lines between the bends of a way.';
   $('why').textContent = run.about.method === 'check' ? checked : run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals (exactvo explain computes a decision again; simulate --decisions binding records all). ' +
