@@ -298,13 +298,13 @@ TEST(TrajectoryFile, UnitsInNamesOfColumnsAreReadAndNoted) {
   };
   const Named all[] = {
       {"t_ms,id,x_mm,y_mm,vx_mm_s,vy_mm_s", "1500,A,100,250,1000,-500",
-       R"(read by their names: "t_ms" in ms, "x_mm" in mm, "y_mm" in mm, "vx_mm_s" in mm/s, "vy_mm_s" in mm/s)"},
+       R"note(read by their names: "t_ms" in ms, "x_mm" in mm, "y_mm" in mm, "vx_mm_s" in mm/s, "vy_mm_s" in mm/s)note"},
       {"Time [ms];id;X (mm);Y (mm);vx [cm/s];vy [cm/s]", "1500;A;100;250;100;-50",
-       R"(read by their names: "Time [ms]" in ms, "X (mm)" in mm, "Y (mm)" in mm, "vx [cm/s]" in cm/s, "vy [cm/s]" in cm/s)"},
+       R"note(read by their names: "Time [ms]" in ms, "X (mm)" in mm, "Y (mm)" in mm, "vx [cm/s]" in cm/s, "vy [cm/s]" in cm/s)note"},
       {"t/us,id,pos_x_cm,pos_y_cm,v_x/m/s,v_y/m/s", "1500000,A,10,25,1,-0.5",
-       R"(read by their names: "t/us" in us, "pos_x_cm" in cm, "pos_y_cm" in cm)"},
+       R"note(read by their names: "t/us" in us, "pos_x_cm" in cm, "pos_y_cm" in cm)note"},
       {"timestamp_ns,id,/odom/position/x [cm],/odom/position/y [cm],vx (m/s),vy (m/s)", "1500000000,A,10,25,1,-0.5",
-       R"(read by their names: "timestamp_ns" in ns, "/odom/position/x [cm]" in cm, "/odom/position/y [cm]" in cm)"}};
+       R"note(read by their names: "timestamp_ns" in ns, "/odom/position/x [cm]" in cm, "/odom/position/y [cm]" in cm)note"}};
   for (const Named& named : all) {
     const Content c = content_of(std::string(named.header) + "\n" + named.row + "\n");
     ASSERT_EQ(c.rows.size(), 1u) << named.header;

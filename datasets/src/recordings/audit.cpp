@@ -333,7 +333,7 @@ AuditReport audit_places(const std::filesystem::path& path, std::size_t sample) 
     for (std::size_t k = 0; k < reader.head().bodies.size(); ++k)
       if (!reader.head().bodies[k].moves && reader.head().displacement(row, k) != geometry::Vec2{})
         tally.refuted(AuditPoint::sequence,
-                      at_row(tally.report.rows, "body " + std::to_string(k + 1) + " has moved, and stands still"));
+                      at_row(tally.report.rows, reader.head().body_name(k) + " has moved, and stands still"));
     if (tally.report.rows == 0) {
       motions->check_states(0, now, now);
     } else {
