@@ -88,6 +88,12 @@ PairConstraints braking(const RobotsAt& now, std::size_t i, std::size_t j) {
   return braking_pair(a, b, tau);
 }
 
+/// m/s: of the velocity that both have in common, what a step of braking takes away.
+Vec2 taken_by_braking(const DecisionRules& rules, const Anchor& a, const Anchor& b) {
+  const Vec2 common = 0.5 * (a.velocity + b.velocity);
+  return common - rules.braked(common);
+}
+
 /// None yet; the robots' bodies move to their anchors.
 void begin_constraints(const RobotsAt& now, std::vector<std::vector<Constraint>>& out) {
   out.resize(now.robots.size());
@@ -177,7 +183,8 @@ void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std:
     const Robot &r = now.robots[i], &other = now.robots[j];
     if (norm(places[i] - places[j]) > sight_of(now.rules, r.radius + other.radius, r.max_speed + other.max_speed))
       return;
-    const Party a = party(now, i, now.anchors[i].velocity), b = party(now, j, now.anchors[j].velocity);
+    const Vec2 eased = is_eased(rules, r, other) ? taken_by_braking(rules, now.anchors[i], now.anchors[j]) : Vec2{};
+    const Party a = party(now, i, now.anchors[i].velocity - eased), b = party(now, j, now.anchors[j].velocity - eased);
     const PairConstraints pair = against_each_other(a, b, rule);
     if (a.yields) out[i].push_back(pair.of_a);
     if (b.yields) out[j].push_back(pair.of_b);
@@ -204,6 +211,10 @@ void own_side_constraints(const RobotsAt& now, const std::vector<std::vector<Mea
       add_own_side_constraints(now.rules, self, other, *now.rules.measurements, m.age, out[i]);
     }
   }
+}
+
+bool is_eased(const DecisionRules& rules, const Robot& a, const Robot& b) {
+  return rules.eases_pairs && a.drive && b.drive;
 }
 
 bool is_of_robot(const Scene& scene, const Constraint& c) {

@@ -79,6 +79,10 @@ struct RobotsAt {
 /// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
 
+/// Whether the two let go of each other (liveness, rule R1): their half-planes are those of the same relative velocity,
+/// but of two robots whose common velocity brakes. One alone proves nothing; both together do.
+bool is_eased(const DecisionRules& rules, const Robot& a, const Robot& b);
+
 /// The same where robots measure each other: of each against those that it has measured, in this order, the half-planes
 /// that keep it on its own side (own_side.h).
 void own_side_constraints(const RobotsAt& now, const std::vector<std::vector<MeasuredRobot>>& measured,

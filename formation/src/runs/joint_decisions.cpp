@@ -112,8 +112,8 @@ void JointDecisions::repair(const Groups* groups, Step& row) {
   record_both_halves(fallen, row);
 }
 
-/// The halves of a pair that fell back are halves of a change from rest, not from the robots' velocities: one alone
-/// proves nothing in general. Where one of the two has its half on the record, the other gets its own, which did not
+/// The halves of a pair that fell back are halves of a change from rest, and those of an eased pair of one from a
+/// slower velocity, not from the robots' velocities: one alone proves nothing in general. Where one of the two has its half on the record, the other gets its own, which did not
 /// bind.
 void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const {
   const auto is_against = [&](std::size_t robot) {
@@ -122,7 +122,9 @@ void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     for (const DecisionConstraint& c : row.robots[i].constraints) {
       const std::size_t j = c.index;
-      if (!is_against(j)(c) || std::find(fallen[i].begin(), fallen[i].end(), j) == fallen[i].end()) continue;
+      if (!is_against(j)(c)) continue;
+      const bool fell_back = std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end();
+      if (!fell_back && !is_eased(rules_, robots_[i], robots_[j])) continue;
       std::vector<DecisionConstraint>& theirs = row.robots[j].constraints;
       if (std::any_of(theirs.begin(), theirs.end(), is_against(i))) continue;
       for (const Constraint& half : others[j])

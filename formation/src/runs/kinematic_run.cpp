@@ -56,6 +56,7 @@ class KinematicSteps final : public Stepper {
             rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return here_[i]; },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
         recording_(recording) {
+    rules_.eases_pairs = liveness_ != Liveness::off;
     if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, [this] { return schedule_.is_stopped(now_); });
@@ -328,10 +329,19 @@ class KinematicSteps final : public Stepper {
   Vec2 kept_right(std::size_t i, Vec2 preferred, RobotStep& step) {
     const bool is_free = step.mode == Mode::direct || step.mode == Mode::guided;
     if (!is_free || preferred == Vec2{}) return preferred;
-    const Vec2 turned = journeys_.kept_right(i, preferred, unhindered(i, preferred), KeepRight::kLeast, 0.0,
+    const Vec2 turned = journeys_.kept_right(i, preferred, unhindered(i, preferred), least_turn(i), 0.0,
                                              meets_robots(i, preferred));
     step.turned_right = std::atan2(cross(turned, preferred), dot(turned, preferred));
     return turned;
+  }
+
+  /// rad: wheels turn slowly, so that they pass each other sooner if they begin early. Beside obstacles that would lead
+  /// them off their routes.
+  double least_turn(std::size_t i) const {
+    const Robot& robot = scenario_.robots[i];
+    const double sees = 2.0 * (robot.radius + robot.max_speed * rules_.horizons.robots);  // another one like it, ahead
+    const bool is_early = wheels_.of(i) && space().is_clear(positions_[i], positions_[i], sees);
+    return is_early ? KeepRight::kLeastOnWheels : KeepRight::kLeast;
   }
 
   /// Its velocity, and as much of what it lacks to the preferred one as it lacks for its acceleration alone: of what

@@ -17,6 +17,7 @@ using geometry::Vec2;
 struct KeepRight {
   static constexpr double kSmoothing = 0.2;  ///< weight of the last step in the mean
   static constexpr double kLeast = 0.03;     ///< rad: of a robot that meets others and is not held up
+  static constexpr double kLeastOnWheels = 0.15;  ///< rad: the same on wheels, where nothing stands near
   static constexpr double kMost = 1.3;       ///< rad: of one that stands
   static constexpr double kPatience = 0.5;   ///< of robots that do not know whether another is near: one that sets out
                                              ///< misses its preferred speed for a step or two
