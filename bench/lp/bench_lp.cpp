@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -42,7 +43,7 @@ struct Flags {
   std::uint64_t seed = 1;
   std::size_t problems = 32768;  ///< of a set that is recorded or made: a branch predictor learns a small one
   int rounds = kRounds;
-  int untimed = 1;  ///< passes before each that is timed: a set settles in the shared cache after about four
+  std::size_t part = 8192;  ///< lines that are laid out just before they are timed
 };
 
 /// The target of the entry, or the one forced on all that have none of their own.
@@ -166,28 +167,28 @@ std::vector<Set> sets_of(const Flags& flags) {
 /// One competitor on one set.
 struct Run {
   Entry entry;
-  std::vector<std::size_t> problems;  ///< that it is given, by their numbers in the set
-  std::unique_ptr<Competitor> competitor;
-  std::vector<double> times;     ///< ns a solve, one a round
-  std::size_t wrong = 0;         ///< verdicts
+  std::vector<std::size_t> problems;       ///< that it is given, by their numbers in the set
+  std::unique_ptr<Competitor> competitor;  ///< built on all of them
+  std::vector<double> times;               ///< ns a solve, one a round
+  std::size_t wrong = 0;                   ///< verdicts
   double worst_violation = 0.0;  ///< m/s, in exact arithmetic, of answers rightly called feasible, the disc's too
   std::size_t inaccurate = 0;
 };
 
 /// What a solver throws, by its name.
-void solve(Run& run) {
+void solve(const Entry& entry, Competitor& competitor) {
   try {
-    run.competitor->run();
+    competitor.run();
   } catch (const std::exception& error) {
-    throw std::runtime_error("the solver " + run.entry.name + " threw: " + error.what());
+    throw std::runtime_error("the solver " + entry.name + " threw: " + error.what());
   } catch (...) {
-    throw std::runtime_error("the solver " + run.entry.name + " threw what is no std::exception");
+    throw std::runtime_error("the solver " + entry.name + " threw what is no std::exception");
   }
 }
 
 void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& run) {
   limit_target(run.entry);
-  solve(run);
+  solve(run.entry, *run.competitor);
   for (std::size_t k = 0; k < run.problems.size(); ++k) {
     const std::size_t i = run.problems[k];
     const Answer answer = run.competitor->answer(k);
@@ -199,14 +200,36 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
   }
 }
 
-/// What is not timed brings the set back into the shared cache, from which the others have driven it: what is
-/// compared is solving, not the machine's memory.
-void time_once(Run& run, int untimed) {
+/// What reading the clock adds to a time.
+double clock_nanoseconds() {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 1000; ++k) {
+    const double before = thread_nanoseconds();
+    least = std::min(least, thread_nanoseconds() - before);
+  }
+  return least;
+}
+
+/// Problems of a batch that leave no register of any target half empty.
+constexpr std::size_t kWhole = 16;
+
+/// A part of the set at a time, which the solver gets in its own layout as it was just written: what is compared is
+/// solving, not the machine's memory. A simulation writes its half-planes just before it solves, too.
+void time_once(const std::vector<lp::Problem>& problems, Run& run, std::size_t lines, double of_clock) {
   limit_target(run.entry);
-  for (int k = 0; k < untimed; ++k) solve(run);
-  const double before = thread_nanoseconds();
-  solve(run);
-  run.times.push_back((thread_nanoseconds() - before) / static_cast<double>(run.competitor->count()));
+  double all = 0.0;
+  for (std::size_t k = 0; k < run.problems.size();) {
+    std::vector<lp::Problem> part;
+    for (std::size_t left = lines; k < run.problems.size() && (left > 0 || part.size() % kWhole != 0); ++k) {
+      part.push_back(problems[run.problems[k]]);
+      left -= std::min(left, std::max<std::size_t>(1, part.back().constraints.size()));
+    }
+    const std::unique_ptr<Competitor> competitor = run.entry.build(part);
+    const double before = thread_nanoseconds();
+    solve(run.entry, *competitor);
+    all += thread_nanoseconds() - before - of_clock;
+  }
+  run.times.push_back(all / static_cast<double>(run.problems.size()));
 }
 
 double quantile(std::vector<double> values, double q) {
@@ -271,7 +294,7 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"repetitions", 1},
                                  {"repetition_index", 0},
                                  {"threads", 1},
-                                 {"iterations", run.times.size() * run.competitor->count()},
+                                 {"iterations", run.times.size() * run.problems.size()},
                                  {"real_time", median},
                                  {"cpu_time", median},
                                  {"time_unit", "ns"},
@@ -327,6 +350,7 @@ nlohmann::json context(const Flags& flags) {
           {"instances", flags.instances},
           {"seed", flags.seed},
           {"rounds", flags.rounds},
+          {"part", flags.part},
           {"clock", "thread CPU time, median of the rounds, solvers interleaved"}};
 }
 
@@ -377,6 +401,7 @@ int arena(const Flags& flags) {
   nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
   std::printf("%s\n", out["context"].dump().c_str());
   bool sound = true;
+  const double of_clock = clock_nanoseconds();
   const std::vector<Set> sets = sets_of(flags);
   if (std::all_of(sets.begin(), sets.end(), [](const Set& set) { return set.problems.empty(); }))
     throw std::runtime_error("found no problem in " + flags.sets + ", expected one or more");
@@ -389,7 +414,7 @@ int arena(const Flags& flags) {
     std::vector<Run> runs = enter(set, truth);
     for (Run& run : runs) compare(set.problems, truth, run);
     for (int round = 0; round < flags.rounds; ++round)
-      for (Run& run : runs) time_once(run, flags.untimed);
+      for (Run& run : runs) time_once(set.problems, run, flags.part, of_clock);
     print(set, truth, runs);
     add_json(set, runs, out);
     add_results(set, truth, runs, results);
@@ -415,10 +440,10 @@ constexpr const char* kFooter =
     "the\n"
     "sets file, filef, filei: whole, and its feasible and infeasible part; these three alone are run unless --sets\n"
     "names some. With --table it takes the place of C10.\n"
-    "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `inaccurate` velocities more than\n"
-    "1e-4 m/s from the exact one, `violation` is the worst of a line or the disc by a feasible answer, in exact\n"
-    "arithmetic; `-` where a solver takes the box round the disc. The status is 1 if a solver that says that it is\n"
-    "exact has a wrong verdict, whatever others have.\n"
+    "Times in thread CPU time, of problems just laid out (--part). `wrong` counts verdicts that are not the exact\n"
+    "ones, `inaccurate` velocities more than 1e-4 m/s from the exact one, `violation` is the worst of a line or the\n"
+    "disc by a feasible answer, in exact arithmetic; `-` where a solver takes the box round the disc. The status is 1\n"
+    "if a solver that says that it is exact has a wrong verdict, whatever others have.\n"
     "docs/guide/linear-program.md says what the sets and solvers are.";
 
 /// Of the names that Highway has, those that this build and this machine have.
@@ -444,7 +469,7 @@ bool read_flags(int argc, char** argv, Flags& flags) {
   options.whole_number("--seed", flags.seed, 0, "Of the generated sets");
   options.whole_number("--problems", flags.problems, 1, "Of a set that is recorded or made, at most");
   options.whole_number("--rounds", flags.rounds, 1, "Timed passes over a set");
-  options.whole_number("--untimed", flags.untimed, 0, "Passes before each that is timed");
+  options.whole_number("--part", flags.part, 1, "Lines of problems that are laid out just before they are timed");
   if (!options.parse(argc, argv)) return false;
   const bool sets_given = options.given("--sets");
   if (sets_given && table) throw std::runtime_error("--table has its own sets: leave --sets out");

@@ -136,6 +136,22 @@ Entry batch_entry(std::string name, std::string target, bool prove = false) {
           }};
 }
 
+/// The textbook's solver for a caller that has a Problem, as `solve` gets it: lines are converted first.
+Answer textbook_of_problem(const lp::Problem& p) {
+  TextbookLine lines[kMostTextbookLines];
+  int count = 0, hard = 0;
+  for (const lp::Constraint& c : p.constraints) {
+    const lp::Vec2 n = c.half_plane.normal;
+    const lp::Vec2 foot = c.half_plane.offset * n;
+    lines[count++] = {static_cast<float>(foot.x), static_cast<float>(foot.y), static_cast<float>(n.y),
+                      static_cast<float>(-n.x)};
+    hard += c.priority == lp::Priority::hard;
+  }
+  const TextbookVelocity v = solve_textbook(lines, count, hard, static_cast<float>(p.bound.disc),
+                                            static_cast<float>(p.preferred.x), static_cast<float>(p.preferred.y));
+  return {{static_cast<double>(v.x), static_cast<double>(v.y)}, v.feasible};
+}
+
 Answer answer_of(const lp::Solution& s) {
   return {s.velocity, feasible(s)};
 }
@@ -166,6 +182,7 @@ Join::Join(std::string name, Answer (*solve)(const lp::Problem&), Rules rules) {
 std::vector<Entry> entries() {
   std::vector<Entry> all;
   all.push_back(own_entry<Textbook>("textbook", {}));
+  all.push_back(one_by_one("textbook-of-problem", {}, textbook_of_problem));
   all.push_back(batch_entry<double>("batch-double", ""));
   all.push_back(batch_entry<double>("batch-certified", "", true));
   all.push_back(batch_entry<float>("batch-float", ""));
