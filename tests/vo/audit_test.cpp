@@ -136,8 +136,8 @@ TEST_F(AuditOfAFile, AsItWasWrittenIsClean) {
   EXPECT_TRUE(report.clean()) << datasets::to_json(report);
 }
 
-// A certified half-plane keeps more than an ulp beyond its bound: shifted by one, it still excludes every collision, and
-// only the digest of the lines shows the change.
+// A certified half-plane keeps more than an ulp beyond its bound: shifted by one, it still excludes every collision,
+// and only the digest of the lines shows the change.
 TEST_F(AuditOfAFile, TheDigestCatchesAHalfPlaneShiftedByAnUlp) {
   RecordingFile file = clean();
   for (formation::Step& step : file.recording.steps) {
