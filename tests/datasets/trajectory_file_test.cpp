@@ -334,7 +334,7 @@ TEST(TrajectoryFile, VelocitiesWhoseUnitNothingTellsAreLeftOutWithANote) {
 
 TEST(TrajectoryFile, TimesBeyondAnyDateInSecondsAreNoted) {
   EXPECT_THAT(content_of("timestamp,id,x,y\n1700000000000,A,1,2\n").file.notes,
-              ElementsAre(HasSubstr("times are read in seconds, and reach 1700000000000 s")));
+              ElementsAre(HasSubstr("times are read in seconds, and reach 1.7e+12 s")));
   EXPECT_THAT(content_of("timestamp,id,x,y\n1700000000,A,1,2\n").file.notes, ElementsAre());
 }
 
