@@ -112,9 +112,9 @@ void JointDecisions::repair(const Groups* groups, Step& row) {
   record_both_halves(fallen, row);
 }
 
-/// The halves of a pair that fell back are halves of a change from rest, and those of an eased pair of one from a
-/// slower velocity, not from the robots' velocities: one alone proves nothing in general. Where one of the two has its half on the record, the other gets its own, which did not
-/// bind.
+/// The halves of a pair that fell back are halves of a change from rest, and those of an eased pair of one from a slower
+/// velocity, not from the robots' velocities: one alone proves nothing in general. Where one of the two has its half on
+/// the record, the other gets its own, which did not bind.
 void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const {
   const auto is_against = [&](std::size_t robot) {
     return [robot](const DecisionConstraint& c) { return c.source == ConstraintSource::robot && c.index == robot; };
