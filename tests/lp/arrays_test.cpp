@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -107,6 +108,25 @@ TEST(SingleCertified, AnswersAreProvenAndCarryTheirProof) {
     by_own_multipliers += check(problem, claim_of(problem, s)) == CertificateError::none;
   }
   EXPECT_GE(1000 * by_own_multipliers, 999 * problems.size());
+}
+
+TEST(SingleCertified, OfEveryNumberOfLinesGivesTheBitsOfTheProblem) {
+  std::size_t optimal = 0, relaxed = 0;
+  for (std::size_t lines = 0; lines <= 65; ++lines)
+    for (const char* family : {"RF", lines < 3 ? "RF" : "RI"})
+      for (Problem& problem : generate(family + std::to_string(lines), 30, 7)) {
+        for (std::size_t k = 0; k < lines / 3; ++k) problem.constraints[k].priority = Priority::hard;
+        const Solution whole = solve(problem);
+        Solution of_arrays;
+        ASSERT_TRUE(solve_certified(Arrays(problem).problem(), of_arrays)) << text_of(problem);
+        EXPECT_EQ(whole.velocity, of_arrays.velocity) << text_of(problem);
+        EXPECT_EQ(whole.status, of_arrays.status) << text_of(problem);
+        EXPECT_EQ(whole.violation, of_arrays.violation) << text_of(problem);
+        optimal += whole.status == Status::optimal;
+        relaxed += whole.status == Status::relaxed;
+      }
+  EXPECT_GT(optimal, 1000u);
+  EXPECT_GT(relaxed, 500u);
 }
 
 TEST(SingleCertified, AdversarialVerdictsAreRight) {

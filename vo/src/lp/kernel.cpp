@@ -198,10 +198,12 @@ void set_velocity(const Problem& problem, Solution& s) {
   }
 }
 
+/// Of the sine of an angle between two normals.
+constexpr double kOpposite = 0x1p-39;
+
 /// Whether two of what binds are opposite to each other, up to rounding. A whole stretch of velocities then violates
 /// least, of which the kernel has one, not the nearest to `preferred`.
 bool leaves_a_stretch(const Problem& problem, const Solution& s) {
-  constexpr double kOpposite = 0x1p-39;
   Vec2 normal[3];
   std::size_t count = 0;
   double length = 0.0;
@@ -215,6 +217,13 @@ bool leaves_a_stretch(const Problem& problem, const Solution& s) {
   return leaves;
 }
 
+/// Whether no two of three lines are opposite to each other: of a problem in the kernel's units the multipliers are the
+/// sines between the normals.
+bool are_apart(const Solution& s) {
+  if (s.active_count != 3 || s.active[2].binding == kDisc) return false;
+  return std::min({s.active[0].multiplier, s.active[1].multiplier, s.active[2].multiplier}) > kOpposite;
+}
+
 /// A problem as most are: a disc, the nearest velocity, unit normals, hard constraints first. Proven, with the bits of
 /// `find_candidate`; false where it is none, or not well-formed, or where it takes more to find or to prove the answer.
 bool solve_plainly(const Problem& problem, Solution& s) {
@@ -222,11 +231,11 @@ bool solve_plainly(const Problem& problem, Solution& s) {
   const bool is_plain = (problem.objective == Objective::nearest) & (squared_norm(problem.preferred) < kInfinity) &
                         (b.disc > 0.0) & (b.disc < kInfinity) & (b.box_x == kInfinity) & (b.box_y == kInfinity);
   if (!is_plain || !run_plain(problem, s)) return false;
-  if (s.status != Status::optimal) return !leaves_a_stretch(problem, s);
+  if (s.status != Status::optimal) return are_apart(s) || !leaves_a_stretch(problem, s);
   // What may be the preferred velocity but for rounding is, if that holds.
   constexpr double kNear = 64.0 * kUnitRoundoff;
   const double near = kNear * b.disc;
-  return s.active_count == 0 || squared_norm(s.velocity - problem.preferred) > near * near ||
+  return ((s.active_count == 0) | (squared_norm(s.velocity - problem.preferred) > near * near)) ||
          sign_of_excess_speed(problem.preferred, b.disc) > 0;
 }
 
@@ -299,7 +308,9 @@ bool solve(const Problem& problem, SolveMemory& memory, Solution& answer) {
 }
 
 Solution solve(const Problem& problem) {
-  Solution answer;
+  // Copied: what clears so much at once (`rep stos`) takes a processor longer than copying.
+  static Solution unsolved;
+  Solution answer = unsolved;
   if (!solve_plainly(problem, answer) && !solve_generally(problem, memory_of_thread(), answer))
     answer = solve_exact(problem).solution;
   return answer;

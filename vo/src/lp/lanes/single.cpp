@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
@@ -108,28 +109,54 @@ struct HardLess {
   }
 };
 
-/// The line violated most beyond what it may be, or -1. Each carries its number in its last digits, so that one
-/// maximum finds both; among violations that differ by less, the later line is taken.
+/// The line violated most beyond what it may be, as lines come by in their order. Each carries its number in its last
+/// digits, so that one maximum finds both; among violations that differ by less, the later line is taken.
+template <class D, class Allowed>
+class MostViolated {
+  using V = hn::Vec<D>;
+  using Bits = hn::RebindToUnsigned<D>;
+
+ public:
+  HWY_INLINE MostViolated(double x, double y, const Allowed& allowed)
+      : vx_(hn::Set(D(), x)),
+        vy_(hn::Set(D(), y)),
+        most_(hn::Set(D(), kNothing)),
+        number_(hn::Iota(Bits(), 0)),
+        allowed_(allowed) {}
+
+  template <class Lines>
+  HWY_INLINE void see(V x, V y, V offset, Lines lines) {
+    const V along = hn::Add(hn::Mul(x, vx_), hn::Mul(y, vy_));
+    const V by = hn::Sub(hn::Sub(offset, along), allowed_.of(D(), number_));
+    const auto digits = hn::And(hn::BitCast(Bits(), by), hn::Set(Bits(), ~std::uint64_t{kMostNumbered - 1}));
+    most_ = hn::Max(most_, only(D(), lines, hn::BitCast(D(), hn::Or(digits, number_))));
+    number_ = hn::Add(number_, hn::Set(Bits(), hn::Lanes(D())));
+  }
+
+  /// -1 if none is.
+  HWY_INLINE std::ptrdiff_t line() const {
+    const double best = hn::GetLane(hn::MaxOfLanes(D(), most_));
+    std::uint64_t digits = 0;
+    std::memcpy(&digits, &best, sizeof digits);
+    return best > kNothing ? static_cast<std::ptrdiff_t>(digits % kMostNumbered) : -1;
+  }
+
+ private:
+  static constexpr double kNothing = std::numeric_limits<double>::min();
+  V vx_, vy_, most_;
+  hn::Vec<Bits> number_;
+  Allowed allowed_;
+};
+
+/// Of all lines; -1 if none is violated.
 template <class D, class Count, class Allowed>
 HWY_INLINE std::ptrdiff_t most_violated(D d, Count lines_at_most, const SingleProblem& p, double x, double y,
                                         const Allowed& allowed) {
-  using V = hn::Vec<D>;
-  const hn::RebindToUnsigned<D> bits;
-  const V vx = hn::Set(d, x), vy = hn::Set(d, y);
-  const double nothing = std::numeric_limits<double>::min();
-  V most = hn::Set(d, nothing);
-  auto number = hn::Iota(bits, 0);
-  for_registers(d, lines_at_most, p.count, [&](std::size_t k, auto lines) {
-    const V along = hn::Add(hn::Mul(hn::LoadU(d, p.normal_x + k), vx), hn::Mul(hn::LoadU(d, p.normal_y + k), vy));
-    const V by = hn::Sub(hn::Sub(hn::LoadU(d, p.offset + k), along), allowed.of(d, number));
-    const auto digits = hn::And(hn::BitCast(bits, by), hn::Set(bits, ~std::uint64_t{kMostNumbered - 1}));
-    most = hn::Max(most, only(d, lines, hn::BitCast(d, hn::Or(digits, number))));
-    number = hn::Add(number, hn::Set(bits, hn::Lanes(d)));
+  MostViolated<D, Allowed> most(x, y, allowed);
+  for_registers(d, lines_at_most, p.count, [&](std::size_t k, auto lines) HWY_ATTR {
+    most.see(hn::LoadU(d, p.normal_x + k), hn::LoadU(d, p.normal_y + k), hn::LoadU(d, p.offset + k), lines);
   });
-  const double best = hn::GetLane(hn::MaxOfLanes(d, most));
-  std::uint64_t digits = 0;
-  std::memcpy(&digits, &best, sizeof digits);
-  return best > nothing ? static_cast<std::ptrdiff_t>(digits % kMostNumbered) : -1;
+  return most.line();
 }
 
 /// A register of one problem.
@@ -331,10 +358,10 @@ class Slide : private Allowance {
  public:
   explicit HWY_INLINE Slide(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
 
-  /// False where the search has to tell, or the answer is not proven.
-  HWY_INLINE bool run(Solution& s) const {
+  /// From the line that the preferred velocity violates most, or -1. False where the search has to tell, or the answer
+  /// is not proven.
+  HWY_INLINE bool run(std::ptrdiff_t line, Solution& s) const {
     const double px = p_.preferred.x, py = p_.preferred.y;
-    const std::ptrdiff_t line = most_violated(D(), Count(), p_, px, py, AllAlike{noise - slack});
     if (line >= 0) return p_.count <= kMostSlidLines && slide(line, s);
     put(s, px, py, Status::optimal, 0, 0.0);
     set(s.active[0], 0, 0.0);
@@ -591,16 +618,31 @@ HWY_NOINLINE bool search_alone(const SingleProblem& p, Solution& s) {
 /// which the search finds sooner. Robots that prefer their full speed, up to rounding, are the common case.
 constexpr double kFarthestSlid = 1.0625;
 
-/// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way.
-template <class D, class Count, bool kProve>
-HWY_NOINLINE bool run_in(const SingleProblem& p, Solution& s) {
+/// What the preferred velocity may violate a line by.
+HWY_INLINE AllAlike allowed_at_first(const SingleProblem& p) {
+  const Allowance of(p.disc);
+  return {of.noise - of.slack};
+}
+
+/// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way. `first` gives the
+/// line that the preferred velocity violates most.
+template <class D, class Count, bool kProve, class First>
+HWY_INLINE bool run_from(const SingleProblem& p, const First& first, Solution& s) {
   const double limit = p.disc * p.disc, squared = p.preferred.x * p.preferred.x + p.preferred.y * p.preferred.y;
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
-  if (squared <= limit * kFarthestSlid && Slide<D, Count, kProve>(p).run(s)) return true;
+  if (squared <= limit * kFarthestSlid && Slide<D, Count, kProve>(p).run(first(), s)) return true;
   if (!(p.hard > 0 ? search_alone<D, true>(p, s) : search_alone<D, false>(p, s))) return false;
   if (!kProve) return true;
   return (s.status != Status::optimal || set_vertex(p, s)) && prove_in<D>(p, s);
+}
+
+template <class D, class Count, bool kProve>
+HWY_NOINLINE bool run_in(const SingleProblem& p, Solution& s) {
+  const auto first = [&]() HWY_ATTR {
+    return most_violated(D(), Count(), p, p.preferred.x, p.preferred.y, allowed_at_first(p));
+  };
+  return run_from<D, Count, kProve>(p, first, s);
 }
 
 template <bool kProve>
@@ -628,50 +670,89 @@ struct CopiedLines {
   double x[kMostCopied], y[kMostCopied], offset[kMostCopied];
 };
 
-HWY_INLINE bool copy_lines(const Constraint* from, std::size_t count, CopiedLines& to, std::size_t& hard) {
+/// A register of constraints by what they hold.
+struct ConstraintsV {
+  hn::Vec<FewLines> x, y, offset, rest;
+};
+
+/// The constraints from number k on; lanes behind the last one repeat it.
+template <class Lines>
+HWY_INLINE ConstraintsV load_constraints(const Constraint* from, std::size_t k, std::size_t last, Lines) {
+  const FewLines d;
+  const auto row = [&](std::size_t lane) HWY_ATTR {
+    const std::size_t at = std::is_same_v<Lines, Every> ? k + lane : std::min(k + lane, last);
+    return reinterpret_cast<const double*>(from + at);  // NOLINT: four each
+  };
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::LoadU(d, row(0)), hn::LoadU(d, row(0) + 1), hn::LoadU(d, row(0) + 2), hn::LoadU(d, row(0) + 3)};
+#else
+  using V = hn::Vec<FewLines>;
+  const V a = hn::LoadU(d, row(0)), b = hn::LoadU(d, row(1));
+  if constexpr (hn::MaxLanes(FewLines()) == 2) {
+    const V a_rest = hn::LoadU(d, row(0) + 2), b_rest = hn::LoadU(d, row(1) + 2);
+    return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b), hn::InterleaveLower(d, a_rest, b_rest),
+            hn::InterleaveUpper(d, a_rest, b_rest)};
+  } else {
+    const V e = hn::LoadU(d, row(2)), f = hn::LoadU(d, row(3));
+    const V ab = hn::InterleaveLower(d, a, b), ab_next = hn::InterleaveUpper(d, a, b);
+    const V ef = hn::InterleaveLower(d, e, f), ef_next = hn::InterleaveUpper(d, e, f);
+    return {hn::ConcatLowerLower(d, ef, ab), hn::ConcatLowerLower(d, ef_next, ab_next), hn::ConcatUpperUpper(d, ef, ab),
+            hn::ConcatUpperUpper(d, ef_next, ab_next)};
+  }
+#endif
+}
+
+/// False where a normal is not of unit length, an offset not finite or a soft constraint before a hard one. In passing
+/// the line that the preferred velocity violates most is found, first: the search waits for it, and for nothing else.
+template <class Count>
+HWY_INLINE bool copy_lines(const Constraint* from, CopiedLines& to, SingleProblem& p, std::ptrdiff_t& first) {
   using V = hn::Vec<FewLines>;
   const FewLines d;
   const hn::RebindToUnsigned<FewLines> bits;
-  constexpr std::size_t kLanes = hn::MaxLanes(FewLines());
+  const std::size_t count = p.count;
+  MostViolated<FewLines, AllAlike> most(p.preferred.x, p.preferred.y, allowed_at_first(p));
+  std::uint64_t soft = 0;
+  for_registers(d, Count(), count, [&](std::size_t k, auto lines) HWY_ATTR {
+    const ConstraintsV c = load_constraints(from, k, count - 1, lines);
+    most.see(c.x, c.y, c.offset, lines);
+    hn::StoreU(c.x, d, to.x + k);
+    hn::StoreU(c.y, d, to.y + k);
+    hn::StoreU(c.offset, d, to.offset + k);
+    const auto in_sign = hn::BitCast(d, hn::ShiftLeft<63>(hn::BitCast(bits, c.rest)));
+    std::uint8_t is_soft = 0;
+    hn::StoreMaskBits(d, hn::MaskFromVec(in_sign), &is_soft);
+    soft |= std::uint64_t{is_soft} << k;
+  });
+  first = most.line();
   const V one = hn::Set(d, 1.0), unit = hn::Set(d, kUnitLength), far = hn::Set(d, HUGE_VAL);
   auto all_good = hn::Eq(one, one);
-  std::uint64_t soft = 0;
-  const auto numbers_of = [&](std::size_t k) {
-    return reinterpret_cast<const double*>(from + k);
-  };  // NOLINT: four each
-  const auto copy = [&](const double* numbers, std::size_t k) HWY_ATTR {
-    V x, y, offset, rest;
-    hn::LoadInterleaved4(d, numbers, x, y, offset, rest);
+  for_registers(d, Count(), count, [&](std::size_t k, auto) HWY_ATTR {
+    const V x = hn::LoadU(d, to.x + k), y = hn::LoadU(d, to.y + k), offset = hn::LoadU(d, to.offset + k);
     const V length = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
     const auto is_unit = hn::Le(hn::Abs(hn::Sub(length, one)), unit);
     all_good = hn::And(all_good, hn::And(is_unit, hn::Lt(hn::Abs(offset), far)));
-    hn::StoreU(x, d, to.x + k);
-    hn::StoreU(y, d, to.y + k);
-    hn::StoreU(offset, d, to.offset + k);
-    std::uint8_t of_four = 0;
-    hn::StoreMaskBits(bits, hn::TestBit(hn::BitCast(bits, rest), hn::Set(bits, std::uint64_t{1})), &of_four);
-    soft |= std::uint64_t{of_four} << k;
-  };
-  std::size_t k = 0;
-  for (; k + kLanes <= count; k += kLanes) copy(numbers_of(k), k);
-  if (k < count) {  // the last ones, in registers too, and one of them as often as is left
-    double last[4 * kLanes];
-    for (std::size_t at = 0; at < 4 * kLanes; at += kLanes)
-      hn::StoreU(hn::LoadU(d, numbers_of(std::min(k + at / 4, count - 1)) + at % 4), d, last + at);
-    copy(last, k);
-  }
+  });
   if (!hn::AllTrue(d, all_good)) return false;
   const std::uint64_t all = count < 64 ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
   soft &= all;
-  hard = soft == 0 ? count : hwy::Num0BitsBelowLS1Bit_Nonzero64(soft);
-  return soft == 0 || soft == (all >> hard << hard);
+  p.hard = soft == 0 ? count : hwy::Num0BitsBelowLS1Bit_Nonzero64(soft);
+  return soft == 0 || soft == (all >> p.hard << p.hard);
+}
+
+template <class D, class Count>
+HWY_NOINLINE bool run_copied(const Problem& problem, Solution& s) {
+  CopiedLines lines;
+  SingleProblem p{lines.x, lines.y, lines.offset, problem.constraints.size(), 0, problem.preferred, problem.bound.disc};
+  std::ptrdiff_t first = -1;
+  if (!copy_lines<Count>(problem.constraints.data(), lines, p, first)) return false;
+  return run_from<D, Count, true>(
+      p, [&] { return first; }, s);
 }
 
 bool run_plain_lines(const Problem& problem, Solution& s) {
-  CopiedLines lines;
-  SingleProblem p{lines.x, lines.y, lines.offset, problem.constraints.size(), 0, problem.preferred, problem.bound.disc};
-  if (p.count > kMostCopied || !copy_lines(problem.constraints.data(), p.count, lines, p.hard)) return false;
-  return run<true>(p, s);
+  const std::size_t count = problem.constraints.size();
+  if (count == 0 || count > kFewLines) return count <= kMostCopied && run_copied<ManyLines, AnyCount>(problem, s);
+  return count > 8 ? run_copied<FewLines, UpTo12>(problem, s) : run_copied<FewLines, UpTo8>(problem, s);
 }
 
 }  // namespace exactvo::lp::HWY_NAMESPACE
