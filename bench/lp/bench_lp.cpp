@@ -43,7 +43,7 @@ struct Flags {
   std::uint64_t seed = 1;
   std::size_t problems = 32768;  ///< of a set that is recorded or made: a branch predictor learns a small one
   int rounds = kRounds;
-  std::size_t part = 8192;  ///< lines that are laid out just before they are timed
+  std::size_t part = 2048;  ///< lines that are laid out just before they are timed
 };
 
 /// The target of the entry, or the one forced on all that have none of their own.
