@@ -215,7 +215,7 @@ TEST(PathsFigure, MarksACollisionWithWhatMovesBetweenTwoRows) {
   run.collisions = measure(run.scenario, run.recording).collisions;
   ASSERT_FALSE(run.collisions.empty());
   EXPECT_THAT(paths_figure(run).body, HasSubstr("title 'collision'"));
-  run.collisions[0].standing = true;
+  for (formation::Collision& c : run.collisions) c.standing = true;
   EXPECT_THAT(paths_figure(run).body, AllOf(HasSubstr("title 'hit, it stood'"), Not(HasSubstr("title 'collision'"))));
   EXPECT_THAT(paths_sheet("sheet", "a run", {{"a", &run}}, 1).body,
               AllOf(HasSubstr("'hit, it stood'"), Not(HasSubstr("'collision'"))));
@@ -258,6 +258,20 @@ TEST(LabelPlaces, KeepClearOfLinesAndOfEachOther) {
   for (int k = 0; k < 200; ++k) crowded.keep_off({{0, 0.1 * k}, {20, 0.1 * k}}, false);
   EXPECT_FALSE(crowded.place_beside({10, 10}, 0.5, false).has_value());
   EXPECT_TRUE(crowded.place_beside({10, 10}, 0.5, true).has_value());
+}
+
+TEST(LabelPlaces, AtTheSideKeepClearOfTheWayAndOfEachOther) {
+  LabelPlaces places(Box{{0, 0}, {20, 20}}, 30.0);
+  places.keep_off({{0, 10}, {20, 10}}, false);
+  std::vector<Vec2> taken;
+  for (int k = 0; k < 4; ++k) {
+    const std::optional<Vec2> place = places.place_at_side({10, 10}, {0.5, 0.5}, true);
+    ASSERT_TRUE(place.has_value());
+    EXPECT_GT(30.0 * std::fabs(place->y - 10.0), 8.0) << "on the way";
+    for (const Vec2 other : taken)
+      EXPECT_TRUE(30.0 * std::fabs(place->x - other.x) > 44.0 || 30.0 * std::fabs(place->y - other.y) > 16.0);
+    taken.push_back(*place);
+  }
 }
 
 /// Where a label goes when all points of all curves are looked at.
