@@ -167,7 +167,7 @@ void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Cons
 }
 
 void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out) {
-  const auto& [rules, robots, anchors, scene] = now;
+  const auto& [rules, robots, anchors, scene, eases] = now;
   const std::size_t n = robots.size();
   begin_constraints(now, out);
   const vo::ReciprocalOptions rule = pair_rule(rules);
@@ -183,7 +183,7 @@ void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std:
     const Robot &r = now.robots[i], &other = now.robots[j];
     if (norm(places[i] - places[j]) > sight_of(now.rules, r.radius + other.radius, r.max_speed + other.max_speed))
       return;
-    const Vec2 eased = is_eased(rules, r, other) ? taken_by_braking(rules, now.anchors[i], now.anchors[j]) : Vec2{};
+    const Vec2 eased = is_eased(now, i, j) ? taken_by_braking(now.rules, now.anchors[i], now.anchors[j]) : Vec2{};
     const Party a = party(now, i, now.anchors[i].velocity - eased), b = party(now, j, now.anchors[j].velocity - eased);
     const PairConstraints pair = against_each_other(a, b, rule);
     if (a.yields) out[i].push_back(pair.of_a);
@@ -213,8 +213,8 @@ void own_side_constraints(const RobotsAt& now, const std::vector<std::vector<Mea
   }
 }
 
-bool is_eased(const DecisionRules& rules, const Robot& a, const Robot& b) {
-  return rules.eases_pairs && a.drive && b.drive;
+bool is_eased(const RobotsAt& now, std::size_t i, std::size_t j) {
+  return now.eases && (*now.eases)[i] && (*now.eases)[j];
 }
 
 bool is_of_robot(const Scene& scene, const Constraint& c) {

@@ -72,6 +72,7 @@ struct RobotsAt {
   const std::vector<Robot>& robots;
   const std::vector<Anchor>& anchors;  ///< of each robot
   Scene& scene;
+  const std::vector<char>* eases = nullptr;  ///< of each robot, whether it lets go of others that do; null: none does
 };
 
 /// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to
@@ -81,7 +82,7 @@ void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std:
 
 /// Whether the two let go of each other (liveness, rule R1): their half-planes are those of the same relative velocity,
 /// but of two robots whose common velocity brakes. One alone proves nothing; both together do.
-bool is_eased(const DecisionRules& rules, const Robot& a, const Robot& b);
+bool is_eased(const RobotsAt& now, std::size_t i, std::size_t j);
 
 /// The same where robots measure each other: of each against those that it has measured, in this order, the half-planes
 /// that keep it on its own side (own_side.h).

@@ -124,7 +124,7 @@ void JointDecisions::record_both_halves(const std::vector<std::vector<std::size_
       const std::size_t j = c.index;
       if (!is_against(j)(c)) continue;
       const bool fell_back = std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end();
-      if (!fell_back && !is_eased(rules_, robots_[i], robots_[j])) continue;
+      if (!fell_back && !is_eased(now(), i, j)) continue;
       std::vector<DecisionConstraint>& theirs = row.robots[j].constraints;
       if (std::any_of(theirs.begin(), theirs.end(), is_against(i))) continue;
       for (const Constraint& half : others[j])

@@ -27,7 +27,8 @@ class JointDecisions {
   /// All must outlive it.
   JointDecisions(const DecisionRules& rules, const std::vector<Robot>& robots, Scene& scene,
                  const RunSchedule& schedule, Decider& decider, ViewpointOf viewpoint, ChooseAgain choose_again)
-      : rules_(rules),
+      : eases(robots.size(), 0),
+        rules_(rules),
         robots_(robots),
         scene_(scene),
         schedule_(schedule),
@@ -41,6 +42,7 @@ class JointDecisions {
 
   std::vector<Anchor> anchors;                  ///< where half-planes of this step are built
   std::vector<std::vector<Constraint>> others;  ///< its half-planes against robots and moving obstacles
+  std::vector<char> eases;                      ///< `RobotsAt::eases`: none, unless the run says so
   double gap = kContactSkin;  ///< m, that pairs keep of which one goes by plan, and pairs that fall back at least
 
   /// Takes the robots as they are.
@@ -73,7 +75,7 @@ class JointDecisions {
   void settle(Groups* groups, Step& row);
 
  private:
-  RobotsAt now() const { return {rules_, robots_, anchors, scene_}; }
+  RobotsAt now() const { return {rules_, robots_, anchors, scene_, &eases}; }
   void repair(const Groups* groups, Step& row);
   void record_both_halves(const std::vector<std::vector<std::size_t>>& fallen, Step& row) const;
 

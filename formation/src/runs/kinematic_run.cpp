@@ -56,7 +56,6 @@ class KinematicSteps final : public Stepper {
             rules_, scenario_.robots, scene_, schedule_, own_.decider(), [this](std::size_t i) { return here_[i]; },
             [this](std::size_t i, RobotStep& step) { choose_again(i, step); }),
         recording_(recording) {
-    rules_.eases_pairs = liveness_ != Liveness::off;
     if ((liveness_ != Liveness::off && robots.size() > 1) || rules_.has_brakes() || rules_.separate)
       groups_.emplace(scenario_, rules_, scenario_.robots, guide ? guide->space() : open_space_,
                       liveness_ == Liveness::plan, [this] { return schedule_.is_stopped(now_); });
@@ -143,6 +142,8 @@ class KinematicSteps final : public Stepper {
     if (journeys_.has_claims()) look_at_claims();
     if (groups_) look_at_groups();
     joint_.begin_step();
+    if (liveness_ != Liveness::off)
+      for (std::size_t i = 0; i < ways_.size(); ++i) joint_.eases[i] = wheels_.of(i) && is_clear_for(i, 1.0);
     if (measuring_) {
       measuring_->look(positions_, velocities_);
       joint_.look_at_measured(measuring_->measured());
@@ -338,10 +339,14 @@ class KinematicSteps final : public Stepper {
   /// rad: wheels turn slowly, so that they pass each other sooner if they begin early. Beside obstacles that would lead
   /// them off their routes.
   double least_turn(std::size_t i) const {
+    return wheels_.of(i) && is_clear_for(i, 2.0) ? KeepRight::kLeastOnWheels : KeepRight::kLeast;
+  }
+
+  /// Whether obstacles are farther than so many times the way at whose end it can touch one within `horizons.robots`.
+  bool is_clear_for(std::size_t i, double ways) const {
     const Robot& robot = scenario_.robots[i];
-    const double sees = 2.0 * (robot.radius + robot.max_speed * rules_.horizons.robots);  // another one like it, ahead
-    const bool is_early = wheels_.of(i) && space().is_clear(positions_[i], positions_[i], sees);
-    return is_early ? KeepRight::kLeastOnWheels : KeepRight::kLeast;
+    const double sees = ways * (robot.radius + robot.max_speed * rules_.horizons.robots);
+    return space().is_clear(positions_[i], positions_[i], sees);
   }
 
   /// Its velocity, and as much of what it lacks to the preferred one as it lacks for its acceleration alone: of what

@@ -25,7 +25,6 @@ struct DecisionRules {
   double time_step = 0.05;                            ///< s, > 0
   double neighbour_distance = 15.0;                   ///< m, > 0
   bool separate = false;                              ///< robots that overlap part, and do not come nearer
-  bool eases_pairs = false;                           ///< robots on wheels let go of each other (liveness, rule R1)
   double acceleration = geometry::kInfinity;          ///< m/s^2, of each robot; on wheels if others measure it
   std::optional<Measurements> measurements = {};      ///< where robots measure each other
   double braking_time = 0.0;                          ///< s, tau of braking; 0: velocities jump
