@@ -69,7 +69,7 @@ TEST(CrowdOverRanks, TwoThreeAndFourGiveTheBytesOfOne) {
   const Outcome audit = here.run("audit one.evr");
   EXPECT_EQ(audit.status, 1) << audit.err;
   EXPECT_GT(count_of(" overlaps ", audit.out), 0U) << audit.out;
-  EXPECT_EQ(count_of(" overlaps ", audit.out), count_of(" overlaps moving obstacle 'body 1'", audit.out)) << audit.out;
+  EXPECT_EQ(count_of(" overlaps ", audit.out), count_of(" overlaps moving obstacle 'tram'", audit.out)) << audit.out;
   // Ranks imply it, and write one folder.
   const Outcome folder = here.run("simulate mixed.json --no-figures --out out", over(2));
   EXPECT_EQ(folder.status, 0) << folder.err;
