@@ -78,7 +78,7 @@ endif()
 # The README's links hold where it is installed as well.
 install(FILES LICENSE README.md CITATION.cff CHANGELOG.md CONTRIBUTING.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT runtime)
-install(FILES docs/building.md docs/claims.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
+install(FILES docs/building.md docs/claims.md docs/stability.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
 install(DIRECTORY docs/guide docs/images docs/adr docs/design docs/measurements DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DOCDIR}/datasets COMPONENT runtime)
