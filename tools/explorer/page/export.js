@@ -102,15 +102,22 @@ function recordFilm(canvas, from, until, speed, frame, done) {
     return () => {};
   }
   const recorder = new MediaRecorder(canvas.captureStream(30), {mimeType: type, videoBitsPerSecond: 6e6}), chunks = [];
-  recorder.ondataavailable = (event) => chunks.push(event.data);
+  // A busy computer encodes its first picture late: until it has, the last one stays.
+  const headSize = 1000, longestWait = 5000;  // bytes of a film without a picture, at most; ms
+  let size = 0;
+  recorder.ondataavailable = (event) => {
+    chunks.push(event.data);
+    size += event.data.size;
+  };
   recorder.onstop = () => done(new Blob(chunks, {type}));
-  recorder.start();
+  recorder.start(100);
   const begin = performance.now();
   let over = false;
   const tick = () => {
     const t = Math.min(until, from + speed * (performance.now() - begin) / 1000);
     frame(t);
-    if (t >= until || over) setTimeout(() => recorder.stop(), 200);
+    const isLate = size < headSize && performance.now() < begin + 1000 * (until - from) / speed + longestWait;
+    if (over || (t >= until && !isLate)) setTimeout(() => recorder.stop(), 200);
     else requestAnimationFrame(tick);
   };
   tick();
