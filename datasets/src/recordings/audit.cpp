@@ -453,9 +453,9 @@ std::vector<std::string> not_audited(const AuditReport& report) {
   if (!report.scenario_was_given)
     words.emplace_back("that the scenario in the recording is the intended one (--scenario FILE compares them)");
   words.emplace_back(
-      "why a velocity was preferred, and what is said beside the numbers: mode, side, note, lacks_room_to_turn, "
-      "clearance, "
-      "fell_back, method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall time");
+      "why a velocity was preferred, and entries that explain it: mode, side, note, lacks_room_to_turn, "
+      "clearance, fell_back, method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall "
+      "time");
   words.emplace_back(
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");

@@ -39,7 +39,7 @@ struct RowInRun {
 /// In what is said before the first row.
 std::string obstruction_in(const RecordingFile& beginning);
 std::string obstruction_in(const formation::Step& row);
-/// Of a run of this many rows.
+/// The same for a joint plan in a run of `rows` rows.
 std::string obstruction_in(const formation::JointPlan& plan, std::size_t rows);
 
 /// Where robots were when goals' bodies and plans begin. Plans begin in rows that have passed: of these the last are

@@ -342,7 +342,7 @@ class KinematicSteps final : public Stepper {
     return wheels_.of(i) && is_clear_for(i, 2.0) ? KeepRight::kLeastOnWheels : KeepRight::kLeast;
   }
 
-  /// Whether obstacles are farther than so many times the way at whose end it can touch one within `horizons.robots`.
+  /// Whether no obstacle is within `ways` times its reach: its radius and its way in `horizons.robots` at full speed.
   bool is_clear_for(std::size_t i, double ways) const {
     const Robot& robot = scenario_.robots[i];
     const double sees = ways * (robot.radius + robot.max_speed * rules_.horizons.robots);

@@ -32,8 +32,8 @@ class StraightWays {
   /// rational, and perhaps in no other direction that doubles name.
   Stop end_at(Vec2 x) const;
 
-  /// Whether the gate is strict Gabriel. The middle of any other narrow side may be off the way, or not free; there is
-  /// a narrower gate beside it, which the way crosses too.
+  /// Whether the gate is strict Gabriel. The middle of any other narrow side may be off the way, or not free. Then
+  /// the way also crosses a narrower gate beside it.
   bool is_gabriel(int portal) const;
 
   /// Points from which it is reached straight, farthest first; the last is the point itself.

@@ -198,7 +198,7 @@ void set_velocity(const Problem& problem, Solution& s) {
   }
 }
 
-/// Of the sine of an angle between two normals.
+/// Two normals with a sine below this between them count as opposite.
 constexpr double kOpposite = 0x1p-39;
 
 /// Whether two of what binds are opposite to each other, up to rounding. A whole stretch of velocities then violates
