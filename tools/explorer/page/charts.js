@@ -122,7 +122,7 @@ function drawStrip(ctx, run, series, strip, colours, width, top, height) {
   }
 }
 
-const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5};
+const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5, hit: 6};
 
 function collisionWords(c) {
   const depth = c.depth === null ? '' : `, ${c.depth.toPrecision(2)} m deep`;
@@ -131,18 +131,19 @@ function collisionWords(c) {
   return `${c.standing ? 'stood and was hit by' : 'collision with'} ${other}${depth} at ${c.at.toFixed(2)} s`;
 }
 
-// Events of the run as {time, robot, kind, text}; collisions among them.
+// Events of the run as {time, robot, kind, text}; collisions among them, and hits of robots that stood.
 function eventsOf(run) {
   const ids = new Map(run.robots.map((r, i) => [r.id, i]));
   const events = run.head.events.map((e) => ({...e}));
   for (const c of run.about.collisions)
-    events.push({time: c.from, robot: ids.get(c.robot), kind: 'collision', text: collisionWords(c)});
+    events.push({time: c.from, robot: ids.get(c.robot), kind: c.standing ? 'hit' : 'collision', text: collisionWords(c)});
   events.sort((a, b) => a.time - b.time);
   return events;
 }
 
 function drawMarks(ctx, run, events, robot, colours, width, top, height) {
-  const paints = [colours.series[0], colours.bad, colours.chosen, colours.coneRobot, colours.active, colours.bad];
+  const paints = [colours.series[0], colours.bad, colours.chosen, colours.coneRobot, colours.active, colours.bad,
+    colours.active];
   for (const mine of [false, true])
     for (const e of events) {
       if ((e.robot === robot) !== mine) continue;
@@ -150,7 +151,7 @@ function drawMarks(ctx, run, events, robot, colours, width, top, height) {
       ctx.globalAlpha = mine ? 1 : 0.3;
       ctx.fillStyle = paints[MARKS[e.kind] || 0];
       ctx.beginPath();
-      if (e.kind === 'collision' || e.kind === 'relaxed') {
+      if (e.kind === 'collision' || e.kind === 'hit' || e.kind === 'relaxed') {
         ctx.moveTo(x - 4, top);
         ctx.lineTo(x + 4, top);
         ctx.lineTo(x, top + height);

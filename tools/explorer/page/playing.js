@@ -52,7 +52,7 @@ function stepBy(direction) {
 }
 
 function toEvent(direction) {
-  const mine = page.events.filter((e) => e.robot === ui.robot || e.kind === 'collision');
+  const mine = page.events.filter((e) => e.robot === ui.robot || e.kind === 'collision' || e.kind === 'hit');
   const next = direction > 0 ? mine.find((e) => e.time > ui.t + 1e-9) : mine.filter((e) => e.time < ui.t - 1e-9).pop();
   if (!next) return;
   setPlaying(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The world: obstacles, enclosures, robots with heading and trail, goals, who presses on whom.
+// The world: obstacles, enclosures, robots with heading and trail, goals, what presses on each robot.
 import {drawGrid, label, line, arrow, triangle, shortName, tracePoints} from './draw.js';
 import {distanceToSegment} from './shapes.js';
 import {drawPlan} from './plans.js';
@@ -365,7 +365,7 @@ function drawRobot(ctx, view, colours, run, ui, positions, i) {
   }
 }
 
-// Whose half-planes press on whom (multiplier above 0): thin arrows between robots.
+// Thin arrows from each robot to the robots whose half-planes press on it (multiplier above 0).
 function drawPressure(ctx, view, colours, run, ui, positions) {
   const row = run.decisionRowAt(ui.t);
   if (row < 0 || run.n > 200) return;
@@ -386,7 +386,7 @@ function drawPressure(ctx, view, colours, run, ui, positions) {
   ctx.setLineDash([]);
 }
 
-// Who waits for whom: thick arrows from rim to rim.
+// From a robot to the one that it waits for: thick arrows from rim to rim.
 function drawWaits(ctx, view, colours, run, ui, positions) {
   const row = run.decisionRowAt(ui.t);
   if (row < 0 || run.n > 1000) return;
