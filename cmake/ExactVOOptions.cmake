@@ -62,6 +62,15 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_CXX_COMPILER_LAUNCHER
       "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${EXACTVO_CCACHE}")
   endif()
+  # The default linker takes about four times as long for each of the hundred programs of the tests.
+  include(CheckLinkerFlag)
+  foreach(linker IN ITEMS mold lld)
+    check_linker_flag(CXX -fuse-ld=${linker} EXACTVO_LINKS_WITH_${linker})
+    if(EXACTVO_LINKS_WITH_${linker})
+      add_link_options(-fuse-ld=${linker})
+      break()
+    endif()
+  endforeach()
 endif()
 
 add_library(exactvo_build_flags INTERFACE)

@@ -23,6 +23,7 @@ for_python=(
 )
 for_tests=(
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
+  mold                                                              # links them faster; without, the usual linker does
   libgeographiclib-dev                                              # geodesics, to judge projections by
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
   python3-pytest mypy python3-pandas python3-shapely                # tests of the Python package
