@@ -4,7 +4,7 @@
 // both one after the other by the CPU time of the thread, so that a busy machine slows both alike. Preferences are set
 // before, untimed. One thread.
 //
-//   bench_crowd --benchmark_filter='crowd/10000/'
+//   bench_crowd --benchmark_filter='crowd/10000/' [--target=AVX2]
 //
 // Counters: `ns` a robot step; `textbook` how many times as long the textbook takes; `of_plain` time over that of the
 // same without certification (medians of the rounds); `of_wishes` time of a whole step over that of its first level, in
@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "crowd_scenes.h"
+#include "lp/sets/target.h"
 #include "textbook_crowd.h"
 
 namespace exactvo::bench {
@@ -243,6 +244,16 @@ void register_all() {
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) {
+  const std::string target_flag = "--target=";
+  for (int k = 1; k < argc; ++k) {
+    if (std::string(argv[k]).rfind(target_flag, 0) != 0) continue;
+    if (!exactvo::lp::limit_batch_target(argv[k] + target_flag.size())) {
+      std::fprintf(stderr, "bench_crowd: error: %s is no SIMD target of this machine and build\n", argv[k]);
+      return 2;
+    }
+    std::copy(argv + k + 1, argv + argc, argv + k);
+    --argc, --k;
+  }
   exactvo::bench::register_all();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

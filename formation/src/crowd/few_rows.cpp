@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/few_rows.h"
 
+#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -12,139 +13,175 @@ HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using RowLanes = hn::CappedTag<double, 8>;
+using Numbers = hn::CappedTag<double, FewRows::kLanes>;
+using N = hn::Vec<Numbers>;
+using M = hn::Mask<Numbers>;
 
 /// Where normals are nearer to parallel than this, the square of the sine, the linear program decides.
 constexpr double kParallel = 0x1p-10;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+HWY_INLINE N number(double value) {
+  return hn::Set(Numbers(), value);
+}
+
 /// Lattice steps.
 struct Way {
-  double x, y;
+  N x, y;
 };
 
-/// Rows that are filled up to whole registers by rows that always hold.
-class RowSearch {
+HWY_INLINE N dot(Way a, Way b) {
+  return hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y));
+}
+
+HWY_INLINE Way choose(M first, Way a, Way b) {
+  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y)};
+}
+
+/// A row of each robot.
+struct Row {
+  Way normal;
+  N inward;  ///< FewRows::least, moved inward by kHalfDiagonal
+  N number, misses;
+};
+
+/// As many robots as there are lanes, from `lane` on.
+class Robots {
  public:
-  explicit RowSearch(FewRows& rows) : rows_(rows) {
-    const std::size_t lanes = hn::Lanes(RowLanes());
-    filled_ = (rows.count + lanes - 1) / lanes * lanes;
-    for (std::size_t k = rows.count; k < filled_; ++k) {
-      rows.x[k] = 1.0, rows.y[k] = 0.0;
-      rows.least[k] = -std::numeric_limits<double>::infinity();
-    }
-  }
+  Robots(const FewRows& rows, std::size_t lane, std::size_t count)
+      : rows_(rows), lane_(lane), count_(count), wish_{load(rows.wish_x), load(rows.wish_y)} {}
 
-  bool allow(Way m) const {
-    const RowLanes d;
-    auto all = hn::Eq(hn::Zero(d), hn::Zero(d));
-    for (std::size_t k = 0; k < filled_; k += hn::Lanes(d))
-      all = hn::And(all, hn::Ge(along(k, m), hn::Load(d, rows_.least + k)));
-    return hn::AllTrue(d, all);
-  }
-
-  /// Whether the wish is allowed; else also what each row, moved inward, misses of it.
-  bool allow_wish(Way wish) {
-    const RowLanes d;
-    auto all = hn::Eq(hn::Zero(d), hn::Zero(d));
-    auto most = hn::Set(d, -std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < filled_; k += hn::Lanes(d)) {
-      const auto x = hn::Load(d, rows_.x + k), y = hn::Load(d, rows_.y + k), least = hn::Load(d, rows_.least + k);
-      const auto at = along(k, wish), length = hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
-      const auto inward = hn::Add(least, hn::Mul(hn::Set(d, kHalfDiagonal), length)), its = hn::Sub(inward, at);
-      all = hn::And(all, hn::Ge(at, least));
-      most = hn::Max(most, its);
-      hn::Store(inward, d, inward_ + k);
-      hn::Store(its, d, missing_ + k);
+  HWY_INLINE void find(Few* found, Motion* m) {
+    const N zero = number(0.0);
+    Row first;
+    const M has_wish = take_wish(first);
+    const N share = hn::Div(first.misses, dot(first.normal, first.normal));
+    Way way{hn::Add(wish_.x, hn::Mul(share, first.normal.x)), hn::Add(wish_.y, hn::Mul(share, first.normal.y))};
+    const Row second = most_missing(way);
+    const M meets = hn::And(hn::Ne(second.number, first.number), hn::Gt(second.misses, zero));
+    M is_found = hn::Eq(zero, zero);
+    if (!hn::AllFalse(Numbers(), meets)) {
+      Way met;
+      const M both_pull = meet(first, second, met);
+      const Row third = most_missing(met);
+      const M of_two = hn::Or(hn::Or(hn::Eq(third.number, first.number), hn::Eq(third.number, second.number)),
+                              hn::Le(third.misses, zero));
+      is_found = hn::Or(hn::Not(meets), hn::And(both_pull, of_two));
+      way = choose(meets, met, way);
     }
-    if (hn::AllTrue(d, all)) return true;
-    first_ = least_equal(hn::MaxOfLanes(d, most));
-    return false;
-  }
-
-  /// REQUIRES: the wish is not allowed.
-  bool solve(Way wish, Way& found) {
-    const std::size_t first = first_;
-    const double of_first = missing_[first], share = of_first / times(first, first);
-    found = {wish.x + share * rows_.x[first], wish.y + share * rows_.y[first]};
-    const std::size_t second = most_missing(found);
-    if (second != first && missing_[second] > 0.0) {
-      if (!meet(wish, first, of_first, second, found)) return false;
-      const std::size_t third = most_missing(found);
-      if (third != first && third != second && missing_[third] > 0.0) return false;
-    }
-    return found.x * found.x + found.y * found.y <= rows_.squared_disc;
+    is_found = hn::And(is_found, hn::Le(dot(way, way), load(rows_.squared_disc)));
+    const N whole_only = number(0x1.8p52);
+    Way rounded{hn::Sub(hn::Add(way.x, whole_only), whole_only), hn::Sub(hn::Add(way.y, whole_only), whole_only)};
+    rounded = choose(has_wish, wish_, rounded);
+    const M is_allowed = hn::And(hn::Le(dot(rounded, rounded), load(rows_.squared_way)), allow(rounded));
+    put(has_wish, hn::Or(has_wish, is_allowed), is_found, rounded, found, m);
   }
 
  private:
-  HWY_INLINE hn::Vec<RowLanes> along(std::size_t k, Way m) const {
-    const RowLanes d;
-    return hn::Add(hn::Mul(hn::Load(d, rows_.x + k), hn::Set(d, m.x)),
-                   hn::Mul(hn::Load(d, rows_.y + k), hn::Set(d, m.y)));
-  }
-  double times(std::size_t a, std::size_t b) const { return rows_.x[a] * rows_.x[b] + rows_.y[a] * rows_.y[b]; }
+  HWY_INLINE N load(const double* of) const { return hn::Load(Numbers(), of + lane_); }
+  HWY_INLINE Way normal(std::size_t k) const { return {load(rows_.x[k]), load(rows_.y[k])}; }
 
-  /// Writes what each row misses.
-  std::size_t most_missing(Way m) {
-    const RowLanes d;
-    auto most = hn::Set(d, -std::numeric_limits<double>::infinity());
-    for (std::size_t k = 0; k < filled_; k += hn::Lanes(d)) {
-      const auto its = hn::Sub(hn::Load(d, inward_ + k), along(k, m));
-      hn::Store(its, d, missing_ + k);
-      most = hn::Max(most, its);
+  static HWY_INLINE Row none() {
+    return {{number(1.0), number(0.0)}, number(-kInfinity), number(-1.0), number(-kInfinity)};
+  }
+
+  /// The one that misses more; of those that miss as much, the one whose normal comes first: the order of rows depends on
+  /// how robots are divided among threads.
+  static HWY_INLINE void take(const Row& row, Row& most) {
+    const M comes_first = hn::Or(hn::Lt(row.normal.x, most.normal.x),
+                                 hn::And(hn::Eq(row.normal.x, most.normal.x), hn::Lt(row.normal.y, most.normal.y)));
+    const M more = hn::Or(hn::Gt(row.misses, most.misses), hn::And(hn::Eq(row.misses, most.misses), comes_first));
+    most.normal = choose(more, row.normal, most.normal);
+    most.inward = hn::IfThenElse(more, row.inward, most.inward);
+    most.number = hn::IfThenElse(more, row.number, most.number);
+    most.misses = hn::IfThenElse(more, row.misses, most.misses);
+  }
+
+  /// Whether the wish is allowed, and the row that, moved inward, misses most of it.
+  HWY_INLINE M take_wish(Row& first) {
+    M all = hn::Eq(number(0.0), number(0.0));
+    first = none();
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Way n = normal(k);
+      const N least = load(rows_.least[k]), at = dot(n, wish_);
+      const N inward = hn::Add(least, hn::Mul(number(kHalfDiagonal), hn::Sqrt(dot(n, n))));
+      all = hn::And(all, hn::Ge(at, least));
+      hn::Store(inward, Numbers(), inward_[k]);
+      take({n, inward, number(static_cast<double>(k)), hn::Sub(inward, at)}, first);
     }
-    return least_equal(hn::MaxOfLanes(d, most));
+    return all;
   }
 
-  /// The row that misses as much, of equal rows the first. The order of rows depends on how robots are divided among
-  /// threads: it breaks no tie.
-  HWY_INLINE std::size_t least_equal(hn::Vec<RowLanes> most) const {
-    const RowLanes d;
-    std::size_t row = 0, found = 0;
-    for (std::size_t k = 0; k < filled_; k += hn::Lanes(d)) {
-      const auto equal = hn::Eq(hn::Load(d, missing_ + k), most);
-      const std::intptr_t lane = hn::FindFirstTrue(d, equal);
-      if (lane < 0) continue;
-      if (found == 0) row = k + static_cast<std::size_t>(lane);
-      found += hn::CountTrue(d, equal);
+  HWY_INLINE Row most_missing(Way m) const {
+    Row most = none();
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Way n = normal(k);
+      const N inward = hn::Load(Numbers(), inward_[k]);
+      take({n, inward, number(static_cast<double>(k)), hn::Sub(inward, dot(n, m))}, most);
     }
-    if (found == 1) return row;
-    for (std::size_t k = row + 1; k < rows_.count; ++k)
-      if (missing_[k] == missing_[row] &&
-          (rows_.x[k] != rows_.x[row] ? rows_.x[k] < rows_.x[row] : rows_.y[k] < rows_.y[row]))
-        row = k;
-    return row;
+    return most;
   }
 
-  /// On both boundaries, if both pull the wish there. `of_a`: what a misses of the wish.
-  bool meet(Way wish, std::size_t a, double of_a, std::size_t b, Way& found) const {
-    const double *x = rows_.x, *y = rows_.y;
-    const double aa = times(a, a), bb = times(b, b), ab = times(a, b), cross = x[a] * y[b] - y[a] * x[b],
-                 squared = cross * cross;
-    if (!(squared >= kParallel * aa * bb)) return false;
-    const double of_b = inward_[b] - (x[b] * wish.x + y[b] * wish.y);
-    const double pull_a = (of_a * bb - of_b * ab) / squared, pull_b = (of_b * aa - of_a * ab) / squared;
-    found = {wish.x + (pull_a * x[a] + pull_b * x[b]), wish.y + (pull_a * y[a] + pull_b * y[b])};
-    return pull_a >= 0.0 && pull_b >= 0.0;
+  /// On both boundaries, and whether both pull the wish there.
+  HWY_INLINE M meet(const Row& a, const Row& b, Way& found) const {
+    const N aa = dot(a.normal, a.normal), bb = dot(b.normal, b.normal), ab = dot(a.normal, b.normal);
+    const N cross = hn::Sub(hn::Mul(a.normal.x, b.normal.y), hn::Mul(a.normal.y, b.normal.x));
+    const N squared = hn::Mul(cross, cross), zero = number(0.0);
+    const N of_b = hn::Sub(b.inward, dot(b.normal, wish_));
+    const N pull_a = hn::Div(hn::Sub(hn::Mul(a.misses, bb), hn::Mul(of_b, ab)), squared);
+    const N pull_b = hn::Div(hn::Sub(hn::Mul(of_b, aa), hn::Mul(a.misses, ab)), squared);
+    found.x = hn::Add(wish_.x, hn::Add(hn::Mul(pull_a, a.normal.x), hn::Mul(pull_b, b.normal.x)));
+    found.y = hn::Add(wish_.y, hn::Add(hn::Mul(pull_a, a.normal.y), hn::Mul(pull_b, b.normal.y)));
+    const M turns = hn::Ge(squared, hn::Mul(hn::Mul(number(kParallel), aa), bb));
+    return hn::And(turns, hn::And(hn::Ge(pull_a, zero), hn::Ge(pull_b, zero)));
   }
 
-  FewRows& rows_;
-  std::size_t filled_, first_ = 0;
-  alignas(64) double inward_[FewRows::kMost];  ///< FewRows::least moved inward by kHalfDiagonal
-  alignas(64) double missing_[FewRows::kMost];
+  HWY_INLINE M allow(Way m) const {
+    M all = hn::Eq(number(0.0), number(0.0));
+    for (std::size_t k = 0; k < count_; ++k) all = hn::And(all, hn::Ge(dot(normal(k), m), load(rows_.least[k])));
+    return all;
+  }
+
+  HWY_INLINE void put(M has_wish, M is_allowed, M is_found, Way way, Few* found, Motion* m) const {
+    const Numbers d;
+    HWY_ALIGN double x[FewRows::kLanes], y[FewRows::kLanes];
+    hn::Store(way.x, d, x);
+    hn::Store(way.y, d, y);
+    const auto bits = [&](M mask) {
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, mask, bytes);
+      return bytes[0];
+    };
+    const unsigned allowed = bits(is_allowed), known = bits(hn::Or(has_wish, is_found));
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+      const bool is_known = (known >> k & 1U) != 0;
+      found[lane_ + k] = !is_known ? Few::not_found : (allowed >> k & 1U) != 0 ? Few::allowed : Few::not_allowed;
+      if (is_known) m[lane_ + k] = {static_cast<std::int32_t>(x[k]), static_cast<std::int32_t>(y[k])};
+    }
+  }
+
+  const FewRows& rows_;
+  std::size_t lane_, count_;
+  Way wish_;
+  alignas(64) double inward_[FewRows::kMost][FewRows::kLanes];  ///< Row::inward
 };
 
-Few search_rows(FewRows& rows, Motion& m) {
-  RowSearch search(rows);
-  const auto way_of = [](Motion of) { return Way{static_cast<double>(of.x), static_cast<double>(of.y)}; };
-  const Way wish = way_of(rows.wish);
-  m = rows.wish;
-  if (search.allow_wish(wish)) return Few::allowed;
-  Way found{};
-  if (!search.solve(wish, found)) return Few::not_found;
-  m = whole(found.x, found.y);
-  const Way rounded = way_of(m);
-  return rounded.x * rounded.x + rounded.y * rounded.y <= rows.squared_way && search.allow(rounded) ? Few::allowed
-                                                                                                    : Few::not_allowed;
+void search_rows(FewRows& rows, Few* found, Motion* m) {
+  const std::size_t lanes = hn::Lanes(Numbers());
+  for (std::size_t lane = 0; lane < rows.robots; lane += lanes) {
+    for (std::size_t k = std::max(rows.robots, lane); k < lane + lanes; ++k)  // no robot
+      rows.wish_x[k] = rows.wish_y[k] = rows.squared_disc[k] = rows.squared_way[k] = 0.0;
+    const std::size_t most = *std::max_element(rows.count + lane, rows.count + lane + lanes);
+    for (std::size_t k = lane; k < lane + lanes; ++k)
+      for (std::size_t row = rows.count[k]; row < most; ++row) {  // always holds
+        rows.x[row][k] = 1.0, rows.y[row][k] = 0.0;
+        rows.least[row][k] = -kInfinity;
+      }
+    Robots(rows, lane, most).find(found, m);
+    std::fill(rows.count + lane, rows.count + lane + lanes, 0);
+  }
+  rows.robots = 0;
 }
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
@@ -155,8 +192,8 @@ namespace exactvo::formation::crowd {
 
 HWY_EXPORT(search_rows);
 
-Few nearest_of_few(FewRows& rows, Motion& m) {
-  return HWY_DYNAMIC_DISPATCH(search_rows)(rows, m);
+void nearest_of_few(FewRows& rows, Few* found, Motion* m) {
+  HWY_DYNAMIC_DISPATCH(search_rows)(rows, found, m);
 }
 
 }  // namespace exactvo::formation::crowd

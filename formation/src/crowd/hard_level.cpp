@@ -78,20 +78,34 @@ void HardLevel<T>::decide(std::size_t first, std::size_t last, int round, NearLi
   find_cut(first, last, round, lists, b, robots);
   counts.overlapping += round == 0 ? b.near.overlapping : 0;
   const bool has_obstacles = !crowd_.edges.empty() || one_.has_bodies();
+  const auto take = [&](std::size_t robot, Motion m) {
+    to_x[robot] = m.x;
+    to_y[robot] = m.y;
+    if (round == 0 || m == wish_of(robot)) return;
+    ++counts.cut_short;
+    robots.next_kept[robot] &= static_cast<std::uint8_t>(~Robots::kIsKept);
+  };
+  const auto take_few = [&] {
+    const std::size_t count = b.few.robots;
+    Few found[FewRows::kLanes];
+    Motion m[FewRows::kLanes];
+    nearest_of_few(b.few, found, m);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t robot = b.robots_of_few[k];
+      if (found[k] != Few::not_found && !one_.can_drive(robot, m[k])) found[k] = Few::not_found;
+      take(robot, found[k] == Few::allowed ? m[k] : within_rows(robot, safe_of(robot, round), found[k], m[k], b, one));
+    }
+  };
   for (const std::int32_t cut : b.near.cut) {
     const auto robot = static_cast<std::size_t>(cut);
     const Motion safe = safe_of(robot, round);
-    Motion m = safe;
-    if ((b.near.state[robot - first] & NearPairs::kStays) == 0) {
-      const Few found = has_obstacles ? Few::not_found : nearest_by_few(robot, b.near, m);
-      if (found != Few::allowed) m = within_rows(robot, safe, found, m, b, one);
-    }
-    to_x[robot] = m.x;
-    to_y[robot] = m.y;
-    if (round == 0 || m == wish_of(robot)) continue;
-    ++counts.cut_short;
-    robots.next_kept[robot] &= static_cast<std::uint8_t>(~Robots::kIsKept);
+    if ((b.near.state[robot - first] & NearPairs::kStays) != 0)
+      take(robot, safe);
+    else if (has_obstacles || !add_few(robot, b))
+      take(robot, within_rows(robot, safe, Few::not_found, {}, b, one));
+    if (b.few.robots == FewRows::kLanes) take_few();
   }
+  if (b.few.robots > 0) take_few();
 }
 
 /// Into b.near the robots whose rows may not allow their wishes, with all their rows.
@@ -115,7 +129,7 @@ void HardLevel<T>::find_cut(std::size_t first, std::size_t last, int round, Near
 }
 
 /// The motion nearest to the wish that a robot's rows allow, which are put into b.rows by the places of the others.
-/// `few`: of nearest_by_few, which found it `found`.
+/// `few`: of nearest_of_few, which found it `found`.
 template <class T>
 Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, Few found, Motion few, HardBuffers& b,
                                  OneRobotBuffers<T>& one) const {
@@ -136,24 +150,23 @@ Motion HardLevel<T>::within_rows(std::size_t robot, Motion safe, Few found, Moti
   return rounded(robot, safe, whole(b.answer.velocity.x * per_step, b.answer.velocity.y * per_step), obstacles, b, one);
 }
 
-/// Without obstacles nearly always one row binds, or two.
+/// The rows of a robot without obstacles, of which nearly always one binds, or two. False where they are too many.
 template <class T>
-Few HardLevel<T>::nearest_by_few(std::size_t robot, const NearPairs& near, Motion& m) const {
-  FewRows rows;
+bool HardLevel<T>::add_few(std::size_t robot, HardBuffers& b) const {
+  const PairTable& p = b.near.pairs;
   bool has_room = true;
-  near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t) {
-    const PairTable& p = near.pairs;
-    if (!(has_room &= rows.has_room())) return;
+  b.near.for_pairs_of(robot, [&](std::size_t pair, bool is_a, std::int32_t) {
     const double* const least = is_a ? p.least_a.data() : p.least_b.data();
-    rows.add(is_a ? 1.0 : -1.0, p.normal_x[pair], p.normal_y[pair], least[pair]);
+    has_room = has_room && b.few.add(is_a ? 1.0 : -1.0, p.normal_x[pair], p.normal_y[pair], least[pair]);
   });
-  if (!has_room) return Few::not_found;
+  if (!has_room) {
+    b.few.drop();
+    return false;
+  }
   const double disc = static_cast<double>(table_.disc[crowd_.robots.kind(robot)]) / table_.velocity_step;
-  rows.wish = wish_of(robot);
-  rows.squared_disc = disc * disc * kWithinDisc;
-  rows.squared_way = squared_way(robot);
-  const Few found = nearest_of_few(rows, m);
-  return found != Few::not_found && !one_.can_drive(robot, m) ? Few::not_found : found;
+  b.robots_of_few[b.few.robots] = robot;
+  b.few.finish(wish_of(robot), disc * disc * kWithinDisc, squared_way(robot));
+  return true;
 }
 
 /// Of what its kind allows and longest_way says.

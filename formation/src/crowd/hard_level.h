@@ -30,6 +30,8 @@ struct HardBuffers {
   crowd::NearPairs near;
   std::vector<std::uint64_t> order;  ///< of a robot's pairs: the place of the other, the pair, whether it is b of it
   std::vector<crowd::MotionRow> rows;
+  crowd::FewRows few;
+  std::size_t robots_of_few[crowd::FewRows::kLanes];
   std::vector<double> x, y, offset;  ///< of the linear program
   lp::Solution answer;
 };
@@ -56,7 +58,7 @@ class HardLevel {
                 crowd::Robots& robots) const;
   crowd::Motion within_rows(std::size_t robot, crowd::Motion safe, crowd::Few found, crowd::Motion few, HardBuffers& b,
                             OneRobotBuffers<T>& one) const;
-  crowd::Few nearest_by_few(std::size_t robot, const crowd::NearPairs& near, crowd::Motion& m) const;
+  bool add_few(std::size_t robot, HardBuffers& b) const;
   double squared_way(std::size_t robot) const;
   crowd::Motion shortened(std::size_t robot, crowd::Motion safe, const HardBuffers& b, OneRobotBuffers<T>& one) const;
   std::size_t solve(std::size_t robot, HardBuffers& b, OneRobotBuffers<T>& one) const;

@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "crowd/entries.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
@@ -163,7 +165,7 @@ class Lookup {
   using W = hn::Vec<Words>;
 
  public:
-  HWY_INLINE Lookup(W at, std::size_t count) : at_(at), pairs_((count + 31) / 32) {
+  HWY_INLINE Lookup(W at, std::size_t count) : at_(at), entries_(at), pairs_((count + 31) / 32) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     if constexpr (hn::MaxLanes(Words()) == 16) {
       const __m512i pair = _mm512_srli_epi32(at.raw, 5);
@@ -183,11 +185,12 @@ class Lookup {
       }
     }
 #endif
-    return hn::GatherIndex(Words(), table, at_);
+    return entries_.of(table);
   }
 
  private:
   W at_;
+  Entries<Words> entries_;
   std::size_t pairs_;
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   static constexpr int kPairs = 4;

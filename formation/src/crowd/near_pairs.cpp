@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "crowd/entries.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
@@ -58,12 +60,11 @@ class OwnLanes {
   /// Whether each could meet another robot surely, or perhaps, and whether (6) holds. `contact`: R.
   HWY_INLINE Judged judge(const Robots& robots, W other, F contact) const {
     const Floats d;
-    const Words words;
     const F zero = hn::Zero(d);
-    const W its_x = hn::GatherIndex(words, robots.wish_mx.data(), other),
-            its_y = hn::GatherIndex(words, robots.wish_my.data(), other);
-    const F dx = hn::ConvertTo(d, hn::Sub(x_, hn::GatherIndex(words, robots.x.data(), other)));
-    const F dy = hn::ConvertTo(d, hn::Sub(y_, hn::GatherIndex(words, robots.y.data(), other)));
+    const Entries<Words> its_entry(other);
+    const W its_x = its_entry.of(robots.wish_mx.data()), its_y = its_entry.of(robots.wish_my.data());
+    const F dx = hn::ConvertTo(d, hn::Sub(x_, its_entry.of(robots.x.data())));
+    const F dy = hn::ConvertTo(d, hn::Sub(y_, its_entry.of(robots.y.data())));
     const F squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
     const F reach = hn::Add(contact, hn::Add(way_, way_of(its_x, its_y)));
     const F limit = hn::Mul(reach, reach);

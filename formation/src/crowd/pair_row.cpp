@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "crowd/entries.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
@@ -27,8 +29,10 @@ HWY_INLINE N number(double value) {
   return hn::Set(Numbers(), value);
 }
 
-HWY_INLINE N gathered(const std::int32_t* column, hn::Vec<Whole> at) {
-  return hn::PromoteTo(Numbers(), hn::GatherIndex(Whole(), column, at));
+using Places = Entries<Whole>;
+
+HWY_INLINE N numbers(const std::int32_t* column, const Places& at) {
+  return hn::PromoteTo(Numbers(), at.of(column));
 }
 
 HWY_INLINE std::uint32_t bits_of_mask(M mask) {
@@ -127,10 +131,10 @@ template <bool kAtRest>
 class PairLanes {
  public:
   /// The pairs of the robots at places a and b.
-  HWY_INLINE PairLanes(const MotionColumns& of, hn::Vec<Whole> a, hn::Vec<Whole> b, N radius)
+  HWY_INLINE PairLanes(const MotionColumns& of, const Places& a, const Places& b, N radius)
       : d_{difference(of.x, a, b), difference(of.y, a, b)},
-        wish_a_{gathered(of.wish_x, a), gathered(of.wish_y, a)},
-        wish_b_{gathered(of.wish_x, b), gathered(of.wish_y, b)},
+        wish_a_{numbers(of.wish_x, a), numbers(of.wish_y, a)},
+        wish_b_{numbers(of.wish_x, b), numbers(of.wish_y, b)},
         radius_(radius) {
     if constexpr (kAtRest) {
       safe_a_ = safe_b_ = {number(0.0), number(0.0)};
@@ -138,8 +142,8 @@ class PairLanes {
       more_a_ = wish_a_;
       more_b_ = wish_b_;
     } else {
-      safe_a_ = {gathered(of.safe_x, a), gathered(of.safe_y, a)};
-      safe_b_ = {gathered(of.safe_x, b), gathered(of.safe_y, b)};
+      safe_a_ = {numbers(of.safe_x, a), numbers(of.safe_y, a)};
+      safe_b_ = {numbers(of.safe_x, b), numbers(of.safe_y, b)};
       safe_end_ = d_ + safe_a_ - safe_b_;
       more_a_ = wish_a_ - safe_a_;
       more_b_ = wish_b_ - safe_b_;
@@ -236,9 +240,8 @@ class PairLanes {
   }
 
  private:
-  static HWY_INLINE N difference(const std::int32_t* column, hn::Vec<Whole> a, hn::Vec<Whole> b) {
-    const Whole d;
-    return hn::PromoteTo(Numbers(), hn::Sub(hn::GatherIndex(d, column, a), hn::GatherIndex(d, column, b)));
+  static HWY_INLINE N difference(const std::int32_t* column, const Places& a, const Places& b) {
+    return hn::PromoteTo(Numbers(), hn::Sub(a.of(column), b.of(column)));
   }
 
   static HWY_INLINE void take(M lanes, const Split& from, Split& to) {
@@ -263,7 +266,7 @@ class RowMaker {
   void make(std::size_t first) {
     std::size_t open = 0;
     for (std::size_t k = first; k < pairs_.size(); k += hn::Lanes(Numbers())) {
-      const Lanes lanes(robots_, hn::LoadU(Whole(), &pairs_.a[k]), hn::LoadU(Whole(), &pairs_.b[k]),
+      const Lanes lanes(robots_, Places(hn::LoadU(Whole(), &pairs_.a[k])), Places(hn::LoadU(Whole(), &pairs_.b[k])),
                         hn::LoadU(Numbers(), &pairs_.radii[k]));
       const Split s = lanes.split_along(lanes.centre());
       put(lanes.rows(s, lanes.last_resort()), k);
@@ -297,7 +300,8 @@ class RowMaker {
     const Whole d;
     const auto pair = hn::LoadU(d, &pairs_.open[k]);
     const auto wide = hn::PromoteTo(hn::RebindToSigned<Numbers>(), pair);
-    return {robots_, hn::GatherIndex(d, pairs_.a.data(), pair), hn::GatherIndex(d, pairs_.b.data(), pair),
+    const Places at(pair);
+    return {robots_, Places(at.of(pairs_.a.data())), Places(at.of(pairs_.b.data())),
             hn::GatherIndex(Numbers(), pairs_.radii.data(), wide)};
   }
 
