@@ -24,12 +24,6 @@ double stray_of(const DifferentialDrive& drive, double time_step) {
   return kRounding * (way * way / (4.0 * (2.0 * drive.reference - way)));
 }
 
-void keep_within_tube(Robot& robot, double body_radius, double tracking) {
-  constexpr double kRounding = 1.0 + 0x1p-50;
-  robot.body_radius = tracking > 0.0 ? body_radius : 0.0;
-  robot.radius = tracking > 0.0 ? kRounding * (body_radius + tracking) : body_radius;
-}
-
 double obstacle_reach(const Robot& robot) {
   double reach = obstacle_radius(robot);
   if (robot.drive)

@@ -618,6 +618,12 @@ std::vector<ScenarioProblem> detail::field_problems(double radius, double max_sp
   return std::move(c.problems);
 }
 
+void keep_within_tube(Robot& robot, double body_radius, double tracking) {
+  constexpr double kRounding = 1.0 + 0x1p-50;
+  robot.body_radius = tracking > 0.0 ? body_radius : 0.0;
+  robot.radius = tracking > 0.0 ? kRounding * (body_radius + tracking) : body_radius;
+}
+
 std::vector<ScenarioProblem> validate(const Scenario& scenario) {
   Checker c{detail::field_problems(scenario)};
   if (c.problems.empty()) check_starts(scenario, c);
