@@ -369,7 +369,7 @@ class PageItself(Page):
         self.assertFalse(self.run_script("return document.getElementById('problem').hidden"), name)
         return self.text("#problem")
 
-    def test_damaged_data_is_said(self):
+    def test_damaged_data_is_reported(self):
         self.run_program("view", "--out", "start.html")
         self.assertIn("cut short", self.damaged("cut.html", lambda data: data[:len(data) // 2 // 4 * 4]))
         self.assertIn("not base64", self.damaged("letters.html", lambda data: data[:99] + "\u00e4" + data[100:]))
@@ -435,7 +435,7 @@ class PageItself(Page):
         self.assertIn("of 2 m/s", self.text("#tip"))
         self.assertEqual(self.run_script("return exactvo.ui.pinned"), 0, "kept")
 
-    def test_a_robot_that_stands_beside_movers_is_said_to(self):
+    def test_a_robot_that_stands_beside_movers_is_labelled_so(self):
         self.run_program("view", ARGS.data / "robots" / "burger_movers.json", "--out", "movers.html")
         self.open("movers.html", "#t=8&robot=R1")
         self.assertEqual(self.text("[data-fact=stands]"), "nothing is promised to it against moving obstacles")
@@ -465,7 +465,7 @@ class PageItself(Page):
         for proven, refuted in judged[1:]:
             self.assertEqual((proven, refuted), (0, judged[0][0]))
 
-    def test_who_waits_for_whom(self):
+    def test_robots_that_wait_and_those_they_wait_for(self):
         scenario = {"name": "narrow", "time_limit": 12, "guidance": "none",
                     "robots": [{"id": "left", "position": [-4, 0], "goal": [4, 0]}, {"id": "right", "position": [4, 0], "goal": [-4, 0]}],
                     "obstacles": [{"id": f"wall {y}", "polyline": [[-6, y], [6, y]]} for y in (-0.7, 0.7)]}
@@ -792,7 +792,7 @@ class Live(Page):
             self.assertAlmostEqual(float(self.run_script("return document.getElementById('live-x').value")), x + 0.25, places=3, msg=label)
         self.assertEqual(self.run_script("return exactvo.page.live.run.obstacles[0].rings[0][2]"), 6.25)
 
-    def test_what_cannot_be_is_said_and_the_last_answer_stays(self):
+    def test_an_impossible_change_is_reported_and_the_last_answer_stays(self):
         self.show()
         self.fill("live-x", "6")  # the robot into the wall
         self.assertEqual(self.text("#live-message"), "Not computed: robot 'R1', position: found [6, 0], overlapping obstacle 'wall' by 0.5 m, "
@@ -887,7 +887,7 @@ class Live(Page):
         counts = self.await_script("return await exactvo.checkAll()")
         self.assertEqual([counts["choices"][1], counts["halfPlanes"][1]], [0, 0])
 
-    def test_the_page_asks_its_server_and_nobody_else(self):
+    def test_the_page_asks_its_server_alone(self):
         self.browser.get_log("performance")
         self.show()
         self.drag("world", "world", (6, 0), (5, 0))
@@ -897,7 +897,7 @@ class Live(Page):
         violations = [entry["message"] for entry in self.browser.get_log("browser")]
         self.assertTrue(any("Content Security Policy" in message for message in violations), violations)
 
-    def test_free_velocities_are_told_when_a_change_rests(self):
+    def test_free_velocities_are_shown_when_a_change_rests(self):
         self.show()
         self.drag("world", "world", (6, 0), (2.5, 0))
         self.await_script("for (let k = 0; k < 300 && !document.getElementById('live-free').textContent; ++k) await new Promise((r) => setTimeout(r, 100))")

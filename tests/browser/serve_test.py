@@ -241,7 +241,7 @@ class Serve(unittest.TestCase):
                 found, answer = self.server.ask(scenario={**SCENARIO, "moving_obstacles": [{**cart, **change}]}, time=2)
                 self.assertEqual(found, 400, answer[:300])
 
-    def test_many_slow_clients_hold_nobody_up_for_long(self):
+    def test_many_slow_clients_delay_no_other_for_long(self):
         slow = []
         for k in range(300):
             connection = socket.create_connection(("127.0.0.1", self.server.port), timeout=60)

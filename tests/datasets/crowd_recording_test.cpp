@@ -387,7 +387,7 @@ TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {
   EXPECT_EQ(one.steps, two.steps);
 }
 
-TEST_F(CrowdRecordings, AlongRoutesAllArriveAndWhoHasNoneStays) {
+TEST_F(CrowdRecordings, AlongRoutesAllArriveAndARobotWithoutOneStays) {
   const Scenario scenario = parse_scenario(R"({"name": "rooms", "time_step": 0.1, "time_limit": 120,
       "horizons": {"least": 0.3},
       "robots": [{"random": {"count": 20, "low": [-9, -9], "high": [-3, 9], "goal_low": [3, -9], "goal_high": [9, 9], "apart": 0.3},
@@ -459,7 +459,7 @@ std::uint64_t number_at(const std::string& bytes, std::size_t at) {
   return number;
 }
 
-TEST_F(CrowdRecordings, ABodyThatMovesAndIsSaidToRestIsRefuted) {
+TEST_F(CrowdRecordings, AMovingBodyMarkedAsRestingIsRefuted) {
   record(traffic(), 1);
   const std::string whole = content_of(folder_ / "c.evr");
   const std::size_t size = number_at(whole, 8);

@@ -98,7 +98,7 @@ TEST(MetricsFile, ARunOnACrowdHasTheSameKeysAndItsOwnCounts) {
   EXPECT_EQ(without["not_measured"].dump(), R"(["clearances"])");
 }
 
-TEST(MetricsFile, ACollisionSaysWithWhomWhenAndHowDeep) {
+TEST(MetricsFile, ACollisionHasItsPartnerTimeAndDepth) {
   formation::Metrics m = metrics();
   m.collisions = {{"R1", formation::CollisionKind::moving_obstacle, "cart", 1.75, 3.25, 2.5, 1.5, {2.0, -1.0}, true}};
   const Json c = Json::parse(metrics_json(info(), m))["collisions"][0];

@@ -505,7 +505,7 @@ TEST_F(RecordingFileTest, ARecordingCutShortIsNotTakenForAWholeOne) {
   EXPECT_EQ(refusal_of([&] { read_recording(put("bad.jsonl", "{\"head\n{}\n")); }).code(), DataCode::format_unknown);
 }
 
-TEST_F(RecordingFileTest, WhatIsSaidTwiceOrTooLateIsRefused) {
+TEST_F(RecordingFileTest, LinesThatStandTwiceOrTooLateAreRefused) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string good = content_of(folder_ / "r.jsonl");
   const auto line_at = [&](std::size_t at) { return good.substr(at, good.find('\n', at) + 1 - at); };

@@ -300,7 +300,7 @@ TEST_F(VectorFile, SequencesAreReadByTheirNames) {
   EXPECT_EQ(read("rs.geojsonseq", "\x1e" + record(kSquare) + "\x1e" + record(kSquare)).obstacles.size(), 2u);
 }
 
-TEST_F(VectorFile, MalformedLinesOfASequenceAreToldByLineAndTheOthersRead) {
+TEST_F(VectorFile, MalformedLinesOfASequenceAreNamedByLineAndTheOthersRead) {
   ReadOptions options;
   options.keep_going = true;
   const std::string text = record(kMalformed[0].geometry) + record(kSquare) + "\n{\"type\": \"Feature\", \"geom\n" +
@@ -364,7 +364,7 @@ TEST_F(VectorFile, RecordsNeedNoLinesOfTheirOwn) {
   }
 }
 
-TEST_F(VectorFile, ABadRecordBehindAnotherIsToldByItsColumn) {
+TEST_F(VectorFile, ABadRecordBehindAnotherIsNamedByItsColumn) {
   ReadOptions options;
   options.keep_going = true;
   const std::string good = on_one_line(record(kSquare));

@@ -551,7 +551,7 @@ TEST(Acceleration, NavigatorsLookAheadWhileTheyBrake) {
 
 /// A run without an acceleration has no question about braking, and none of its bits is another (determinism_test.cpp
 /// has those).
-TEST(Acceleration, WithoutItNothingIsAsked) {
+TEST(Acceleration, WithoutItTheAuditAsksNothing) {
   Scenario s = on_circle(3, 3.0, 1.0);
   s.acceleration.reset();
   EXPECT_EQ(braking_time_of(s), 0.0);

@@ -96,7 +96,7 @@ std::string warnings_of(const Scenario& s) {
   return all;
 }
 
-TEST(BadInput, WhatMovesFasterThanARobotIsSaidBeforeTheRun) {
+TEST(BadInput, AnObstacleFasterThanARobotIsReportedBeforeTheRun) {
   EXPECT_EQ(warnings_of(paper_scene("B1")), "");
   Scenario s = paper_scene("B1");
   s.robots[1].max_speed = 4.0;  // the leader goes at 4.24 m/s
@@ -161,13 +161,13 @@ TEST(BadInput, AMovingObstacleThatStopsOnItsWayComesToRestThere) {
   EXPECT_EQ(warnings_of(s), "");
 }
 
-TEST(BadInput, AStartBeyondTheSpeedLimitIsSaidBeforeTheRun) {
+TEST(BadInput, AStartBeyondTheSpeedLimitIsReportedBeforeTheRun) {
   Scenario s = paper_scene("A0");
   s.robots[0].velocity = {s.robots[0].max_speed + 1.0, 0.0};
   EXPECT_THAT(warnings_of(s), HasSubstr("beyond its max_speed"));
 }
 
-TEST(BadInput, AGoalWhereAMovingObstacleComesToRestIsSaidBeforeTheRun) {
+TEST(BadInput, AGoalWhereAMovingObstacleComesToRestIsReportedBeforeTheRun) {
   Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0});
   const Vec2 start = s.robots[0].position;
   s.robots[0].goals = {start + Vec2{22.0, 0.0}};
@@ -178,7 +178,7 @@ TEST(BadInput, AGoalWhereAMovingObstacleComesToRestIsSaidBeforeTheRun) {
   EXPECT_THAT(warnings_of(s), HasSubstr("comes to rest: from then on it cannot be reached"));
 }
 
-TEST(BadInput, AStartInTheHullOfAMovingObstacleIsSaidBeforeTheRun) {
+TEST(BadInput, AStartInTheHullOfAMovingObstacleIsReportedBeforeTheRun) {
   Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0});
   const Vec2 start = s.robots[0].position;
   s.moving_obstacles[0].shape =
@@ -205,7 +205,7 @@ TEST(BadInput, AStepBeyondTheHorizonsLimitIsRefused) {
   expect_refused(s, "/time_step");
 }
 
-TEST(BadInput, AStepBeyondTheIntegratorsLimitIsSaidBeforeTheRun) {
+TEST(BadInput, AStepBeyondTheIntegratorsLimitIsReportedBeforeTheRun) {
   Scenario s = paper_scene("B0");
   s.time_step = 0.06;
   SimulationOptions euler;
@@ -216,7 +216,7 @@ TEST(BadInput, AStepBeyondTheIntegratorsLimitIsSaidBeforeTheRun) {
   EXPECT_THAT(m.outcome, HasSubstr("diverged"));
 }
 
-TEST(BadInput, AGoalInsideAnObstacleIsSaidAndStated) {
+TEST(BadInput, AGoalInsideAnObstacleIsReportedBeforeAndAfterTheRun) {
   Scenario s = paper_scene("A6");
   s.robots[0].goals = {{6.5, 3.0}};
   s.time_limit = 30.0;

@@ -337,7 +337,7 @@ TEST(Collisions, RobotsThatOverlapInRelaxedDecisionsAreSaidTo) {
             "half-plane); all robots arrived");
 }
 
-TEST(Collisions, NoneIsSaidWhereRimsOnlyMeet) {
+TEST(Collisions, NoneIsReportedWhereRimsOnlyMeet) {
   Scenario s;
   s.time_step = 1.0;
   s.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {1, 0}, {1, 0})};

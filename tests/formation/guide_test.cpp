@@ -163,7 +163,7 @@ TEST(Guidance, AGoalOnTheWayWithinASolidIsProvenOutOfReach) {
   EXPECT_THAT(outcome, testing::Not(testing::HasSubstr("no proof")));
 }
 
-TEST(Guidance, WhoStartsWithoutRoomMovesAwayAndArrives) {
+TEST(Guidance, ARobotThatStartsWithoutRoomMovesAwayAndArrives) {
   // Less than 2e-6 m: too little to plan a route from.
   for (const Method method : {Method::orca, Method::ivo_cluster, Method::ivo}) {
     for (const Vec2 start : {Vec2{-5.5 + 1e-7, 3}, Vec2{-5.5 + 5e-7, 5.5 - 1e-7}, Vec2{-0.5 - 1e-6, 3}}) {
@@ -195,7 +195,7 @@ TEST(Guidance, EveryGoalOnTheWayHasARouteOfItsOwn) {
   EXPECT_EQ(run.recording.goal_bodies.size(), 3u);
 }
 
-TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
+TEST(Guidance, ARobotPushedOutOfSightOfItsRoutePlansAgain) {
   Scenario s = door(3.0);
   s.obstacles.push_back({"shelf", Polyline{{{-6, -3}, {-2, -3}}}});
   detail::Guide guide(s, 0.08);
@@ -266,7 +266,7 @@ TEST(Guidance, HeadsForNothingBehindItOnALongPiece) {
   }
 }
 
-TEST(Guidance, WhoIsOnANarrowPieceIsNotSentBackToItsStart) {
+TEST(Guidance, ARobotOnANarrowPieceIsNotSentBackToItsStart) {
   constexpr double kRadius = 0.5, kPlay = 2e-4;
   const Scenario s = scene({Polyline{{{11, -5}, {11, -kRadius - kPlay}}}, Polyline{{{11, kRadius + kPlay}, {11, 5}}}},
                            {0, 0}, {20, 0}, kRadius);
@@ -286,7 +286,7 @@ TEST(Guidance, WhoIsOnANarrowPieceIsNotSentBackToItsStart) {
   EXPECT_EQ(guide.heading(course, kRadius, {9.0, 0.3}).place, (Vec2{10, 0}));
 }
 
-TEST(Guidance, WhomACartPushesOutOfSightOfItsRoutePlansAgainAndSaysSo) {
+TEST(Guidance, ARobotThatACartPushesOutOfSightOfItsRoutePlansAgainAndSaysSo) {
   // Down a shaft, and along the tunnel at its bottom.
   Scenario s =
       scene({Polyline{{{-1, 10}, {-1, -4}, {9, -4}}}, Polyline{{{1, 10}, {1, -2}, {9, -2}}}}, {0, 3}, {0, 9}, 0.4);
@@ -342,7 +342,7 @@ TEST(Guidance, WithoutObstaclesNoPlaceIsTooFar) {
 }
 
 /// Once the cart rests at the end of its path.
-TEST(Guidance, ARunWithAMovingObstacleEndsWhenThatRestsAndNobodyGoesOn) {
+TEST(Guidance, ARunWithAMovingObstacleEndsWhenThatRestsAndNoRobotGoesOn) {
   Scenario s;
   s.robots.resize(2);
   s.robots[0] = {"R", {-5, 0}, {}, 0.5, 1.0, {{0, 0}}};
@@ -359,7 +359,7 @@ TEST(Guidance, ARunWithAMovingObstacleEndsWhenThatRestsAndNobodyGoesOn) {
   EXPECT_FALSE(audits_clean(s, shorter));
 }
 
-TEST(Guidance, ARunEndsWhenNobodyGoesOn) {
+TEST(Guidance, ARunEndsWhenNoRobotGoesOn) {
   Scenario s = door(0.5);
   s.time_limit = 1e5;
   const GuidedRun alone = guided(s);
@@ -500,7 +500,7 @@ TEST(NearestPlace, OfAGoalOnTheWayIsTheRobotsLast) {
   EXPECT_LE(geometry::norm(run.recording.steps.back().robots[0].position - Vec2{-0.4, 0}), s.arrival_tolerance + 1e-5);
 }
 
-TEST(Guidance, WhoIsAtItsGoalNeedsNoRoute) {
+TEST(Guidance, ARobotAtItsGoalNeedsNoRoute) {
   Scenario s = scene({Polyline{{{-1, 0.6}, {1, 0.6}}}}, {0, 0}, {0, 0.3});
   s.arrival_tolerance = 0.5;
   EXPECT_EQ(guided(s).metrics.outcome, "the robot arrived");
@@ -547,7 +547,7 @@ std::string notes_of(const GuidedRun& run) {
   return all;
 }
 
-TEST(CutRoutes, WhoseRouteACartStandsOnGoesRoundIt) {
+TEST(CutRoutes, ARobotGoesRoundACartThatStandsOnItsRoute) {
   const Scenario s = two_doors(0.0);
   const GuidedRun run = guided(s);
   EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
@@ -654,7 +654,7 @@ TEST(Guidance, RobotsGoStraightAlongTheirRoutesPastRobotsBehindWallsAndObstacles
   }
 }
 
-TEST(Guidance, WhoMustGiveWayToACartArrives) {
+TEST(Guidance, ARobotThatMustGiveWayToACartArrives) {
   Scenario s = door(3.0);
   s.moving_obstacles = {
       {"cart", geometry::Polygon{{{2, -1}, {4, -1}, {4, 1}, {2, 1}}, {}}, {{{0, 0}, {-1.5, 0}, {-1.5, -4}}, 1.0}}};

@@ -47,7 +47,7 @@ TEST(JointSearch, Properties1To3_EveryPlanIsASequenceOfClearMovesToTheGoals) {
 
 /// A robot that goes along a street, and one that comes the other way: by lengths they meet on one line, with traffic
 /// they keep a robot's width apart.
-TEST(Traffic, WhoComesTheOtherWayTakesAnotherLane) {
+TEST(Traffic, ARobotThatComesTheOtherWayTakesAnotherLane) {
   const Walls walls({{{-40, -2}, {40, -2}}, {{-40, 2}, {40, 2}}});
   Roadmap map(walls, {{-12, -1.44}, {12, 1.44}}, 0.5);
   const PlaceNumber west = map.attach({-10, 0.1}, 0.5), east = map.attach({10, 0.1}, 0.5);
@@ -182,7 +182,7 @@ TEST(Roadmap, WaysOfPlacesThatAreAddedKeepClearOfWhatBlocks) {
 }
 
 /// A robot that stands on a place of the lattice too near to one that stays was left without any way.
-TEST(Roadmap, WhoStandsOnABlockedPlaceMayLeave) {
+TEST(Roadmap, ARobotOnABlockedPlaceMayLeave) {
   const Walls open({});
   Roadmap map(open, {{-4, -4}, {4, 4}}, 0.5);
   const Vec2 start = map.place(20);
@@ -194,7 +194,7 @@ TEST(Roadmap, WhoStandsOnABlockedPlaceMayLeave) {
 }
 
 /// The place of a small robot near a wall is none for a large one.
-TEST(JointSearch, NobodyGoesWhereOnlyASmallerRobotHasRoom) {
+TEST(JointSearch, NoRobotGoesWhereOnlyASmallerOneHasRoom) {
   SeededRandom random(test::seed_of_run(36));
   const Walls walls(std::vector<Segment>{{{-5, 0}, {5, 0}}});
   std::size_t found = 0;

@@ -184,7 +184,7 @@ TEST(Liveness, Lemma5_RoomsChangeRobotsThroughADoorOfOneAndAHalf) {
 }
 
 /// One whose goal lies behind robots that rest at theirs across a street: they make way and come back.
-TEST(Liveness, WhoRestsAtItsGoalMakesWay) {
+TEST(Liveness, ARobotThatRestsAtItsGoalMakesWay) {
   Scenario s;
   s.name = "resting";
   test_scenes::add_wall(s, {{-8, 0}, {12, 0}, {12, 4}, {-8, 4}, {-8, 0}});
@@ -305,7 +305,7 @@ TEST(Liveness, PlansAreTheSameOnAnyNumberOfThreads) {
 }
 
 /// Robots far from a jam drive the same bits as without it, and the plan is for those of the jam alone.
-TEST(Liveness, AJamInOneCornerOfACrowdConcernsNobodyElse) {
+TEST(Liveness, AJamInOneCornerOfACrowdConcernsNoOtherRobot) {
   Scenario jammed = test_scenes::street(14, 3.0);
   const std::size_t in_jam = jammed.robots.size();
   for (int i = 0; i < 24; ++i)
@@ -470,7 +470,7 @@ TEST(Liveness, TwoPassEachOtherWhereTheyHaveJustRoomSideBySide) {
 
 /// Its way back leads through a robot that rests there and does not cooperate: it went "back" for the whole run without
 /// a move, plan after plan, and more time was said to be all that was missing.
-TEST(Liveness, WhoHasNoWayBackMakesNoPlanToGoBack) {
+TEST(Liveness, ARobotWithoutAWayBackMakesNoPlanToGoBack) {
   for (const double half : {1.25, 1.5}) {
     Scenario s;
     s.time_limit = 60.0;
@@ -484,7 +484,7 @@ TEST(Liveness, WhoHasNoWayBackMakesNoPlanToGoBack) {
 }
 
 /// With a sight of half a radius robots saw each other too late and overlapped: whoever can be met in a step is seen.
-TEST(Liveness, WhoCanBeMetIsSeenHoweverShortTheNeighbourDistance) {
+TEST(Liveness, ARobotThatCanBeMetIsSeenHoweverShortTheNeighbourDistance) {
   for (const double distance : {0.1, 0.5, 1.1, 1.2}) {
     Scenario s = test_scenes::circle(4, 3.0);
     for (Robot& r : s.robots) r.max_speed = 3.0;
@@ -520,7 +520,7 @@ TEST(Liveness, AllThatHaveNoPlanAreNamed) {
 
 /// Who passes a goal has a longer way again. That counted as standing still, until it was as near to the next goal:
 /// robots went by plans in the open, all by themselves.
-TEST(Liveness, WhoHeadsForItsNextGoalIsNotStalled) {
+TEST(Liveness, ARobotThatHeadsForItsNextGoalIsNotStalled) {
   Scenario s;
   s.robots = {robot("R1", {0, 0}, {20, 0})};
   s.robots[0].goals = {{20, 0}, {0, 0}, {20, 0}};
@@ -533,7 +533,7 @@ TEST(Liveness, WhoHeadsForItsNextGoalIsNotStalled) {
 
 /// Who was at the end of its way stood there until the last robot of its plan was at the end of its own, although it
 /// had another goal to go to.
-TEST(Liveness, WhoHasGoneItsWayGoesOnToItsNextGoalWithoutTheOthers) {
+TEST(Liveness, ARobotAtTheEndOfItsWayGoesOnToItsNextGoalWithoutTheOthers) {
   Scenario s = test_scenes::street(14, 3.0);
   s.time_limit = 400.0;
   for (Robot& r : s.robots) r.goals.push_back(r.goals[0] + Vec2{r.goals[0].x > 0.0 ? 9.0 : -9.0, 0.0});
@@ -558,7 +558,7 @@ TEST(Liveness, WhoHasGoneItsWayGoesOnToItsNextGoalWithoutTheOthers) {
 }
 
 /// navground's Cross: 20 robots go to and fro for 300 s, with margins up to three radii wide. Nobody stands at the end.
-TEST(Liveness, InNavgroundsCrossNobodyStandsInTheEnd) {
+TEST(Liveness, InNavgroundsCrossNoRobotStandsInTheEnd) {
   constexpr double kLast = 5.0, kStands = 0.02;  // s, m/s
   for (const double margin : {0.02, 0.22}) {
     test::SeededRandom random(test::seed_of_run(2));

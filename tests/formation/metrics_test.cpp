@@ -60,7 +60,7 @@ TEST(Metrics, ArrivalIsWhenTheRobotStaysNotWhenItPasses) {
   EXPECT_FALSE(m.min_robot_clearance.has_value());
 }
 
-TEST(Metrics, WhoSkipsAGoalOnTheWayHasNotArrived) {
+TEST(Metrics, ARobotThatSkipsAGoalOnTheWayHasNotArrived) {
   Scenario s = scene_of({{2.0, 0.0}});
   s.robots[0].goals = {{10.0, 0.0}, {2.0, 0.0}};
   EXPECT_FALSE(measure(s, recording_of({{at({2, 0})}, {at({2, 0})}})).all_arrived);
@@ -78,7 +78,7 @@ TEST(Metrics, ARobotThatComesToItsLastGoalHasArrivedWhateverItPassed) {
   EXPECT_FALSE(measure(s, recording_of({{at({0, 0})}, {at({2, 0})}, {at({8, 0})}})).all_arrived);
 }
 
-TEST(Metrics, WhoEndsElsewhereHasNotArrived) {
+TEST(Metrics, ARobotThatEndsElsewhereHasNotArrived) {
   const Metrics m = measure(scene_of({{2.0, 0.0}}), recording_of({{at({2, 0})}, {at({5, 0})}}));
   EXPECT_FALSE(m.all_arrived);
   EXPECT_FALSE(m.last_arrival_time.has_value());

@@ -125,7 +125,7 @@ TEST(Passing, OfDifferentRadii) {
   EXPECT_THAT(with_radii(1.65, 0.5, 0.3), IsEmpty());
 }
 
-TEST(Passing, OfFourInAStripEachPairWhoseOrderChangesIsProven) {
+TEST(Passing, AmongFourInAStripEachPairWhoseOrderChangesIsProven) {
   Scenario s = corridor(14.0, 1.4);
   const double goals[] = {-5.0, 4.0, 0.0, 6.0};  // the second and the third change places
   for (int i = 0; i < 4; ++i) test_scenes::add_robot(s, {-6.0 + 4.0 * i, 0.0}, {goals[i], 0.0});
@@ -189,7 +189,7 @@ TEST(Passing, NothingIsProvenOfRobotsThatOverlapAtTheStart) {
 
 /// Goals that walls alone keep out of reach, whatever room there is to pass: beyond the strip, in a wall, or behind a
 /// gap that is just too narrow.
-TEST(Passing, NothingIsSaidOfAGoalThatIsOutOfReachByItself) {
+TEST(Passing, NothingIsReportedOfAGoalThatIsOutOfReachByItself) {
   const auto reversed = [](double length, double width, Vec2 goal) {
     Scenario s = corridor(length, width);
     test_scenes::add_robot(s, {-3, 0}, goal);
@@ -229,7 +229,7 @@ TEST(Passing, NothingIsSaidOfAGoalThatIsOutOfReachByItself) {
 }
 
 /// Then there is no room at the goals, whether the two can pass or not.
-TEST(Passing, NothingIsSaidOfGoalsTooNearToEachOther) {
+TEST(Passing, NothingIsReportedOfGoalsTooNearToEachOther) {
   const auto with_goals = [](double first, double second) {
     Scenario s = corridor(12.0, 1.5);
     test_scenes::add_robot(s, {-3, 0}, {first, 0});
@@ -240,7 +240,7 @@ TEST(Passing, NothingIsSaidOfGoalsTooNearToEachOther) {
   EXPECT_THAT(with_goals(1.0, 0.5), IsEmpty());
 }
 
-TEST(Passing, AProofAboutTwoIsSaidWhateverElseIsOfOthers) {
+TEST(Passing, AProofAboutTwoIsReportedWhateverIsReportedOfOthers) {
   Scenario s = corridor(12.0, 1.5);
   test_scenes::add_robot(s, {-3, 0}, {3, 0});
   test_scenes::add_robot(s, {3, 0}, {-3, 0});
@@ -326,7 +326,7 @@ TEST(Passing, NothingIsProvenOfRobotsThatArrive) {
   EXPECT_GT(proven, 2);
 }
 
-TEST(Passing, ItIsSaidBeforeTheRunAndAtItsEnd) {
+TEST(Passing, ItIsReportedBeforeTheRunAndAtItsEnd) {
   Scenario s = corridor(8.0, 1.5);
   s.time_limit = 10.0;
   test_scenes::add_robot(s, {-3, 0}, {3, 0});

@@ -66,7 +66,7 @@ TEST(Preflight, NumbersThatAreComparedDifferInTheWarning) {
   EXPECT_THAT(warnings_before(near)[0], HasSubstr("are 1.03999 m apart, and radii and margin take 1.04 m"));
 }
 
-TEST(Preflight, AStartThatIsShutInIsSaidToBe) {
+TEST(Preflight, AStartThatIsShutInIsReported) {
   const auto warnings = warnings_before(scene({0, 0}, {{8, 0}}, {{"room", room(0.9)}}));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0], HasSubstr("'room' encloses the start"));

@@ -115,7 +115,7 @@ std::vector<Scene> scenes() {
 }
 
 /// (1) to (4) in every step, and everybody is home once.
-TEST(Reservations, Properties1To4_EverybodyGetsHomeAndNobodyOverlaps) {
+TEST(Reservations, Properties1To4_AllRobotsGetHomeAndNoneOverlap) {
   Judged judged;
   for (const auto& [name, s] : scenes()) {
     ReservationDrive drive(s);
@@ -189,7 +189,7 @@ const ObstacleSpace& open_space() {
 }
 
 /// A robot counts as being on its place a little before: by less than what ways keep from places.
-TEST(Reservations, ARobotThatHasAllButReachedItsPlaceIsInNobodysWay) {
+TEST(Reservations, ARobotThatHasAllButReachedItsPlaceIsInNoRobotsWay) {
   for (const double off : {0.0, 0.5 * kPlaceReached, 0.999 * kPlaceReached}) {
     Reservations reservations(open_space(), 2, 0.1, 0.5, WhoReserves::all);
     // The first drives past the place of the second as near as it may; that stops a little before its place.

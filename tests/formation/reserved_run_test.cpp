@@ -37,7 +37,7 @@ std::vector<Scene> scenes() {
   return all;
 }
 
-TEST(ReservedRun, EverybodyArrivesAndNobodyOverlaps) {
+TEST(ReservedRun, AllRobotsArriveAndNoneOverlap) {
   for (const auto& [name, s] : scenes()) {
     const RunReport r = run_crowd(s, {});
     EXPECT_EQ(r.arrived, s.robots.size()) << name;
@@ -46,7 +46,7 @@ TEST(ReservedRun, EverybodyArrivesAndNobodyOverlaps) {
   }
 }
 
-TEST(ReservedRun, WithoutAJamNobodyReservesBeforeItIsAtItsGoal) {
+TEST(ReservedRun, WithoutAJamNoRobotReservesBeforeItIsAtItsGoal) {
   Scenario s;
   for (int k = 0; k < 5; ++k) add_robot(s, {0.0, 4.0 * k}, {20.0, 4.0 * k});
   s = run_along_routes(s);

@@ -148,7 +148,7 @@ TEST(Timetable, IsASequenceOfClearMoves) {
 }
 
 /// Robots in a row go one behind the other without waiting; who crosses another's way waits for it.
-TEST(Timetable, KnowsWhoWaitsForWhom) {
+TEST(Timetable, KnowsWhichRobotWaitsForWhich) {
   const Walls open({});
   Roadmap map(open, {{0, 0}, {12, 12}}, 0.5);
   const auto place = [&](double x, double y) { return map.attach({1.06 * x, 1.06 * y}, 0.5); };

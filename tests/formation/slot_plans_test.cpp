@@ -73,7 +73,7 @@ void expect_formed(const std::string& what, Scenario s) {
   for (const std::string& finding : report.findings) ADD_FAILURE() << finding;
 }
 
-TEST(SlotPlans, WhoBlockEachOthersSlotsInAStreetPass) {
+TEST(SlotPlans, RobotsThatBlockEachOthersSlotsInAStreetPass) {
   for (const int count : {4, 8, 14})
     expect_formed(std::to_string(count), at_slots(test_scenes::street(count, count == 4 ? 3.0 : 4.0)));
 }
@@ -107,7 +107,7 @@ TEST(SlotPlans, RunsAreTheSameBits) {
 }
 
 /// A formation that nobody blocks has the bits that it has without plans, and while the leader moves none is made.
-TEST(SlotPlans, ChangeNothingWhereNobodyIsBlocked) {
+TEST(SlotPlans, ChangeNothingWhereNoRobotIsBlocked) {
   Scenario s = at_slots(test_scenes::circle(6));
   s.formation->leader.path = {{0.0, 0.0}, {20.0, 0.0}};
   s.formation->leader.speed = 0.7;
@@ -158,7 +158,7 @@ TEST(SlotPlans, AreMadeForTheSlotsAtTheLeadersEnd) {
   EXPECT_TRUE(run(s).is_formed());
 }
 
-TEST(SlotPlans, NobodyPlansForRobotsThatDoNotCooperateNorAmongMovingObstacles) {
+TEST(SlotPlans, NoPlansForRobotsThatDoNotCooperateNorAmongMovingObstacles) {
   Scenario s = limited(at_slots(test_scenes::siding()), 30.0);
   s.robots[1].cooperates = false;
   for (const JointPlan& plan : run(s).recording.plans) EXPECT_THAT(plan.robots, ElementsAre(0u));
@@ -188,7 +188,7 @@ bool rests_at_the_end(const SlotRun& r) {
 
 /// Robots that were plans' goals moved in and out of each other's slots until the time limit, or drove round the
 /// obstacle for as long.
-TEST(SlotPlans, WhoseSlotAnObstacleTakesGoesBesideItAndStays) {
+TEST(SlotPlans, ARobotWhoseSlotAnObstacleTakesGoesBesideItAndStays) {
   Scenario s = line_of({-3.0, -1.0, 1.0, 3.0});
   s.obstacles.push_back({"block", geometry::Polygon{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}}, {}}});
   const SlotRun r = run(s);
@@ -233,7 +233,7 @@ TEST(SlotPlans, SlotsInTheMarginOfAWallAreFilledAsNearAsTheMarginLeaves) {
 }
 
 /// The leader rests from the first row on: what a robot sees first is what it sees beside its slot.
-TEST(SlotPlans, WhoGoesBesideItsSlotFromTheFirstRowOnIsAudited) {
+TEST(SlotPlans, ARobotThatGoesBesideItsSlotFromTheFirstRowOnIsAudited) {
   Scenario s = line_of({-3.0, 3.0});
   s.formation->leader.path = {{0.0, 0.0}};
   s.obstacles.push_back({"block", geometry::Polygon{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}}, {}}});

@@ -191,7 +191,7 @@ TEST(Stuck, WhatTheRobotInTheWayDoesIsReported) {
 }
 
 /// Who creeps, as robots do that are held between a wall and each other, waits as who rests does.
-TEST(Stuck, WhoCreepsAndWaitsSaysForWhom) {
+TEST(Stuck, ARobotThatCreepsAndWaitsNamesTheOneItWaitsFor) {
   auto ends = head_on();
   ends[0].velocity = {0.02, 0};
   ends[1].velocity = {-0.02, 0};
@@ -207,7 +207,7 @@ TEST(Stuck, WhoCreepsAndWaitsSaysForWhom) {
 }
 
 /// Beside a wall it was not said for whom a robot waits if that one waits for nobody.
-TEST(Stuck, WhoIsHeldByAWallAndOneRobotSaysForWhomItWaits) {
+TEST(Stuck, ARobotHeldByAWallAndOneRobotNamesTheRobotItWaitsFor) {
   auto ends = head_on();
   const geometry::Segment wall{{0, -0.5}, {9, -0.5}};
   ends[0].constraints.push_back(constraint(ConstraintSource::obstacle_edge, 0, wall, {0, 1}, 1.0));
@@ -219,7 +219,7 @@ TEST(Stuck, WhoIsHeldByAWallAndOneRobotSaysForWhomItWaits) {
 }
 
 /// A goal in which another robot rests is not out of reach, nor is a slot that an obstacle stands in.
-TEST(Stuck, WhoStaysSaysWhy) {
+TEST(Stuck, ARobotThatStaysSaysWhy) {
   auto ends = head_on();
   for (End& end : ends) end.constraints.clear();
   ends[0].mode = Mode::staying;
@@ -238,7 +238,7 @@ TEST(Stuck, WhoStaysSaysWhy) {
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), testing::Not(HasSubstr("taken")));
 }
 
-TEST(Stuck, WhoGoesByAPlanSaysSo) {
+TEST(Stuck, ARobotThatGoesByAPlanSaysSo) {
   auto ends = head_on();
   ends.resize(1);
   ends[0].constraints.clear();

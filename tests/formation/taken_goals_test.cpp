@@ -34,7 +34,7 @@ TEST(TakenGoals, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
 
 /// Who is far away when its rival arrives comes, and stays beside it; who was there first is not pushed off. The run
 /// ended at once before, with R2 stopped where it was.
-TEST(TakenGoals, WhoseGoalIsTakenComesBesideItAndStays) {
+TEST(TakenGoals, ARobotWhoseGoalIsTakenComesBesideItAndStays) {
   for (const double apart : {0.0, 0.5}) {
     Scenario s;
     s.robots = {robot("R1", {3, 0}, {0, 0}), robot("R2", {20, 0}, {apart, 0})};
@@ -49,7 +49,7 @@ TEST(TakenGoals, WhoseGoalIsTakenComesBesideItAndStays) {
 
 /// The rival arrives while they go by a joint plan, which they drive to its end. The run ended there before, and the
 /// audit refuted what it said of robots that stayed.
-TEST(TakenGoals, WhoGoesByPlanToATakenGoalDrivesOn) {
+TEST(TakenGoals, ARobotThatGoesByPlanToATakenGoalDrivesOn) {
   Scenario s;
   s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 0})};
   const Recording run = simulate(s);
@@ -60,7 +60,7 @@ TEST(TakenGoals, WhoGoesByPlanToATakenGoalDrivesOn) {
 }
 
 /// R1 rests where R2 only passes: it makes way, and comes back.
-TEST(TakenGoals, WhoRestsOnAnothersGoalOnTheWayMakesWay) {
+TEST(TakenGoals, ARobotThatRestsOnTheGoalOfAnotherOnItsWayMakesWay) {
   Scenario s;
   s.robots = {robot("R1", {-5, 0}, {0, 0}), robot("R2", {5, 0}, {0, 5})};
   s.robots[1].goals = {{0, 0}, {0, 5}};
@@ -71,7 +71,7 @@ TEST(TakenGoals, WhoRestsOnAnothersGoalOnTheWayMakesWay) {
 
 /// Six goals on a line, each too near to its neighbours: who is there first keeps its own, and the others make room.
 /// R4 stood 0.37 m from its goal for a minute, behind one that stayed as R4 was said to rest there.
-TEST(TakenGoals, WhoStaysBesideATakenGoalMakesRoomInIt) {
+TEST(TakenGoals, ARobotThatStaysBesideATakenGoalMakesRoomInIt) {
   for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
     Scenario s;
     s.time_limit = 60.0;
@@ -90,7 +90,7 @@ TEST(TakenGoals, WhoStaysBesideATakenGoalMakesRoomInIt) {
 }
 
 /// R1 has no way to its goal and stays where that of R2 is: it makes way by plan.
-TEST(TakenGoals, WhoHasNoWayToItsGoalMakesWayForOthers) {
+TEST(TakenGoals, ARobotWithoutAWayToItsGoalMakesWayForOthers) {
   Scenario s;
   s.time_limit = 20.0;
   s.obstacles.push_back({"pen", geometry::Polyline{{{5, -1}, {7, -1}, {7, 1}, {5, 1}, {5, -1}}}});
@@ -185,7 +185,7 @@ TEST(TakenGoals, AGoalOnTheWayThatIsTakenIsReachedAllTheSame) {
 
 /// Of robots that go as near as they can to goals out of reach, those that find the place taken stay beside it. They
 /// pushed each other off it until time ran out, and some were said to stay for one that had never been at its goal.
-TEST(TakenGoals, WhoseNearestPlaceIsTakenStaysBesideIt) {
+TEST(TakenGoals, ARobotWhoseNearestPlaceIsTakenStaysBesideIt) {
   for (const double apart : {0.0, 0.2}) {
     for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
       Scenario s;

@@ -16,7 +16,7 @@ namespace {
 using test::kRobot;
 using test::kSpeed;
 
-TEST(Trap, AFlatWallAlwaysTrapsWhoseFootLiesWithinIt) {
+TEST(Trap, AFlatWallAlwaysTrapsARobotWhoseFootLiesWithinIt) {
   const geometry::Segment wall{{0.0, -3.0}, {0.0, 3.0}};
   EXPECT_TRUE(stall_possible(wall, {5.0, 1.0}));
   EXPECT_FALSE(stall_possible(wall, {5.0, 3.5}));

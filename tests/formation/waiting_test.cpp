@@ -61,7 +61,7 @@ TEST(Waiting, ARobotThatRestsAtItsGoalIsNoDeadlockAndMakesOne) {
   EXPECT_THAT(deadlocks_in(row.graph()), IsEmpty());
 }
 
-TEST(Waiting, WhoStaysAtTheEndOfAQueueDoesSoForAReason) {
+TEST(Waiting, ARobotAtTheEndOfAQueueHasAReasonToStay) {
   Row row({{1}, {2}, {}});
   for (Robot& r : row.scenario.robots) r.goals = {{9.0, 0.0}};
   row.scenario.robots[0].goals = row.scenario.robots[2].goals = {{-9.0, 0.0}};
@@ -95,7 +95,7 @@ TEST(Waiting, ASlowRobotThatDrivesAsFastAsItCanMoves) {
   EXPECT_THAT(row.graph()[0], ElementsAre(1));
 }
 
-TEST(Waiting, WhoGetsWhatItPrefersOrIsFarWaitsForNobody) {
+TEST(Waiting, ARobotThatGetsWhatItPrefersOrIsFarWaitsForNone) {
   Row fast({{1}, {0}});
   fast.step.robots[0].chosen = {kHeldBelow, 0.0};
   EXPECT_THAT(fast.graph(), ElementsAre(IsEmpty(), ElementsAre(0)));

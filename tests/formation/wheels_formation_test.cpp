@@ -273,7 +273,7 @@ TEST(WheeledFormation, WhatItsProofLacksIsRefused) {
 }
 
 /// No function of Lyapunov and no brake point ahead of the robot: these are of robots that track what they choose.
-TEST(WheeledFormation, NothingIsSaidOfLyapunovFunctions) {
+TEST(WheeledFormation, LyapunovFunctionsAreNotReported) {
   Scenario s = huskies("B0");
   s.time_limit = 2.0;
   const Recording run = simulate(s);

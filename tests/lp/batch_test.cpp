@@ -176,13 +176,13 @@ void expect_same_bits_of_the_barest(const std::vector<Problem>& problems, bool s
   ASSERT_TRUE(limit_batch_target(""));
 }
 
-TEST_P(Kinds, WhatNobodyAsksForChangesNoBit) {
+TEST_P(Kinds, UnusedInputsChangeNoBit) {
   expect_same_bits_of_the_barest<double>(mixture(GetParam()), GetParam(), false);
   expect_same_bits_of_the_barest<double>(mixture(GetParam()), GetParam(), true);
   expect_same_bits_of_the_barest<float>(mixture(GetParam()), GetParam(), false);
 }
 
-TEST(Batch, WhatNobodyAsksForChangesNoBitOfAdversarialAnswers) {
+TEST(Batch, UnusedInputsChangeNoBitOfAdversarialAnswers) {
   for (const std::string& family : adversarial_families())
     for (const char* perturbation : {"1e-3", "1e-9", "1e-15", "0"}) {
       const std::vector<Problem> problems = generate(family + ":" + perturbation, 500, 9);

@@ -40,7 +40,7 @@ TEST(Instances, UnknownSetsAreTheCallersMistake) {
     EXPECT_THROW(generate(set, 1, 1), std::logic_error) << set;
 }
 
-TEST(Instances, AnUnknownSetIsToldWhichThereAre) {
+TEST(Instances, AnUnknownSetIsRefusedWithTheNamesOfTheKnownOnes) {
   try {
     generate("RFx", 1, 1);
     FAIL() << "RFx is a set";

@@ -250,7 +250,7 @@ TEST(EveryKind, AGapIsARoundingErrorOfShortNormals) {
 }
 
 // The only double inside this needle near its tip lies 0.7 m/s away from it.
-TEST(Certificate, AGapThatIsNoRoundingErrorIsSaidToBeWide) {
+TEST(Certificate, AGapThatIsNoRoundingErrorIsReportedAsWide) {
   Problem p;
   p.bound.disc = 2.0;
   p.preferred = {-1.0, 1.0 / 3.0};

@@ -124,7 +124,7 @@ def test_threads_and_snapshots_give_the_same_bits():
     assert exactvo.Crowd.restored(made[0].snapshot()).digest == made[0].digest
 
 
-def test_nobody_crosses_a_wall():
+def test_no_robot_crosses_a_wall():
     crowd = exactvo.Crowd()
     crowd.add_robots(grid(50, 1.5) + (0, 2))
     crowd.add_obstacles([exactvo.Wall([(-100, 0), (100, 0)])])

@@ -85,7 +85,7 @@ def test_it_is_imported_from_anywhere(tmp_path):
     assert done.stdout.startswith(exactvo.__version__)
 
 
-def test_another_python_is_told_so(tmp_path):
+def test_another_python_is_named_in_the_error(tmp_path):
     shutil.copytree(FOLDER, tmp_path / "exactvo", ignore=shutil.ignore_patterns("*.so"))
     (tmp_path / "exactvo/_exactvo.cpython-37m-x86_64-linux-gnu.so").touch()
     done = subprocess.run([sys.executable, "-c", "import exactvo"], cwd=tmp_path, env={}, capture_output=True, text=True, check=False)

@@ -63,7 +63,7 @@ def test_a_scene_in_another_unit_is_warned_of():
             exactvo.simulate(small)
 
 
-def test_slots_that_are_moved_are_said(source):
+def test_moved_slots_are_reported(source):
     scene = json.loads((source / "datasets/data/paper/B1.json").read_text())
     scene["time_limit"] = 1
     moved = "formation: recentre moves every slot by (-0.3333, -0.3333)"
@@ -150,7 +150,7 @@ def test_scenarios_are_built_from_arrays():
         exactvo.Scenario.build([0, 0], [(1, 1)])
 
 
-def test_goals_out_of_reach_are_said_before_the_run():
+def test_goals_out_of_reach_are_reported_before_the_run():
     ring = exactvo.Wall([(4, -1), (6, -1), (6, 1), (4, 1), (4, -1)])
     scenario = exactvo.Scenario.build([(0, 0)], [(5, 0)], obstacles=[ring], time_limit=5)
     assert len(scenario.warnings) == 1 and "R1" in scenario.warnings[0]

@@ -145,7 +145,7 @@ TEST(CrowdOverRanks, OneProcessGoesOnWithWhatRanksLeft) {
   EXPECT_TRUE(here.read("killed.evr") == here.read("whole.evr"));
 }
 
-TEST(CrowdOverRanks, WhatIsWrongIsSaidOnce) {
+TEST(CrowdOverRanks, AnErrorOfAllRanksIsReportedOnce) {
   const Workplace here;
   here.write("mixed.json", kMixed);
   here.write("slow.json", R"({"name": "s", "robots": [{"id": "A", "position": [0, 0], "goal": [9, 0]},

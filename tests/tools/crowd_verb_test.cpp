@@ -365,7 +365,7 @@ TEST(CrowdVerb, ARunNamesRobotsWithoutARouteAndTheReason) {
   EXPECT_THAT(one["stuck"][0].get<std::string>(), HasSubstr("from its goal, "));
 }
 
-TEST(CrowdVerb, WhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
+TEST(CrowdVerb, ARobotWhoseGoalIsTakenStaysBesideItAndARunThatStandsStillEnds) {
   const Workplace here;
   here.write("one.json", R"({"name": "one", "time_limit": 60, "horizons": {"least": 0.5},
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");

@@ -163,7 +163,7 @@ TEST(Explanation, WhatIsViolatedByLessThanTheMostIsViolatedAndNotSlack) {
   EXPECT_THAT(explanation(d), HasSubstr("of obstacle north, violated by 0.0004 m/s"));
 }
 
-TEST(Explanation, SaysForWhomARobotWaitsAndWhichPairsFellBack) {
+TEST(Explanation, NamesTheRobotsThatARobotWaitsForAndThePairsThatFellBack) {
   Decision d = with_two_walls();
   EXPECT_THAT(explanation(d), testing::Not(testing::AnyOf(HasSubstr("waiting"), HasSubstr("ell back"))));
   d.waiting = "R1 waits for R2, which moves";
@@ -310,7 +310,7 @@ TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {
   EXPECT_THAT(words, testing::Not(HasSubstr("no constraint forbids")));
 }
 
-TEST(Explanation, WhoStaysDoesSoForAReason) {
+TEST(Explanation, ARobotThatStaysHasAReason) {
   Decision d = with_two_walls();
   d.step.mode = formation::Mode::staying;
   EXPECT_THAT(explanation(d), HasSubstr("the robot stays, since its goal is out of reach or taken.\n"));

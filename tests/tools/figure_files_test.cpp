@@ -112,7 +112,7 @@ TEST(FigureFiles, WithoutAnyTerminalThereIsTheScript) {
   EXPECT_TRUE(here.has("a.gp") && here.has("a.dat"));
 }
 
-TEST(FigureFiles, WithoutGnuplotNoPictureIsSaidToBeWritten) {
+TEST(FigureFiles, WithoutGnuplotNoPictureIsReportedAsWritten) {
   const Workplace here;
   const Outcome outcome = here.run(std::string(kVo) + "a.svg", "PATH=/nowhere");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

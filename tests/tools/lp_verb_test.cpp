@@ -240,7 +240,7 @@ std::string two_instances() {
   return std::string("\2\0\0\0", 4) + one + one;
 }
 
-TEST(Lp, WhatIsInNoFormatIsToldAll) {
+TEST(Lp, TextInNoFormatIsRefusedWithTheNamesOfAllFormats) {
   const Workplace here;
   const std::pair<std::string, const char*> cases[] = {
       {"hello\n", "line 1, column 1: found \"hello\""},
@@ -418,7 +418,7 @@ json summary_of(const Outcome& outcome) {
   return json::parse(outcome.out.substr(last == std::string::npos ? 0 : last + 1)).at("summary");
 }
 
-TEST(Lp, WhoAsksForProofsIsToldHowManyThereAreNot) {
+TEST(Lp, MissingProofsAreCountedWhereProofsAreRequested) {
   const Workplace here;
   here.write("p.jsonl", on_one_line(kGood));
   EXPECT_EQ(summary_of(here.run("lp p.jsonl --json")).at("unproven"), 0);

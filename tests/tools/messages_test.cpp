@@ -388,7 +388,7 @@ TEST(Messages, AnImageIsReferredToItsMap) {
   EXPECT_THAT(place().run("validate mystery.xyz").out, HasSubstr("name it with --format (convert: --from)"));
 }
 
-TEST(Messages, AGoalThatIsWalledInIsSaidBeforeTheRun) {
+TEST(Messages, AGoalThatIsWalledInIsReportedBeforeTheRun) {
   place().write("room.json",
                 R"({"name": "room", "robots": [{"id": "R1", "position": [8, 0], "goal": [0, 0]}], "time_limit": 1,
     "obstacles": [{"id": "room", "polyline": [[3, 0.4], [3, 3], [-3, 3], [-3, -3], [3, -3], [3, -0.4]]}]})");
@@ -524,7 +524,7 @@ TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
               AllOf(HasSubstr("found an empty file"), Not(HasSubstr("guessed"))));
 }
 
-TEST(Messages, WhatAnotherVerbOrKeyTakesIsSaid) {
+TEST(Messages, InputForAnotherVerbOrKeyIsRefusedWithItsName) {
   EXPECT_THAT(place().run("simulate t.csv").err,
               HasSubstr("found a file of trajectories, format csv, expected a scenario in JSON; check takes"));
   place().write("mystery.xyz", "abc\n");

@@ -240,7 +240,7 @@ TEST(ObstacleVerbs, DistortionIsInJson) {
   EXPECT_TRUE(json::parse(here.run("validate a.wkt --json").out).at("files").at(0).at("distortion").is_null());
 }
 
-TEST(Segment, TheSizeOfItsOutputIsSaidBefore) {
+TEST(Segment, TheSizeOfItsOutputIsPrintedBefore) {
   const Workplace here;
   EXPECT_EQ(here.run("generate star --seed 3 --count 20 --out stars.wkt").status, 0);
   for (const std::string out : {"shapes.geojson", "shapes.jsonl"}) {
@@ -451,7 +451,7 @@ TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
   EXPECT_FALSE(here.has("out/.parts"));
 }
 
-TEST(Batch, WhoWaitsForAnotherToPutPartsTogetherCanBeStopped) {
+TEST(Batch, AProcessThatWaitsForTheMergeOfAnotherCanBeStopped) {
   const Workplace here;
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);
@@ -575,7 +575,7 @@ TEST(ObstacleVerbs, HiddenFilesInTheMakingAreNotNamed) {
   EXPECT_THAT(batch.err, AllOf(HasSubstr("/proc/x"), testing::Not(HasSubstr(".parts"))));
 }
 
-TEST(Audit, WhatIsNoRecordingIsSaidToBeNone) {
+TEST(Audit, FilesThatAreNoRecordingsAreRefused) {
   const Workplace here;
   here.write("mine.json", R"({"name": "mine", "robots": []})");
   const Outcome scenario = here.run("audit mine.json");
@@ -587,7 +587,7 @@ TEST(Audit, WhatIsNoRecordingIsSaidToBeNone) {
   EXPECT_THAT(here.run("audit empty").err, HasSubstr("path: found 'empty'"));
 }
 
-TEST(Repair, AMissingFileIsSaidOnce) {
+TEST(Repair, AMissingFileIsReportedOnce) {
   const Workplace here;
   const Outcome outcome = here.run("repair nofile.wkt --out x.wkt");
   EXPECT_EQ(outcome.status, 2);

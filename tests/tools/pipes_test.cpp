@@ -292,7 +292,7 @@ TEST(Pipes, ARunIsAuditedFromItsStandardOutput) {
 }
 
 /// Whatever keeps a run from beginning, who waits for its recording gets an end.
-TEST(Pipes, ARunThatCannotBeginLeavesNobodyWaiting) {
+TEST(Pipes, ARunThatCannotBeginLeavesNoReaderWaiting) {
   const Workplace here;
   here.write("bad.json", "{}");
   make_pipe(here, "pipe");

@@ -38,7 +38,7 @@ std::string with(const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-TEST(Program, NothingAskedPrintsHelpAndFails) {
+TEST(Program, NoVerbPrintsHelpAndFails) {
   const Workplace here;
   const Outcome outcome = here.run("");
   EXPECT_EQ(outcome.status, 2);
@@ -349,7 +349,7 @@ const char* const kRunOver = R"({ "name": "run over", "time_limit": 100,
   "moving_obstacles": [ { "id": "cart", "polygon": [[-10, -1], [-8, -1], [-8, 1], [-10, 1]],
                           "path": [[0, 0], [60, 0]], "speed": 4 } ] })";
 
-TEST(Simulate, ACollisionIsSaidToMachines) {
+TEST(Simulate, ACollisionIsReportedToMachines) {
   const Workplace here;
   here.write("cart.json", kRunOver);
   const Outcome outcome = here.run("simulate cart.json --out out --fail-on-collision");
@@ -377,7 +377,7 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   EXPECT_EQ(here.run(clear).status, 0);
 }
 
-TEST(Simulate, ARobotThatDoesNotArriveIsSaidToMachines) {
+TEST(Simulate, ARobotThatDoesNotArriveIsReportedToMachines) {
   const Workplace here;
   here.write("shut.json", R"({ "name": "shut", "time_limit": 5,
     "robots": [ { "id": "in", "position": [0, 0], "goal": [8, 0] }, { "id": "free", "position": [9, 9], "goal": [8, 9] } ],
@@ -554,7 +554,7 @@ TEST(Audit, TheCurvesOfAFormationAreProven) {
   EXPECT_GT(report["proved"]["largest_bulge"], 0.0);
 }
 
-TEST(Paper, WhatAnInterruptedCampaignLeavesIsSaidAsItIs) {
+TEST(Paper, AnInterruptedCampaignNamesTheFolderItLeavesOrThatItLeavesNothing) {
   const Workplace here;
   const Outcome outcome = here.run("paper --out pp --random 100000 --jobs 1", "timeout -s INT 0.5");
   EXPECT_THAT(outcome.err, HasSubstr(here.has("pp") ? "is kept in pp" : "nothing is kept"));
@@ -582,7 +582,7 @@ TEST(Simulate, TheLastRowHasNoDerivatives) {
   EXPECT_EQ(here.run("audit out").status, 0);
 }
 
-TEST(Simulate, ALeaderThatNeverArrivesIsToldBeforeAndAfter) {
+TEST(Simulate, ALeaderThatNeverArrivesIsReportedBeforeAndAfter) {
   const Workplace here;
   std::ifstream file(data_file("paper/B0.json"));
   json scene = json::parse(file);
@@ -849,7 +849,7 @@ TEST(Program, ANameThatIsTooLongIsNoDefect) {
   }
 }
 
-TEST(Program, WhatIsPrintedForEverEndsWhenNobodyReadsIt) {
+TEST(Program, EndlessOutputEndsWhenItsReaderIsGone) {
   const Workplace here;
   here.write("wall.wkt", "LINESTRING (4 -1, 4 1)");
   here.write("run.sh", "yes '{\"pose\": [0, 0, 0], \"velocity\": [1, 0], \"turn\": 0}' | timeout 60 '" EXACTVO_PROGRAM
@@ -911,7 +911,7 @@ constexpr const char* kNarrow = R"({"name": "narrow", "time_limit": 12, "guidanc
   "obstacles": [{"id": "low", "polyline": [[-6, -0.7], [6, -0.7]]},
     {"id": "high", "polyline": [[-6, 0.7], [6, 0.7]]}]})";
 
-TEST(Explain, SaysForWhomARobotWaitsAlsoInJson) {
+TEST(Explain, NamesTheRobotsThatARobotWaitsForAlsoInJson) {
   const Workplace here;
   here.write("s.json", kNarrow);
   const std::string words = "left waits for right, which waits for left: a deadlock of two";
@@ -942,7 +942,7 @@ TEST(Explain, ATimeAfterTheEndIsRefused) {
   EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.jpg").status, 2);
 }
 
-TEST(Explain, TheEndOfTheRunIsSaidWithoutARoundingError) {
+TEST(Explain, TheEndOfTheRunIsPrintedWithoutARoundingError) {
   const Workplace here;
   here.write("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [3, 0]}],
     "time_step": 0.1, "time_limit": 0.3})");

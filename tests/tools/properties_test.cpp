@@ -131,7 +131,7 @@ TEST(Properties, OfARepairedFileAreKept) {
   EXPECT_EQ(features_of(here, "repaired.geojson").at(1).at("properties").at("name"), "Hof");
 }
 
-TEST(Properties, WhoseNamesDifferInCaseOrAreTakenGetColumnsOfTheirOwn) {
+TEST(Properties, NamesThatDifferInCaseOrAreTakenGetColumnsOfTheirOwn) {
   const Workplace here;
   here.write("a.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
     "properties": {"Name": 1, "name": "x", "fid": 7, "geom": 2}, "geometry": {"type": "Polygon",

@@ -96,7 +96,7 @@ TEST(RouteVerb, ASeparationNamesItsGapsAndWhatTheWidestNeeds) {
   EXPECT_THAT(posts.out, HasSubstr("would have to be 1.2 m\n  gap of "));
 }
 
-TEST(RouteVerb, AGapNarrowerByTheLastDigitIsToldFromWhatItWouldHaveToBe) {
+TEST(RouteVerb, AGapTooNarrowByTheLastDigitIsPrintedWithThatDigit) {
   const Rooms rooms;
   EXPECT_EQ(rooms.route("--from 1,1 --to 11,7 --radius 0.5").status, 0) << "a gap of exactly two radii is passed";
   const Outcome outcome = rooms.route("--from 1,1 --to 11,7 --radius 0.50000000000000011");
@@ -112,7 +112,7 @@ TEST(RouteVerb, AWallWithoutAGapIsNamedAlone) {
   EXPECT_EQ(outcome.out, "separated, the start is enclosed: closed by outer wall alone\n");
 }
 
-TEST(RouteVerb, ABlockedEndIsToldWithWhatBlocksItAndHowNear) {
+TEST(RouteVerb, ABlockedEndIsPrintedWithWhatBlocksItAndHowNear) {
   const Rooms rooms;
   const Outcome inside = rooms.route("--from 1,1 --to 9,3 --radius 0.4");
   EXPECT_EQ(inside.status, 1);

@@ -204,7 +204,7 @@ TEST(VerbVo, HorizonsOutOfRangeAreRefused) {
   }
 }
 
-TEST(VerbVo, ItIsSaidWhyThereIsNoCertificate) {
+TEST(VerbVo, TheReasonForAMissingCertificateIsPrinted) {
   const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
   const std::string far = "--obstacle 'POLYGON((10 0,1e30 0,1e30 1e30,10 0))'" + rest;
   EXPECT_TRUE(json_of(far).at("certificate").is_null());

@@ -244,7 +244,7 @@ TEST(AuditPoints, AHalfPlaneThatIsMissingIsNoticedThoughItDoesNotBind) {
   EXPECT_GT(noticed, 3u);
 }
 
-TEST(AuditPoints, AnObstacleThatNobodySawIsMissing) {
+TEST(AuditPoints, AnObstacleThatNoRobotSawIsMissing) {
   RecordingFile file = clean();
   const Vec2 at = file.recording.steps[20].robots[0].position;
   file.scenario.obstacles.push_back({"ghost", geometry::Polyline{{at + Vec2{-0.1, 0.55}, at + Vec2{0.1, 0.55}}}});
@@ -259,7 +259,7 @@ TEST(AuditPoints, AHorizonBelowTheTimeStepIsRefused) {
   EXPECT_EQ(report[AuditPoint::half_planes].refuted, 1u);
 }
 
-TEST(AuditPoints, AHalfPlaneThatIsSaidToBeSoftIsRefused) {
+TEST(AuditPoints, AHardHalfPlaneMarkedAsSoftIsRefused) {
   const AuditReport report = forged_constraint(is_hard, [](RobotStep&, DecisionConstraint& c) { c.hard = false; });
   EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
 }
@@ -429,7 +429,7 @@ TEST(AuditPoints, AnAnchorElsewhereIsRefused) {
   EXPECT_GT(audit(file)[AuditPoint::sequence].refuted, 0u);
 }
 
-TEST(AuditPoints, ATimeThatIsNotItsRowsIsRefused) {
+TEST(AuditPoints, ATimeThatIsNotTheTimeOfItsRowIsRefused) {
   RecordingFile file = clean();
   file.recording.steps[6].time = std::nextafter(file.recording.steps[6].time, 9.0);
   EXPECT_EQ(audit(file)[AuditPoint::sequence].refuted, 1u);

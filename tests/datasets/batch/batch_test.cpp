@@ -409,7 +409,7 @@ int status_with_files_up_to(std::size_t bytes, const BatchConfiguration& configu
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
+TEST_F(Batches, AFullDiskIsReportedAndLosesNothing) {
   BatchRun run = run_to("out");
   run.workers = 1;  // a child of fork has no threads but its own
   BatchConfiguration configuration;

@@ -49,7 +49,7 @@ TEST_F(BatchJournal, OneProcessAtATimeMergesAndItsFolderIsLeftAlone) {
   EXPECT_EQ(lock(other), Journal::Lock::held);
 }
 
-TEST_F(BatchJournal, WhoWaitsForTheLockGetsItWhenItsHolderIsGone) {
+TEST_F(BatchJournal, WaiterGetsLockWhenHolderExits) {
   ASSERT_EQ(lock(*journal_), Journal::Lock::held);
   Journal other(folder_ / "out");
   int asked = 0;
@@ -61,7 +61,7 @@ TEST_F(BatchJournal, WhoWaitsForTheLockGetsItWhenItsHolderIsGone) {
   EXPECT_EQ(asked, 3);
 }
 
-TEST_F(BatchJournal, WhatTheDeadLeftIsTakenAwayByWhoHasTheLock) {
+TEST_F(BatchJournal, TheHolderOfTheLockRemovesWhatDeadProcessesLeft) {
   const fs::path left = folder_ / "out" / ".parts" / "final.0123";
   fs::create_directories(left);
   journal_->start_final();

@@ -127,7 +127,7 @@ TEST_F(WithoutLocks, ThreeProcessesPutTheSamePartsTogetherAtOnce) {
   EXPECT_EQ(difference_from_whole("out"), "");
 }
 
-TEST_F(WithoutLocks, WhoComesLastTakesNothingAway) {
+TEST_F(WithoutLocks, TheLastProcessTakesNothingAway) {
   locks_are_known = false;
   const fs::path out = folder_ / "out";
   batch::Journal first(out);

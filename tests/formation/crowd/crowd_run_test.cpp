@@ -49,7 +49,7 @@ TEST(CrowdEnds, RobotsStandAsideForGoalsThatAreALittleTooNear) {
     EXPECT_LT(norm(last.places[i] - s.robots[i].goals.back()), 2.0 * s.arrival_tolerance);
 }
 
-TEST(CrowdEnds, WhoComesSecondStaysBesideAndDoesNotMoveWhoWasFirst) {
+TEST(CrowdEnds, TheSecondRobotStaysBesideAndDoesNotMoveTheFirst) {
   const Scenario s = scenario_of({robot("a", {-2.0, 0.0}, {{0.0, 0.0}}), robot("b", {9.0, 0.1}, {{0.0, 0.0}})});
   LastRow last;
   const RunReport r = run_crowd(s, {}, &last);

@@ -55,7 +55,7 @@ TEST(Crowd, AloneARobotTakesThePreferredVelocityOfTheLattice) {
   EXPECT_EQ(crowd.position(robot), (Vec2{1.125, 1.9375}));
 }
 
-TEST(Crowd, Property3_NobodyIsFasterThanMaxSpeed) {
+TEST(Crowd, Property3_NoRobotIsFasterThanMaxSpeed) {
   for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
     CrowdOptions options;
     options.precision = precision;
@@ -236,7 +236,7 @@ TEST(CrowdEdges, ARobotPassesADoorThatIsWiderAndNoOther) {
   }
 }
 
-TEST(CrowdEdges, NobodyIsPushedThroughAWall) {
+TEST(CrowdEdges, NoRobotIsPushedThroughAWall) {
   CrowdScene scene = crowd_scene("jam", 200);
   for (auto& robot : scene.robots) robot.goal = {100.0, 0.0};
   scene.obstacles.push_back(geometry::Polyline{{{16.0, -60.0}, {16.0, 60.0}}});
@@ -360,7 +360,7 @@ TEST(CrowdBodies, OneThatMovesGoesWholeStepsOfTheLatticeAndRobotsGetOutOfItsWay)
   }
 }
 
-TEST(CrowdBodies, NobodyIsPushedIntoOneAtRest) {
+TEST(CrowdBodies, NoRobotIsPushedIntoABodyAtRest) {
   CrowdScene scene = crowd_scene("jam", 200);
   for (auto& robot : scene.robots) robot.goal = {100.0, 0.0};
   for (int k = 0; k < 12; ++k)
@@ -468,7 +468,7 @@ TEST(CrowdRefuses, PositionsThatAreNoPlaceOfTheLattice) {
   EXPECT_EQ(crowd.size(), 0U);
 }
 
-TEST(CrowdRefuses, AStepOverTheEndOfTheLatticeAndMovesNobody) {
+TEST(CrowdRefuses, AStepOverTheEndOfTheLatticeAndMovesNoRobot) {
   Crowd crowd = with_one_kind();
   crowd.add_robot({4095.9, 0.0});
   crowd.add_robot({0.0, 0.0});

@@ -161,7 +161,7 @@ TEST(CrowdRanks, WhatTheSteeringOfOneRankThrowsEndsAll) {
   }
 }
 
-TEST(CrowdRanks, WhatIsWrongInAllIsSaidByTheFirst) {
+TEST(CrowdRanks, AnErrorOfAllRanksIsReportedByTheFirst) {
   int quiet = 0;
   try {
     in_ranks(
