@@ -236,7 +236,7 @@ void write_page(std::ostream& out, const std::vector<RunResult>& results, const 
   out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width\"><title>The arena</title>\n<style>"
       << kStyle << "</style></head><body>\n<h1>The arena: many robots arrive</h1>\n"
-      << "<p>A run is <b>ok</b> when all robots arrive and nobody touches anybody or an obstacle, in continuous time; "
+      << "<p>A run is <b>ok</b> when all robots arrive and none touches another or an obstacle, in continuous time; "
          "of "
          "robots that never end, when none stands at the end. It lasts at most 20 times the bound and 100 s, and ends "
          "before that when for 4 times the bound and 60 s no robot has come nearer to its goal. <b>Coll.</b>: "

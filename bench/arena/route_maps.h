@@ -20,7 +20,7 @@ struct RouteProblems {
   std::string scene() const;
 };
 
-/// Of every map with lengths in a folder, a few of them or all. Throws std::runtime_error where there is none.
+/// Problems on every map with lengths in a folder, a few per map or all. Throws std::runtime_error where there is none.
 std::vector<RouteProblems> route_problems_in(const std::filesystem::path& folder, Extent extent);
 
 /// `robots`: problems; `arrived`: those with a route; `path`: the routes' lengths over the published ones, which are of

@@ -47,7 +47,7 @@ double straight_way(const Robot& r) {
   return way;
 }
 
-/// Thrown to end a run in which nobody comes nearer to a goal any more.
+/// Thrown to end a run in which no robot comes nearer to a goal any more.
 struct NoProgress {};
 
 /// Measures a run while it is made. `scenario` must outlive it.

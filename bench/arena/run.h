@@ -37,7 +37,7 @@ struct RunResult {
   std::size_t plans = 0;
 };
 
-/// Of this thread.
+/// s, processor time of this thread.
 double processor_seconds();
 
 /// Rows are measured as they are made and not kept: memory does not grow with the run, but for a peer's output. Empty

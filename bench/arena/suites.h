@@ -14,7 +14,7 @@
 
 namespace exactvo::bench {
 
-/// When a run counts as a success, beside that nobody touches anybody or an obstacle.
+/// When a run counts as a success, besides that no robot touches another or an obstacle.
 enum class Success {
   all_arrive,    ///< within 20 times the bound and 100 s; ended before where none comes nearer for 4 times and 60 s
   nobody_stands  ///< at the end no robot has been slower than 0.02 m/s for 5 s, away from its last goal

@@ -20,7 +20,7 @@ using ConvexRings = std::vector<std::vector<geometry::Vec2>>;
 
 class VisibilityGraph {
  public:
-  /// Of a disc of this radius; 0: of a point.
+  /// `radius`: m, of the disc that moves; 0: a point.
   VisibilityGraph(const ConvexRings& rings, double radius);
 
   /// m; infinite where there is no way.

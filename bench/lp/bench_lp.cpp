@@ -446,7 +446,7 @@ constexpr const char* kFooter =
     "if a solver that says that it is exact has a wrong verdict, whatever others have.\n"
     "docs/guide/linear-program.md says what the sets and solvers are.";
 
-/// Of the names that Highway has, those that this build and this machine have.
+/// Lists the SIMD targets that both this build and this machine have.
 [[noreturn]] void refuse_target(const std::string& target) {
   std::string known;
   for (const char* name : {"AVX3_SPR", "AVX3_ZEN4", "AVX3_DL", "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2", "SVE2_128",

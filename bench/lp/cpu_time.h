@@ -5,7 +5,7 @@
 
 namespace exactvo::bench {
 
-/// Of this thread alone: others on the machine do not count, though they take its caches.
+/// ns, processor time of this thread alone: others on the machine do not count, though they use its caches.
 inline double thread_nanoseconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -38,8 +38,8 @@ class Checksum {
   std::uint64_t hash_ = 14695981039346656037ULL;
 };
 
-/// Of a struct that is nothing but doubles, how many. Others are not written whole: bytes between their members would
-/// go into the checksum.
+/// The number of doubles in a struct of doubles alone. Other structs are not written whole: bytes between their members
+/// would go into the checksum.
 template <class A>
 inline constexpr std::size_t doubles_of = 0;
 template <>

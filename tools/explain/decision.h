@@ -30,7 +30,7 @@ struct Decision {
   /// False: of what neither binds nor is violated, only half-planes against what could be met within a step.
   bool has_all_half_planes = true;
   std::vector<std::size_t> waits_for = {};     ///< robots (formation/waiting.h)
-  std::string waiting = {};                    ///< the same in words; empty where it waits for nobody
+  std::string waiting = {};                    ///< the same in words; empty where it waits for none
   std::vector<formation::SeenBody> seen = {};  ///< of each half-plane, what it keeps clear of
 
   const formation::Robot& who() const { return scenario.robots[robot]; }

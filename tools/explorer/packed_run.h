@@ -58,9 +58,10 @@ class RunPacker {
   /// The same of a row whose robots have a place, a velocity, a mode and a status, and no decisions.
   void add_positions(const formation::Step& row);
 
-  /// Of `about` everything but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is none.
-  /// `bodies`, one for each robot or none: more members of the robots in the head. "there" is a list of times, from and
-  /// until, s, at which the robot is there; "outline" a list of rings [x, y, ...] round its place, m, for a disc.
+  /// Takes everything of `about` but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is
+  /// none. `bodies`, one for each robot or none: more members of the robots in the head. "there" is a list of times,
+  /// from and until, s, at which the robot is there; "outline" a list of rings [x, y, ...] round its place, m, for a
+  /// disc.
   std::string finish(const datasets::RecordingFile& about, const std::string& metrics_json,
                      const std::vector<nlohmann::ordered_json>& bodies = {}) const;
 

@@ -358,7 +358,7 @@ HttpAnswer answer(const std::string& body, const OptionsOfRun& options_of, const
 constexpr const char* kConnectNothing = "default-src 'none';";
 constexpr const char* kConnectSelf = "default-src 'none'; connect-src 'self';";
 
-/// The page's own policy as a header too, where it can also say that nobody frames it.
+/// The page's own policy as a header too, where it can also forbid other pages to frame it.
 std::string policy() {
   return std::string(kConnectSelf) +
          " script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; media-src blob:; base-uri "

@@ -14,7 +14,7 @@ constexpr double kHalfWidth = 22.0;
 constexpr double kHalfHeight = 8.0;
 /// px between points of a curve: less than a label's height.
 constexpr double kSpacing = 4.0;
-/// px: nobody takes a line this far off for the label's.
+/// px: a line this far off is not taken for the label's.
 constexpr double kEnough = 5.0;
 /// px: of the cells by which points are looked up, about what a label needs.
 constexpr double kCellWidth = 32.0, kCellHeight = 16.0;

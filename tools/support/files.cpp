@@ -135,7 +135,7 @@ StagedFolder::StagedFolder(fs::path target, const fs::path& named)
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;  // A destructor must not throw, and there is nobody left to tell.
+  std::error_code ignored;  // A destructor must not throw, and no caller is left to report to.
   fs::remove_all(staging_, ignored);
 }
 

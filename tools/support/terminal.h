@@ -49,7 +49,7 @@ inline std::string size_text(double bytes) {
   return fmt::format("{:.3g} {}", bytes, units[k]);
 }
 
-/// Nobody reads stdout any more (`| head`): what would go on printing for long ends here, with success.
+/// The reader of stdout has closed it (`| head`): a verb that would print for long ends here, with success.
 struct ReaderLeft : std::runtime_error {
   ReaderLeft() : std::runtime_error("the reader of stdout has left") {}
 };

@@ -24,7 +24,7 @@ inline std::filesystem::path name_of_file(const std::filesystem::path& path) {
   return error ? path : canonical;
 }
 
-/// Of ASCII letters.
+/// Changes ASCII letters only.
 inline std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;

@@ -25,7 +25,7 @@ class DegreeBox {
   /// The narrowest interval of longitudes that holds all, from -180 on, its end beyond 180 where it crosses the
   /// antimeridian. Gaps of less than a tenth of a degree are not looked for.
   geometry::Box on_circle() const;
-  /// Of `on_circle`, longitude within (-180, 180]; round a pole that pole.
+  /// The middle of `on_circle`, longitude within (-180, 180]; the pole where the box is round one.
   geometry::Vec2 middle() const;
 
  private:

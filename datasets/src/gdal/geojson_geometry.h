@@ -31,12 +31,12 @@ std::optional<GeoJsonFault> fault_of_entry(const Json& entry);
 /// The same of a record of a sequence, or of what a file holds alone.
 std::optional<GeoJsonFault> fault_of_record(const Json& record);
 
-/// Of a feature without a fault, or of a geometry that stands alone. Null: none.
+/// The geometry of a valid feature, or the record itself where that is a geometry. Null: none.
 const Json* geometry_of(const Json& record);
-/// Of a geometry without a fault.
+/// Shows the parts of a valid geometry to the visitor.
 void visit(const Json& geometry, const Visitor& visitor);
 
-/// Of a feature; nothing of what is none.
+/// The properties of a feature; empty for other records.
 FeatureProperties properties_of(const Json& feature);
 
 }  // namespace exactvo::datasets

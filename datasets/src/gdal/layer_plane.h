@@ -47,7 +47,7 @@ class LayerPlane {
 
   /// Throws DataError (E_PROJECTION) where a point has no place on the plane.
   void bring_to_metres(geometry::Ring& ring, const std::string& place);
-  /// Of the rings before they are brought to metres; none where that changes nothing.
+  /// The rings before they are brought to metres; none where that changes nothing.
   std::optional<AsWritten> as_written(const std::vector<geometry::Ring>& rings);
   /// Tells the collector the extent of what it took and its distortion, after all layers.
   void note_extent();

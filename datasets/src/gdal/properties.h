@@ -30,7 +30,7 @@ Visitor taker_of_rings(DegreeBox& box);
 
 void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
 
-/// Of the feature's fields, but for the column that its geometry was read from. `with_id`: the feature's number counts.
+/// The fields of the feature, without the column that its geometry was read from. `with_id`: with its number.
 FeatureProperties properties_of(const OGRFeature& feature, bool with_id);
 
 /// What stands in the column that a CSV's geometries are taken from.

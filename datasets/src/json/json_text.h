@@ -86,7 +86,7 @@ std::string pointer_to(const Json& value, const Json& all);
 template <class Codec, class T>
 using For = std::conditional_t<Codec::kReads, T, const T>;
 
-/// Of lists and of what has `members`: written on one line, even in an indented text.
+/// Whether lists of T, and objects with `members`, are written on one line even in an indented text.
 template <class T>
 inline constexpr bool kOnOneLine = false;
 template <>
@@ -264,7 +264,7 @@ inline std::string number_text(double number) {
 class JsonCursor {
  public:
   static constexpr bool kReads = true;
-  /// Keys that nobody asks for.
+  /// Keys that are not asked for.
   enum class OtherKeys { pass, refused };
 
   /// `line` is put before the pointer in messages: "line 3" in JSON Lines, "" elsewhere.

@@ -46,8 +46,8 @@ void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out);
 /// top, of one component at a time.
 inline constexpr std::size_t kMostCells = std::size_t{1} << 24;
 
-/// Of the boundary of one component. A picture of some kilobytes may hold millions, and each takes 220 bytes until its
-/// polygon is validated: 58 MB.
+/// Corners of the boundary of one component. A picture of some kilobytes may hold millions; each takes 220 bytes until
+/// its polygon is validated: 58 MB.
 inline constexpr std::size_t kMostCorners = std::size_t{1} << 18;
 
 }  // namespace exactvo::datasets

@@ -92,7 +92,7 @@ class Collector {
     result_.projected_from = std::move(from);
   }
   void set_distortion(const Distortion& distortion) { result_.distortion = distortion; }
-  /// Of what is added from now on.
+  /// For everything that is added from now on.
   void set_plane(const LocalPlane& plane);
   /// Grows the file's extent.
   virtual void extend(const geometry::Obstacle& shape);

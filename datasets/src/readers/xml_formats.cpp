@@ -20,7 +20,7 @@ void add_argument(const XmlFile& xml, const pugi::xml_node& argument, std::size_
   read_wkt_text(text, place, id, out);
 }
 
-/// Of SUMO.
+/// The ring of a polygon of SUMO.
 geometry::Ring to_ring(const XmlFile& xml, const pugi::xml_node& poly, const std::string& file) {
   geometry::Ring ring;
   for (const std::string_view pair : words_of(poly.attribute("shape").value())) {
@@ -45,7 +45,7 @@ RawGeometry to_raw(const XmlFile& xml, const pugi::xml_node& poly, const std::st
   return {solid ? RawKind::polygon : RawKind::polyline, id, xml.place_of(poly) + ", poly " + id, {ring}};
 }
 
-/// Of Menge. Rounding may misjudge a sliver.
+/// Whether a ring of Menge runs clockwise. Rounding may misjudge a sliver.
 bool runs_clockwise(const geometry::Ring& ring) {
   double doubled_area = 0.0;
   for (std::size_t k = 0; k < ring.size(); ++k)
@@ -53,7 +53,7 @@ bool runs_clockwise(const geometry::Ring& ring) {
   return doubled_area < 0.0;
 }
 
-/// Of BARN.
+/// The position of a model of BARN.
 geometry::Vec2 position_of(const XmlFile& xml, const pugi::xml_node& model) {
   const pugi::xml_node pose = model.child("pose");
   const std::vector<std::string_view> words = words_of(pose.child_value());

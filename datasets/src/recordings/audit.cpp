@@ -112,7 +112,7 @@ bool has_ended(const formation::Scenario& s, const End& end, bool& somebody_stay
   });
 }
 
-/// A run ends at its time limit, when nobody goes on, or when a formation has left every bound.
+/// A run ends at its time limit, when no robot goes on, or when a formation has left every bound.
 bool is_whole(const formation::Scenario& s, const End& end, bool& somebody_stays) {
   constexpr double kSameRow = 1e-6;     // of a step
   constexpr double kOutOfBounds = 1e6;  // m and m/s

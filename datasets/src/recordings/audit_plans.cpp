@@ -16,7 +16,7 @@ using formation::JointPlan;
 /// compared to within a share of 1e-9, and a place within 1e-9 diameters of a known one counts as that one.
 constexpr double kPlanRounding = 1e-8;
 
-/// A plan on its way: who stands where.
+/// A plan on its way: where each robot stands.
 class PlanAudit {
  public:
   PlanAudit(const AuditedRun& run, const JointPlan& plan) : run_(run), plan_(plan), at_(plan.starts) {}
@@ -59,7 +59,7 @@ class PlanAudit {
       run_.tally.proven(AuditPoint::plans);
   }
 
-  /// Who is too near at the beginning is left open: plans are made from where robots stand.
+  /// A pair that is too near at the beginning is left open: plans are made from where robots stand.
   void meet_obstacles(std::size_t mover, geometry::Vec2 to, std::string& met, std::string& open) const {
     const std::size_t robot = plan_.robots[mover];
     const Rational reach = radius(robot) * (1 - Rational(kPlanRounding));

@@ -57,7 +57,7 @@ class PlacesInRows {
 
   /// m, where half-planes of the robot were built. Null where there is no row of that time.
   const geometry::Vec2* at_begin(const formation::GoalBodies& of_goal) const;
-  /// Of a robot of the plan.
+  /// Where a robot of the plan was when it began.
   const geometry::Vec2* at_begin(const formation::JointPlan& plan, std::size_t robot) const;
   /// Whether the row in which it begins had been forgotten when the plan came up.
   bool is_forgotten(const formation::JointPlan& plan, std::size_t robot) const;

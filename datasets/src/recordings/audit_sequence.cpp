@@ -27,7 +27,8 @@ using geometry::Vec2;
 /// A step's results are sums of terms that passed fewer than this many roundings (rk4, the longest, 40).
 constexpr double kRoundings = 64 * 0x1p-53;
 
-/// m/s: who stands for a thousand steps has velocities below the smallest normal number, which round absolutely.
+/// m/s: a robot that stands for a thousand steps has velocities below the smallest normal number; their rounding is
+/// absolute.
 constexpr double kSubnormal = 0x1p-1050;
 
 /// A path counts as covered when all but 1e-12 of it is (formation's leader.h): places are known to within a share of

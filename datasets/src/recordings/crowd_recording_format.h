@@ -27,7 +27,7 @@ inline constexpr char kCrowdRow = 'R', kCrowdEnd = 'E';
 
 std::uint64_t checksum(std::string_view bytes);
 
-/// Of all blocks so far, and of one more.
+/// The checksum of all blocks so far and of one more.
 std::uint64_t chained(std::uint64_t sum, std::uint64_t next);
 
 template <class T>

@@ -42,7 +42,7 @@ inline const auto& words(formation::OwnStage) {
   return kWords;
 }
 
-/// Of the parts of the speed bound.
+/// The names of the parts of the speed bound.
 inline const auto& words(lp::BindingKind) {
   using E = lp::BindingKind;
   static constexpr geometry::Names<E, 5> kWords{{{E::disc, "disc"},

@@ -154,7 +154,7 @@ class ScenarioReader {
     throw no_scenario(file_, (is_topology ? "TopoJSON" : "GeoJSON") + (" (" + type->get<std::string>()) + ")");
   }
 
-  /// Obstacles stand. Who gives one a velocity means a moving obstacle, which is in a list of its own.
+  /// Obstacles stand: one with a velocity is meant as a moving obstacle, which is in another list.
   void refuse_motion_of_obstacles(const Json& tree) const {
     const auto list = tree.is_object() ? tree.find("obstacles") : tree.end();
     if (list == tree.end() || !list->is_array()) return;

@@ -19,7 +19,7 @@ class Checker {
   /// What a reference of the schema, "#/definitions/point", stands for.
   using Definitions = std::function<const Json&(const std::string& reference)>;
 
-  /// Of `all`, whose parts are checked.
+  /// Checks parts of `all`.
   Checker(const Definitions& definitions, const Json& all, const std::string& file)
       : definitions_(definitions), all_(all), file_(file) {}
 

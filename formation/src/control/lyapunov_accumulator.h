@@ -21,8 +21,8 @@ struct Decays {
 /// Takes the rows of a run one after the other, and keeps the last.
 class LyapunovAccumulator {
  public:
-  /// Of `run` what is known before the first row; it and the scenario, which has a formation, must outlive the
-  /// accumulator.
+  /// Reads of `run` what is known before the first row. Both must outlive the accumulator; the scenario has a
+  /// formation.
   LyapunovAccumulator(const Scenario& scenario, const Recording& run);
 
   /// The values at the row before, whose rates are known now; nothing for the first row.

@@ -106,7 +106,7 @@ class Sight {
     return support(n) + (query_.radius + body_.round) * length + error_;
   }
 
-  /// Of the hull, not grown.
+  /// The point of the hull, not grown, that is nearest to x.
   Vec2 nearest(Vec2 x) const {
     Vec2 best;
     double least = kInfinity;
@@ -118,7 +118,7 @@ class Sight {
     return is_inside(x) ? x : best;
   }
 
-  /// Of the hull, by more than rounding: never of one without an interior.
+  /// Whether x is inside the hull by more than rounding; never where the hull has no interior.
   bool is_inside(Vec2 x) const {
     bool any = false;
     for (std::size_t k = 0; k < body_.normals.size(); ++k) {

@@ -54,7 +54,7 @@ class CrowdBody {
   std::size_t place_of(RobotId robot);
   std::uint64_t digest() const;
 
-  /// Of robots by their place in the order.
+  /// Robots by their place in the order:
   Vec2 position(std::size_t at) const { return core->position_of(at); }
   Vec2 velocity(std::size_t at) const { return core->velocity_of(core->robots.mx[at], core->robots.my[at]); }
   /// Puts what `value_of` says of each place where its robot's id is; grows the array to `id_end`.

@@ -224,7 +224,7 @@ class EdgeLanes {
     return query_.items[HWY_MIN(first_[lane] + row, last_[lane])];
   }
 
-  /// Of the last lines.
+  /// The edges of the last lines, and whether they touch.
   HWY_INLINE void name_edges(std::uint32_t* edge, std::uint8_t* touching) const {
     alignas(64) double row[kPack], threshold[kPack];
     hn::Store(best_row_, Doubles(), row);

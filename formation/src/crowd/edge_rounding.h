@@ -20,26 +20,27 @@ inline constexpr double kSupportError = 16.0 * kUnit;
 /// precision) and its support value is rounded up (in units of double).
 inline constexpr double kRoundingRoom = 8.0, kSupportRoom = 64.0 * kUnit;
 
-/// Times kSupportError: what an offset is above its support value, so that edges that share the vertex it stands for
-/// are excluded too, whatever their own support values are rounded by.
+/// In units of kSupportError: by how much an offset exceeds its support value, so that it also excludes other edges at
+/// the vertex it stands for, however their own support values are rounded.
 inline constexpr double kSharedVertex = 3.0;
 
 /// An offset is a quotient and a product: 2 u. It is negative and moves towards 0.
 inline constexpr double kTowardsZero = 1.0 - 4.0 * kUnit;
 
-/// The product of horizon and offset is off by u, times this by another: what is not above it is not above the product.
+/// The product of horizon and offset is off by u, and its product with this factor by another u: whatever is at most
+/// the rounded result is at most the exact product.
 inline constexpr double kAwayFromZero = 1.0 + 8.0 * kUnit;
 
 /// Vectors whose square is below it have no direction: the square would lose digits to underflow.
 inline constexpr double kNoDirection = 0x1p-900;
 
-/// Of a range, for its own rounding.
+/// A range is widened by this factor, for its own rounding.
 inline constexpr double kWiden = 1.0 + 0x1p-20;
 
 /// Ends of edges are cut at this many times the range.
 inline constexpr double kCutRanges = 2.0;
 
-/// Of length 1, or 0 where there is no direction.
+/// The direction of a, of length 1; 0 where there is none.
 inline geometry::Vec2 direction(geometry::Vec2 a) {
   const double squared = geometry::squared_norm(a);
   return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : geometry::Vec2{};

@@ -9,7 +9,7 @@
 namespace exactvo::formation::crowd {
 namespace {
 
-/// Of the origin.
+/// Squared distance of the origin from s.
 double squared_distance(const Segment& s) {
   return geometry::squared_norm(nearest_on(s.a, s.b, {}));
 }

@@ -176,7 +176,7 @@ class CrowdEngine final : public CrowdCore {
     return range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
   }
   std::size_t ranges_of(std::size_t count) const { return (count + grain_of(count) - 1) / grain_of(count); }
-  /// Of the range that begins `before` robots after the first of `count`.
+  /// The lists of the range that begins `before` robots after the first of `count`.
   NearLists& near_lists_of(std::size_t before, std::size_t count) { return near_lists_[before / grain_of(count)]; }
 
   template <class Do>
@@ -277,7 +277,7 @@ class CrowdEngine final : public CrowdCore {
     }
   }
 
-  /// Of each lane what a table says of its kind; `otherwise` in lanes without a robot.
+  /// Puts into each lane the table's value for its kind; `otherwise` into lanes without a robot.
   template <class Value>
   void put_by_kind(const Pack& pack, const std::vector<Value>& table, Value otherwise, Value* by_lane) const {
     std::fill(by_lane, by_lane + kPack, table[0]);
@@ -314,7 +314,7 @@ class CrowdEngine final : public CrowdCore {
     wheels.fetch(robots, pack.begin, pack.end);
   }
 
-  /// Who stands so near to the robots of a pack that the second level looks at the pair.
+  /// The robots that stand so near to those of a pack that the second level looks at the pair.
   void list_near(const Pack& pack, Scratch& s, NearLists& lists) const {
     const Timed timed(options.time_phases, s.phases.hard);
     alignas(64) float meeting[kPack] = {};

@@ -71,7 +71,7 @@ inline double edge_horizon(const CrowdKind& kind) {
   return kind.edge_horizon > 0.0 ? kind.edge_horizon : kind.time_horizon;
 }
 
-/// Of the precision that the options ask for.
+/// An engine in float or double, as the options say.
 std::unique_ptr<CrowdCore> make_core(const CrowdOptions& options);
 
 /// Adds the time it lives to a phase, where phases are timed.

@@ -169,7 +169,7 @@ bool HardLevel<T>::add_few(std::size_t robot, HardBuffers& b) const {
   return true;
 }
 
-/// Of what its kind allows and longest_way says.
+/// The square of the longest way that its kind and longest_way allow.
 template <class T>
 double HardLevel<T>::squared_way(std::size_t robot) const {
   const Motion wish = wish_of(robot);

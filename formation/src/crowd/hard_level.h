@@ -25,7 +25,7 @@
 
 namespace exactvo::formation {
 
-/// Of a thread.
+/// One per thread.
 struct HardBuffers {
   crowd::NearPairs near;
   std::vector<std::uint64_t> order;  ///< of a robot's pairs: the place of the other, the pair, whether it is b of it

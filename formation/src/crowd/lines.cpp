@@ -238,7 +238,7 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t lane) {
 /// Ranks whose half-planes are made side by side.
 constexpr int kAtOnce = 6;
 
-/// The other robots of a rank, seen from those of some lanes. Nobody's are anything.
+/// The other robots of a rank, seen from those of some lanes. In lanes without a robot they are unspecified.
 template <bool kMixed, class D>
 HWY_INLINE Pair<D> pair_of(D d, const KindTable<hn::TFromD<D>>& table, const LineQuery& q, const Own<D>& own,
                            const hn::Vec<WordsOf<D>>& at) {

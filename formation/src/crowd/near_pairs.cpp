@@ -290,7 +290,7 @@ void NearPairs::start(const std::vector<StepsOfKind>& kinds, std::size_t first, 
   std::memset(last_of_.data(), 0xFF, (last - first) * sizeof last_of_[0]);
 }
 
-/// Of pairs of one kind, once for all places.
+/// The radii of pairs of one kind, once for all places.
 void NearPairs::make_radii() {
   if (both_radii_ == 0.0) return;
   std::fill(pairs.radii.begin() + static_cast<std::ptrdiff_t>(with_radii_), pairs.radii.end(), both_radii_);

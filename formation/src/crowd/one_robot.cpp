@@ -13,7 +13,7 @@ using namespace crowd;
 
 namespace {
 
-/// Of a squared reach: above what squared distances in float are rounded by.
+/// Factor of a squared reach: more than squared distances in float are rounded by.
 constexpr double kFarthest = 1.0 + 0x1p-16;
 
 /// Everybody nearer than `reach` (lattice steps), and maybe some beyond, by the order of neighbours.

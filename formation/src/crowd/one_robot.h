@@ -31,7 +31,7 @@ struct CrowdDecision {
 /// A robot near another, by cut squared distance (lattice steps) and place in the sorted order.
 using Near = std::pair<float, std::int32_t>;
 
-/// Of a thread.
+/// One per thread.
 template <class T>
 struct OneRobotBuffers {
   std::vector<Near> near;
@@ -95,8 +95,8 @@ class OneRobot {
   /// one that is never turned.
   CrowdMotion straight(std::size_t robot, Vec2 preferred, crowd::Answers<T> in, std::size_t hard) const;
 
-  /// Of a motion that does not keep all half-planes, or that wheels do not allow, another one nearby, or none. `hard`:
-  /// this many of the first lines are of edges and bodies at rest and of wheels.
+  /// Where a motion does not satisfy all half-planes, or wheels do not allow it: another one nearby, or none. `hard`:
+  /// the number of first lines that are of edges, bodies at rest and wheels.
   CrowdMotion settled(std::size_t robot, const crowd::Answers<T>& in, std::uint8_t status, std::int32_t hard,
                       CrowdMotion m) const;
 

@@ -40,7 +40,7 @@ struct Pack {
   void clear() { ranks = 0, alone = touching = 0; }
 };
 
-/// Of a thread.
+/// One per thread.
 struct PackBuffers {
   Candidates others;
   Ranked ranked;

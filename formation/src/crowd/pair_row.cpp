@@ -109,7 +109,7 @@ HWY_INLINE Point reciprocal_normal(Point d, Point m, N radius) {
   return choose(at_end, end, of_leg);
 }
 
-/// Of a normal what is left between the two robots along it.
+/// A normal, and the room that is left between the two robots along it.
 struct Split {
   Point normal;
   N room;            ///< N.(D + u_a - u_b) - bar, >= 0 where the normal separates

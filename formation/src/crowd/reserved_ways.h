@@ -17,7 +17,7 @@ namespace exactvo::formation::crowd {
 
 class ReservedWays {
  public:
-  /// Of BodyLine: it is against a capsule.
+  /// `obstacle` of a line that is against a capsule.
   static constexpr std::uint32_t kCapsule = 0xFFFFFFFFU;
 
   bool empty() const { return holders_ == 0; }

@@ -31,8 +31,8 @@ Extent both(Extent a, Extent b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
-/// Of ranges of cells, in any order: what lies between those before and those after, both ends excluded. A cell there
-/// is in no other range.
+/// Cuts ranges of cells, given in any order, down to the cells between the ranges before and after, both ends excluded:
+/// such a cell is in no other range.
 void make_exclusive(std::vector<Extent>& ranges) {
   std::int32_t after = std::numeric_limits<std::int32_t>::max();
   std::vector<std::int32_t> highs(ranges.size());

@@ -80,7 +80,7 @@ class SortedLists {
 struct KeyMaker {
   W own_x, own_y, nobody;
 
-  /// Of kBatch candidates from k on; of those from `end` on, no robot's.
+  /// The keys of kBatch candidates from k on; from `end` on, the key of no robot.
   template <bool kSome>
   HWY_INLINE void make(const Candidates& among, std::size_t k, W* key) const {
     const Floats d;

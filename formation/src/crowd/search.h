@@ -50,7 +50,7 @@ struct LaneQuery {
 std::uint32_t find_nearest(const Candidates& among, const LaneQuery& query, const LaneLimits& limits, Ranked& ranked,
                            LaneFinds& out);
 
-/// Who has how many. The first of each list is the lane's own robot.
+/// The lengths of the lists. The first of each list is the lane's own robot.
 void count_neighbours(const LaneQuery& query, const LaneLimits& limits, Ranked& ranked, LaneFinds& out);
 
 }  // namespace exactvo::formation::crowd

@@ -28,7 +28,7 @@ inline constexpr LanesToFront kLanesToFront;
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::formation::crowd::HWY_NAMESPACE {
 
-/// Of some columns, the same lanes each.
+/// Moves the same lanes of several columns to the front.
 template <class D>
 class ToFront {
  public:

@@ -39,7 +39,7 @@ inline constexpr std::size_t kChordsOfWheels = 5, kMostWheelRows = kChordsOfWhee
 
 class Wheels {
  public:
-  /// Of all kinds that there are.
+  /// Takes all kinds of the crowd.
   void take_kinds(const std::vector<CrowdKind>& kinds, const CrowdOptions& options);
   /// No kind has wheels.
   bool empty() const { return !has_some_; }

@@ -36,7 +36,7 @@ const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t 
   return nullptr;
 }
 
-/// Of a half-plane against a body: where a user has asked for others, none of these gives.
+/// The priority of a half-plane against a body: always hard in the stages of a user's half-planes that hold bodies.
 lp::Priority priority_in(OwnStage stage, bool is_hard) {
   return is_hard || holds_bodies(stage) ? lp::Priority::hard : lp::Priority::soft;
 }
@@ -241,7 +241,7 @@ void follow_plans(const RobotsAt& now, const std::vector<std::optional<Vec2>>& p
   const auto yields = [&](std::size_t i) { return now.robots[i].cooperates; };
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     std::vector<Constraint>& mine = constraints[i];
-    // What a large crowd answers at once comes first: most have no plan, and nobody near them has one.
+    // What a large crowd answers at once comes first: most have no plan, and no robot near them has one.
     const auto is_theirs = [&](const Constraint& c) {
       return (planned[i] || planned[c.index]) && is_of_robot(now.scene, c) && yields(c.index);
     };

@@ -76,8 +76,8 @@ struct RobotsAt {
 };
 
 /// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to
-/// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
-/// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
+/// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none; a
+/// robot that meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const RobotsAt& now, PairMemory& memory, std::vector<std::vector<Constraint>>& out);
 
 /// Whether the two let go of each other (liveness, rule R1): their half-planes are those of the same relative velocity,

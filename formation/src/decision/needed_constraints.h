@@ -11,7 +11,7 @@
 
 namespace exactvo::formation::detail {
 
-/// Of the largest speed: what is left out has this much room to spare, far above any rounding of a half-plane.
+/// Share of the largest speed: what is left out has this much room to spare, far above any rounding of a half-plane.
 inline constexpr double kSpareRoom = 1e-3;
 
 /// Whether v violates the half-plane beyond what counts as lying on its line.

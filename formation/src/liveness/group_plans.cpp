@@ -65,7 +65,7 @@ bool Groups::uses_whole_map(const Members& who) const {
   return places <= kMostPlaces && places * static_cast<double>(who.size()) <= kLargestMap;
 }
 
-/// For the largest of the members: who is larger and not among them needs no room.
+/// For the largest of the members: a larger robot that is not among them needs no room.
 Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const {
   const double radius = largest_radius(robots_, who);
   if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius, detail);
@@ -75,8 +75,8 @@ Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int r
   return whole_maps_.emplace(key, Roadmap(*space_, whole_scene(radius), radius, detail)).first->second;
 }
 
-/// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Who only passes its
-/// goal has it before who stays there; who yields comes last.
+/// Each member's goal, or, where that is outside the map or taken, the nearest place that is free. Robots that
+/// only pass their goal choose before those that stay there; robots that yield come last.
 std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vector<Vec2>& from, bool with_margin,
                                              Roadmap& map) const {
   const std::size_t places = map.size();

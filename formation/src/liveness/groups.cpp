@@ -38,7 +38,7 @@ std::vector<std::size_t> merged(std::vector<std::size_t> a, const std::vector<st
   return a;
 }
 
-/// Why there is no plan, before the names of those who wait for one.
+/// Why there is no plan; the names of the robots that wait for one follow.
 std::string words_of(PlanEnd why) {
   switch (why) {
     case PlanEnd::none_on_map:
@@ -142,7 +142,7 @@ void Groups::watch(const std::function<double(std::size_t)>& way_left) {
   }
 }
 
-/// In a formation whoever stands counts as waiting: robots that creep up to their slots wait for nobody.
+/// In a formation every robot that stands counts as waiting: robots that creep up to their slots wait for none.
 bool Groups::is_dead_in(const WaitForGraph& graph, const Step& row, std::size_t robot) const {
   if (!scenario_.formation) return is_dead(scenario_, graph, row, robot);
   const RobotStep& r = row.robots[robot];
@@ -192,8 +192,8 @@ Groups::Members Groups::with_groups_of(Members who) const {
   return who;
 }
 
-/// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on. Who keeps
-/// a wide margin is joined over that.
+/// The robots that gaps under a diameter join to the seeds, those joined by the fewest gaps first. Robots that keep a
+/// wide margin are joined across it.
 std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
   const auto reach = [&](double radii) {
     return radii + std::max(kTogether * radii, kNearMargins * rules_.margins.robot);
@@ -246,7 +246,7 @@ bool Groups::is_in_the_way_back(std::size_t robot, const Members& who, std::size
   });
 }
 
-/// Who stands now where the members would go back through joins, as do those in its way.
+/// Adds the robots that stand now where the members would go back through, and those in their way.
 Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) const {
   for (bool grew = true; grew;) {
     who = with_groups_of(std::move(who));
@@ -259,7 +259,7 @@ Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) 
   return who;
 }
 
-/// Unless somebody stands in the way who makes none.
+/// Unless a robot that makes no plan stands in the way.
 bool Groups::can_go_back(const Members& who, std::size_t to) const {
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!now_[j].may_join && !contains(who, j) && is_in_the_way_back(j, who, to, 0.0)) return false;
@@ -413,8 +413,8 @@ void Groups::advance(Group& g) {
   let_go_on(g);
 }
 
-/// Who has gone its way and heads for its next goal does not wait until the others are there: nobody's move depends on
-/// it any more.
+/// A robot that has gone its way and heads for its next goal does not wait until the others are there: no move of
+/// theirs depends on it any more.
 void Groups::let_go_on(const Group& g) {
   for (std::size_t k = 0; k < g.who.size(); ++k) {
     const std::size_t i = g.who[k];

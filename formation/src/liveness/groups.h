@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// Who is stalled, and groups of robots that go by a joint plan (liveness, rules R2 to R4): when a plan is made, for
-/// whom, from where, and what each member wants in a step. Decides nothing about safety: half-planes do.
+/// Which robots are stalled, and groups of robots that go by a joint plan (liveness, rules R2 to R4): when a plan is
+/// made, for which robots, from where, and what each member wants in a step. Decides nothing about safety: half-planes
+/// do.
 ///
 /// Deterministic: budgets of searches are counted.
 
@@ -87,7 +88,7 @@ class Groups {
   /// The robot's note for this row, which is often empty.
   std::string note(std::size_t robot) { return std::exchange(notes_[robot], {}); }
 
-  /// Takes a row with its decisions: who is stalled, and dead.
+  /// Takes a row with its decisions: which robots are stalled, and which are in a deadlock.
   void end_step(const Step& row);
 
   const LivenessCourse& course() const { return course_; }
@@ -197,7 +198,7 @@ class Groups {
     std::size_t robot = 0;
     bool is_dead = false;
   };
-  std::vector<Due> due_;                                             ///< who was stalled in the last row
+  std::vector<Due> due_;                                             ///< the robots that were stalled in the last row
   mutable std::map<std::pair<double, Detail>, Roadmap> whole_maps_;  ///< by radius
   std::vector<WithoutPlan> without_plan_;
   PlanTries tries_;

@@ -75,7 +75,7 @@ class RobotGrid {
   std::vector<std::size_t> used_;
 };
 
-/// A low-level node of LaCAM: who must go where, of the first robots in a node's order.
+/// A low-level node of LaCAM: where the first robots in a node's order must go.
 using Constraints = std::vector<std::pair<std::size_t, PlaceNumber>>;
 
 /// One joint step by PIBT.
@@ -104,7 +104,7 @@ class Generator {
     for (const auto& entry : constraints)
       if (state_[entry.first] == State::open && !moves(entry.first, random, true)) return false;
     for (const std::size_t i : priority)
-      if (state_[i] == State::open && !moves(i, random, true)) settle(i, at[i]);  // who stays is in nobody's way
+      if (state_[i] == State::open && !moves(i, random, true)) settle(i, at[i]);  // and is in no other's way
     return true;
   }
 
@@ -158,7 +158,7 @@ class Generator {
     return all;
   }
 
-  /// Settles the robot and all that it pushes. `is_first`: nobody asked it to.
+  /// Settles the robot and all that it pushes. `is_first`: no other robot pushed it.
   bool moves(std::size_t i, SplitMix64& random, bool is_first) {
     if (is_first) refused_.assign(at_->size(), 0);
     ++calls_;
@@ -231,7 +231,7 @@ class Generator {
 struct Node {
   Joint at;
   std::size_t parent = 0;          ///< itself: the first
-  std::vector<std::size_t> order;  ///< who moved first on the way here
+  std::vector<std::size_t> order;  ///< the robots by when they moved on the way here
   std::vector<std::size_t> priority;
   std::vector<double> waited;    ///< steps away from the goal, the more the sooner served
   std::deque<Constraints> open;  ///< to be tried, the least constrained first

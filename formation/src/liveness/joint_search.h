@@ -8,7 +8,7 @@
 /// over joint places, where each node hands out its successors lazily, by constraints on who goes where; so it is
 /// complete on the map. Its generator is PIBT (Okumura, Machida, Defago and Tamura, "Priority Inheritance with
 /// Backtracking for Iterative Multi-Agent Path Finding", Artificial Intelligence 310, 2022), for discs instead of
-/// vertices: who stands in a way is asked to make room first, which may be several, and a joint step is a sequence of
+/// vertices: the robots that stand in a way, one or several, make room first, and a joint step is a sequence of
 /// single moves, each clear of where the others are at that moment.
 ///
 /// Properties (tests quote the numbers):

@@ -21,7 +21,7 @@ enum class PlanEnd {
   none_on_map,    ///< every joint place that can be reached was tried
   out_of_budget,  ///< or stopped
   too_large,      ///< not tried: the map would be too large
-  no_use,         ///< not tried: whom it is for would come no nearer to its goal, in which another stands
+  no_use,         ///< not tried: the robots it is for would come no nearer to their goals, since others stand in them
   in_vain         ///< not tried: the same robots went by plan again and again, and wait as before
 };
 

@@ -56,7 +56,7 @@ class PlanTries {
     double left = 0.0;  ///< m, to their goals, straight, all together, when the tries began
     Others others{};    ///< then
   };
-  /// Who waits, and what could change that.
+  /// The robots that wait, and what could change that.
   struct Look {
     Waiting waiting;
     double left = 0.0;  ///< m

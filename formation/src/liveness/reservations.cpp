@@ -79,7 +79,7 @@ Vec2 left_of(Vec2 a) {
 }
 
 /// Whether the sweep from `p` to `q` comes within `keep` of a robot that stands at `o` until it has been left behind:
-/// who is nearer at first must not come nearer.
+/// a robot that is nearer at first must not come nearer.
 bool comes_near_until_left(Vec2 p, Vec2 q, Vec2 o, double keep) {
   if (squared_norm(p - o) < keep * keep) return dot(q - p, p - o) < 0.0;
   return squared_distance(o, p, q) < keep * keep;

@@ -204,7 +204,7 @@ class Reservations {
   std::vector<std::uint8_t> reserved_;
   std::vector<Vec2> places_;
 
-  // Of one step.
+  // Valid within one step:
   const std::vector<RobotUnderWay>* robots_ = nullptr;
   std::vector<Vec2> preferred_;
   std::size_t count_ = 0;

@@ -115,7 +115,7 @@ void PathAmongOthers::expand_to(const Query& query, std::size_t arrival, std::si
                                 EdgeNumber edge) {
   const Arrival here = arrivals_[arrival];
   const std::size_t until = safe_.last(here.place, here.interval);
-  // Who waits until a later position than it would be ready for leaves once the move before that is under way.
+  // A robot that waits longer than it has to leaves once the move before its own is under way.
   const auto arrives = [&](std::size_t position) {
     const double free = position > now ? query.others->moves[position - 1].start + problem_.radii[query.robot] : 0.0;
     return std::max(here.time, free) + edges_.length(edge);

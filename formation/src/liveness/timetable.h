@@ -44,7 +44,7 @@ class RoadmapEdges {
   double length(EdgeNumber w) const { return lengths_[w]; }  ///< m
   /// Places that the edge comes nearer to than its start, and too near for some two robots.
   const std::vector<NearPlace>& near_places(EdgeNumber w) const { return near_places_[w]; }
-  /// Of the edges that this was asked of so far, those too near to this one for some two robots.
+  /// The edges, among those that this was called for so far, that are too near to w for some two robots.
   const std::vector<NearEdge>& near_edges(EdgeNumber w);
 
  private:
@@ -83,7 +83,7 @@ struct Timetable {
 /// The first position in a table whose move starts then or later.
 std::size_t position_at(const Timetable& table, double time);
 
-/// Of a sequence of moves of robots with those radii, m.
+/// The timetable of a sequence of moves. `radii`: m, of the robots.
 Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<double>& radii, RoadmapEdges& edges);
 
 }  // namespace exactvo::formation::detail

@@ -46,7 +46,7 @@ double rounding(double shape, const Segment& chord, double others) {
   return 2.0 * geometry::rounding_of_distance(std::max(shape, largest_coordinate(chord)) + others);
 }
 
-/// Who may not be touched: an obstacle, a moving obstacle or another robot, by its number.
+/// What may not be touched: an obstacle, a moving obstacle or another robot, by its number.
 using Other = std::pair<CollisionKind, std::size_t>;
 
 /// What is known round a place where a robot was: no static obstacle is nearer.

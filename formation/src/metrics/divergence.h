@@ -33,8 +33,8 @@ inline double formation_error(const Step& row, const std::vector<Vec2>& offsets)
 /// m: what moves less in a time step rests.
 inline constexpr double kRestsWithin = 2e-4;
 
-/// m: of the robots that a formation can still lose. Who rests while the leader rests is where it stays: beside a slot
-/// that cannot be filled, in a trap or in a deadlock.
+/// m: the error of the robots that a formation can still lose. A robot that rests while the leader rests stays where it
+/// is: beside a slot that cannot be filled, in a trap or in a deadlock.
 /// `time_step`: s, of the run.
 inline double error_of_moving(const Step& row, const std::vector<Vec2>& offsets, double time_step) {
   const auto rests = [time_step](Vec2 velocity) { return time_step * geometry::norm(velocity) < kRestsWithin; };

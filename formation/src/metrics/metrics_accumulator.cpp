@@ -162,7 +162,7 @@ void MetricsAccumulator::write_arrivals(Metrics& m) const {
   if (m.all_arrived) m.last_arrival_time = times.empty() ? 0.0 : times.back();
 }
 
-/// Whom the formation lost, and since when it holds.
+/// The robots that the formation lost, and since when it holds.
 void MetricsAccumulator::write_course(Metrics& m) const {
   FormationCourse& course = m.formation_course.emplace();
   for (std::size_t i = 0; i < robots_.size(); ++i) {

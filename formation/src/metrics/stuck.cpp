@@ -153,7 +153,7 @@ std::string other_words(const RunEnd& end, const DecisionConstraint& by) {
   return is_at_rest(end.scenario, by.index, norm(other.velocity)) ? ", which is at rest" : ", which is moving";
 }
 
-/// Whom it waits for, or what the one robot that presses, and that waits for nobody, does; else the equilibrium.
+/// The robots it waits for, or what the one robot does that presses and waits for none; else the equilibrium.
 std::string beyond_what_presses(const RunEnd& end, const StuckReport& r, const std::vector<DecisionConstraint>& by) {
   const bool is_one_robot = by.size() == 1 && by.front().source == ConstraintSource::robot;
   const bool waits = !end.waits.empty() && !end.waits[r.robot].empty();

@@ -244,7 +244,7 @@ PairsFound pairs_without(const Scenario& scenario, Asked question) {
   std::vector<InLittleRoom> asked;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i)
     if (const SquareCover* room = proofs.little_room(i)) asked.push_back({i, room});
-  // Finer squares cover less: who is in neither's coarsest ones is in none.
+  // Finer squares cover less: a robot outside the coarsest ones of both is in none.
   const auto may_meet = [&](const InLittleRoom& a, const InLittleRoom& b) {
     return proofs.is_in(*a.room, b.robot) || proofs.is_in(*b.room, a.robot);
   };

@@ -89,7 +89,7 @@ bool leads_outside(Vec2 start, double radius, double side, const CoverWalls& wal
 /// `looks`: at squares, how many are allowed and then how many are left.
 SquareCover cover_from(Vec2 start, double radius, double side, const CoverWalls& walls, std::size_t& looks);
 
-/// Of each square, whether a point of it is within `reach` of the goal, m.
+/// For each square, whether a point of it is within `reach`, m, of the goal.
 std::vector<char> squares_at(Vec2 goal, double reach, const SquareCover& cover);
 
 }  // namespace exactvo::formation::detail

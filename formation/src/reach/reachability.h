@@ -85,7 +85,7 @@ class Reachability {
   /// The closed chain that separates the two for a disc of `radius`; empty where none does.
   std::vector<geometry::ChainPoint> chain(double radius, Vec2 from, Vec2 goal);
 
-  /// Of all obstacles; made at the first question and kept.
+  /// The edges of all obstacles; made at the first call and kept.
   const EdgesByPlace& edges();
   const std::vector<SceneObstacle>& obstacles() const { return terrain_.obstacles; }
 

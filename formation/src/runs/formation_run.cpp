@@ -225,8 +225,8 @@ class FormationRun {
 
   bool goes_by_plan(std::size_t i) const { return plans_ && plans_->groups().is_member(i); }
 
-  /// Who begins to go by plan sees the pieces of obstacles instead of what encloses them, and who ends the other way
-  /// round.
+  /// A robot that begins to go by plan sees the pieces of obstacles instead of what encloses them; one whose plan ends
+  /// sees what encloses them again.
   void look_otherwise(std::size_t i, double time) {
     FormationRobot& r = robots_[i];
     r.sees_pieces = !r.sees_pieces;
@@ -280,7 +280,7 @@ class FormationRun {
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
     add_note(step.note, answer.note);
-    // Who is blocked by robots stands still then, and a plan is made.
+    // A robot that others block stands still then, and a plan is made.
     if (plans_ && plans_->is_active(situation.time)) return answer.preferred;
     const std::optional<Vec2> round = robots_[i].bypass.steer(situation, statics_, joint_.others[i], step.note);
     if (!round) return answer.preferred;

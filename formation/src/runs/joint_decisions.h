@@ -38,7 +38,7 @@ class JointDecisions {
         held_by_all_(robots.size(), 0),
         brakes_(robots.size(), 0) {}
 
-  // Of each robot, in their order.
+  // One entry for each robot, in their order:
 
   std::vector<Anchor> anchors;                  ///< where half-planes of this step are built
   std::vector<std::vector<Constraint>> others;  ///< its half-planes against robots and moving obstacles

@@ -283,7 +283,7 @@ class KinematicSteps final : public Stepper {
     });
   }
 
-  /// Of what it may do if it stands after one step more than it would have, after as many, or after one less, the best.
+  /// The best choice that lets it stand one step later than it would have, at the same time, or one step earlier.
   /// If nothing else is left it brakes, which is always allowed (lemma 8), or stands.
   void choose_among_movers(std::size_t i, Vec2 preferred, RobotStep& step) {
     const std::size_t last = stopping_steps_[i];

@@ -20,7 +20,7 @@ class Measuring {
 
   /// Each robot of the next row measures all others in sight, nearest first.
   void look(const std::vector<Vec2>& positions, const std::vector<Vec2>& velocities);
-  /// Of each robot, what it measured in this row.
+  /// For each robot, what it measured in this row.
   const std::vector<std::vector<MeasuredRobot>>& measured() const { return measured_; }
 
  private:

@@ -150,7 +150,7 @@ void require_drive(const NavigatorSetup& setup) {
   require_none(problems);
 }
 
-/// Of Method::ivo_edge, as in `simulate` by default.
+/// Options of Method::ivo_edge, as in `simulate` by default.
 geometry::FacadeEllipseOptions facade_ellipses(const Margins& margins) {
   const SimulationOptions usual;
   return {usual.facade_minor_to_major, usual.facade_fixed_minor, margins.obstacle};
@@ -465,7 +465,7 @@ class Navigator::Core {
     }
   }
 
-  /// The body of the k-th of a list. Its owner is its place in the list: who is there changes.
+  /// The body of the k-th of a list. Its owner is its place in the list: the neighbour at that place changes.
   vo::BodyTable::Number slot(std::vector<vo::BodyTable::Number>& slots, std::size_t k, vo::BodyKind kind) {
     while (slots.size() <= k) slots.push_back(scene_.bodies().add({kind, geometry::Disc{}, {}, {slots.size()}}));
     return slots[k];

@@ -136,7 +136,7 @@ Vec2 SlotPlans::free_place_near(std::size_t robot, Vec2 from, Vec2 slot, const s
   return from;
 }
 
-/// Who is nearest to its slot has it first.
+/// The robot nearest to its slot comes first.
 void SlotPlans::choose_places(const std::vector<Anchor>& anchors, Vec2 leader) {
   Reachability reach(terrain_of(scenario_), 0.0, false);
   std::vector<std::pair<double, std::size_t>> nearest_first;

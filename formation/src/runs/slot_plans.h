@@ -46,7 +46,7 @@ class SlotPlans {
     Vec2 at;              ///< m: its slot, or about the nearest place to it that is free and in reach
     std::string why_not;  ///< the slot cannot be filled: "obstacle 'block' stands in it". Empty where it is its slot
   };
-  /// Of each robot; empty until the leader rests.
+  /// The place of each robot; empty until the leader rests.
   const std::vector<Place>& places() const { return places_; }
 
   Groups& groups() { return groups_; }

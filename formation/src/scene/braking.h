@@ -13,7 +13,7 @@
 /// Half-planes are built with `kContactSkin` of room and certified without. Roundings use the skin up; then as much
 /// room is asked for as lambda v leaves, so that it satisfies the half-plane.
 ///
-/// Of what moves in any way, no faster than U, a robot keeps clear as long as it moves (passive safety). From u it
+/// While a robot moves, it keeps clear of bodies that move in any way no faster than U (passive safety). From u it
 /// stands after k steps, the first at u included, if |u| <= k A T: it drives T u, and then u (1 - j / k) T. With the
 /// way (k + 1) / 2 T u for all that, and c for how far along n the body grown by the robot reaches, the half-plane says
 ///

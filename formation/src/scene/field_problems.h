@@ -15,8 +15,8 @@ std::vector<ScenarioProblem> field_problems(const Scenario& scenario);
 /// The same of the numbers of a decision and the tolerance of arrival (m) alone.
 std::vector<ScenarioProblem> field_problems(const DecisionRules& rules, double arrival_tolerance);
 
-/// Of rules with an acceleration, what its proof needs. `fastest`: m/s, of all robots; `is_given`: the braking time is
-/// not the usual one. REQUIRES: finite numbers above 0.
+/// What the proof of braking needs, for rules with an acceleration. `fastest`: m/s, of all robots; `is_given`: the
+/// braking time is not the usual one. REQUIRES: finite numbers above 0.
 std::vector<ScenarioProblem> braking_problems(const DecisionRules& rules, double fastest, bool is_given);
 
 /// The same of a robot's radius (m) and greatest speed (m/s): "/radius" and "/max_speed".

@@ -19,7 +19,7 @@ namespace exactvo::formation::detail {
 /// robot stops at that distance.
 inline constexpr double kNearMargins = 1.5;
 
-/// Of so few places all pairs are looked at: a grid costs more.
+/// Up to this many places all pairs are looked at: a grid costs more.
 inline constexpr std::size_t kFewPlaces = 48;
 
 /// Calls visit(i, j), i < j, for all pairs of places at most `reach` (m) apart and for some that are farther, in the

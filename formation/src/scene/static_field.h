@@ -150,7 +150,7 @@ class StaticField {
     double nearest = 0.0;  ///< m, from the rim: no more than its clearance
     double room = 0.0;     ///< m/s: no more than n.v - c of its half-plane at v = from.velocity, where this is > 0
     bool is_segment = false;
-    // Of a segment:
+    // For a segment:
     bool has_line = false;  ///< then its half-plane is this one but for rounding
     geometry::HalfPlane line;
     Vec2 away;              ///< m, from its nearest point to the robot

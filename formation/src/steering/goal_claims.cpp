@@ -33,7 +33,7 @@ std::optional<std::size_t> GoalClaims::nearest_in(const Cells<std::size_t>& othe
   return nearest;
 }
 
-/// Who rests beside a taken place.
+/// The robots that rest beside a taken place.
 struct GoalClaims::Resting {
   explicit Resting(double side) : robots(side) {}
   void add(Vec2 place, std::size_t i) {

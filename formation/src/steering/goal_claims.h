@@ -3,8 +3,8 @@
 
 /// \file
 /// Where ways end, at last goals (last_places.h) or as near to them as robots can get: places too near to each other
-/// for all who have them. Who is there first keeps its own for good, the others come beside it and stay there, instead
-/// of pressing for it for ever.
+/// for all robots that have them. The first robot there keeps its place for good; the others come beside it and stay
+/// there, instead of pressing for it for ever.
 
 #include <cstddef>
 #include <optional>
@@ -37,7 +37,7 @@ class GoalClaims {
   /// Before the decisions of a step, an entry a robot. Whether a claim came, or somebody's rest came or went.
   bool look(std::vector<EndNow> now);
 
-  /// Who was first at a place too near to its own.
+  /// The robot that was first at a place too near to its own.
   std::optional<std::size_t> taken_by(std::size_t i) const { return robots_[i].taken_by; }
   /// It stays beside its place, which is taken.
   bool rests(std::size_t i) const { return robots_[i].rests; }
@@ -64,7 +64,7 @@ class GoalClaims {
   };
   /// But for `has_come_to_rest`, `seen` and `end`, which follow.
   const std::vector<OfRobot>& remembered() const { return robots_; }
-  /// Goes on from there. REQUIRES: an entry a robot; who has taken a place has a claim.
+  /// Goes on from there. REQUIRES: an entry a robot; a robot that has taken a place has a claim.
   void remember(std::vector<OfRobot> robots);
 
  private:

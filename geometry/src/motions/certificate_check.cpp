@@ -26,7 +26,7 @@ Place between(const Place& a, const Place& b, const Number& share) {
   return {Number(a.x + share * (b.x - a.x)), Number(a.y + share * (b.y - a.y))};
 }
 
-/// Of Bezier control points (`spline` false) or of those of a uniform B-spline, at u in [0, 1].
+/// The point at u in [0, 1] of a Bezier curve (`spline` false) or of a uniform B-spline with these control points.
 Place on_curve(const std::vector<Vec2>& points, bool spline, const Number& u) {
   std::vector<Place> d;
   for (const Vec2 p : points) d.push_back(exactly(p));

@@ -271,7 +271,7 @@ class MovingGrid {
     for_each_cell(own, [&](std::int64_t x, std::int64_t y) {
       for (const std::uint32_t k : list_of(x, y)) {
         if (!meets(pool_[k])) continue;
-        // Of the cells that both have, the first; cells that share a list are told apart by this, too.
+        // Reported in the first cell that both have; this also tells cells that share a list apart.
         const Cells& other = pool_[k].cells;
         if (x == std::max(own.x0, other.x0) && y == std::max(own.y0, other.y0)) found_.push_back(k);
       }
@@ -281,7 +281,7 @@ class MovingGrid {
   void add(const Piece& piece, const Cells& own) {
     if (piece.body >= place_of_.size()) place_of_.resize(piece.body + 1, kNoPlace);
     std::uint32_t& place = place_of_[piece.body];
-    // Of a way that is gone in no time the next piece has the end only.
+    // The next piece has only the end of a way that takes no time.
     if (place != kNoPlace && piece.follows && pool_[place].piece.motion.from.time < now_) {
       Held& held = pool_[place];
       sum_of_widths_ += width_of(piece.box) - width_of(held.piece.box);

@@ -70,7 +70,7 @@ Rational half_tangent(const Rational& angle, int quarters, mpfr_prec_t bits, boo
   return rest.rational();
 }
 
-/// Of an angle above 0. Nothing where so few bits do not tell how many quarters there are.
+/// The span of an angle above 0. Nothing where these bits do not decide how many quarters it has.
 std::optional<Span> span_of(const Rational& angle, mpfr_prec_t bits) {
   for (int quarters = 0; quarters < 4; ++quarters) {
     // Is it more than another quarter? pi is no rational number.

@@ -145,8 +145,8 @@ class CellMap {
   std::vector<Portal> portals;
   std::vector<std::vector<CellPortal>> cell_portals;  ///< counter-clockwise round the cell
   std::vector<std::vector<Chord>> cell_chords;
-  /// Of a triangle; those of the next begin where its end (one more than triangles). For points a cell is one triangle
-  /// or several, and this is the number of the one that it belongs to.
+  /// The first cell of each triangle; its cells end where those of the next begin (one entry more than triangles). For
+  /// points a cell is one triangle or several, and this is the cell that the triangle belongs to.
   std::vector<int> first_cell;
 
  private:

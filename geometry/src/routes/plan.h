@@ -14,7 +14,8 @@
 
 namespace exactvo::geometry::routing {
 
-/// Of the radius: portals that are emptier by less count as open, and by a thousand times that as nearly open.
+/// Share of the radius: portals that are too narrow by less count as open, by less than a thousand times that as nearly
+/// open.
 inline constexpr double kOpenSlack = 1e-9;
 
 /// The part of a portal where a centre can be, as its left cell sees it.
@@ -82,7 +83,7 @@ class ClearancePlan {
   /// Whether the disc can move straight from p to q: every piece stays at least a radius away, and a point (radius 0)
   /// touches none. Exact.
   bool is_clear(const Point& p, const Point& q) const;
-  /// Of a point: whether it touches no piece on its way from p to q but at an end that may.
+  /// Whether a point touches no piece on its way from p to q, except at an end that may touch.
   bool is_clear_but_at(const Point& p, const Point& q, bool p_may, bool q_may) const;
   /// The pieces nearer than r to x, each once, ascending.
   std::vector<int> pieces_within(Vec2 x, double r) const;

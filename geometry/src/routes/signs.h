@@ -74,7 +74,7 @@ inline bool touch(const Point& p, const Point& q, const Point& a, const Point& b
 
 /// Whether the segment pq keeps a distance of at least r from the segment ab; where r is 0, whether they do not touch.
 inline bool keeps_clear(const Point& p, const Point& q, const Point& a, const Point& b, double r) {
-  // Of two that do not touch, most lie on one side of the other's line.
+  // Most pairs that do not touch lie on one side of the line of one of them.
   if (r == 0.0 && (orient(p, q, a) * orient(p, q, b) > 0 || orient(a, b, p) * orient(a, b, q) > 0)) return true;
   return !is_too_near(p, a, b, r) && !is_too_near(q, a, b, r) && !is_too_near(a, p, q, r) && !is_too_near(b, p, q, r) &&
          !cross_properly(p, q, a, b);

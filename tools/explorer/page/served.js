@@ -2,7 +2,7 @@
 // Only in pages that exactvo serve gives out: questions to the server that the page came from.
 'use strict';
 
-// "robot 'R1', position" of /robots/0/position: who drags knows names, not places in a file.
+// "robot 'R1', position" of /robots/0/position: a user who drags knows names, not places in a file.
 function exactvoPlace(place, scenario) {
   const parts = place.split('/').slice(1).filter((part, k) => k > 0 || part !== 'scenario');
   const kinds = {robots: 'robot', obstacles: 'obstacle', moving_obstacles: 'moving obstacle'};

@@ -96,7 +96,7 @@ const TURNED = {
   steered: 'the preferred velocity was set by the user',
 };
 
-// "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for nobody. A cycle of which some still move
+// "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for none. A cycle of which some still move
 // may come apart (formation/waiting.h).
 function waitWords(run, row, robot) {
   const named = 4, chain = [robot];

@@ -59,7 +59,7 @@ class Navigator:
     horizons, margins   numbers by name, as in a scenario: {"robots": 2.0}, {"obstacle": 0.08, "robot": 0.04}
     time_step           s: the longest time from a decision to the next
     arrival_tolerance   m: within this of the last goal it has arrived
-    neighbour_distance  m: who is farther away, and cannot be met within a time step, is ignored
+    neighbour_distance  m: a robot farther away, which cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
     braking_time        s, the same of all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
                         max_wheel_acceleration, the longer of both where both are given, and with an acceleration neighbours

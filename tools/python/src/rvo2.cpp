@@ -37,7 +37,7 @@ std::size_t count(py::handle object, const char* name) {
   return static_cast<std::size_t>(value);
 }
 
-/// Of `end`, or an IndexError: RVO2 reads beyond its arrays.
+/// A number below `end`, or an IndexError: RVO2 itself reads beyond its arrays.
 std::size_t index(py::handle object, const char* name, std::size_t end) {
   const std::size_t value = count(object, name);
   if (value >= end)

@@ -265,7 +265,7 @@ OrderedJson CheckAnswer::summary_json(const geometry::MotionCheck& check, std::u
   return whole;
 }
 
-/// Of all agents, the greatest of what an agent has one of.
+/// The greatest value of a member over all agents.
 void CheckAnswer::put_greatest(const char* what, Extreme AgentSurvey::*member, const char* unit) {
   const std::vector<AgentSurvey>& all = asked_.survey.agents();
   const auto most = std::max_element(all.begin(), all.end(), [&](const AgentSurvey& a, const AgentSurvey& b) {

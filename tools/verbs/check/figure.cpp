@@ -20,7 +20,7 @@ constexpr const char* kWayColour = "#8fa3b8";
 constexpr const char* kFirstColour = "#0072B2";
 constexpr const char* kOtherColour = "#009E73";
 
-/// Of the diagonal of all ways: less than a pixel.
+/// Share of the diagonal of all ways: less than a pixel.
 constexpr double kFinest = 1.0 / 2000.0;
 /// Places of overlaps that are drawn.
 constexpr std::size_t kMostPlaces = 2000;

@@ -287,7 +287,7 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedSc
   return finished;
 }
 
-/// What `--record` names, before anything can go wrong: who reads it waits for its end, whatever it is.
+/// What `--record` names, before anything can go wrong: its reader waits for an end, whatever happens.
 std::shared_ptr<datasets::AtomicFile> opened_recording(const std::string& path) {
   const bool has_other_end = is_stdout(path) || path.rfind("/dev/", 0) == 0;  // what a shell has made
   if (!has_other_end) message("begins once " + path + " is read");

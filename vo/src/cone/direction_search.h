@@ -58,7 +58,7 @@ class EllipseNormals {
  private:
   /// From the folded frame.
   Vec2 unfolded(Vec2 n, double sign_y) const { return (n.x * sign_x_) * frame_.major + (n.y * sign_y) * frame_.minor; }
-  /// Of length 1, at the foot of parameter s.
+  /// The normal, of length 1, at the foot of parameter s.
   Vec2 normal_at(double s) const;
 
   EllipseFrame frame_;

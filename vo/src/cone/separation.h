@@ -39,7 +39,7 @@ std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n);
 /// sqrt(2). Nothing where none of them is safe.
 std::optional<Vec2> contact_normal(const GrownShape& s);
 
-// Of any shape, and of a segment (seen_segment.h): the same bits, in about half the time.
+// For any shape, and for a segment (seen_segment.h): the same bits in about half the time.
 
 /// The certified half-plane of VO nearest to v (responsibility 1). Nothing where none could be certified.
 std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v);

@@ -101,7 +101,7 @@ struct AuditReport {
 
   std::size_t half_planes = 0;  ///< of (4): certified ones of obstacles
   std::size_t unsafe = 0;       ///< of (4): refuted
-  /// Of (7): a robot's motion from one row to the next; in a recording of a crowd also a robot's place in the first
+  /// Motions of point (7): one robot from one row to the next; in a recording of a crowd also its place in the first
   /// row.
   std::size_t steps = 0;
   std::size_t collisions = 0;  ///< of these, nearer to an obstacle or another robot than the radii allow

@@ -7,7 +7,7 @@
 /// be read again. Lines are bounded (E_SIZE): 64 KiB in tables and in trajnet, 16 MiB in mapf-paths, where a line is
 /// the whole way of an agent; so are the tags of sumo-fcd, 64 KiB. A file of mapf-yaml is kept whole while it is read.
 ///
-/// Of one agent times rise in the order of the file. A row that repeats the one before it is left out and counted. A
+/// The times of an agent rise in the order of the file. A row that repeats the one before it is left out and counted. A
 /// time that goes back, a second place or heading at one time, and a number that is not finite are refused with file
 /// and line.
 ///

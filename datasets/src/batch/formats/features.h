@@ -38,7 +38,7 @@ struct Feature {
   std::vector<Field> fields;  ///< the layer's
 };
 
-/// Who the obstacle is.
+/// The identity of the obstacle.
 struct FeatureHead {
   std::string file;
   std::string id;

@@ -31,7 +31,7 @@ class Outputs {
   /// Syncs and names them.
   void finish();
 
-  /// Of the parts added.
+  /// Sums over the parts added.
   const Counts& counts() const { return counts_; }
 
  private:

@@ -71,12 +71,12 @@ class Journal {
   enum class Lock {
     held,       ///< by this process, from now on and until the journal goes or the process ends, however it ends
     taken,      ///< by another process, when waiting ended
-    unlockable  ///< the file system has no locks: nobody holds one
+    unlockable  ///< the file system has no locks: no process holds one
   };
   /// Asks for the right to merge parts, many times a second as long as `keep_waiting` says so. On a file system without
-  /// locks nobody waits: several processes may merge all parts at the end, each in its own folder, and what they move
-  /// to OUT is the same but for the times; the last of them finds .parts gone (`is_open`), and must not make it anew.
-  /// Throws DataError (E_FILE_UNWRITABLE) where the file can't be made in a journal that is open.
+  /// locks no process waits: several processes may merge all parts at the end, each in its own folder, and what they
+  /// move to OUT is the same but for the times; the last of them finds .parts gone (`is_open`), and must not make it
+  /// anew. Throws DataError (E_FILE_UNWRITABLE) where the file can't be made in a journal that is open.
   Lock lock(const std::function<bool()>& keep_waiting);
 
   /// Whether run.json still stands: no other process has put the parts together meanwhile.

@@ -13,7 +13,7 @@ namespace exactvo::datasets::batch {
 
 class Allowance {
  public:
-  /// Held by who has taken some, and free again when it is gone.
+  /// Memory that a holder has taken; free again when the holder is destroyed.
   using Taken = std::shared_ptr<const void>;
 
   /// 0: as much as they want.

@@ -226,7 +226,7 @@ struct CrowdBodyState {
 };
 
 /// Called from several threads at once where there are several; what it says of a robot must not depend on the slice.
-/// Of several ranks each asks its own about its share of the robots.
+/// With several ranks, each rank calls its own function for its share of the robots.
 using Steering = std::function<void(CrowdSlice&)>;
 
 /// One robot's next decision, recomputed from the present state.
@@ -369,7 +369,7 @@ class Crowd {
   /// On as many threads as given (CrowdOptions::threads), and by these ranks, whatever the crowd had.
   static Crowd restored(std::istream& from, int threads = 1, Ranks* ranks = nullptr);
 
-  /// Of positions, motions and kinds by id, and of moving bodies, for comparing runs.
+  /// A digest of positions, motions and kinds by id, and of moving bodies, for comparing runs.
   std::uint64_t digest() const;
   /// Memory that grows with the robots.
   std::size_t bytes() const;

@@ -153,7 +153,7 @@ class Evaluator : public RunSink {
   /// Reads from `run`: motion, time_step, tracking_gain, relative_frame, offsets. `scenario` must outlive the
   /// evaluator.
   Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row = {});
-  /// Of states, which are handed on to `next`, if there is one. `scenario` and `next` must outlive it.
+  /// Measures states and hands them on to `next`, if there is one. `scenario` and `next` must outlive it.
   explicit Evaluator(const Scenario& scenario, RunSink* next = nullptr);
   ~Evaluator() override;
 

@@ -166,7 +166,7 @@ class Navigator {
   const Decision& decide(const NavigatorState& now, const std::vector<Neighbour>& neighbours = {},
                          const std::vector<MovingBody>& moving = {});
 
-  // Of the last decision, or before any of none:
+  // The last decision; empty before the first one:
 
   /// With a drive: takes the reference point on by `chosen` times the time step, and keeps the limits of the wheels.
   Twist twist() const;

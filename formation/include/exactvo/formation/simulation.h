@@ -143,7 +143,7 @@ struct SimulationOptions {
   /// false stops the run, in any rank that of all.
   std::function<bool(double)> progress;
 
-  // Of robots with goals: what the user adds (own_rules.h). With either there are no joint plans.
+  // For robots with goals: what the user adds (own_rules.h). With either there are no joint plans.
 
   RunSteering steering;       ///< sets the preferred velocities; none: the run does
   RunHalfPlanes half_planes;  ///< adds half-planes of the user; empty: none are added. Not on a crowd

@@ -29,7 +29,8 @@ struct Stability {
 /// Whether robots track what they choose, v' = -k3 (v - w): those of a formation do, unless they are on wheels.
 bool tracks_choices(const Scenario& scenario);
 
-/// Of robots that track what they choose. REQUIRES: an n x n adjacency and n pinning gains (simulation.h, `validate`).
+/// The stability of a formation whose robots track what they choose. REQUIRES: an n x n adjacency and n pinning gains
+/// (simulation.h, `validate`).
 Stability stability_of(const FormationSpec& spec);
 
 /// The greatest modulus of the eigenvalues of one step with the decision held over it: below 1 the linear formation

@@ -8,7 +8,7 @@
 
 namespace exactvo::geometry {
 
-/// Of doubles, the positive one.
+/// Positive infinity as a double.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace exactvo::geometry

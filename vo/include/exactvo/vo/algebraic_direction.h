@@ -25,7 +25,7 @@
 ///                            K - B - D = 0                    where B or D is nothing (degree 2),
 ///                            (K - B - D)^2 - 4 B D = 0        for an ellipse with a disc (degree 4).
 ///
-/// Of it the square-free part is kept, with coprime coefficients and a positive leading one; where the root of a
+/// Its square-free part is kept, with coprime coefficients and a positive leading one; where the root of a
 /// quadratic is rational, the linear factor. It need not be irreducible. Which root is the leg was decided by the sign
 /// of h at both ends of its interval, in rationals.
 ///
@@ -72,7 +72,7 @@ class AlgebraicDirection {
   /// The same direction with an interval no wider than `width`. REQUIRES: width > 0.
   AlgebraicDirection refined(double width) const;
 
-  /// Of length 1; rounded: each coordinate within 4 ulps of 1.
+  /// The direction in doubles, of length 1; rounded: each coordinate is off by at most 4 ulps of 1.
   geometry::Vec2 rounded() const;
 
  private:

@@ -87,7 +87,7 @@ struct FreeArc {
   PointBracket to;                       ///< where it ends
   Vec2 center;                           ///< m/s, rounded; of arcs
   double radius = 0.0;                   ///< m/s, rounded; of arcs
-  /// Of arcs: round the speed's circle counter-clockwise, round a cut-off clockwise. 0 for straight stretches.
+  /// How an arc turns: 1, counter-clockwise, round the speed's circle; -1, clockwise, round a cut-off; 0: straight.
   int turn = 0;
 };
 

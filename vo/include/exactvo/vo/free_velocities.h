@@ -39,7 +39,7 @@ inline constexpr double kMostMaxSpeed = 0x1p60;
 /// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestRegionCoordinate.
 inline constexpr double kMostApex = 0x1p100;
 
-/// Of what size the set is and how closely it is held.
+/// How large the set may be and how closely it is enclosed.
 struct FreeVelocityOptions {
   double max_speed = 2.0;            ///< m/s, from kLeastMaxSpeed to kMostMaxSpeed
   double relative_tolerance = 1e-4;  ///< of max_speed, in [1e-7, 0.1]: how far the polygons may stray from the curves

@@ -156,7 +156,8 @@ class Lockstep {
 
   static constexpr int kNothing = -1;
 
-  /// What is violated now, and by that who goes on. In passing, x, y or c (0, 1, 2) of a pack to come are asked for.
+  /// The lines that are violated now, and so the lanes that go on. In passing, x, y or c (0, 1, 2) of a pack to come
+  /// are fetched.
   template <int kAsked = kNothing>
   HWY_INLINE void price_all(PackState& state) {
     if constexpr (kAsked == kNothing)

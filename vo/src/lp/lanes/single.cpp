@@ -28,8 +28,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-/// Of so few lines: a divider takes a register of 64 bytes twice as long as one of 32, and adds to the time until the
-/// answer, which three short registers do not. Of 13 lines and more the wide ones win.
+/// Up to this many lines use short registers: a divider takes twice as long for 64 bytes as for 32, which adds to the
+/// time until the answer; three short registers do not. From 13 lines on the wide ones win.
 constexpr std::size_t kFewLines = 12;
 using FewLines = hn::CappedTag<double, 4>;
 using ManyLines = hn::CappedTag<double, kSinglePadding>;
@@ -148,7 +148,7 @@ class MostViolated {
   Allowed allowed_;
 };
 
-/// Of all lines; -1 if none is violated.
+/// The most violated of all lines; -1 if none is violated.
 template <class D, class Count, class Allowed>
 HWY_INLINE std::ptrdiff_t most_violated(D d, Count lines_at_most, const SingleProblem& p, double x, double y,
                                         const Allowed& allowed) {
@@ -614,7 +614,7 @@ HWY_NOINLINE bool search_alone(const SingleProblem& p, Solution& s) {
   return search.run(s);
 }
 
-/// Of the square of the disc: where it is preferred to go faster than that, the disc mostly binds alone or with a line,
+/// Share of the squared radius of the disc: for faster preferences the disc mostly binds alone or with a line,
 /// which the search finds sooner. Robots that prefer their full speed, up to rounding, are the common case.
 constexpr double kFarthestSlid = 1.0625;
 

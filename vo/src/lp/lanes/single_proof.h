@@ -36,14 +36,16 @@ HWY_INLINE Line given(const SingleProblem& p, std::ptrdiff_t line) {
   return {p.normal_x[line], p.normal_y[line], p.offset[line], line};
 }
 
-/// Of a rounded c - n.v, in units of u V: two products and their sum, 2 u |n| |v| together, |n| <= 1 + 2^-10. What the
-/// difference rounds is a share of itself.
+/// Error of a rounded c - n.v, in units of u V: two products and their sum, 2 u |n| |v| together, |n| <= 1 + 2^-10.
+/// What the difference rounds is a share of itself.
 inline constexpr double kViolationError = 4.0;
 
-/// Of each coordinate of r in units of u of its terms, |p| + sum of lambda + (1 + nu) |v|: five sums of products.
+/// Error of each coordinate of r, in units of u of its terms, |p| + sum of lambda + (1 + nu) |v|: five sums of
+/// products.
 inline constexpr double kResidualError = 8.0;
 
-/// Of (2) in units of u (V + t) sum of lambda: t and t_i 14, w 5 and again times V 10, the root, products and sums 16.
+/// Error of (2), in units of u (V + t) sum of lambda: t and t_i 14, w 5 and again times V 10, the root, products and
+/// sums 16.
 inline constexpr double kBoundError = 64.0;
 
 /// What sums of a dozen terms that are not negative lose.
@@ -60,8 +62,8 @@ class SingleProof {
   HWY_INLINE SingleProof(const SingleProblem& problem, Vec2 velocity, Worst worst)
       : p_(problem), v_(velocity), worst_(worst), limit_(problem.disc * problem.disc) {}
 
-  /// Of at most two that bind, each with its multiplier, 0 or more; the disc is `as_line`. Twice its part of the gap is
-  /// counted.
+  /// At most two lines bind, each with its multiplier, 0 or more; the disc is `as_line`, and its part of the gap counts
+  /// twice.
   HWY_INLINE bool optimum(const Line& a, double of_a, const Line& b, double of_b) const {
     if (!(what_must_holds() & holds(worst_.soft))) return false;
     const double px = p_.preferred.x, py = p_.preferred.y, size = of_a * length(a) + of_b * length(b);

@@ -58,7 +58,7 @@ ChosenTarget& GetChosenTarget() {
   return chosen;
 }
 
-/// Of Highway's assertions, in builds that have them.
+/// Called by Highway's assertions, in builds that have them.
 HWY_NORETURN void Abort(const char* file, int line, const char* format, ...) {
   std::fprintf(stderr, "%s:%d: ", file, line);
   va_list arguments;

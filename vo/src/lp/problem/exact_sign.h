@@ -13,9 +13,9 @@
 
 namespace exactvo::lp {
 
-/// Of a rounded c - (n.x v.x + n.y v.y): three rounded operations on top of the rounded products. 4 u of the terms'
-/// magnitudes covers them to first order with room to spare, the underflow what products may lose below the normal
-/// range.
+/// Error of a rounded c - (n.x v.x + n.y v.y): three rounded operations on top of the rounded products. 4 u of the
+/// terms' magnitudes covers them to first order with room to spare, the underflow what products may lose below the
+/// normal range.
 inline constexpr double kSignError = 4.0 * 0x1p-53;
 inline constexpr double kSignUnderflow = 0x1p-1060;
 

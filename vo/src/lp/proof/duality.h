@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The inequalities (1)-(4) of certificate.h, evaluated exactly. Shared by who writes certificates and who checks them;
-/// knows no solver.
+/// The inequalities (1)-(4) of certificate.h, evaluated exactly, for the writer and the checker of certificates. Knows
+/// no solver.
 
 #include <vector>
 

@@ -83,7 +83,7 @@ class Stationarity {
       if (s.active[k].binding == kDisc) columns_[k] = -s.velocity;
   }
 
-  /// Of two that are said to bind, one that pulls the wrong way binds in name only.
+  /// Where two are listed as binding, one that pulls the wrong way binds in name only.
   void set_of_optimum() {
     if (s_.active_count == 0) return;
     if (s_.active_count == 1) return set_alone(0);

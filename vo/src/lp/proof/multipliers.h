@@ -16,8 +16,8 @@ namespace exactvo::lp {
 
 // In the next two functions `m` says which are meant; its values are not read.
 
-/// Of at most two that bind at the optimum v, the disc's nu among them. Each is 0 or more; not finite where the two are
-/// parallel.
+/// The multipliers of the at most two that bind at the optimum v, the disc's nu among them. Each is 0 or more; not
+/// finite where the two are parallel.
 Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, Multipliers m);
 
 /// Weights of at most three lines (no disc) whose sum of normals vanishes or, `on_disc`, of two lines whose sum points
@@ -30,7 +30,7 @@ Multipliers weights_of_lines(const Problem& problem, Vec2 v, Multipliers m, bool
 Multipliers multipliers_where_touching(const Problem& problem, Vec2 v, Binding line);
 Multipliers weights_where_touching(const Problem& problem, Binding line, Binding gives);
 
-/// Of what is active in a solution, in its order; what stands for the disc is not read.
+/// The normals of what is active in a solution, in its order; the entry of the disc is not read.
 using Normals = std::array<Vec2, 3>;
 
 /// Sets the multipliers of what `solution` says binds.
