@@ -50,7 +50,7 @@ bool holds_metrics(const fs::path& path) {
   return text.find("\"min_obstacle_clearance\":") != std::string::npos;
 }
 
-/// NAME.gp that says how it is drawn again, or NAME.dat, .svg, .png or .pdf beside one.
+/// NAME.gp that says how it is drawn again, or NAME.dat, .svg, .png or .pdf next to one.
 bool is_of_a_figure(const fs::path& file) {
   const std::string extension = file.extension().string();
   if (extension != ".gp" && extension != ".dat" && extension != ".svg" && extension != ".png" && extension != ".pdf")

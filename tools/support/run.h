@@ -60,7 +60,7 @@ std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figu
 /// The figures of a run, drawn into `folder`, which is created.
 void draw_figures_of(const datasets::RecordingFile& run, const std::filesystem::path& folder);
 
-/// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-". Its notes are said.
+/// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-". Its notes are printed.
 datasets::LoadedScenario read_scenario(const std::string& path);
 
 }  // namespace exactvo::tools

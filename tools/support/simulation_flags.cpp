@@ -174,7 +174,7 @@ void note_liveness(const SimulationFlags& flags, const formation::Scenario& scen
     message(
         "note: --liveness plan is off here: joint plans of a formation need method ivo or ivo-cluster, no moving "
         "obstacles, no robots on wheels, and a controller whose brake points follow the choices");
-  // ivo-edge never has guidance: there it is said only to who asks for plans.
+  // ivo-edge never has guidance: there it is reported only where plans are asked for.
   const bool may_have_guidance = options.method != formation::Method::ivo_edge;
   if (!scenario.formation && used == formation::Liveness::bias && (is_asked_for || may_have_guidance))
     message(std::string("note: liveness is bias, not plan: ") +

@@ -31,7 +31,7 @@ __all__ = [
 
 
 class ScenarioWarning(UserWarning):
-    """What can be said of a scenario before it is run (`simulate`, `sweep`). `warnings.simplefilter("ignore",
+    """A warning about a scenario before it is run (`simulate`, `sweep`). `warnings.simplefilter("ignore",
     exactvo.ScenarioWarning)` silences it, "error" raises it instead of running the scenario."""
 
 

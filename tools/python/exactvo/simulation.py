@@ -124,7 +124,7 @@ class Scenario:
 
     @property
     def warnings(self) -> list[str]:
-        """What can be said before a run: goals out of reach, and what encloses them."""
+        """Warnings known before a run: goals out of reach, and what encloses them."""
         return self._native.warnings()
 
     def to_json(self) -> str:
@@ -202,7 +202,7 @@ class RobotsNow:
 
 @dataclass(frozen=True)
 class OwnHalfPlane:
-    """A half-plane of velocities that is asked of a robot in one step (docs/guide/own-rules.md). Hard ones hold wherever those
+    """A half-plane of velocities that a user requires of a robot in one step (docs/guide/own-rules.md). Hard ones hold wherever those
     against obstacles and robots allow it; soft ones give before them."""
 
     robot: int  #: in the order of the scenario
@@ -340,7 +340,7 @@ class Recording:
 
     @property
     def warnings(self) -> list[str]:
-        """What could be said before the run."""
+        """The warnings given before the run."""
         return self._native.warnings
 
     @property
@@ -373,7 +373,7 @@ class Recording:
 
     def own_stage(self, step: int, robot: int) -> str:
         """How far a decision held what `simulate(half_planes=...)` asked for: "held", but perhaps for soft ones; "gave", by the
-        least that obstacles and robots allow; "left-out", as these alone leave no room; "none" where nothing was asked. Raises
+        least that obstacles and robots allow; "left-out", as these alone leave no room; "none" where the user gave none. Raises
         `IndexError`, `ArgumentError`."""
         step = range(len(self))[step]
         robot = range(self.position.shape[1])[robot]
@@ -475,7 +475,7 @@ def simulate(
     half_planes: Callable[[RobotsNow], Any] | None = None,
 ) -> Recording:
     """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
-    `exactvo simulate --decisions binding`, bit for bit. What can be said before the run is a `ScenarioWarning` each: goals out of reach, robots
+    `exactvo simulate --decisions binding`, bit for bit. Each warning known before the run is a `ScenarioWarning`: goals out of reach, robots
     that have arrived before they move, by how much `recentre` moves the slots of a formation.
 
     method       "orca" (the textbook's baseline), "rvo" and "hrvo" (which promise nothing between robots), "ivo-edge" (the paper), "ivo-cluster", "ivo"

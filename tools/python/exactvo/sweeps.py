@@ -52,7 +52,7 @@ def sweep(
     jobs         runs at a time, 1 to 1024; the rows are the same
     method and so on: options of `simulate`, the same in all runs in which they are not varied
 
-    What runs warn of is said once each, after the last run, as `ScenarioWarning`.
+    Each warning of the runs is given once, after the last run, as a `ScenarioWarning`.
     Raises `ArgumentError`, `DataError`, `MissingFileError`; of a run that fails the first one's.
     """
     if not isinstance(vary, dict) or not all(isinstance(name, str) for name in vary):

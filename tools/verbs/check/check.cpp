@@ -244,7 +244,7 @@ CheckedFile asked_of(const CheckFlags& flags, const TrajectoryFile& file, const 
           bodies.on_arcs};
 }
 
-/// What is made of a check beside its answer: proofs, a figure, a page, and what samples miss.
+/// What a check makes besides its answer: proofs, a figure, a page, and what samples miss.
 class Byproducts {
  public:
   Byproducts(const CheckFlags& flags, const CheckedFile& asked, const Bodies& bodies)

@@ -41,7 +41,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
                         counted(file.counts.passed_over, "input")));
 }
 
-/// Nothing where it cannot be read, which is said then.
+/// Nothing where it cannot be read, which is reported then.
 std::optional<datasets::ObstacleFile> read(const ConvertFlags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading, "--from");
   options.repair = flags.repair;

@@ -188,7 +188,7 @@ std::string words_of(const std::string& file, const RepairRecord& r, const First
                      r.moved > 0.0 ? fmt::format("; crossings moved by {:.3g} m at most", r.moved) : "");
 }
 
-/// The codes of all repairs with how often each was met: what most people want of a file with thousands.
+/// The codes of all repairs with the count of each: what most people want to know of a file with thousands.
 std::string tally_of(const ObstacleFile& file) {
   std::map<datasets::DataCode, std::size_t> counts = file.unlisted;
   for (const datasets::RingFinding& f : file.findings) ++counts[f.code];

@@ -274,7 +274,8 @@ ExitCode answer_many(const AskedMap& map, const RouteFlags& flags) {
   return all ? ExitCode::success : ExitCode::negative;
 }
 
-/// A share of a cell's side: exact beside every number of a cell up to 2^16, and nothing beside any length.
+/// Share of a cell's side: its sum with the number of a cell up to 2^16 is exact, and it is negligible against any
+/// length.
 constexpr double kIntoCell = 0x1p-36;
 
 ExitCode route(const RouteFlags& flags) {

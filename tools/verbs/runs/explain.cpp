@@ -306,7 +306,7 @@ class RunUntil {
   std::size_t rows() const { return rows_; }
   double end() const { return end_; }
   const formation::Step& decision() const { return *decided_; }
-  /// Uses what `run` holds beside its rows.
+  /// Uses everything of `run` but its rows.
   std::vector<formation::StuckReport> stuck(formation::Recording& run) const {
     run.steps = {*first_, *last_};
     if (is_cut_) run.diverged = formation::has_diverged(run);

@@ -133,7 +133,7 @@ ExitCode campaigns(const PaperFlags& flags) try {
 ExitCode paper(const PaperFlags& flags) {
   check_output_folder(flags.out);
   note_unused(flags);
-  ReportData(flags.out, flags.out, {});  // read before the work: a damaged file is told at once
+  ReportData(flags.out, flags.out, {});  // read before the work: a damaged file is reported at once
   return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
 }
 

@@ -29,7 +29,7 @@ bool is_there(const std::string& text);
 
 /// The obstacles in `text`, at least one: a file with some; WKT; `DISC(x y, r)`; `ELLIPSE(cx cy, l11 l21 l22)`, the set
 /// c + L w with |w| <= 1 and L = [l11 0; l21 l22], exactly as given; `ELLIPSE(cx cy, a b, degrees)`, semi-axes and the
-/// angle of the first, rounded to such an L. A file is read as `reading` says; degrees that became metres are said.
+/// angle of the first, rounded to such an L. A file is read as `reading` says; degrees that became metres are reported.
 /// Throws UsageError that names `option`, DataError for a file or bad WKT.
 std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text,
                                         const datasets::ReadOptions& reading = {});

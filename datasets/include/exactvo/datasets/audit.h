@@ -151,8 +151,8 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 /// are there are audited. Throws DataError where it can't be read, or ends before the first row (E_CUT_OFF).
 ///
 /// A recording of a crowd, FILE.evr (crowd_recording.h), has places alone: (6) is that no robot moves farther
-/// than its speed allows, (7) is asked as it stands between rows of consecutive steps, and else of the rows; of the
-/// first row by itself. Where a robot touches an obstacle at a row, to within 40 u of the numbers involved (u = 2^-24),
+/// than its speed allows; (7) applies to motions between rows of consecutive steps, elsewhere to the rows alone, as to
+/// the first row. Where a robot touches an obstacle at a row, to within 40 u of the numbers involved (u = 2^-24),
 /// it may come as much nearer in each step up to the next row, to 99 % of its radius; nearer is open. One that moves
 /// must be apart at the next row. `sample`: about this many motions, spread evenly over robots and rows; 0: all. Throws
 /// DataError where there is no row, or the first is not that of step 0. REQUIRES: no `scenario`, which it can't be

@@ -154,8 +154,8 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
 bool under_mpi();
 
-/// The same over all ranks: each processes a share of the inputs, about equal by their sizes, and asks its own watch;
-/// the first merges the parts. The result is that of the first rank; the others' is `incomplete`. REQUIRES:
+/// The same over all ranks: each processes a share of the inputs, about equal by their sizes, and calls its own watch;
+/// the first rank merges the parts. The result is that of the first rank; the others' is `incomplete`. REQUIRES:
 /// under_mpi().
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch = {});

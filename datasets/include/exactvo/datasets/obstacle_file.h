@@ -131,7 +131,7 @@ struct RepairRecord {
   RepairFacts after;                  ///< what it became
 };
 
-/// What a file says of a feature beside its shape, as JSON texts.
+/// The properties of a feature, without its shape, as JSON texts.
 struct FeatureProperties {
   std::string id;       ///< a number or a string, as the file gives it; empty where it gives none
   std::string members;  ///< an object; empty where there are none

@@ -60,7 +60,7 @@ std::string local_metres_member(const LocalPlane& plane, int decimals);
 std::vector<std::string> writable_formats();
 
 /// `format`, or where that is empty what the extension says, whatever its case. Throws DataError: E_OPTION for an
-/// unknown name, E_FORMAT_UNKNOWN for an extension that says nothing. To be asked before the work.
+/// unknown name, E_FORMAT_UNKNOWN for an extension that says nothing. Call it before the work.
 std::string format_to_write(const std::filesystem::path& path, const std::string& format = {});
 
 /// Whole or not at all. Returns what the format could not hold, a line each ("3 holes dropped: ..."). Throws DataError

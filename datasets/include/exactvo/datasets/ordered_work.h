@@ -21,8 +21,8 @@ struct OrderedTask {
 /// too, is called by any of them, one at a time; a task that it gives is worked on at once. At most a thousand tasks
 /// are unfinished at a time.
 ///
-/// If `next`, `work` or `finish` throws: no further tasks are asked for, those before the first one that failed are
-/// finished, those after it are not; what that one threw is thrown when nothing runs any more.
+/// If `next`, `work` or `finish` throws: `next` is not called again; tasks before the first one that failed are
+/// finished, those after it are not; when nothing runs any more, the exception of that first one is thrown.
 void run_in_order(int workers, const std::function<std::optional<OrderedTask>()>& next);
 
 }  // namespace exactvo::datasets

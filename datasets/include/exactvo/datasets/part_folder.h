@@ -34,7 +34,7 @@ class PartFolder {
   /// Throws DataError (E_FILE_UNWRITABLE), also where the folder is gone: it is not made anew.
   void write(const std::filesystem::path& file, std::string_view bytes) const;
 
-  /// A text with the digest of itself and of `key`, what it depends on beside its name.
+  /// A text with a digest of itself and of `key`, which is what the text depends on besides its name.
   void write_sealed(const std::filesystem::path& file, std::string_view key, std::string_view text) const;
   /// None where no such text is there, or one of another key, or a damaged one.
   std::optional<std::string> read_sealed(const std::filesystem::path& file, std::string_view key) const;

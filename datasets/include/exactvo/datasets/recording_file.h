@@ -10,8 +10,9 @@
 /// can be written in constant memory while it is computed. A file without an end was cut off and is refused; so is one
 /// of format 1.
 ///
-/// Enough stands there to prove half-planes again without the program that wrote them: beside each its body, clearance
-/// and horizon, and in its row where robots and moving obstacles were. The end's `sha256` shows what was altered since.
+/// Enough stands there to prove half-planes again without the program that wrote them: each has its body, clearance
+/// and horizon, and its row says where robots and moving obstacles were. The end's `sha256` shows what was altered
+/// since.
 ///
 /// Property (1): read_recording gives back every double bit for bit. Numbers are the shortest that do so; the
 /// non-finite ones, which JSON has no word for, are the strings "nan", "inf" and "-inf".
@@ -48,7 +49,7 @@ struct RecordingFile {
 };
 
 /// A recording that is written as the run is made, in constant memory. Whole or not at all (atomic_file.h): nothing
-/// stands there before `finish`. Into a pipe it goes as it is made; one that is cut off lacks its last line
+/// stands there before `finish`. Into a pipe it is written while it is made; one that is cut off lacks its last line
 /// (E_CUT_OFF where it is read). Throws DataError where it can't be written.
 class RecordingWriter {
  public:

@@ -31,7 +31,7 @@ struct LoadedScenario {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: if such a
+/// Reads a scenario; obstacle files it names are looked up in its folder. Throws DataError: if such a
 /// file has invalid content, the error names that file; if it cannot be opened or its format is unknown, the error
 /// names the scenario and the JSON pointer of the reference.
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path);

@@ -27,7 +27,7 @@ struct ControllerOptions {
   double acceleration_bound = 0.0;  ///< m/s^2, > 0: |u| is held below it; heuristic, see docs/guide/formation.md
 };
 
-/// Some of them, set one way or the other: what a scenario asks for beside its controller.
+/// Some of them, set one way or the other: what a scenario sets in addition to its controller.
 struct AskedControllerOptions {
   ///@{
   /// The member of ControllerOptions of that name; none: as the controller has it.
@@ -49,7 +49,7 @@ struct AskedControllerOptions {
 struct ControllerSwitch {
   const char* name;                                    ///< the member's
   bool ControllerOptions::*on;                         ///< the switch
-  std::optional<bool> AskedControllerOptions::*asked;  ///< the same in what was asked for
+  std::optional<bool> AskedControllerOptions::*asked;  ///< the same switch among those asked for
 };
 /// All of them but the bound, in the order of the struct.
 const std::vector<ControllerSwitch>& controller_switches();

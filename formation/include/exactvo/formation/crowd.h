@@ -79,7 +79,7 @@ using ObstacleId = std::uint32_t;
 /// Two wheels on an axle. What the crowd moves is the reference point of the robot, `reference` ahead of the axle's
 /// centre; it can go in any direction, and the heading follows as a trailer follows its coupling. A robot on wheels
 /// starts at rest and can always stop within a step. One that prefers to go straight back for ever stands in the end,
-/// since its heading becomes too uncertain (ADR 0022): prefer a direction a degree beside that.
+/// since its heading becomes too uncertain (ADR 0022): prefer a direction a degree aside.
 struct CrowdWheels {
   double reference = 0.0;         ///< m, at least max_speed times the time step and a sixteenth of the separation
   double wheel_separation = 0.0;  ///< m, > 0
@@ -263,7 +263,7 @@ struct CrowdExplanation {
   std::size_t ways = 0;  ///< half-planes, not listed, that keep it out of the ways of others to their reserved places
   std::vector<Neighbour> neighbours;        ///< nearest first
   std::vector<Edge> edges;                  ///< nearest first, without those that an earlier half-plane excludes
-  std::vector<geometry::HalfPlane> wheels;  ///< of the velocity: what its wheels may be asked for
+  std::vector<geometry::HalfPlane> wheels;  ///< of the velocity: what its wheels allow
   std::vector<Body> bodies;                 ///< those at rest first, each kind in the order in which they were added
 };
 

@@ -52,7 +52,7 @@ struct NavigatorSetup {
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how `max_speed` is meant
   /// Horizons of the velocity obstacles. With an acceleration, defaults are raised to at least the braking time.
   Horizons horizons;
-  Margins margins;                   ///< beside radii and facades
+  Margins margins;                   ///< added to radii and facades
   double time_step = 0.05;           ///< s, > 0: the longest time from a decision to the next
   double arrival_tolerance = 0.1;    ///< m: within this of the last goal it has arrived
   double neighbour_distance = 15.0;  ///< m: farther robots that cannot be met within a time step are ignored

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Single sentences of what can be said before a run. `warnings_before` (simulation.h) has all that warns, but takes
+/// Single warnings known before a run. `warnings_before` (simulation.h) has all that warns, but takes
 /// longer than crowds have time for.
 
 #include <string>

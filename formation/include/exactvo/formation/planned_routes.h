@@ -42,7 +42,7 @@ struct RouteAhead {
 };
 
 /// As it would be planned now, at `position`: a run keeps the route that it has as long as some of it is in sight, and
-/// goes round moving obstacles that stand. Nothing in a run without guidance. REQUIRES: a valid scenario, a robot and a
+/// goes round moving obstacles that stand. Empty in a run without guidance. REQUIRES: a valid scenario, a robot and a
 /// goal of it.
 std::optional<RouteAhead> route_ahead(const Scenario& scenario, const SimulationOptions& options, std::size_t robot,
                                       std::size_t goal, Vec2 position);

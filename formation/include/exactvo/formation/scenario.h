@@ -94,7 +94,7 @@ enum class Liveness {
   bias,  ///< robots in each other's way turn to the right, the more the longer they are held up. Half-planes of a pair
          ///< that contradict others are replaced by those of robots at rest instead of being relaxed: robots that
          ///< cooperate never overlap
-  plan   ///< beside that, robots that wait for each other go by a joint plan, from where they are or from where they
+  plan   ///< also, robots that wait for each other go by a joint plan, from where they are or from where they
          ///< were before
 };
 
@@ -108,7 +108,7 @@ struct Horizons {
   double robots = 2.0;       ///< s, robot against robot in the IVO methods
 };
 
-/// Room that is kept beside what safety needs.
+/// Room that is kept in addition to what safety needs.
 struct Margins {
   double obstacle = 0.08;  ///< m, a facade's depth inside its enclosure
   double robot = 0.04;     ///< m, added to the radius sum of a pair
@@ -165,7 +165,7 @@ struct TimedPath {
 /// The virtual leader of a formation: how it moves, and what is to be said of a path that was planned (leader_route.h).
 struct Leader : TimedPath {
   std::string why_short = {};  ///< why a planned path does not lead where it should
-  std::string note = {};       ///< what else is to be said of a planned path
+  std::string note = {};       ///< a remark on a planned path, for people
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
@@ -202,10 +202,10 @@ struct FormationSpec {
   Leader leader;                ///< the leader that they follow
   Gains gains;                  ///< of the controller
   double catch_up_speed = 1.5;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
-  AskedControllerOptions controller_options = {};  ///< switched on or off beside what the controller has
+  AskedControllerOptions controller_options = {};  ///< switched on or off against what the controller has
 };
 
-/// All that a run depends on beside its SimulationOptions.
+/// All that a run depends on besides its SimulationOptions.
 struct Scenario {
   std::string name;                                   ///< for people, and part of results
   std::string description;                            ///< for people
@@ -218,7 +218,7 @@ struct Scenario {
   bool separate = false;                              ///< of robots with goals: they may start in overlap, and part
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how every robot's max_speed is meant
   Horizons horizons;                                  ///< of the velocity obstacles
-  Margins margins;                                    ///< beside radii and facades
+  Margins margins;                                    ///< added to radii and facades
   double time_step = 0.05;                            ///< s, > 0
   double time_limit = 120.0;                          ///< s, > 0
   double arrival_tolerance = 0.1;                     ///< m: within this of the last goal a robot has arrived

@@ -125,7 +125,7 @@ inline constexpr auto& integrator_names = names_of<Integrator>;  ///< in the ord
 inline constexpr auto& guidance_names = names_of<Guidance>;      ///< in the order of Guidance
 inline constexpr auto& liveness_names = names_of<Liveness>;      ///< in the order of Liveness
 
-/// What a run depends on beside its scenario.
+/// What a run depends on besides its scenario.
 struct SimulationOptions {
   Method method = Method::ivo;                          ///< how robots avoid obstacles
   std::optional<Guidance> guidance;                     ///< instead of the scenario's
@@ -171,7 +171,7 @@ Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options)
 /// margins, and there are no moving obstacles.
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);
 
-/// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
+/// Warnings known before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
 /// that cannot be reached, or not within the time limit. The run's recording has the same. REQUIRES: a valid scenario.
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options = {});
 

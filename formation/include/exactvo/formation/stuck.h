@@ -62,7 +62,8 @@ class StuckWatch {
   explicit StuckWatch(const Scenario& scenario) : scenario_(scenario), robots_(scenario.robots.size()) {}
   /// The next row of the run.
   void add(std::shared_ptr<const Step> row);
-  /// As if the run had ended with the last row added. `run` has what is known beside its rows. REQUIRES: a row.
+  /// As if the run had ended with the last row added. `run` has everything of the recording but its rows. REQUIRES: a
+  /// row.
   std::vector<StuckReport> reports(const Recording& run) const;
   /// Robots that stand in the last row, none of them at its goal or slot, and of which each waits for the next
   /// (waiting.h); empty where there are none. `run`: as for `reports`.

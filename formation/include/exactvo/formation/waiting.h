@@ -29,8 +29,8 @@ using WaitForGraph = std::vector<std::vector<std::size_t>>;
 /// last row of a run, which decides nothing, no robot waits either. REQUIRES: a row of a run of this scenario.
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 
-/// The cycles that are met by going from each robot to the one that holds it most: disjoint, each from its lowest
-/// number on, in the order of these.
+/// The cycles found by going from each robot to the one that holds it most. They are disjoint; each begins with its
+/// lowest number, and they are in the order of these numbers.
 std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
 
 /// Whether the robot drives at less than a fifteenth of its greatest speed.

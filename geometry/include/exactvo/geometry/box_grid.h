@@ -51,7 +51,7 @@ class BoxGrid {
   /// Holds every point whose `distance_below` from x can be at most `reach`.
   static Box window_round(Vec2 x, double reach);
 
-  /// A box that several cells list is visited in the first of those that are asked for.
+  /// A box that several cells list is visited in the first of those in `asked`.
   template <class Visit>
   void for_each_in(const Cells& asked, const Visit& visit) const {
     for (const std::uint32_t i : large_) visit(i);

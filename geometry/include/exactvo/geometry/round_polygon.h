@@ -19,7 +19,7 @@ inline constexpr double kRoundExcess = 0.00484;
 /// lies in it, decided exactly for the doubles of its vertices; for that it is grown by a few roundings of its
 /// coordinates. Corners are no farther from the rim than kRoundExcess of the radius and 2^-46 of the coordinates and
 /// the radius. Throws std::invalid_argument where the radius is not above 0, a number is not finite, or the radius is
-/// less than 2^-40 of the coordinates: its corners could not be told apart.
+/// less than 2^-40 of the coordinates: its corners could not be distinguished.
 Polygon polygon_round(const Disc& disc);
 
 /// Whether every point of the disc lies in the polygon, of which holes are ignored. Exact; true only for polygons whose

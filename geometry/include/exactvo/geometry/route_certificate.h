@@ -10,7 +10,7 @@
 ///  (2) no two valid answers to one question are of different kinds: a route cannot cross a valid chain, and a blocked
 ///      end has no route;
 ///  (3) an answer of which a point was moved onto or over an obstacle, or a link lengthened to two radii, is not valid;
-///  (4) the doubles beside fractions are checked, and the length; of the lower bound only that it is not more.
+///  (4) the doubles next to fractions are checked, and the length; the lower bound is only checked not to exceed it.
 
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@
 
 namespace exactvo::geometry {
 
-/// What was asked.
+/// The question.
 struct RouteQuestion {
   double radius = 0.0;  ///< m, >= 0; 0: a point, which only its ends may touch obstacles with
   /// m.

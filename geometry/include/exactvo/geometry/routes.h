@@ -88,8 +88,8 @@ struct RouteMapOptions {
   double largest_radius = 0.0;    ///< m, >= 0: radii up to this can be planned for; twice the scale always
   double largest_distance = 0.0;  ///< m, >= 0: starts and goals may lie this far outside of the obstacles' box; four
                                   ///< times the scale always
-  /// Neither routes nor the widest radius will be asked for, only whether there is a route, and chains; and no radius
-  /// above `largest_radius`. Made in half the time.
+  /// The map answers only whether there is a route, and with chains: no routes, no widest radius, no radius above
+  /// `largest_radius`. It is made in half the time.
   bool chains_only = false;
 };
 

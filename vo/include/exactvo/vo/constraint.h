@@ -8,7 +8,7 @@
 ///     margin     room to spare: the half-plane nearest the present velocity, for a robot grown by `room`;
 ///     restore    the room is used up: part so fast that it is restored within `restore_within` (robots only);
 ///     contact    bare contact: the half-plane through v = 0 away from the nearest point;
-///     push-out   overlap: nothing can be proven, the robot is asked to leave.
+///     push-out   overlap: nothing can be proven; the half-plane leads the robot out.
 ///
 /// Certified where `proof` says so. Bodies have numbers: a constraint, a recording and an audit name the body by its
 /// number, and its shape is not copied. See also: velocity_obstacle.h (one velocity obstacle by itself), reciprocal.h
@@ -102,9 +102,9 @@ struct Constraint {
 /// How a robot keeps clear of a body.
 struct ClearancePolicy {
   double time_horizon = 2.0;    ///< s, > 0
-  double room = 0.0;            ///< m, >= 0, kept beside the radii while there is room
+  double room = 0.0;            ///< m, >= 0, kept in addition to the radii while there is room
   double restore_within = 0.0;  ///< s; > 0: used-up room is restored within this time; 0: bare contact is enough
-  double push_out_time = 0.2;   ///< s, > 0: in overlap the robot is asked to leave within this time
+  double push_out_time = 0.2;   ///< s, > 0: in overlap the half-plane leads the robot out within this time
   double push_out_speed = std::numeric_limits<double>::infinity();  ///< m/s, at this speed at most
 };
 

@@ -31,7 +31,7 @@ struct MovingDisc {
 struct ReciprocalOptions {
   double time_horizon = 2.0;  ///< s, > 0
   double margin = 0.0;        ///< m, >= 0, kept between the rims; where it is already used up, discs only have to part
-  double contact_time = 0.1;  ///< s, > 0: discs nearer than the margin are asked to restore it within this time
+  double contact_time = 0.1;  ///< s, > 0: the half-planes of discs nearer than the margin restore it within this time
   /// In [0, 1]: how much of the change a takes; b takes the rest. The paper's alpha.
   double responsibility_of_a = 0.5;
 };
