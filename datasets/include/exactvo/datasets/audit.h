@@ -28,9 +28,9 @@
 ///  (9) braking       where robots have an acceleration, or are on wheels: no velocity changes by more than A dt (on
 ///                    wheels (10) asks that), the braking time is long enough to stop, nothing is relaxed, and in every
 ///                    row every robot could have braked from its choice on without touching anything: its way
-///                    [x, x + tau v] keeps clear of obstacles, and so do the ways of two robots that brake alike, of
-///                    each other; each disc of the chain of a footprint keeps clear of obstacles on this way, at every
-///                    heading between that of the row and the choice, as (7) requires for the step;
+///                    [x, x + tau v] keeps clear of obstacles, and the ways of any two robots that brake alike keep
+///                    clear of each other; each disc of the chain of a footprint keeps clear of obstacles on this way,
+///                    at every heading between that of the row and the choice, as (7) requires for the step;
 ///  (10) kinematics   for robots on wheels, heading and wheel speeds of each row follow from the constant twist that
 ///                    moves the reference point as chosen; wheel speeds, their changes, turning and reversing are
 ///                    within their limits; the disc about the reference point holds the body at every moment,
@@ -126,12 +126,12 @@ struct AuditReport {
 
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
   bool without_pairs = false;       ///< the method promises nothing between robots (rvo, hrvo)
-  bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
-  bool has_places = false;          ///< a crowd's recording, which has no decisions
-  bool has_measurements = false;    ///< robots measure each other, within bounds that rows keep
-  bool has_tube = false;            ///< radii have a tracking error, up to which bodies are where rows have them
-  bool has_movers = false;          ///< moving obstacles are assumed to be no faster than their max_speed
-  bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
+  bool has_staying = false;  ///< a run ended early, since robots that did not arrive stay: their goals are not checked
+  bool has_places = false;   ///< a crowd's recording, which has no decisions
+  bool has_measurements = false;  ///< robots measure each other, within bounds that rows keep
+  bool has_tube = false;          ///< radii have a tracking error, up to which bodies are where rows have them
+  bool has_movers = false;        ///< moving obstacles are assumed to be no faster than their max_speed
+  bool has_sums = false;          ///< a run tracks a sum in which the choice is one term: (6) asks less
 
   /// Something is refuted, or a motion open.
   bool fails() const;

@@ -7,12 +7,12 @@
 ///
 /// Every file and every obstacle ends in exactly one of done, repaired and rejected with a code; a bad one never stops
 /// the rest. What is written does not depend on the number of workers, shards or ranks, nor on how often the batch was
-/// killed and gone on with: the bytes are the same but for the times, which stand on one line of summary.json.
+/// killed and resumed: the bytes are the same but for the times, which stand on one line of summary.json.
 ///
 /// How: an ordered pipeline cuts inputs into chunks of obstacles; a chunk's results go to a file of their own under
 /// OUT/.parts (temporary file, fsync, rename), and are merged in order: by one process while others are being made, or
-/// when all are there (docs/adr/0014-batch-pipeline.md). What is there is not made again. A streaming reader (WKT, and
-/// what GDAL reads feature by feature) keeps no more than a chunk for each worker in memory.
+/// when all are there (docs/adr/0014-batch-pipeline.md). Parts that are there are not made again. A streaming reader
+/// (WKT, and what GDAL reads feature by feature) keeps no more than a chunk for each worker in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct BatchRobot {
   double time_horizon = 0.0;              ///< s, > 0
   geometry::Vec2 velocity;                ///< m/s; half-planes are the nearest to it
   std::vector<geometry::Vec2> positions;  ///< m, at least one
-  std::optional<geometry::Vec2> goal;     ///< m; trap-free ellipses are then made to the way from the first position
+  std::optional<geometry::Vec2> goal;     ///< m; trap-free ellipses are then made for the way from the first position
 };
 
 /// What changes the results.
@@ -45,7 +45,7 @@ struct BatchConfiguration {
   ReadOptions reading;            ///< keep_going is implied
   geometry::ShapeOptions shapes;  ///< pieces by triangles: a tenth more of them than at best, some forty times quicker
   /// Bytes for obstacles under way; 0: no limit but the chunks' own. Files that are read whole and larger than a 20th
-  /// of it are refused: so it belongs to what is written.
+  /// of it are refused: so it changes what is written.
   std::uint64_t memory_limit = 0;
   std::optional<BatchRobot> robot;      ///< none: no half-planes
   bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL

@@ -40,7 +40,7 @@ struct CrowdKindRecord {
 /// A solid body that a recording keeps, as it stood at the start.
 struct CrowdBodyRecord {
   geometry::ConvexShape shape;  ///< m
-  bool moves = false;           ///< what is promised of one that moves is promised of kept robots
+  bool moves = false;           ///< whether it moves; against a moving body promises hold for kept robots alone
   std::string id = {};          ///< of the obstacle, or moving obstacle; empty in files of earlier versions
 };
 
@@ -61,7 +61,7 @@ struct CrowdRecordingHead {
   std::vector<CrowdKindRecord> kinds;    ///< by number, as in the crowd
   std::vector<std::uint16_t> kind_of;    ///< of each robot
   std::vector<geometry::Segment> edges;  ///< of obstacles
-  /// Whose the edges are, one after the other; empty in files of earlier versions.
+  /// The obstacle of each edge, in order; empty in files of earlier versions.
   std::vector<CrowdObstacleRecord> obstacles;
   std::vector<CrowdBodyRecord> bodies;  ///< those that the crowd had at the start
   std::vector<std::string> ids;         ///< of each robot; empty in files of earlier versions

@@ -2,11 +2,11 @@
 #pragma once
 
 /// \file
-/// Obstacles by seed, in any number: to count on, to time, to break programs with. Drawn by the project's counter-based
-/// generator with whole numbers and the four operations only, so item k of a kind and seed is the same on every
-/// machine, bit for bit. (CGAL's own generators follow the C library and the standard library's distributions.) The
-/// kinds `field-...` are those of random_fields.h, whose corners lie on a grid far coarser than what libraries differ
-/// by.
+/// Obstacles by seed, in any number: for counts, for timing and for tests that try to break programs. Drawn by the
+/// project's counter-based generator with whole numbers and the four operations only, so item k of a kind and seed is
+/// the same on every machine, bit for bit. (CGAL's own generators follow the C library and the standard library's
+/// distributions.) The kinds `field-...` are those of random_fields.h, whose corners lie on a grid far coarser than
+/// what libraries differ by.
 ///
 /// Items stand side by side, each in a square of its own: 4 in two rows, 16 in four, whatever the number asked for.
 ///

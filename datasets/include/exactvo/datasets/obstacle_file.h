@@ -37,11 +37,11 @@
 
 namespace exactvo::datasets {
 
-/// Largest coordinate accepted from a file, m: squares, areas and the entries of ellipses stay far from overflow. The
-/// same as of rings that are cut (geometry/even_odd.h) and of the apex of a cone (vo/free_velocities.h).
+/// Largest coordinate accepted from a file, m: squares, areas and the entries of ellipses stay far from overflow. Rings
+/// that are cut (geometry/even_odd.h) and the apex of a cone (vo/free_velocities.h) have the same limit.
 inline constexpr double kLargestCoordinate = 0x1p100;
 
-/// What the coordinates of a file are counted in.
+/// The unit of the coordinates of a file.
 enum class Units {
   automatic,  ///< as the file says (above)
   metres,     ///< m, whatever the file says

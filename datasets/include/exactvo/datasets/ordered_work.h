@@ -17,9 +17,9 @@ struct OrderedTask {
   std::function<void()> finish;  ///< runs in any thread, after `finish` of all tasks before this one
 };
 
-/// Runs what `next` gives, until it gives nothing, on `workers` threads (1 or more), the caller's among them. `next`,
-/// too, is called by any of them, one at a time; a task that it gives is worked on at once. At most a thousand tasks
-/// are unfinished at a time.
+/// Runs the tasks that `next` returns, until it returns none, on `workers` threads (1 or more), the caller's among
+/// them. Any of them calls `next`, one at a time, and works on the task at once. At most a thousand tasks are
+/// unfinished at a time.
 ///
 /// If `next`, `work` or `finish` throws: `next` is not called again; tasks before the first one that failed are
 /// finished, those after it are not; when nothing runs any more, the exception of that first one is thrown.

@@ -21,7 +21,7 @@ struct InputFile {
   std::string sha256;  ///< 64 lower-case hexadecimal digits
 };
 
-/// What a result was made by and of.
+/// The program, the command and the inputs that made a result.
 struct Provenance {
   std::string version;                    ///< of ExactVO
   std::string commit;                     ///< "unknown" outside a repository; ends in "-dirty" where files had changed

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Random fields: scenes to count on, drawn by a counter-based generator of the project's own. Field k of a kind and
+/// Random fields: scenes for counts, drawn by a counter-based generator of the project's own. Field k of a kind and
 /// seed is the same on every machine: corners lie on a grid of 2^-10 m, far coarser than what mathematical libraries
 /// differ by.
 ///

@@ -35,7 +35,7 @@
 
 namespace exactvo::datasets {
 
-/// What there was, or is.
+/// The rings before or after a repair.
 struct RepairFacts {
   std::size_t polygons = 0;  ///< how many
   std::size_t rings = 0;     ///< outer rings and holes
@@ -44,7 +44,7 @@ struct RepairFacts {
   /// opposite winding cancel; NaN where a coordinate is.
   double outer_area = 0.0;  ///< of the outer rings, >= 0
   double hole_area = 0.0;   ///< of the holes, >= 0
-  double area = 0.0;        ///< the difference; below 0 where holes that lie outside are the larger
+  double area = 0.0;        ///< the difference; below 0 where the holes, some of them outside, are larger
 };
 
 /// What a polygon became.

@@ -14,14 +14,14 @@ namespace exactvo::formation {
 /// The options of a formation's controller. The initial values are those of the default controller: all on, except
 /// `smoothing`, and no acceleration bound.
 struct ControllerOptions {
-  bool signs = true;                ///< (15) and (17) with their signs corrected; without it they are as printed
-  bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
-  bool absolute_frame = true;       ///< V_IVO is an absolute velocity; the paper adds the leader's to it
-  bool saturation = true;           ///< v_pref slows towards the slot; the paper's keeps its magnitude
-  bool horizon_clamp = true;        ///< horizons within their bounds; the paper's tau = dist / |v|
-  bool filter_last = true;          ///< consensus goes into v_pref, what is tracked is safe; the paper adds it behind
-  bool brake_point = true;          ///< velocity obstacles at x + v / k3, which moves as tracked; off on wheels
-  bool margins = true;              ///< the scenario's margins; without it the robots' is 0
+  bool signs = true;           ///< (15) and (17) with their signs corrected; without it they are as printed
+  bool recentred = true;       ///< offsets as equation (4) needs them, where the scenario asks for it
+  bool absolute_frame = true;  ///< V_IVO is an absolute velocity; the paper adds the leader's to it
+  bool saturation = true;      ///< v_pref slows towards the slot; the paper's keeps its magnitude
+  bool horizon_clamp = true;   ///< horizons within their bounds; the paper's tau = dist / |v|
+  bool filter_last = true;  ///< consensus enters v_pref, so that what is tracked is safe; the paper adds it afterwards
+  bool brake_point = true;  ///< velocity obstacles at x + v / k3, which moves as tracked; off on wheels
+  bool margins = true;      ///< the scenario's margins; without it the robots' is 0
   bool side_commitment = true;      ///< a side is chosen once and kept while blocked
   bool smoothing = false;           ///< v_pref averaged with the last tracked velocity, 1 to 4, before the projection
   double acceleration_bound = 0.0;  ///< m/s^2, > 0: |u| is held below it; heuristic, see docs/guide/formation.md

@@ -89,9 +89,9 @@ struct CrowdWheels {
   double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre
 };
 
-/// The half of a heading (degrees; 0 along x, 90 along y) as a vector of any length: what a crowd takes for where a
-/// robot on wheels heads is exactly this direction, twice as far from x. Exact for quarter turns, else the heading is
-/// within 2^-50 rad of the degrees; the same bits everywhere.
+/// Half of a heading (degrees; 0 along x, 90 along y) as a vector of any length: a crowd takes the heading of a robot
+/// on wheels to be exactly twice the angle of this vector. Exact for quarter turns, else the heading is within 2^-50
+/// rad of the degrees; the same bits everywhere.
 Vec2 half_heading_of(double degrees);
 
 /// What robots of a kind have in common.
@@ -100,7 +100,7 @@ struct CrowdKind {
   /// (scenario.h), by which the reference point strays from its chord.
   double radius = 0.5;
   double max_speed = 1.5;            ///< m/s, at least 16 lattice steps and at most 2^22 of them a time step
-  double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
+  double time_horizon = 5.0;         ///< s, at least the time step; a pair uses the shorter one of its two
   double neighbour_distance = 15.0;  ///< m, > 0; at least the distance within which two robots can meet in a step
   int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
   double edge_horizon = 0.0;         ///< s, of edges and bodies at rest: at least the time step; 0: time_horizon
@@ -127,8 +127,8 @@ struct CrowdOptions {
   int threads = 1;           ///< 1 ... 1024, oneTBB's; 0: as many as there are
   bool time_phases = false;  ///< fills Crowd::phases
   /// The processes that step the same crowd together with this one (ranks.h): `step` decides for a share of the robots,
-  /// and all ranks have all. Lives as long as the crowd. Null: none. What `step` throws, of whatever kind, is followed
-  /// by `Ranks::fail`.
+  /// and then all ranks have all decisions. Lives as long as the crowd. Null: none. Whatever `step` throws, it calls
+  /// `Ranks::fail`.
   Ranks* ranks = nullptr;
 };
 
@@ -189,7 +189,7 @@ struct CrowdPhases {
   double finish = 0.0;  ///< rounding to the lattice, moving
 };
 
-/// A stretch of robots that ask where they want to go. Positions and velocities are exact.
+/// A range of robots whose preferred velocities are asked for. Positions and velocities are exact.
 class CrowdSlice {
  public:
   /// How many robots it holds.
@@ -225,7 +225,7 @@ struct CrowdBodyState {
   Vec2 velocity;                ///< m/s, of the whole lattice steps that it goes
 };
 
-/// Called from several threads at once where there are several; what it says of a robot must not depend on the slice.
+/// Called from several threads at once where there are several; what it sets for a robot must not depend on the slice.
 /// With several ranks, each rank calls its own function for its share of the robots.
 using Steering = std::function<void(CrowdSlice&)>;
 
@@ -292,7 +292,7 @@ class Crowd {
   /// O(1), but O(n) the first time after a step.
   void remove_robot(RobotId robot);
 
-  /// Its edges are walls, seen from both sides; whether a robot stands inside is not asked. Coordinates below 2^40 m.
+  /// Its edges are walls, seen from both sides; whether a robot stands inside is not checked. Coordinates below 2^40 m.
   /// The grid of edges is laid out anew before the next step, in O(edges).
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
   /// A solid body that stands still: a disc, a segment, a convex polygon, an ellipse. Coordinates below 2^40 m. Robots
@@ -306,7 +306,7 @@ class Crowd {
   /// From the next step on, limits as of `add_moving_body`. Throws CrowdError: `unknown_obstacle` where none that moves
   /// has this id.
   void set_body_velocity(ObstacleId body, Vec2 velocity);
-  /// m/s, of the whole lattice steps that it goes; 0 of one at rest. Throws where there is none of this id.
+  /// m/s, of the whole lattice steps that it goes; 0 at rest. Throws where there is none of this id.
   Vec2 body_velocity(ObstacleId body) const;
   /// m: how far a body has come from where it was added, exact. Throws where there is none of this id.
   Vec2 body_displacement(ObstacleId body) const;
@@ -319,14 +319,14 @@ class Crowd {
   std::size_t size() const;
   /// Above every id: arrays by id have this length. Entries of ids that name no robot are neither read nor written.
   std::size_t id_end() const;
-  /// As they were given.
+  /// The options of the constructor.
   const CrowdOptions& options() const;
-  /// As it was given.
+  /// The kind as it was added.
   const CrowdKind& kind(KindId kind) const;
 
   /// m/s, by id; they stay until they are set again. New robots prefer 0. Takes the place of a steering function.
   void set_preferred(const std::vector<Vec2>& by_id);
-  /// Asked at every step from now on. Not part of a snapshot.
+  /// Called at every step from now on. Not part of a snapshot.
   void set_steering(Steering steering);
   /// Places (m) that robots have reserved, by id, until they are set again; `reserved`: 0 of robots without one. A
   /// robot with a reservation drives straight in the direction that it prefers: half-planes against other robots do not
@@ -336,8 +336,8 @@ class Crowd {
   void set_reservations(const std::vector<Vec2>& place, const std::vector<std::uint8_t>& reserved);
 
   /// Decides for all robots and moves them. Throws CrowdError where a robot would leave the lattice, where two are in
-  /// one place and one of them is new, or where the steering function prefers what is not finite or too large; what the
-  /// function itself throws passes. The robots are then as they were before.
+  /// one place and one of them is new, or where the steering function prefers what is not finite or too large;
+  /// exceptions of the function itself are passed on. The robots are then as they were before.
   StepReport step();
 
   /// m, exact, by id; grows the array to id_end().
@@ -360,13 +360,13 @@ class Crowd {
   /// The number that `add_robot` was given.
   KindId kind_of(RobotId robot) const;
 
-  /// Recomputed, the same bits that `step` would choose. Throws what `step` would throw.
+  /// Recomputed, with the same bits that `step` would choose. Throws what `step` would throw.
   CrowdExplanation explain(RobotId robot) const;
 
   /// Everything but the steering function, in a binary form of this version. Throws std::ios_base::failure where the
   /// stream fails.
   void snapshot(std::ostream& to) const;
-  /// On as many threads as given (CrowdOptions::threads), and by these ranks, whatever the crowd had.
+  /// Uses these threads (CrowdOptions::threads) and ranks, whatever the saved crowd used.
   static Crowd restored(std::istream& from, int threads = 1, Ranks* ranks = nullptr);
 
   /// A digest of positions, motions and kinds by id, and of moving bodies, for comparing runs.

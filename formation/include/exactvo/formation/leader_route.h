@@ -3,11 +3,11 @@
 
 /// \file
 /// The virtual leader's path as a proven route (geometry/routes.h): for a disc about the leader that holds the whole
-/// formation, or where that does not fit for the largest of its robots, with the margin that robots keep as far as the
-/// way leaves it.
+/// formation, or where that does not fit for the largest of its robots, with the margin that robots keep, as far as the
+/// way has room for it.
 ///
-/// That such a disc has a route, and that it has none, is exact; the points of the path are rounded. The path is no
-/// promise that robots in their slots keep clear: theirs are the half-planes.
+/// That such a disc has a route, and that it has none, is exact; the points of the path are rounded. The path does not
+/// promise that robots in their slots keep clear; their half-planes do.
 
 #include <optional>
 

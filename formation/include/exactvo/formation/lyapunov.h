@@ -45,7 +45,7 @@ struct SoundTerms {
 struct SoundRates {
   double consensus = 0.0;     ///< -k2 v^T (L+B) v^
   double tracking = 0.0;      ///< -k3 |v^|^2
-  double intervention = 0.0;  ///< k3 sum v^_i.e_i: what obstacles and other robots ask for
+  double intervention = 0.0;  ///< k3 sum v^_i.e_i: the share of obstacles and other robots
   /// The derivative: the sum of its terms.
   double value() const { return consensus + tracking + intervention; }
 };
@@ -53,7 +53,7 @@ struct SoundRates {
 /// Both functions and their derivatives at one row.
 struct LyapunovRow {
   double time = 0.0;        ///< s
-  bool has_rates = true;    ///< false in the last row, which has no decision: its derivatives are nothing
+  bool has_rates = true;    ///< false in the last row, which has no decision: its derivatives have no meaning
   PaperTerms paper;         ///< of (18)
   PaperTerms paper_rates;   ///< its derivative, by terms
   double paper_rate = 0.0;  ///< (20): what the paper says V' is

@@ -44,7 +44,7 @@ struct Collision {
   double depth = 0.0;                            ///< m, how far the rims overlap then
   Vec2 place;                                    ///< m, where the robot is then
   bool relaxed = false;  ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
-  /// The robot stood all the while, and a moving obstacle with a max_speed hit it: nothing promises against that.
+  /// The robot stood all the while, and a moving obstacle with a max_speed hit it: no promise excludes that.
   bool standing = false;
 };
 

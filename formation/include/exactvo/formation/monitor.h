@@ -22,7 +22,7 @@
 /// depth is the length of the shortest shift that parts a convex part of the footprint and a convex piece of the
 /// obstacle; a gap is a depth below 0. So a share above 0 may end in an overlap of up to kMonitorSlack where less than
 /// that was left, and again at each decision: a loop that must never touch has a margin. Once the contact is seen to be
-/// left, the rest must be clear; each arc is looked at at kMonitorLooks moments or more for that. A mover that may
+/// left, the rest must be clear; for that each arc is checked at kMonitorLooks moments or more. A mover that may
 /// already touch, from anywhere within its position error, is taken as standing, and the footprint does not go deeper
 /// into all of where it may be.
 ///
@@ -162,7 +162,7 @@ class Monitor {
   std::vector<MonitorArc> way(double share) const;
 
  private:
-  /// A convex set that stands still, from its first corner: seen from nearby, places far from the origin lose nothing.
+  /// A convex set that stands still, from its first corner: relative to it, places far from the origin lose no digits.
   struct Standing {
     geometry::Vec2 at;                  ///< m, the first corner
     std::uint32_t first = 0, size = 0;  ///< in `corners_` or `mover_corners_`, which are seen from there

@@ -11,7 +11,7 @@
 /// The decision is the one that `simulate` makes for a robot without a route (Guidance::none, Liveness::off), by the
 /// same code: enclosures round what is in the way, boost where they are certified free of traps, following of
 /// boundaries after a stall, then the best velocity among certified half-planes (equation (12)). Robots that all go by
-/// navigators, each with the others as neighbours, drive the same bits as in `simulate`.
+/// navigators, each with the others as neighbours, move as in `simulate`, bit for bit.
 ///
 /// Certified: the half-planes, but for those counted by `Decision::uncertified` (contact; a shape that overlaps the
 /// robot), and the choice among them, by its multipliers. Heuristic: the preferred velocity. What is certified holds
@@ -57,15 +57,16 @@ struct NavigatorSetup {
   double arrival_tolerance = 0.1;    ///< m: within this of the last goal it has arrived
   double neighbour_distance = 15.0;  ///< m: farther robots that cannot be met within a time step are ignored
   /// m/s^2, > 0: how fast the velocity may change; none: it jumps. All robots that meet have the same, the same time
-  /// step and the same braking time, each knows the exact velocities of the others, and nothing moves but they.
+  /// step and the same braking time, each knows the exact velocities of the others, and nothing else moves.
   std::optional<double> acceleration = {};
   /// s: as of a Scenario; by default the usual one with an acceleration or a drive, and then neighbours of another
   /// max_speed are refused, since theirs would be another. Given without either, the velocity jumps, and half-planes
   /// are those that robots which brake rely on.
   std::optional<double> braking_time = {};
   /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
-  /// come with every decision. Goals are of the reference point. What `acceleration` says of all robots holds. With
-  /// both, the velocity of the reference point changes no faster either, as others rely on that measure it.
+  /// come with every decision. Goals are of the reference point. What `acceleration` requires of all robots holds too.
+  /// With both, the velocity of the reference point changes no faster than `acceleration`: robots that measure it rely
+  /// on that.
   std::optional<DifferentialDrive> drive = {};
   std::size_t neighbours = 32;  ///< memory is allocated at the start for this many neighbours and moving bodies
 };
@@ -98,7 +99,7 @@ struct Neighbour {
   double radius = 0.5;     ///< m, > 0
   double max_speed = 3.0;  ///< m/s, > 0
   bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole responsibility
-  /// None: it has told `position` and `velocity`, exactly. Else both are measured, exactly `age` ago, and this robot
+  /// None: it has sent its exact `position` and `velocity`. Else both are measured, exactly `age` ago, and this robot
   /// keeps to its own side of lines between the ways on which both brake, as the other one has to, at the same times
   /// (guide, uncertainty); that takes an acceleration.
   std::optional<Measurements> measured = {};
@@ -161,8 +162,8 @@ class Navigator {
   void set_goals(std::vector<Vec2> goals);
 
   /// What to do from now on until the next decision: drive `chosen`. A robot that overlaps an obstacle or a neighbour
-  /// is led out of it, and `uncertified` counts what nothing can be promised of. The reference holds until the next
-  /// call. Throws NavigatorError.
+  /// is led out of it, and `uncertified` counts the half-planes that promise nothing. The reference holds until the
+  /// next call. Throws NavigatorError.
   const Decision& decide(const NavigatorState& now, const std::vector<Neighbour>& neighbours = {},
                          const std::vector<MovingBody>& moving = {});
 
@@ -180,9 +181,9 @@ class Navigator {
   std::size_t goal() const;
   /// Whether it was within reach of the last one.
   bool has_arrived() const;
-  /// The whole as recordings have it (recording.h). Copies, and allocates.
+  /// The whole decision as recordings have it (recording.h). Copies, and allocates.
   RobotStep recorded() const;
-  /// What it sees on its way to the present goal, as recordings have it. Copies, and allocates.
+  /// The bodies that it sees on its way to the present goal, as recordings have them. Copies, and allocates.
   GoalBodies goal_bodies() const;
 
  private:

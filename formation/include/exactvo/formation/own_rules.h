@@ -34,7 +34,7 @@ struct RobotSlice {
 /// Sets the preferred velocities (m/s, finite) of the robots of the slice: `preferred[first]` to `preferred[last - 1]`.
 /// They hold what the run would prefer, straight for the next corner of the route or for the goal. The other entries
 /// have no meaning. A velocity beyond the speed bound is preferred all the same: the nearest one that is allowed is
-/// chosen. All robots are one slice, but over ranks (crowd_run.h) each rank asks for its own.
+/// chosen. All robots are one slice, but over ranks (crowd_run.h) each rank has a slice of its own.
 using RunSteering = std::function<void(const RobotSlice& robots, std::vector<Vec2>& preferred)>;
 
 /// A half-plane of velocities that a user asks of a robot in one step.

@@ -18,7 +18,7 @@
 /// be looked at. Certified: rounding only leaves more squares and pairs in. An answer without a pair says nothing:
 /// proofs are looked for only where robots have little room and overlap nothing at the start, and with a limited number
 /// of pairs. Nor is anything said of a robot whose goal is out of reach for it alone, or of two whose goals are too
-/// near to each other: then it is not passing that they have no room for.
+/// near to each other: then room to pass is not what they lack.
 
 #include <cstddef>
 #include <string>

@@ -43,11 +43,11 @@ class Ranks {
   virtual int size() const = 0;
   /// Each rank has filled its parts of these arrays; then all have all. REQUIRES: the same ends in every rank.
   virtual void share(const std::vector<SharedArray>& arrays) = 0;
-  /// Over the ranks.
+  /// The least of the values that the ranks give.
   virtual std::int64_t least(std::int64_t value) = 0;
-  /// In rank 0 what each gave, by rank; elsewhere nothing.
+  /// In rank 0 the texts of all ranks, by rank; elsewhere none.
   virtual std::vector<std::string> gather(const std::string& own) = 0;
-  /// What rank 0 gave, everywhere.
+  /// The text of rank 0, in every rank.
   virtual std::string broadcast(const std::string& bytes) = 0;
   /// This rank cannot go on, and nothing but the end may follow. True in the first of those that fail at the same time:
   /// it says why.

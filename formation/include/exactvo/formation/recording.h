@@ -104,7 +104,7 @@ struct OnWheels {
   WheelSpeeds speeds;  ///< m/s, during the step that led here; 0 at the start
 };
 
-/// Another robot as one has measured it.
+/// Another robot as this one has measured it.
 struct MeasuredRobot {
   std::size_t robot = 0;  ///< in the order of the scenario
   Vec2 position;          ///< m, where it was `age` before the row

@@ -33,7 +33,7 @@ class RunSink {
   /// First of all. `run` has what is known before the first row: warnings, motion, time_step, tracking_gain,
   /// relative_frame, controller_options, offsets, all_half_planes.
   virtual void begin(const Recording& /*run*/) {}
-  /// Bodies come in the order of their numbers, each before what names it.
+  /// Bodies come in the order of their numbers, each before the first row or plan that names it.
   virtual void add_body(const vo::Body& /*body*/) {}
   /// What a robot sees on its way to a goal, before the first row that goes there.
   virtual void add_goal_bodies(const GoalBodies& /*of_goal*/) {}

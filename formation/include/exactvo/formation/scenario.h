@@ -27,8 +27,7 @@ using geometry::Vec2;
 struct DifferentialDrive {
   double wheel_separation = 0.0;                    ///< m, > 0
   double max_wheel_speed = 0.0;                     ///< m/s, > 0, on the ground
-  double max_wheel_acceleration = 0.0;              ///< m/s^2, > 0: in a step a wheel's speed changes by this
-                                                    ///< times the time step
+  double max_wheel_acceleration = 0.0;              ///< m/s^2, > 0: how fast the speed of a wheel may change
   double max_angular_speed = geometry::kInfinity;   ///< rad/s, > 0
   double max_backward_speed = geometry::kInfinity;  ///< m/s, >= 0, of the axle's centre
   double reference = 0.0;                           ///< m, > 0: how far ahead the reference point is
@@ -40,7 +39,7 @@ struct DifferentialDrive {
   /// m, in the same axes, by `put_on_wheels`: discs that together hold the footprint, each with the stray of a step and
   /// the tracking error, the first about the reference point. They keep clear of obstacles. Empty without a footprint.
   std::vector<geometry::Disc> chain = {};
-  /// m, by `put_on_wheels`: the tracking error that disc and chain hold.
+  /// m, by `put_on_wheels`: the tracking error that the radii of disc and chain include.
   double tracking = 0.0;
 };
 
@@ -128,7 +127,7 @@ inline double obstacle_radius(const Robot& robot) {
 /// m: no disc that keeps clear of obstacles reaches farther from a robot's place, whatever its heading.
 double obstacle_reach(const Robot& robot);
 
-/// m, of a robot with a footprint that is there: disc `link` of its chain, 1 or more.
+/// m: disc `link`, 1 or more, of the chain of a robot with a footprint at this place and heading.
 geometry::Disc link_at(const DifferentialDrive& drive, std::size_t link, Vec2 position, Vec2 heading);
 
 /// Robots measure each other instead of telling each other where they are: bounds of the errors. A measurement is of
@@ -273,7 +272,7 @@ inline bool meets_movers(const Scenario& scenario) {
 /// The unit vector of a heading (degrees); exact for multiples of 90.
 Vec2 heading_vector(double degrees);
 
-/// m: within this of its straight way the reference point stays in a step (theorem 2 of the guide, wheels).
+/// m: the reference point strays from its straight way by this at most in a step (theorem 2 of the guide, wheels).
 double stray_of(const DifferentialDrive& drive, double time_step);
 
 /// m: how far a body may be from where the run has it, `Uncertainty::tracking`.
@@ -286,13 +285,13 @@ inline bool measures_others(const Scenario& scenario) {
   return scenario.uncertainty && scenario.uncertainty->measurements;
 }
 
-/// A robot that moves in any direction: the disc that holds its body of `body_radius` wherever within `tracking` of
-/// its place that is.
+/// Sets the disc of a robot that moves in any direction: it holds the body, of `body_radius`, wherever that is within
+/// `tracking` of the robot's place.
 void keep_within_tube(Robot& robot, double body_radius, double tracking);
 
-/// A robot on wheels: its reference point and the disc about it that holds the body (its footprint where it has one),
-/// whatever the heading, the stray of a step, and the tracking error (all m). REQUIRES: max_wheel_speed * time_step <
-/// reference.
+/// Sets the reference point of a robot on wheels and the disc about it that holds the body (its footprint where it has
+/// one), whatever the heading, the stray of a step, and the tracking error (all m). REQUIRES: max_wheel_speed *
+/// time_step < reference.
 void put_on_wheels(Robot& robot, const DifferentialDrive& drive, double time_step, double tracking = 0.0);
 
 /// s: tau of braking, one for all robots. A robot that brakes keeps the share 1 - time_step / tau of its velocity in

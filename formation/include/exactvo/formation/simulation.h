@@ -95,7 +95,7 @@ constexpr geometry::Names<Mode, 10> word_table(Mode) {
 ///@}
 
 /// Whether what two robots may do is safe together. With rvo and hrvo each assumes what the other one will do, so that
-/// they may choose different sides: they take obstacles as orca does, and of robots nothing is promised.
+/// they may choose different sides: they take obstacles as orca does, and nothing is promised between robots.
 constexpr bool promises_between_robots(Method method) {
   return method != Method::rvo && method != Method::hrvo;
 }
@@ -140,7 +140,7 @@ struct SimulationOptions {
   /// s, >= 0: stop after the last row at or before this time, keeping every half-plane of its decision.
   std::optional<double> stop_at;
   /// Called with the simulated time, s: about ten times a second of wall time, on a crowd after every step. Returning
-  /// false stops the run, in any rank that of all.
+  /// false stops the run; in one rank it stops all ranks.
   std::function<bool(double)> progress;
 
   // For robots with goals: what the user adds (own_rules.h). With either there are no joint plans.
@@ -153,8 +153,8 @@ struct SimulationOptions {
   CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
   Ranks* ranks = nullptr;                                  ///< as CrowdOptions::ranks
   std::size_t snapshot_every = 0;  ///< steps, where snapshots are kept; 0: only one, where `progress` stops the run
-  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. None: none is made. Of
-  /// several ranks all have one or none; it is called in rank 0. The number of ranks is not in it.
+  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. Empty: no snapshot is
+  /// made. With several ranks either all set it or none; it is called in rank 0. The number of ranks is not in it.
   std::function<void(const std::string&)> keep_snapshot;
   /// A snapshot of a run of the same scenario and options: it goes on from there, with the same bits. Empty: the run
   /// begins at the beginning. The number of threads, and of ranks, may be another. The same in every rank.

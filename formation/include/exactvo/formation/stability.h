@@ -35,7 +35,7 @@ Stability stability_of(const FormationSpec& spec);
 
 /// The greatest modulus of the eigenvalues of one step with the decision held over it: below 1 the linear formation
 /// converges. `exact` and `euler` have closed forms; the others approximate `exact` and get its answer, except rk4,
-/// whose own polynomial is used. No integrator: of reference points of robots on wheels.
+/// whose own polynomial is used. Without an integrator: for the reference points of robots on wheels.
 double step_spectral_radius(const FormationSpec& spec, std::optional<Integrator> integrator, double dt);
 
 /// In words, empty where all is well: a step at which the integrator or the held decision is unstable.

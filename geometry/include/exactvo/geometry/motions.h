@@ -95,7 +95,7 @@ struct RoundedPolygon {
   double radius = 0.0;                    ///< m, >= 0
 };
 
-/// A rigid body: the union of its parts. Several of one corner are a chain of discs.
+/// A rigid body: the union of its parts. Parts of one corner each are a chain of discs.
 using RigidBody = std::vector<RoundedPolygon>;
 
 /// A disc round the reference point. REQUIRES: radius >= 0, finite.

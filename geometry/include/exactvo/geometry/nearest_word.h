@@ -30,8 +30,8 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 /// The known word nearest to `word`, whatever the case of ASCII letters. Empty where none is near enough to be meant:
-/// of the letters of the shorter word one of two to four may differ, two of five and more, a third of longer words.
-/// Heuristic.
+/// in a word of two to four letters one may differ, from five letters on two or a third, whichever is more; the shorter
+/// of both words counts. Heuristic.
 inline std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   const auto lower = [](std::string text) {
     for (char& c : text)

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// One obstacle, prepared for many distances: its edges by place. The same doubles as distance.h gives. Questions are
-/// exact where they are there.
+/// One obstacle, prepared for many distances: its edges by place. The same doubles as distance.h gives. Questions that
+/// are exact there are exact here.
 
 #include <vector>
 
@@ -22,7 +22,7 @@ class ObstacleIndex {
   /// The box of all edges.
   const Box& box() const { return box_; }
 
-  /// `swept_distance` to the obstacle, m, where that is less than `enough`; else some number that is not.
+  /// `swept_distance` to the obstacle, m, where that is less than `enough`; else any number that is not less.
   double swept_distance(const Segment& path, double enough) const;
 
  private:

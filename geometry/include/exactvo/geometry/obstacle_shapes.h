@@ -60,7 +60,7 @@ enum class TrapFreeAnswer {
   found,      ///< the ellipse is there
   no_room,    ///< start or goal within radius, `clear_of_ends` and `least_margin` of the hull
   too_large,  ///< found, but only beyond `most_inflation`
-  failed      ///< not found though none of these stands against it, or the arithmetic overflowed
+  failed      ///< not found although neither of these applies, or the arithmetic overflowed
 };
 
 /// An ellipse round the whole obstacle at which no robot stalls, whatever its radius.

@@ -39,15 +39,15 @@ class Region {
   /// The hull of the points. REQUIRES: coordinates within kLargestRegionCoordinate.
   static Region hull_of(const std::vector<Vec2>& points);
 
-  /// What of this region satisfies normal.x >= offset. REQUIRES: numbers within kLargestRegionCoordinate. A zero normal
+  /// The part of this region where normal.x >= offset. REQUIRES: numbers within kLargestRegionCoordinate. A zero normal
   /// keeps all or nothing.
   Region cut(const HalfPlane& keep) const;
 
-  /// What of a convex polygon satisfies all of them. Much faster than cutting a region again and again. REQUIRES: the
-  /// same.
+  /// The part of a convex polygon that satisfies all half-planes. Much faster than cutting a region again and again.
+  /// REQUIRES: the same.
   static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
 
-  /// This one without the other.
+  /// The part of this region that is not in the other.
   Region difference(const Region& other) const;
   /// What both have in common.
   Region intersection(const Region& other) const;

@@ -79,7 +79,7 @@ struct Blocked {
   EdgeName by;           ///< the obstacle or edge that is in the way; `edge` without meaning where `inside`
 };
 
-/// What a question is answered with: a proof either way.
+/// The answer to a question: a proof either way.
 using RouteAnswer = std::variant<Route, Separated, Blocked>;
 
 /// How far the map reaches beyond its obstacles. Its scale is the longer side of the obstacles' box (of one point 2^-20

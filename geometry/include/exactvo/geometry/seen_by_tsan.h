@@ -13,7 +13,7 @@
 namespace exactvo::geometry {
 
 #if defined(__SANITIZE_THREAD__)
-/// Addresses to speak of; what stands there says nothing.
+/// Addresses that name an order; what stands there has no meaning.
 inline char tasks_given, tasks_done;
 /// Call before tasks are handed out, and once more after it if they may wait for long: ThreadSanitizer forgets old
 /// writers.

@@ -5,7 +5,7 @@
 /// Exact questions about robots in straight motion: along directions that no double holds (a difference or a mean of
 /// velocities), for ever (t_max infinite), and for robots that are convex polygons.
 ///
-/// Exact throughout. No filter but what delegates to predicates.h: microseconds, for study and not for loops.
+/// Exact throughout. No filter, except in calls of predicates.h: microseconds, for study and not for loops.
 
 #include <array>
 

@@ -9,7 +9,7 @@
 ///   HRVO  apex + C(2 tau)         RVO's leg on the robot's own side, VO's on the other   Snape et al. 2011
 ///   ORCA  one half-plane          v + a share (least change), on the shape as it stands  van den Berg et al. 2011
 ///
-/// u is the obstacle's velocity, v the robot's, v' the asked one; C(tau) is the velocity obstacle of a robot and an
+/// u is the obstacle's velocity, v the robot's, v' the new velocity; C(tau) is the velocity obstacle of a robot and an
 /// obstacle with relative velocity (velocity_obstacle.h). The three cones are one cone with different apices. A paper
 /// without a horizon means an infinite one; RVO's and HRVO's are cut off at 2 tau here, since v' stands for twice its
 /// offset.

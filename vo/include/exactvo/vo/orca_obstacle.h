@@ -3,10 +3,10 @@
 
 /// \file
 /// The baseline's half-planes of a static polygon or wall (van den Berg et al. 2011, Section 5 and the usual practice):
-/// one an edge, built on the truncated velocity obstacle of the edge grown by the robot, with the foreign-leg rule: a
-/// leg that would point into the neighbouring edge is replaced by that edge, and gives no half-plane of its own.
-/// Nearly collinear neighbours may leave an edge to each other, so that none has a half-plane. A caller that
-/// needs one must ask what the half-planes exclude.
+/// one for each edge, built on the truncated velocity obstacle of the edge grown by the robot, with the foreign-leg
+/// rule: a leg that would point into the neighbouring edge is replaced by that edge, and gives no half-plane of its
+/// own. Nearly collinear neighbours may leave an edge to each other, so that none has a half-plane. A caller that needs
+/// one must check what the half-planes exclude.
 ///
 /// It makes a robot stop before a wall, not go round it: that is what the paper improves upon.
 /// Certified: each half-plane is disjoint from the velocity obstacle of its own edge.

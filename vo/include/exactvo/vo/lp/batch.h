@@ -51,7 +51,8 @@ struct BatchAnswers {
   std::int32_t* active = nullptr;  ///< [3 * stride], line indices or kNoLine; may be null
   std::size_t stride = 0;          ///< between the three rows of `active`, at least `count`
   /// [i], double only, may be null. Where given, every lane is proven in the same pass (inequalities (1), (2) and (4)
-  /// of certificate.h, rounding errors included); what is not goes to `solve_certified`. 1: proven, 0: see Proven.
+  /// of certificate.h, rounding errors included); lanes that are not proven go to `solve_certified`. 1: proven, 0: see
+  /// Proven.
   std::uint8_t* proven = nullptr;
 };
 

@@ -8,7 +8,7 @@
 /// With w = sum of lambda_i n_i, C = sum of lambda_i c_i, all lambda_i >= 0, and sigma(w) = max of w.v within the speed
 /// bound (disc: |w| disc; box: box_x |w_x| + box_y |w_y|; either serves), every v within the bound and inside the
 /// half-planes named has C <= w.v <= sigma(w). Hence
-///  (1) C > sigma(w) contradicts: no v keeps all of them;
+///  (1) C > sigma(w) is a contradiction: no v satisfies all of them;
 ///  (2) least violation: where v keeps the hard ones and violates soft ones by at most t, C - sigma(w) <= t (sum of
 ///      lambda over the soft ones);
 ///  (3) farthest along d: d.v <= sigma(d + w) - C;
@@ -39,8 +39,8 @@ struct Certificate {
   /// How much better a velocity could be at most, 0 or more: of |v - preferred|^2 in m^2/s^2 (nearest), of preferred.v
   /// in m/s |preferred| (farthest), of the violation in m/s |n|. A rounding error where `is_tight`.
   double gap = 0.0;
-  /// no_interior: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
-  /// everything (the hard ones only, where there is a contradiction), exactly.
+  /// no_interior: at most two constraints or sides of the box; the point of their boundaries that is nearest 0
+  /// satisfies everything (the hard ones only, where there is a contradiction), exactly.
   std::vector<Binding> vertex;
 };
 
@@ -48,10 +48,10 @@ struct Certificate {
 enum class CertificateError {
   none,           ///< the certificate proves its claim
   malformed,      ///< indices, counts, signs or numbers out of range
-  velocity,       ///< the velocity does not keep what the status says
+  velocity,       ///< the velocity violates what the status says it satisfies
   contradiction,  ///< (1) fails
   bound,          ///< (2), (3) or (4) fails for the gap stated
-  vertex          ///< the vertex does not keep what it should
+  vertex          ///< the vertex violates something that it must satisfy
 };
 
 /// "none", "malformed", "velocity", "contradiction", "bound", "vertex".

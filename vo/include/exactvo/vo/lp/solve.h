@@ -28,7 +28,7 @@ struct SolveArrays;
 /// What one call of `solve` leaves to the next, so that it allocates nothing. For one thread at a time.
 class SolveMemory {
  public:
-  /// Without room.
+  /// Nothing is reserved.
   SolveMemory();
   ~SolveMemory();
   /// Moves; the object moved from can only be assigned to or destroyed.
@@ -45,11 +45,11 @@ class SolveMemory {
 };
 
 /// The same without the exact stage: true where the multipliers of `answer` prove it (`claim_of`), and then it is the
-/// answer above; false where `solve_exact` has to find it. With a disc or a full box an optimal answer depends on
-/// nothing but what binds: without constraints that hold there with room to spare its velocity has the same bits,
-/// unless three lines meet there up to rounding. Allocates nothing in a problem with no more constraints than one
-/// before, or than were reserved; but signs that doubles do not decide are computed exactly, and such numbers allocate
-/// where they are long. REQUIRES: see `require_well_formed`.
+/// answer above; false where `solve_exact` has to find it. With a disc or a full box an optimal answer depends only on
+/// what binds: without the constraints that hold there with room to spare its velocity has the same bits, unless three
+/// lines meet there up to rounding. Allocates nothing in a problem with no more constraints than one before, or than
+/// were reserved; but signs that doubles do not decide are computed exactly, and such numbers allocate where they are
+/// long. REQUIRES: see `require_well_formed`.
 bool solve(const Problem& problem, SolveMemory& memory, Solution& answer);
 
 /// The arrays must be readable up to a multiple of this many lines; what stands beyond `count` is not used.

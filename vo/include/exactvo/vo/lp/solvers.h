@@ -14,7 +14,7 @@ namespace exactvo::lp {
 
 /// A method of solution.
 enum class Solver {
-  batch,      ///< a problem a SIMD lane, double (batch.h); problems it does not take go to `solve` (solve.h)
+  batch,      ///< one problem in each SIMD lane, double (batch.h); problems it does not take go to `solve` (solve.h)
   certified,  ///< one problem at a time in doubles, proven; the exact stage behind it (certificate.h)
   exact       ///< every branch in exact arithmetic (certificate.h)
 };
