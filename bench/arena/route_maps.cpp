@@ -82,7 +82,8 @@ RunResult run_routes(const RouteProblems& asked) {
     shapes.push_back(o.shape);
   const datasets::MapSize size = datasets::read_map_size(asked.map);
   const double width = static_cast<double>(size.columns), height = static_cast<double>(size.rows);
-  shapes.emplace_back(geometry::Polyline{{{0, 0}, {width, 0}, {width, height}, {0, height}, {0, 0}}});  // nobody leaves
+  shapes.emplace_back(
+      geometry::Polyline{{{0, 0}, {width, 0}, {width, height}, {0, height}, {0, 0}}});  // no robot leaves
   const std::vector<Problem> problems = read_problems(asked.map);
   const bool is_point = asked.radius == 0.0;
   const geometry::RouteMap map(shapes);

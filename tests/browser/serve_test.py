@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`exactvo serve` over sockets, without a browser: who is let in, what is refused, and how it ends.
+"""`exactvo serve` over sockets, without a browser: which clients are let in, what is refused, and how it ends.
 
 serve_test.py --program EXACTVO [TEST...]. Exit status 77 where the program was built without a server.
 """

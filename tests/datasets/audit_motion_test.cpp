@@ -33,7 +33,7 @@ using formation::Robot;
 using formation::TimedPath;
 using geometry::Vec2;
 
-/// Of motions alone: the recordings here are made by hand and have no half-planes.
+/// Judges motions alone: the recordings here are made by hand and have no half-planes.
 bool moves_clear(const RecordingFile& file) {
   const AuditReport report = audit(file);
   return report.collisions == 0 && report.unproven == 0;

@@ -95,7 +95,7 @@ class CrowdsOnWheels : public TemporaryFolder {
     recorder.finish();
     return report;
   }
-  /// Of the recording with another head.
+  /// The audit of the recording with an edited head.
   AuditReport audit_with(const std::function<void(std::string&)>& edit) {
     std::ofstream(folder_ / "d.evr", std::ios::binary) << with_head(bytes_of(folder_ / "c.evr"), edit);
     return audit_recording(folder_ / "d.evr");

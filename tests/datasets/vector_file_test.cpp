@@ -239,7 +239,7 @@ TEST_F(VectorFile, WhatOtherProgramsWriteBeyondJsonIsRead) {
             "{\"name\":\"caf\xc3\xa9 \xc3\xa9 N-I \\\" NaN\"}");
 }
 
-/// Of 64 KiB each, wherever a word or a character of several bytes lies across their border.
+/// Blocks have 64 KiB: a word or a character of several bytes lies across their border.
 TEST_F(VectorFile, WordsAcrossBlocksAreRead) {
   ReadOptions options;
   options.keep_properties = true;

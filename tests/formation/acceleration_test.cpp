@@ -29,7 +29,7 @@
 namespace exactvo::formation {
 namespace {
 
-/// Of the way from `from` on, `along` long, to 0.
+/// Squared distance to 0 of the way from `from` to `from` + `along`.
 Rational squared_distance(const Point& from, const Point& along) {
   const Rational length = dot(along, along);
   Rational share(0);

@@ -250,7 +250,7 @@ TEST(BadInput, TwoGoalsInOnePlaceAreReported) {
                                  "too near to each other for both robots: [0-9.]+ m, and their radii take [0-9.]+ m"));
 }
 
-/// Neither too near nor with the margin between them: who came second pressed against the first for ever, and nothing
+/// Neither too near nor with the margin between them: the second robot pressed against the first for ever, and nothing
 /// had been said.
 TEST(BadInput, GoalsNearerThanTheMarginAreReported) {
   Scenario s;
@@ -281,7 +281,7 @@ TEST(BadInput, AGoalOnTheWayInWhichAnotherRobotIsToRestIsReported) {
     robot.goals = {{0.0, 0.0}};
   }
   s.robots[1].goals = {{0.0, 0.3}, {0.0, 5.0}};
-  EXPECT_TRUE(warnings_before(s).empty()) << "who rests there makes way and comes back, by a plan";
+  EXPECT_TRUE(warnings_before(s).empty()) << "the robot that rests there makes way and comes back, by a plan";
   s.liveness = Liveness::bias;
   EXPECT_THAT(warnings_before(s),
               testing::ElementsAre("goal 1 of E, (0, 0.3), cannot be reached while W is at its last goal"));

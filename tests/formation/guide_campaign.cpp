@@ -2,7 +2,7 @@
 // Every goal reached, or proven out of reach: robots with default options among generated obstacles, or on maps from
 // files, run by hand.     guide_campaign maze 1000 1       guide_campaign files 1 1 --robots 8 MAP...
 //
-// Of a robot that did not arrive the verdict is asked again of a plan of its own, and its certificate is checked in
+// For a robot that did not arrive a plan made for it alone decides again, and its certificate is checked in
 // rationals by code that the planner does not share. The recording of every run is audited.
 #include <chrono>
 #include <cstdio>

@@ -410,7 +410,7 @@ TEST(NearestPlace, LiesBeforeTheDoorThatIsTooNarrow) {
   EXPECT_FALSE(run.metrics.all_arrived);
   EXPECT_TRUE(is_safe(run.metrics));
   EXPECT_LE(left_over(s, run), 2.4 + 1e-5 + s.arrival_tolerance);
-  EXPECT_LT(run.recording.steps.back().time, 60.0) << "it ends when nobody goes on";
+  EXPECT_LT(run.recording.steps.back().time, 60.0) << "it ends when no robot goes on";
   EXPECT_EQ((run.recording.steps.end() - 2)->robots[0].mode, Mode::staying);
   EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: obstacles 'wall 1', 'wall 2'"),
                                          HasSubstr("and went as near as it can: it ends 2.4"),

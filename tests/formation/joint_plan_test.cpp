@@ -69,7 +69,7 @@ TEST(Traffic, ARobotThatComesTheOtherWayTakesAnotherLane) {
   EXPECT_LT(nearest(there, back), 0.5) << "the street is no test";
   traffic.add(there, 1.0);
   EXPECT_GE(nearest(there, way(east, west)), 1.0);
-  EXPECT_EQ(way(west, east), there) << "who goes the same way may follow";
+  EXPECT_EQ(way(west, east), there) << "a robot that goes the same way may follow";
   traffic.add(there, -1.0);
   EXPECT_EQ(way(east, west), back);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes of docs/guide/liveness.md, run by hand: who arrives, and how long it takes over the longest straight way at
-// full speed. With `audit` the recording is proven in rationals, which takes longer than the run.
+// Scenes of docs/guide/liveness.md, run by hand: which robots arrive, and how long it takes over the longest straight
+// way at full speed. With `audit` the recording is proven in rationals, which takes longer than the run.
 //
 // No row is kept: memory does not grow with the run. With `audit` the recording goes through a pipe, which stands in
 // the present folder meanwhile, and is proven while it is made; else it stays in FILE, and is proven afterwards. The

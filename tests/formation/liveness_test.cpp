@@ -83,7 +83,7 @@ Scenario full_box(test::SeededRandom& random) {
   return s;
 }
 
-/// Rule R0: nothing is relaxed and nobody overlaps.
+/// Rule R0: nothing is relaxed and no robots overlap.
 TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
   test::SeededRandom random(test::seed_of_run(17));
   for (int k = 0; k < 3; ++k) {
@@ -338,8 +338,8 @@ TEST(Liveness, PlansAreTheSameEveryTime) {
       ASSERT_EQ(a.steps[k].robots[i].chosen, b.steps[k].robots[i].chosen) << k << " " << i;
 }
 
-/// Who waits for whom must not depend on what is recorded beside what binds and what is in reach: here a half-plane
-/// beyond reach made the difference between a plan and none.
+/// Which robot waits for which must not depend on what is recorded besides what binds and what is in reach: here a
+/// half-plane beyond reach made the difference between a plan and none.
 TEST(Liveness, PlansAreTheSameWithEveryHalfPlaneRecorded) {
   struct Start {
     Vec2 from, to;
@@ -401,7 +401,7 @@ TEST(Liveness, ALargerRobotElsewhereDoesNotKeepSmallOnesFromTheirPlan) {
   EXPECT_TRUE(m.collisions.empty());
 }
 
-/// A corridor in which nobody can pass: the run ends at its time limit and says that there is no plan.
+/// A corridor in which no robot can pass another: the run ends at its time limit and says that there is no plan.
 TEST(Liveness, WhereThereIsNoPlanItIsReported) {
   Scenario s;
   s.time_limit = 30.0;
@@ -518,8 +518,8 @@ TEST(Liveness, AllThatHaveNoPlanAreNamed) {
   EXPECT_NE(m.outcome.find("for R3 and R4"), std::string::npos) << m.outcome;
 }
 
-/// Who passes a goal has a longer way again. That counted as standing still, until it was as near to the next goal:
-/// robots went by plans in the open, all by themselves.
+/// A robot that passes a goal has a longer way again. That counted as standing still, until it was as near to the next
+/// goal: robots went by plans in the open, all by themselves.
 TEST(Liveness, ARobotThatHeadsForItsNextGoalIsNotStalled) {
   Scenario s;
   s.robots = {robot("R1", {0, 0}, {20, 0})};
@@ -531,7 +531,7 @@ TEST(Liveness, ARobotThatHeadsForItsNextGoalIsNotStalled) {
   EXPECT_EQ(m.plans->groups, 0u);
 }
 
-/// Who was at the end of its way stood there until the last robot of its plan was at the end of its own, although it
+/// A robot at the end of its way stood there until the last robot of its plan was at the end of its own, although it
 /// had another goal to go to.
 TEST(Liveness, ARobotAtTheEndOfItsWayGoesOnToItsNextGoalWithoutTheOthers) {
   Scenario s = test_scenes::street(14, 3.0);
@@ -557,7 +557,8 @@ TEST(Liveness, ARobotAtTheEndOfItsWayGoesOnToItsNextGoalWithoutTheOthers) {
   EXPECT_GT(alone, 1.0);
 }
 
-/// navground's Cross: 20 robots go to and fro for 300 s, with margins up to three radii wide. Nobody stands at the end.
+/// navground's Cross: 20 robots go to and fro for 300 s, with margins up to three radii wide. No robot stands at the
+/// end.
 TEST(Liveness, InNavgroundsCrossNoRobotStandsInTheEnd) {
   constexpr double kLast = 5.0, kStands = 0.02;  // s, m/s
   for (const double margin : {0.02, 0.22}) {
@@ -576,7 +577,7 @@ TEST(Liveness, InNavgroundsCrossNoRobotStandsInTheEnd) {
   }
 }
 
-/// Robots with a wide margin stop farther apart than a radius, and were said to wait for nobody.
+/// Robots with a wide margin stop farther apart than a radius, and counted as waiting for none.
 TEST(Liveness, RobotsWithAWideMarginWaitForEachOther) {
   Scenario s;
   s.time_limit = 20.0;

@@ -92,7 +92,7 @@ void measure_formation(const Scenario& scenario, const Recording& recording, Met
   m.formation_velocity_error = velocity;
 }
 
-/// Whom the formation lost, and since when it holds.
+/// The robots that the formation lost, and since when it holds.
 void measure_course(const Scenario& scenario, const Recording& recording, Metrics& m) {
   if (!scenario.formation) return;
   FormationCourse& course = m.formation_course.emplace();

@@ -31,7 +31,7 @@ using datasets::AuditPoint;
 using datasets::RecordingFile;
 using testing::HasSubstr;
 
-/// Of length 1, exactly: ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)) or its negative.
+/// A vector of length 1, exactly: ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)) or its negative.
 Point unit(test::SeededRandom& random) {
   const Rational t(random.uniform(-1.0, 1.0)), square = 1 + t * t, sign(random.integer(0, 1) == 0 ? -1 : 1);
   return {Rational(sign * (1 - t * t) / square), Rational(sign * 2 * t / square)};

@@ -185,7 +185,7 @@ TEST(OwnSide, WithoutAnyKnowledgeOfTheSideARobotBrakes) {
   }
 }
 
-/// Of fast robots with little room too, whose numbers are rounded by more than the room of a slow one.
+/// Also for fast robots with little room, whose numbers are rounded by more than the room of a slow one.
 TEST(OwnSide, BrakingSatisfiesTheLinesOfRobotsOfAnySpeedInRationals) {
   test::SeededRandom random(test::seed_of_run(75));
   std::size_t asked = 0;

@@ -140,7 +140,7 @@ TEST(Passing, ANicheMattersWhenItHoldsARobot) {
   EXPECT_THAT(robots_without_passing(with_niche(1.4)), IsEmpty());
 }
 
-/// A strip with a branch: who goes into the branch lets the other pass, if the branch is long enough.
+/// A strip with a branch: a robot in the branch lets the other pass, if the branch is long enough.
 TEST(Passing, ATreeOfStripsIsProvenWhereNoBranchHoldsARobot) {
   const auto tree = [](double branch) {
     constexpr double kHalf = 0.6;

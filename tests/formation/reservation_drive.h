@@ -119,7 +119,7 @@ class ReservationDrive {
   double time_step() const { return time_step_; }
   const std::vector<detail::RobotUnderWay>& robots() const { return now_; }
 
-  /// Who is home, and where the others head.
+  /// Which robots are at their goals, and where the others head.
   void look() {
     report_.home = 0;
     for (std::size_t i = 0; i < at_.size(); ++i) {

@@ -70,7 +70,7 @@ void judge(const Reservations& reservations, const std::vector<RobotUnderWay>& r
       if (i == j || norm(at(i) - at(j)) > 8.0) continue;
       const double radii = robots[i].radius + robots[j].radius;
       const bool is_earlier = drives(j) && reservations.ticket(j) < reservations.ticket(i);
-      if (!drives(j)) {  // who touches another may leave it
+      if (!drives(j)) {  // robots that touch may part
         ++judged.pairs;
         ASSERT_GE(squared_distance(at(j), at(i), place(i)), radii * radii - 1e-9) << "(1) " << i << " past " << j;
       } else if (is_earlier) {
@@ -225,7 +225,7 @@ TEST(Reservations, AWaitingRobotIsNotOvertakenByTheNextReservationsOfTheOneItWai
   for (const RobotUnderWay& r : robots) EXPECT_LT(norm(r.goal - r.position), 2e-3);
 }
 
-/// Beside a wall too: who is turned leaves its way.
+/// Beside a wall too: a robot that is turned leaves its way.
 TEST(Reservations, NoRobotIsTurnedOffItsWayBesideAWall) {
   const std::vector<SceneObstacle> walls = {{"wall", geometry::Polyline{{{-20.0, 0.0}, {20.0, 0.0}}}}};
   const ObstacleSpace space(walls);
@@ -252,7 +252,7 @@ TEST(Reservations, NoWayLeadsOverARobotThatHasNoReservation) {
     std::vector<RobotUnderWay> robots = {robot_at({0.0, 0.0}, {9.0, 0.0}), robot_at({1.1, 0.0}, {1.1, 9.0})};
     robots[1].velocity = {0.0, speed};
     std::size_t looked = 0;
-    for (int step = 0; step < 60; ++step) {  // nobody gets on: the first stalls; the second, as far as is seen, drives
+    for (int step = 0; step < 60; ++step) {  // none gets on: the first stalls; the second counts as driving
       if (speed > 0.0) robots[1].goal = robots[1].ahead[0] = {1.1, 1000.0 - step};
       reservations.look(robots);
       if (reservations.reserved()[1]) break;

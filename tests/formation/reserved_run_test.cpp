@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of crowds that jam without reservations (liveness/reservations.h): everybody arrives, and nobody overlaps.
+// Runs of crowds that jam without reservations (liveness/reservations.h): all robots arrive, and none overlap.
 #include <gtest/gtest.h>
 
 #include <string>

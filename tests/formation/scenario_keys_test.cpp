@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keys of what moves and who does not yield, from JSON and back.
+// The keys of moving obstacles and of robots that do not yield, from JSON and back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -147,7 +147,7 @@ TEST(Timetable, IsASequenceOfClearMoves) {
   EXPECT_GE(found, 100u);
 }
 
-/// Robots in a row go one behind the other without waiting; who crosses another's way waits for it.
+/// Robots in a row go one behind the other without waiting; a robot that crosses another's way waits for it.
 TEST(Timetable, KnowsWhichRobotWaitsForWhich) {
   const Walls open({});
   Roadmap map(open, {{0, 0}, {12, 12}}, 0.5);

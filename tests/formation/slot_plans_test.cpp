@@ -106,7 +106,7 @@ TEST(SlotPlans, RunsAreTheSameBits) {
   EXPECT_FALSE(a.recording.plans.empty());
 }
 
-/// A formation that nobody blocks has the bits that it has without plans, and while the leader moves none is made.
+/// A formation that no robot blocks has the bits that it has without plans, and while the leader moves none is made.
 TEST(SlotPlans, ChangeNothingWhereNoRobotIsBlocked) {
   Scenario s = at_slots(test_scenes::circle(6));
   s.formation->leader.path = {{0.0, 0.0}, {20.0, 0.0}};
@@ -242,7 +242,7 @@ TEST(SlotPlans, ARobotThatGoesBesideItsSlotFromTheFirstRowOnIsAudited) {
   EXPECT_TRUE(audited(r).clean());
 }
 
-/// Behind walls: nobody drives round them for ever.
+/// Behind walls: no robot drives round them for ever.
 TEST(SlotPlans, ASlotInAClosedRoomIsNamed) {
   Scenario s = line_of({-2.0, 3.0});
   s.obstacles.push_back({"room", geometry::Polyline{{{-1, 2}, {1, 2}, {1, 4}, {-1, 4}, {-1, 2}}}});

@@ -190,7 +190,7 @@ TEST(Stuck, WhatTheRobotInTheWayDoesIsReported) {
   EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is moving"));
 }
 
-/// Who creeps, as robots do that are held between a wall and each other, waits as who rests does.
+/// A robot that creeps, as between a wall and another robot, waits like one at rest.
 TEST(Stuck, ARobotThatCreepsAndWaitsNamesTheOneItWaitsFor) {
   auto ends = head_on();
   ends[0].velocity = {0.02, 0};
@@ -199,14 +199,15 @@ TEST(Stuck, ARobotThatCreepsAndWaitsNamesTheOneItWaitsFor) {
   EXPECT_THAT(text_of(s, unchanged(ends)),
               HasSubstr("still moving when time ran out (0.02 m/s); its velocity is limited "
                         "by robot R2; R1 waits for R2, which waits for R1"));
-  EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::IsEmpty()) << "who moves may get on";
+  EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::IsEmpty()) << "a robot that moves may get on";
   for (End& end : ends) end.velocity = 0.2 * end.velocity;
   EXPECT_THAT(measure(s, unchanged(ends)).deadlock, testing::ElementsAre("R1", "R2"));
   ends[0].goal = ends[0].position;
-  EXPECT_THAT(measure(scene_of(ends), unchanged(ends)).deadlock, testing::IsEmpty()) << "who is there waits for nobody";
+  EXPECT_THAT(measure(scene_of(ends), unchanged(ends)).deadlock, testing::IsEmpty())
+      << "a robot at its goal waits for none";
 }
 
-/// Beside a wall it was not said for whom a robot waits if that one waits for nobody.
+/// Next to a wall, the robot that another one waits for was not named if it waits for none itself.
 TEST(Stuck, ARobotHeldByAWallAndOneRobotNamesTheRobotItWaitsFor) {
   auto ends = head_on();
   const geometry::Segment wall{{0, -0.5}, {9, -0.5}};

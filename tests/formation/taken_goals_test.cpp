@@ -28,11 +28,11 @@ TEST(TakenGoals, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
   EXPECT_EQ(m.plans->groups, 0u);
   EXPECT_EQ(m.robots[0].arrived + m.robots[1].arrived, 1);
   for (const RobotMetrics& r : m.robots) EXPECT_LT(r.path_length, 15.0) << r.id;
-  EXPECT_LT(run.steps.back().time, 10.0) << "nobody goes on";
+  EXPECT_LT(run.steps.back().time, 10.0) << "no robot goes on";
   EXPECT_NE(m.outcome.find("R1 stays: R2 was first at the goal that both have"), std::string::npos) << m.outcome;
 }
 
-/// Who is far away when its rival arrives comes, and stays beside it; who was there first is not pushed off. The run
+/// A robot that is far away when its rival arrives comes and stays beside it; the first one is not pushed off. The run
 /// ended at once before, with R2 stopped where it was.
 TEST(TakenGoals, ARobotWhoseGoalIsTakenComesBesideItAndStays) {
   for (const double apart : {0.0, 0.5}) {
@@ -69,7 +69,7 @@ TEST(TakenGoals, ARobotThatRestsOnTheGoalOfAnotherOnItsWayMakesWay) {
   EXPECT_TRUE(audits_clean(s, run));
 }
 
-/// Six goals on a line, each too near to its neighbours: who is there first keeps its own, and the others make room.
+/// Six goals on a line, each too near to its neighbours: the first robot there keeps its own, and the others make room.
 /// R4 stood 0.37 m from its goal for a minute, behind one that stayed as R4 was said to rest there.
 TEST(TakenGoals, ARobotThatStaysBesideATakenGoalMakesRoomInIt) {
   for (const Liveness liveness : {Liveness::bias, Liveness::plan}) {
@@ -183,7 +183,7 @@ TEST(TakenGoals, AGoalOnTheWayThatIsTakenIsReachedAllTheSame) {
   }
 }
 
-/// Of robots that go as near as they can to goals out of reach, those that find the place taken stay beside it. They
+/// Where robots go as near as they can to goals out of reach, those that find the place taken stay beside it. They
 /// pushed each other off it until time ran out, and some were said to stay for one that had never been at its goal.
 TEST(TakenGoals, ARobotWhoseNearestPlaceIsTakenStaysBesideIt) {
   for (const double apart : {0.0, 0.2}) {

@@ -186,8 +186,8 @@ struct VertexOutcome {
   std::string words;
 };
 
-/// Of every vertex that is said to stop the robot, but those where the way to the goal runs along the edge of the cone
-/// of rest: there it is as likely to slide out.
+/// Every vertex that the test says stops the robot, except those where the way to the goal runs along the edge of the
+/// cone of rest: there it is as likely to slide out.
 inline std::vector<VertexOutcome> vertex_outcomes(formation::Scenario s) {
   std::vector<VertexOutcome> out;
   for (const formation::TrapFinding& f : formation::trap_test(s, pair_options())) {

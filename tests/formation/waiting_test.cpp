@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who waits for whom: rows made by hand, and a run whose end is known.
+// Which robot waits for which: rows made by hand, and a run whose end is known.
 #include "exactvo/formation/waiting.h"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Robots that all want to go right and stand; `edges` says whom each waits for, nearest first.
+/// Robots that all want to go right and stand; `edges`: the robots that each waits for, nearest first.
 struct Row {
   Scenario scenario;
   Step step;

@@ -27,7 +27,7 @@ class Bytes {
     return *data_++;
   }
 
-  /// Of any magnitude, NaN and infinities included where `any`; else finite and within 2^+-60.
+  /// A number of any magnitude, NaN and infinities included where `any`; else finite and within 2^+-60.
   double number(bool any = false) {
     const std::uint8_t kind = byte();
     if (kind < 160) return static_cast<double>(static_cast<std::int8_t>(byte())) / (kind % 2 == 0 ? 1.0 : 8.0);

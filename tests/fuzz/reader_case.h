@@ -12,8 +12,8 @@ namespace exactvo::datasets::test {
 
 /// The formats that have a target, and the extension of a case.
 struct FuzzedFormat {
-  /// Of target and corpus; "scenario" reads a scenario, "trajectories" a file whose format is chosen by its content,
-  /// "recording" and "crowd-recording" runs, and all others obstacles.
+  /// The name of target and corpus; "scenario" reads a scenario, "trajectories" a file whose format is chosen by its
+  /// content, "recording" and "crowd-recording" runs, and all others obstacles.
   const char* name;
   const char* extension;
   const char* reader = nullptr;  ///< of `readable_formats()`; that of `name` where none is said

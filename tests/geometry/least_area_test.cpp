@@ -27,7 +27,7 @@ Number doubled_area(Vec2 a, Vec2 b, Vec2 c) {
   return abs((Number(b.x) - ax) * (Number(c.y) - ay) - (Number(b.y) - ay) * (Number(c.x) - ax));
 }
 
-/// Of the ellipse round a triangle, Steiner's: 4 pi / (3 sqrt 3) of the triangle's.
+/// The area of Steiner's ellipse round a triangle: 4 pi / (3 sqrt 3) of the triangle's.
 Number least_of_triangle(const std::vector<Vec2>& p) {
   return 2 * pi() / (3 * sqrt(Number(3))) * doubled_area(p[0], p[1], p[2]);
 }
@@ -115,7 +115,7 @@ TEST(LeastEllipseArea, IsNotAboveThatOfAParallelogram) {
   SeededRandom random(test::seed_of_run(82));
   std::size_t judged = 0;
   for (int k = 0; k < 3000; ++k) {
-    // Of whole numbers, so that the fourth corner is exact; then scaled by a power of two.
+    // Whole numbers, so that the fourth corner is exact; then scaled by a power of two.
     const auto whole = [&](double most) { return std::round(random.uniform(-most, most)); };
     const double scale = std::ldexp(1.0, random.integer(-40, 10));
     const Vec2 p{whole(1e9), whole(1e9)}, along{whole(1e6), whole(1e6)};

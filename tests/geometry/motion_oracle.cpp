@@ -257,7 +257,7 @@ std::size_t degree_of(const Motion& m) {
 
 using Edge = std::pair<P, P>;
 
-/// Of a pair of hulls: from which segments the difference of the reference points keeps its distance.
+/// For a pair of hulls, the segments from which the difference of the reference points keeps its distance.
 std::vector<Edge> segments_of(const std::vector<P>& a, const std::vector<P>& b) {
   std::vector<Edge> segments;
   const auto next = [](const std::vector<P>& v, std::size_t i) { return v[(i + 1) % v.size()]; };

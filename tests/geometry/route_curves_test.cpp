@@ -45,7 +45,7 @@ Route route_of(const std::vector<Obstacle>& obstacles, double radius, Vec2 start
   return *route;
 }
 
-/// A search by itself, in a square that is large enough.
+/// A search alone, in a square that is large enough.
 class Searched {
  public:
   Searched(const std::vector<Obstacle>& obstacles, double half, double radius)

@@ -35,7 +35,7 @@ class Mutator {
   std::size_t index(std::size_t size) {
     return static_cast<std::size_t>(random_.integer(0, static_cast<int>(size) - 1));
   }
-  /// Of any magnitude from 1e-17 to 10.
+  /// A size from 1e-17 to 10.
   double any_size() { return std::pow(10.0, random_.uniform(-17.0, 1.0)); }
 
   double moved(double x) {

@@ -14,8 +14,8 @@
 
 namespace exactvo::test {
 
-/// Of a route's length to its lower bound: more than ever seen in these worlds, and far from the way of a search that
-/// was given up or of a string that could not be proven.
+/// Ratio of a route's length to its lower bound: more than ever seen in these worlds, and far from the way of a search
+/// that was given up or of a string that could not be proven.
 constexpr double kMostOverBound = 1.25;
 
 /// m; no disc of it fits anywhere: fences are 24 m wide at the most.

@@ -442,7 +442,7 @@ TEST(RouteScales, RoutesFromFarAwayMeetNoObstacleUnseen) {
   }
 }
 
-// Of an end in contact with several sites, the first four pieces found were looked at, and one wall was all of them.
+// For an end in contact with several sites only the first four pieces were looked at, and all were of one wall.
 TEST(Routes, AnEndInContactWithManySitesLeavesAlongTheOneThatLetsIt) {
   // The disc of radius 5 round (0, 0) touches a long wall behind it and a vertex on either side.
   std::vector<Obstacle> obstacles{Polyline{{{3 - 40, -4 - 30}, {3 + 40, -4 + 30}}}, Polyline{{{-4, -3}, {-8, -6}}},

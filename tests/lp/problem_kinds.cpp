@@ -55,7 +55,7 @@ BoundKind bound_kind_of(const SpeedBound& b) {
   return BoundKind::none;
 }
 
-/// Of constraint k of `count`: the first two of mixed ones differ.
+/// The priority of constraint k; where kinds are mixed, the first two differ.
 Priority priority_of(PriorityKind kind, int k, SeededRandom& random) {
   if (kind == PriorityKind::hard || (kind == PriorityKind::mixed && k == 0)) return Priority::hard;
   if (kind == PriorityKind::soft || (kind == PriorityKind::mixed && k == 1)) return Priority::soft;

@@ -253,7 +253,7 @@ TEST(Messages, MalformedGeoJsonIsNotAnsweredInTheWordsOfALibrary) {
   EXPECT_THAT(outcome.out, HasSubstr("bad.geojson: line 2, column 87: found \"[1, 1]]]}}]}\", expected a comma"));
 }
 
-/// Of a sequence the record is rejected, not the file.
+/// In a sequence the record is rejected, not the file.
 int status_of_refused(const std::string& file) {
   return file.find(".geojsonl") != std::string::npos ? 1 : 2;
 }

@@ -37,7 +37,7 @@ void make_pipe(const Workplace& here, const std::string& name) {
   ASSERT_EQ(::mkfifo((here.path() / name).c_str(), 0600), 0) << std::strerror(errno);
 }
 
-/// The program in the background, with its stdin at the reading end of a pipe that nobody writes to.
+/// The program in the background, with its stdin at the reading end of a pipe without a writer.
 class Running {
  public:
   Running(const Workplace& here, std::vector<std::string> words) {
@@ -291,7 +291,7 @@ TEST(Pipes, ARunIsAuditedFromItsStandardOutput) {
               HasSubstr("a recording of decisions goes to - or a pipe, or to disk with --out DIR"));
 }
 
-/// Whatever keeps a run from beginning, who waits for its recording gets an end.
+/// Whatever keeps a run from beginning, a reader that waits for its recording gets an end.
 TEST(Pipes, ARunThatCannotBeginLeavesNoReaderWaiting) {
   const Workplace here;
   here.write("bad.json", "{}");
@@ -342,7 +342,7 @@ TEST(Pipes, ARecordingThatEndsEarlyIsAuditedAsFarAsItGoesAndIsNoWholeOne) {
   EXPECT_THAT(here.read("err"), HasSubstr("[E_CUT_OFF]"));
 }
 
-/// Of the writer, while it runs.
+/// The signal comes to the writer while it runs.
 TEST(Pipes, ASignalLeavesARecordingThatSaysItEndsEarly) {
   const Workplace here;
   here.write("ring.json", R"({"name": "ring", "time_limit": 600, "robots": [

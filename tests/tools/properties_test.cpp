@@ -164,7 +164,7 @@ TEST(Convert, RefusesItsInputAsItsOutputByWhateverName) {
 
 // --- Degrees and metres ---
 
-/// Of the first ring's corners, in degrees, by the ellipsoid's radii of curvature at the equator.
+/// m, width of the first ring, given in degrees, by the ellipsoid's radii of curvature at the equator.
 double width_at_equator(const json& geometry) {
   constexpr double kMetresADegree = 6378137.0 * 3.14159265358979323846 / 180.0;
   const json& ring = geometry.at("coordinates").at(0);

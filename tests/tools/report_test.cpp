@@ -275,7 +275,7 @@ TEST(Report, NamesTheProgramOfEachFile) {
 }
 
 TEST(Report, SaysWhereAPromiseIsNotKept) {
-  json summary = rosy_summary();  // everybody arrives after 12 s
+  json summary = rosy_summary();  // all robots arrive after 12 s
   const auto row = [&](const std::string& scenario) {
     const std::string text = report_of(summary), head = "| " + scenario + " | ";
     const std::size_t at = text.find(head, text.find("Section V.A: robots"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verb `route` as a user meets it: answers, certificates and who accepts them, many questions, bad input.
+// The verb `route` as a user meets it: answers, certificates and the checkers that accept them, many questions, bad
+// input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -134,7 +134,7 @@ TEST(WheelsVerb, ScenesOfTheFolderArriveAndAreProven) {
   EXPECT_EQ(formations, 4u);
 }
 
-/// Among people who walk as they like; what is assumed of them and promised to the robot is said wherever results are.
+/// Among people who walk as they like; results name what is assumed of them and promised to the robot.
 TEST(MoversVerb, ItsSceneArrivesIsProvenAndSaysWhatIsAssumed) {
   const Workplace here;
   const char* const words =

@@ -30,7 +30,7 @@ using vo::ShiftedCone;
 using vo::VelocityObstacle;
 
 using geometry::kInfinity;
-/// Of an area of a few (m/s)^2 whose expected value is made of some ten rounded operations.
+/// Rounding of an area of a few (m/s)^2 whose expected value takes some ten rounded operations.
 constexpr double kRounded = 1e-14;
 
 ShiftedCone cone_of(const geometry::ConvexShape& shape, double radius, double tau, Vec2 apex = {}) {
@@ -239,7 +239,7 @@ TEST(FreeArrangement, AWallSeenEndOnIsASlitWithTwoSides) {
   EXPECT_FALSE(free.contains({0.75, 0.0}));
   EXPECT_TRUE(free.contains({0.25, 0.0}));
   EXPECT_TRUE(free.holds({{{0.0, 1.0}, -2.0}})) << "it takes no area away";
-  // Of walls one behind the other the nearer one's slit is all there is.
+  // Where one wall is behind another, only the slit of the nearer one counts.
   const FreeArrangement two({wall, cone_of(Segment{{3.0, 0.0}, {5.0, 0.0}}, 0.0, 4.0)}, 1.0);
   EXPECT_EQ(count(two, ArcKind::leg), 4) << "two stretches, each with two sides";
   expect_area(two, kPi);

@@ -90,7 +90,7 @@ double distance(const Outline& o, Vec2 p) {
   return o.solid && inside(o, p) ? -least : least;
 }
 
-/// Of two segments; that of an end from the other segment, unless they cross.
+/// The distance of two segments: of an end from the other segment, unless they cross.
 double distance(const std::pair<Vec2, Vec2>& one, const std::pair<Vec2, Vec2>& other) {
   const auto side = [](const std::pair<Vec2, Vec2>& s, Vec2 p) { return cross(s.second - s.first, p - s.first); };
   if (side(one, other.first) * side(one, other.second) < 0.0 && side(other, one.first) * side(other, one.second) < 0.0)
@@ -287,7 +287,7 @@ struct Line {
   }
 };
 
-/// Of a robot with two.
+/// The two wheels of a robot.
 struct Wheels {
   Vec2 heading;
   double left = 0.0, right = 0.0;
@@ -702,7 +702,7 @@ class Opinion {
       wrong(k, i, "multipliers do not balance");
   }
 
-  /// Of the half-plane that robot j has against robot i, of the opposite normal; -infinity where there is none.
+  /// The offset of the half-plane of robot j against robot i, with the opposite normal; -infinity where there is none.
   double offset_of_other(const Row& row, std::size_t i, std::size_t j, const Line& line) const {
     for (const Line& theirs : row.robots[j].lines) {
       const auto body = bodies_.find(theirs.body);

@@ -25,7 +25,7 @@ struct Judged {
   std::string why;  ///< what the audit, or where it is wrong the second opinion, has against it
 };
 
-/// Of the edited lines as a recording of the run's scenario.
+/// The verdict on the edited lines as a recording of the run's scenario.
 Judged judge(const ShortRun& run, const Lines& lines);
 
 /// Edits of all runs in turn: how many of each field, and the wrong ones.

@@ -53,7 +53,7 @@ class Batches : public BatchFolder {
     return folders;
   }
 
-  /// Of a batch that is to throw.
+  /// The error of a batch that has to throw.
   static DataError refused(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
     try {
       run_batch(configuration, run, watch);
@@ -272,7 +272,7 @@ TEST_F(Batches, AMapHidesNothingOutsideItsFolderNorWhatIsNamed) {
   EXPECT_EQ(run_batch(plain_, run).summary.files.read, 4u);
 }
 
-/// The status of a process that can open no further file: 42 where it is said that `run`'s folder can't be walked.
+/// The status of a process that can open no further file: 42 where the error is that the folder of `run` can't be read.
 int status_without_descriptors(const BatchConfiguration& configuration, const BatchRun& run) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -34,7 +34,7 @@ TEST(Sha256, AnswersThePublishedOneOfAMillionLetters) {
     EXPECT_EQ(digest(letters, piece), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-/// Of all lengths across three ends of blocks, as the digest of their digests. By Python's hashlib:
+/// All lengths across three ends of blocks, as the digest of their digests. From Python's hashlib:
 ///   t = bytes((k*k + 7*k) % 256 for k in range(200)); h = lambda b: hashlib.sha256(b).hexdigest()
 ///   h("".join(h(t[:n]) for n in range(201)).encode())
 TEST(Sha256, OfEveryLengthIsThatOfAnotherImplementation) {

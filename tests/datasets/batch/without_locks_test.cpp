@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches on a file system without locks, as some network mounts are: nobody waits for anybody, and nothing is lost.
+// Batches on a file system without locks, as some network mounts are: no process waits for another, and nothing is
+// lost.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -63,7 +64,7 @@ TEST_F(WithoutLocks, OneProcessWritesTheSame) {
   locks_are_known = false;
   const BatchResult result = run_batch(plain_, run_to("out"));
   EXPECT_EQ(result.end, BatchEnd::complete);
-  EXPECT_FALSE(result.was_merged_ahead) << "nobody knows who else would";
+  EXPECT_FALSE(result.was_merged_ahead) << "no process knows whether another one would";
   EXPECT_GT(locks_asked_for, asked_with_locks);
   EXPECT_EQ(difference_from_whole("out"), "");
 }

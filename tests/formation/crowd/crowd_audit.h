@@ -157,7 +157,7 @@ class CrowdAuditor {
   void check_edge(CrowdAudit& audit, const CrowdExplanation& e, const geometry::Segment& edge) {
     const CrowdKind& kind = crowd_.kind(crowd_.kind_of(e.robot));
     const double range = kind.radius + kind.max_speed * kind.time_horizon;
-    if (is_far(e.position, edge, 1.001 * range)) return;  // by far: nobody needs rationals for it
+    if (is_far(e.position, edge, 1.001 * range)) return;  // by far: that needs no rationals
     if (squared_distance(e.position, edge) > range * range) return;
     ++audit.edges;
     bool excluded = false;
@@ -286,7 +286,7 @@ class CrowdAuditor {
   std::vector<std::uint8_t> kept_;
 };
 
-/// Of a crowd of `crowd_of(scene)`.
+/// Audits a crowd of `crowd_of(scene)`.
 template <class Scene>
 std::vector<AuditedBody> bodies_of(const Scene& scene) {
   std::vector<AuditedBody> bodies;

@@ -117,7 +117,7 @@ TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
     expect_same(found, expected);
     EXPECT_EQ(found.outcome, expected.outcome);
   }
-  // Of another number of robots.
+  // A scenario with another number of robots.
   Scenario fewer = s;
   fewer.robots.pop_back();
   std::ostringstream saved;

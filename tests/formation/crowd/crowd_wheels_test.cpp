@@ -126,7 +126,7 @@ TEST(CrowdWheels, Lemma3_WheelsDependOnTheHeadingByLessThanIsStated) {
   EXPECT_GT(most, 8.0L);
 }
 
-/// Of what is allowed under a limit of 0.003 rad/s, with as much unknown of the heading as may be.
+/// Motions allowed under a limit of 0.003 rad/s, with the heading as uncertain as it may be.
 TEST(CrowdWheels, Lemma3_RobotsThatTurnSlowlyKeepTheirLimitWhereverTheyReallyHead) {
   constexpr double kTurn = 0.003;
   CrowdKind kind = burger();

@@ -74,7 +74,7 @@ class DrivenArc {
     std::swap(a_, a), std::swap(b_, b);
     shorten();
   }
-  /// Of unit length, of a half-heading that is off by nothing but `shorten`.
+  /// The heading, of unit length; the half-heading is off only by what `shorten` rounds.
   Vec2 heading() const {
     const mpq_class whole = a_ * a_ + b_ * b_;
     return {mpq_class((a_ * a_ - b_ * b_) / whole).get_d(), mpq_class(2 * a_ * b_ / whole).get_d()};

@@ -113,7 +113,8 @@ TEST(CrowdMovers, MeetNoKeptRobotAndPushNoRobotIntoAnother) {
         sum.others_met += counts.others_met;
       }
   EXPECT_GT(sum.kept_near, 1000U);
-  // Of others the guide promises nothing: robots in a crowd cannot all make room for a body that does not give way.
+  // For other robots the guide promises nothing: robots in a crowd cannot all make room for a body that does not give
+  // way.
   EXPECT_GT(sum.others_met, 0U);
 }
 

@@ -28,7 +28,7 @@ struct LatticePlace {
   std::int64_t x, y;
 };
 
-/// Of the robots with these numbers in a crowd whose places are `positions`, by id.
+/// The places on the lattice of these robots of the crowd.
 inline std::vector<LatticePlace> lattice_places(const Crowd& crowd, const std::vector<RobotId>& robots) {
   std::vector<Vec2> at;
   crowd.positions(at);

@@ -21,7 +21,7 @@ using MinEllipse = CGAL::Min_ellipse_2<CGAL::Min_ellipse_2_traits_2<Kernel>>;
 using geometry::Ellipse;
 using geometry::Vec2;
 
-/// Of the ellipse round a triangle of its three support points: 4 pi / (3 sqrt 3) of the triangle's (Steiner).
+/// Area of the ellipse round a triangle of its three support points: 4 pi / (3 sqrt 3) of the triangle's (Steiner).
 double area_round_triangle(const MinEllipse& ellipse) {
   const auto p = ellipse.support_points_begin();
   const double twice = std::fabs(CGAL::to_double(CGAL::determinant(p[1] - p[0], p[2] - p[0])));

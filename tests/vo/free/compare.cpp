@@ -14,7 +14,7 @@ using vo::FreeArc;
 using vo::FreeArrangement;
 using vo::FreePiece;
 
-/// Of a sum of lengths in doubles.
+/// Rounding of a sum of lengths in doubles.
 constexpr double kRounded = 1e-9;
 
 bool are_one(const vo::PointBracket& a, const vo::PointBracket& b) {
