@@ -186,7 +186,7 @@ TEST_F(CrowdRecordings, DiscsAreBodiesAndAnAuditJudgesThem) {
   EXPECT_EQ(audit.obstacle_questions, 2 * audit.steps);
 }
 
-TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
+TEST_F(CrowdRecordings, AnAuditOfARunAsksManyThingsAndRefutesNone) {
   const RunReport run = record(crossing(), 1);
   EXPECT_GT(run.relaxed, 0U);
   EXPECT_GT(run.cut_short, 0U);
@@ -670,7 +670,7 @@ TEST_F(ForgedCrowds, WhatTouchesComesNoNearerThanRoundingExplains) {
   EXPECT_EQ(counts(500, 0.24), (Counts{1, 1, 0})) << "24 cm inside";
 }
 
-TEST_F(ForgedCrowds, TheFirstRowIsAskedByItself) {
+TEST_F(ForgedCrowds, TheFirstRowIsCheckedAlone) {
   ForgedCrowd crowd{{{0, {at_x(0), at_x(0.001)}, {}}}};
   crowd.kind_of = {0, 0};
   EXPECT_EQ(motions_of(audit_of(crowd)), (Counts{0, 2, 0}));
@@ -694,7 +694,7 @@ TEST_F(ForgedCrowds, ABodyThatTouchesMayLeaveAndNotDriveThrough) {
   }
 }
 
-TEST_F(ForgedCrowds, WhatIsNotJudgedIsCountedAndSaid) {
+TEST_F(ForgedCrowds, WhatIsNotJudgedIsCountedAndReported) {
   const auto says = [](const AuditReport& audit, const std::string& words) {
     const std::vector<std::string> all = not_audited(audit);
     return std::any_of(all.begin(), all.end(),

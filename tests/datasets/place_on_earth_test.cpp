@@ -435,7 +435,7 @@ TEST_F(Shapefile, RingsWoundAsTheFormatDemandsAreRight) {
   }
 }
 
-TEST_F(Shapefile, RingsWoundAgainstTheFormatAreRepairedAndSaid) {
+TEST_F(Shapefile, RingsWoundAgainstTheFormatAreRepairedAndReported) {
   EXPECT_EQ(codes_of(read_shape({counter_clockwise(10)})), "E_CLOCKWISE@0 ");
   const ObstacleFile both = read_shape({counter_clockwise(10), counter_clockwise(5)});
   EXPECT_EQ(both.obstacles.size(), 1u);

@@ -365,7 +365,7 @@ TEST_F(RecordingFileTest, AHeaderThenBodiesOnceAndARowAStepThenTheEnd) {
   EXPECT_LT(text.find("{\"body\":{\"number\":7,"), text.find("{\"body\":7,"));
 }
 
-TEST_F(RecordingFileTest, WhatIsWrittenAsItIsMadeIsWhatIsWrittenAtOnce) {
+TEST_F(RecordingFileTest, ARunThatIsWrittenWhileItIsMadeGivesTheFileWrittenAtOnce) {
   const RecordingFile whole = sample(true);
   write_recording(folder_ / "at_once.jsonl", whole);
   RecordingFile about = whole;  // before the run nothing is known of how it goes
@@ -401,7 +401,7 @@ TEST_F(RecordingFileTest, LyapunovFunctionsAreATable) {
             "0.05,1e+05,1e+15,1e+16,-0.0,,,,,,0,0,123456789.125,,,,\n");
 }
 
-TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
+TEST_F(RecordingFileTest, ErrorsNameLineAndPointer) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string good = content_of(folder_ / "r.jsonl");
   const std::size_t first_row = good.find("\n{\"row\":") + 1;

@@ -663,7 +663,7 @@ TEST(Acceleration, ScenariosAreReadAndWritten) {
   EXPECT_EQ(crowd_problems(s).at(0).pointer, "/acceleration");
 }
 
-TEST(Acceleration, WhatAFileSaysWrongIsRefusedByACode) {
+TEST(Acceleration, WrongValuesInAFileAreRefusedWithACode) {
   const auto refusal = [](const std::string& from,
                           const std::string& to) -> std::pair<datasets::DataCode, std::string> {
     std::string text = kText;

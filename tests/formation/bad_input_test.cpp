@@ -289,7 +289,7 @@ TEST(BadInput, AGoalOnTheWayInWhichAnotherRobotIsToRestIsReported) {
   EXPECT_TRUE(warnings_before(s).empty());
 }
 
-TEST(BadInput, OfManyRobotsWithOneGoalTheFirstPairsAreNamed) {
+TEST(BadInput, AmongManyRobotsWithOneGoalTheFirstPairsAreNamed) {
   Scenario s;
   for (int k = 0; k < 50; ++k) {
     Robot& robot = s.robots.emplace_back();

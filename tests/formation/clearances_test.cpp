@@ -319,7 +319,7 @@ TEST(Collisions, EachStretchOfContactIsOne) {
   EXPECT_NE(m.outcome.find(", the deepest of 2 collisions"), std::string::npos) << m.outcome;
 }
 
-TEST(Collisions, RobotsThatOverlapInRelaxedDecisionsAreSaidTo) {
+TEST(Collisions, RobotsThatOverlapInRelaxedDecisionsAreReported) {
   Scenario s;
   s.time_step = 1.0;
   s.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {2, 0}, {2, 0})};

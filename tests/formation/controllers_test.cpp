@@ -310,7 +310,7 @@ TEST(Moving, TheClearanceIsMeasuredWhereTheObstacleIsThen) {
   EXPECT_NEAR(measure(s, rec).min_obstacle_clearance.value(), 0.25, 1e-12);
 }
 
-TEST(NonCooperating, TheOtherTakesTheWholeAvoiding) {
+TEST(NonCooperating, TheOtherRobotTakesTheWholeResponsibility) {
   Scenario s;
   for (int i = 0; i < 2; ++i) {
     Robot r;

@@ -138,7 +138,7 @@ TEST(Guidance, AGoalTooNearToAWallIsReachedWithinItsTolerance) {
   EXPECT_TRUE(guided(s).metrics.all_arrived);
 }
 
-TEST(Guidance, ThatNoPlaceWithinReachIsFreeIsProvenOrSaidNotToBe) {
+TEST(Guidance, ThatNoPlaceWithinReachIsFreeIsProvenOrReportedAsUnproven) {
   Scenario s = door(2.0);
   for (const double depth : {5.601, 5.7, 6.5}) {  // the tolerance is 0.1 m: free places are at most at 5.5
     s.robots[0].goals = {{depth, 3}};

@@ -353,7 +353,7 @@ TEST(RunSink, OneThatThrowsEndsTheRun) {
   EXPECT_EQ(order.rows_, 5u);
 }
 
-TEST(RunSink, OfAStoppedRunGetsTheRowsUntilThen) {
+TEST(RunSink, GetsTheRowsUntilARunIsStopped) {
   Order order;
   SimulationOptions options;
   options.stop_at = 1.0;

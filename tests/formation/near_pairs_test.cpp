@@ -62,7 +62,7 @@ TEST(NearPairs, OfALatticeWhoseNeighboursAreExactlyThatFar) {
   expect_no_pair_missing(places, 0.2);
 }
 
-TEST(NearPairs, OfACrowdFewAreLookedAt) {
+TEST(NearPairs, FewOfACrowdAreLookedAt) {
   test::SeededRandom random(test::seed_of_run(20));
   std::vector<Vec2> places;
   for (int i = 0; i < 3000; ++i) places.push_back({random.uniform(0.0, 300.0), random.uniform(0.0, 300.0)});
@@ -80,7 +80,7 @@ TEST(NearPairs, PlacesOrAReachThatIsNotFiniteHaveAllPairs) {
   }
 }
 
-TEST(NearPairs, OfMovingPlacesNoneIsMissingAndTheyAreLookedUpNowAndThen) {
+TEST(NearPairs, NoneIsMissingAmongMovingPlacesThatAreLookedUpNowAndThen) {
   test::SeededRandom random(test::seed_of_run(21));
   constexpr double kReach = 3.0, kRoom = 1.0;
   for (const int count : {10, 200}) {

@@ -426,7 +426,7 @@ TEST(Measurements, RecordingsKeepThem) {
   EXPECT_TRUE(datasets::audit(again).clean());
 }
 
-TEST(Measurements, WhatAFileSaysWrongIsRefusedByAPlace) {
+TEST(Measurements, WrongValuesInAFileAreRefusedWithAPlace) {
   const auto refusal = [](const std::string& from, const std::string& to) {
     std::string text = kText;
     text.replace(text.find(from), from.size(), to);

@@ -281,7 +281,7 @@ TEST(Passing, WhereOnlyTheGapsOfPlansAreMissingThatIsReported) {
 }
 
 /// Walls elsewhere cost nothing, and are no walls of the strip.
-TEST(Passing, OfAStripOnlyWallsNearItAreLookedAt) {
+TEST(Passing, OnlyWallsNearAStripAreLookedAt) {
   Scenario s = corridor(12.0, 1.5);
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 40; ++y) {

@@ -79,7 +79,7 @@ TEST(RecordAllKept, ChangesNothingOfARunBetweenWallsNearerThanTheMargin) {
 }
 
 /// Where half-planes contradict each other, all that the choice violates are on the record.
-TEST(RecordAllKept, OfARelaxedDecisionAnOrdinaryRecordingHasWhatIsViolated) {
+TEST(RecordAllKept, AnOrdinaryRecordingHasTheViolatedHalfPlanesOfARelaxedDecision) {
   Scenario s;
   s.time_limit = 6.0;
   s.liveness = Liveness::off;

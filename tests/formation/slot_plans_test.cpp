@@ -202,7 +202,7 @@ TEST(SlotPlans, ARobotWhoseSlotAnObstacleTakesGoesBesideItAndStays) {
   EXPECT_TRUE(audited(r).clean());
 }
 
-TEST(SlotPlans, OfSlotsInOnePlaceOneIsFilledAndTheOthersStandBesideIt) {
+TEST(SlotPlans, OneOfSeveralSlotsInOnePlaceIsFilledAndOtherRobotsStandBesideIt) {
   const SlotRun r = run(line_of({0.0, 0.3, -0.3}));
   EXPECT_EQ(r.recording.liveness->groups, 0u);
   EXPECT_THAT(r.metrics.outcome, testing::HasSubstr(" cannot take its slot, (0, 0"));

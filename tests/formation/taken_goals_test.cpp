@@ -20,7 +20,7 @@ using test_scenes::kTurn;
 using test_scenes::robot;
 
 /// They pushed each other off it, by nineteen plans, until the time limit: the first one drove 278 m.
-TEST(TakenGoals, OfTwoWithOneGoalOneStaysWhereItIsOnceTheOtherIsThere) {
+TEST(TakenGoals, OneOfTwoRobotsWithOneGoalStaysWhereItIsOnceTheOtherIsThere) {
   Scenario s;
   s.robots = {robot("R1", {-5, 0}, {5, 0}), robot("R2", {-5, 3}, {5, 0})};
   const Recording run = simulate(s);

@@ -379,7 +379,7 @@ TEST(Trap, OverlappingFacadesAgreeWithSimulation) {
   EXPECT_GT(passed, 20);
 }
 
-TEST(Trap, ARobotThatStartsBeforeAVertexSaidToTrapRestsThere) {
+TEST(Trap, ARobotThatStartsBeforeAVertexReportedAsATrapRestsThere) {
   test::SeededRandom random(test::seed_of_run(15));
   int judged = 0;
   for (int k = 0; judged < 40; ++k) {

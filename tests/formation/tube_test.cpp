@@ -191,7 +191,7 @@ TEST(Footprint, ItsCornersStayInTheDisc) {
   EXPECT_EQ(datasets::audit(forged)[AuditPoint::kinematics].refuted, 2u) << "the disc, and the chain";
 }
 
-TEST(Footprint, WhatAFileSaysWrongIsRefusedByACode) {
+TEST(Footprint, WrongValuesInAFileAreRefusedWithACode) {
   using datasets::DataCode;
   const auto refusal = [](const std::string& from, const std::string& to) -> std::pair<DataCode, std::string> {
     std::string text = kText;

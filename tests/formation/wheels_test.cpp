@@ -560,7 +560,7 @@ TEST(Wheels, ScenariosSayWhereTheAxleIs) {
   EXPECT_EQ(datasets::write_scenario(datasets::parse_scenario(written, "again.json", {})), written);
 }
 
-TEST(Wheels, WhatAFileSaysWrongIsRefusedByACode) {
+TEST(Wheels, WrongValuesInAFileAreRefusedWithACode) {
   const auto refusal = [](const std::string& from,
                           const std::string& to) -> std::pair<datasets::DataCode, std::string> {
     std::string text = kText;

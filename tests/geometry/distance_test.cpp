@@ -174,7 +174,7 @@ TEST(SweptDistance, NeverAboveAnySample) {
   }
 }
 
-TEST(SweptDistance, TwoMovingPointsNeverNearerThanSaid) {
+TEST(SweptDistance, TwoMovingPointsAreNeverNearerThanTheBound) {
   SeededRandom random(test::seed_of_run(26));
   for (int i = 0; i < 10000; ++i) {
     const Segment a = {random.in_box(2.0), random.in_box(2.0)};

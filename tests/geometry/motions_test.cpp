@@ -195,7 +195,7 @@ TEST(Motions, AParabolaTouchesADisc) {
   EXPECT_NEAR(v.nearest_time, 1.0, 1e-5);
 }
 
-TEST(Motions, AllBasesSayTheSameOfOneCurve) {
+TEST(Motions, AllBasesGiveTheSameAnswerForOneCurve) {
   // t -> (t, t^2) on [0, 1], in powers, as a Bezier curve and as a quadratic B-spline.
   const CurvedMotion curves[] = {{CurveBasis::powers, 0, 1, {{0, 0}, {1, 0}, {0, 1}}},
                                  {CurveBasis::bezier, 0, 1, {{0, 0}, {0.5, 0}, {1, 1}}},

@@ -121,7 +121,7 @@ TEST(ObstacleShapes, InvalidOnesGiveCodesAndNothingElse) {
   EXPECT_FALSE(shapes_of(Polyline{}).valid);
 }
 
-TEST(ObstacleShapes, AClockwiseShellIsTurnedAndSaidSo) {
+TEST(ObstacleShapes, AClockwiseShellIsTurnedAndReported) {
   const ObstacleShapes shapes = shapes_of(Polygon{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}, {}});
   EXPECT_TRUE(shapes.certified());
   ASSERT_EQ(shapes.problems.size(), 1u);

@@ -40,7 +40,7 @@ void expect_partition(const Ring& ring, PartitionMethod method) {
   ASSERT_TRUE(sum == test::doubled_area(ring));
 }
 
-TEST(ConvexCover, OfWhatIsConvexIsOneShape) {
+TEST(ConvexCover, OfAConvexObstacleIsOneShape) {
   const Obstacle square = Polygon{{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}, {}};
   EXPECT_TRUE(is_convex(square));
   ASSERT_EQ(convex_cover(square).size(), 1u);
@@ -50,7 +50,7 @@ TEST(ConvexCover, OfWhatIsConvexIsOneShape) {
   EXPECT_EQ(std::get<Segment>(convex_cover(straight).at(0)).b, (Vec2{3, 3}));
 }
 
-TEST(ConvexCover, OfWhatIsNotIsItExactly) {
+TEST(ConvexCover, OfAnotherObstacleIsThatObstacleExactly) {
   const Obstacle court = Polygon{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{{2, 2}, {2, 8}, {8, 8}, {8, 2}}}};
   EXPECT_FALSE(is_convex(court));
   test::Rational sum = 0;

@@ -54,7 +54,7 @@ TEST(LpExactSign, NextToTheLineAndTheCircleItIsThatOfTheRationals) {
   EXPECT_GT(close, 1000);
 }
 
-TEST(LpExactSign, SoItIsAtTheEndsOfTheRangeOfDoubles) {
+TEST(LpExactSign, IsRightAtTheEndsOfTheRangeOfDoubles) {
   test::SeededRandom random(test::seed_of_run(72));
   const auto number = [&] {
     const int kind = random.integer(0, 5);

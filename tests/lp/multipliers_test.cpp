@@ -161,7 +161,7 @@ Solution edited(Solution s, SeededRandom& random) {
   return s;
 }
 
-TEST(Multipliers, AreSaidToProveOnlyWhatTheCheckerAccepts) {
+TEST(Multipliers, ProveOnlyWhatTheCheckerAccepts) {
   SeededRandom random(test::seed_of_run(87));
   std::size_t proven = 0, refused = 0;
   for_each_kind(88, [&](const Problem& problem) {

@@ -716,7 +716,7 @@ TEST(CheckVerb, MixedFrameRatesAreDecidedExactly) {
   EXPECT_THAT(outcome.out, HasSubstr("overlap: B and C"));
 }
 
-TEST(CheckVerb, ARowThatComesTwiceIsLeftOutAndSaid) {
+TEST(CheckVerb, ARowThatComesTwiceIsLeftOutAndReported) {
   const Outcome outcome = checked("t,id,x,y\n0,A,1,2\n0,A,1,2\n1,A,1,2\n", "--radius 1");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("1 row that repeats the one before was left out"));

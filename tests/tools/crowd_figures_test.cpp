@@ -121,7 +121,7 @@ TEST_F(CrowdFigures, CellsHoldAllTheTimeAndTheWaysOfEveryRobot) {
   EXPECT_LE(norm(moved), way);
 }
 
-TEST_F(CrowdFigures, CellsAreAsManyAsCanBeSeen) {
+TEST_F(CrowdFigures, ThereAreNoMoreCellsThanCanBeSeen) {
   const CellGrid& g = course_.grid;
   EXPECT_LE(std::max(g.columns, g.rows), kMostCells + 1);
   EXPECT_GE(std::max(g.columns, g.rows), kMostCells / 4);

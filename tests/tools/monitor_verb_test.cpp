@@ -179,7 +179,7 @@ TEST(MonitorVerb, AShareThatEndsAtAWallIsProven) {
   EXPECT_EQ(here.run("audit --certificate proofs.jsonl").status, 0);
 }
 
-TEST(MonitorVerb, KeysThatAreMistypedAreSaidWithWhatWasMeant) {
+TEST(MonitorVerb, MistypedKeysAreReportedWithTheNearestKey) {
   const std::vector<json> all =
       answers(R"({"pose": [0, 0, 0], "velocty": [1, 0]})"
               "\n"

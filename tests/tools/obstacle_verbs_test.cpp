@@ -310,7 +310,7 @@ TEST(Batch, AnotherProcessJoinsWithResume) {
   EXPECT_TRUE(here.has("both/summary.json"));
 }
 
-TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
+TEST(Batch, NumbersOutOfRangeAreReportedInWords) {
   const Workplace here;
   here.write("good.wkt", kGood);
   for (const char* option : {"--radius -1", "--tolerance -1", "--cell-size nan", "--time-horizon 0",
@@ -323,7 +323,7 @@ TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
 }
 
 /// Beside the square the robot touches it, which leaves the velocities away from it.
-TEST(Batch, HalfPlanesThatAreNullAreCountedAndSaid) {
+TEST(Batch, HalfPlanesThatAreNullAreCountedAndReported) {
   const Workplace here;
   here.write("a.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))\n");
   const std::string robot = " --write measurements --out out --time-horizon 2 --radius 1 --position ";
@@ -420,7 +420,7 @@ TEST(Batch, AChildThatIsNotTheProgramYetDoesNotWaitForALock) {
   EXPECT_EQ(::waitpid(child, nullptr, 0), child);
 }
 
-TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
+TEST(Batch, OneOfTwoAtOnceMergesThePartsAndTheOtherReportsTheSame) {
   const Workplace here;
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);

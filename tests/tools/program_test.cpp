@@ -925,7 +925,7 @@ TEST(Explain, NamesTheRobotsThatARobotWaitsForAlsoInJson) {
   EXPECT_EQ(json::parse(here.run("explain run --time 9 --robot left --json").out).at("all_half_planes"), false);
 }
 
-TEST(Explain, OfManyRobotsARangeIsNamedAndNotEveryOne) {
+TEST(Explain, ManyRobotsAreNamedAsARange) {
   const Workplace here;
   here.write("s.json", kNarrow);
   EXPECT_THAT(here.run("explain s.json --time 1 --robot 80").err,

@@ -70,7 +70,7 @@ TEST(Properties, NumbersOfFeaturesSurviveGeoPackage) {
   }
 }
 
-TEST(Properties, IdsOfFeaturesThatAreNoNumbersAreSaidToStandInAColumn) {
+TEST(Properties, IdsOfFeaturesThatAreNoNumbersAreReportedToStandInAColumn) {
   for (const std::string format : {"gpkg", "fgb"}) {
     const Workplace here;
     here.write("town.geojson", kTown);
@@ -311,7 +311,7 @@ TEST(GeoJsonInDegrees, OneTripThroughOgr2ogrKeepsTheSize) {
 
 // --- What a batch writes ---
 
-TEST(BatchSizes, AreSaidBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest) {
+TEST(BatchSizes, ArePrintedBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest) {
   const Workplace here;
   here.write("room.wkt", kRoom);
   const Outcome outcome = here.run("batch room.wkt --out out");

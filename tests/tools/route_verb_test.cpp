@@ -124,7 +124,7 @@ TEST(RouteVerb, ABlockedEndIsPrintedWithWhatBlocksItAndHowNear) {
   EXPECT_EQ(rooms.route("--from 6,1 --to 1,1 --radius 0.4").out, "blocked: the start is on wall 7\n");
 }
 
-TEST(RouteVerb, ABlockedEndIsNeverSaidToBeFarEnough) {
+TEST(RouteVerb, ABlockedEndIsNeverPrintedAsFarEnough) {
   const Rooms rooms;
   // So far from (0, 0) the distance in doubles comes out larger than the radius that it is too small for.
   rooms.here.write("far.wkt",

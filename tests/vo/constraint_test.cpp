@@ -70,7 +70,7 @@ TEST(Sequence, RestoresTheRoomWhereAsked) {
   EXPECT_NEAR(h.half_plane.offset, 0.05 / 0.5, 1e-12);
 }
 
-TEST(Sequence, AsksToLeaveInOverlapAndPromisesNothing) {
+TEST(Sequence, LeadsOutOfOverlapAndPromisesNothing) {
   const ProvenHalfPlane shallow = against(wall(0.4), {1, 0}, with_room(0.1));
   EXPECT_EQ(shallow.proof, Proof::none);
   EXPECT_NEAR(shallow.half_plane.offset, 0.1 / 0.2, 1e-12);

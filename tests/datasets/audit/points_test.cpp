@@ -100,7 +100,7 @@ bool is_of_pair(const DecisionConstraint& c) {
   return c.source == ConstraintSource::robot;
 }
 
-TEST(AuditPoints, AreAllAskedAndProvenOfARunAsItWasMade) {
+TEST(AuditPoints, AreAllProvenOfAnUnchangedRun) {
   const Scenario s = scene();
   for (const formation::Method method :
        {formation::Method::ivo, formation::Method::orca, formation::Method::ivo_edge}) {
@@ -154,7 +154,7 @@ TEST(AuditPoints, ChoicesOfRobotsInContactAreProven) {
   RecordProperty("exact", static_cast<int>(exact));
 }
 
-TEST(AuditPoints, MultipliersThatAreSaidToBeExactAreNotWritten) {
+TEST(AuditPoints, MultipliersMarkedAsExactAreNotWritten) {
   const AuditReport report =
       forged_constraint([](const DecisionConstraint& c) { return c.multiplier > 1e-3; },
                         [](RobotStep& robot, DecisionConstraint&) { robot.exact_multipliers = true; });
@@ -339,7 +339,7 @@ TEST(AuditPoints, AChoiceWithoutRoomIsDecidedAgain) {
   EXPECT_EQ(audit(forged)[AuditPoint::choices].refuted, 1u);
 }
 
-TEST(AuditPoints, AChoiceWithRoomThatIsSaidToHaveNoneIsRefused) {
+TEST(AuditPoints, AChoiceWithRoomMarkedAsHavingNoneIsRefused) {
   const auto binds = [](const DecisionConstraint& c) { return c.active && c.hard; };
   const AuditReport one =
       forged_constraint(binds, [](RobotStep& robot, DecisionConstraint&) { robot.status = lp::Status::no_interior; });
@@ -351,7 +351,7 @@ TEST(AuditPoints, AChoiceWithRoomThatIsSaidToHaveNoneIsRefused) {
   EXPECT_EQ(choices.refuted, choices.asked());
 }
 
-TEST(AuditPoints, HalfPlanesThatAreSaidToBeUncertifiedArePutToTheProof) {
+TEST(AuditPoints, HalfPlanesMarkedAsUncertifiedAreProvenAllTheSame) {
   RecordingFile file = clean();
   for (Step& row : file.recording.steps)
     for (RobotStep& robot : row.robots) {
@@ -457,7 +457,7 @@ TEST(AuditPoints, AnUnknownIntegratorIsRefused) {
   EXPECT_GT(audit(file)[AuditPoint::sequence].refuted, 0u);
 }
 
-TEST(AuditPoints, WhatALeaderOrAMovingObstacleDidIsHeldToItsPath) {
+TEST(AuditPoints, LeadersAndMovingObstaclesAreHeldToTheirPaths) {
   Scenario s = formation_scene();
   s.moving_obstacles = {
       {"cart", geometry::Polyline{{{-3, -2}, {-2, -2}}}, {{{0, 0}, {1, 0}, {1, 1}}, 0.0, {{0, 0}, {2, 3}}}}};

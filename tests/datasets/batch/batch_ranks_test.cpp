@@ -42,7 +42,7 @@ TEST_F(Ranks, TwoAndFourGiveTheBytesOfOne) {
   }
 }
 
-TEST_F(Ranks, WhatOneProcessRefusesSoDoRanks) {
+TEST_F(Ranks, RefuseWhatOneProcessRefuses) {
   write_text(folder_ / "others" / "thesis.tex", "do not touch");
   EXPECT_EQ(batch("mpirun --oversubscribe -n 2", "others"), 2) << text_of(folder_ / "log");
   EXPECT_NE(text_of(folder_ / "log").find("E_FILE_UNWRITABLE"), std::string::npos);

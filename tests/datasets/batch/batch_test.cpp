@@ -199,7 +199,7 @@ TEST_F(Batches, OtherInputsOptionsAndVersionsAreRefused) {
   EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "an input changed";
 }
 
-TEST_F(Batches, WhatAnInputIsReadWithBelongsToIt) {
+TEST_F(Batches, FilesThatAreReadWithAnInputBelongToIt) {
   const std::string picture = "P2 2 2 255\n0 255\n255 255\n";
   write_text(folder_ / "in" / "floor.yaml",
              "image : 'floor.pgm'  # drawn by hand\nresolution: 1\norigin: [0, 0, 0]\n"
@@ -239,7 +239,7 @@ TEST_F(Batches, AnInputThatChangesUnderTheBatchIsReported) {
   EXPECT_EQ(difference(out("whole"), out("out")), "") << "nothing of the other bytes is left";
 }
 
-TEST_F(Batches, WhateverAReaderThrowsIsOneFilesMatter) {
+TEST_F(Batches, AnErrorOfAReaderConcernsOneFile) {
   write_text(folder_ / "in" / "long.yaml", "image: " + std::string(5000, 'x') +
                                                "\nresolution: 1\norigin: [0, 0, 0]\n"
                                                "occupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n");
@@ -363,7 +363,7 @@ TEST_F(Batches, ARateIsGivenOnlyWhereItIsKnown) {
   EXPECT_TRUE(summary_of("shards").at("times").at("vertices_per_second").is_null());
 }
 
-TEST_F(Batches, MissingPathsAreSaidAtOnce) {
+TEST_F(Batches, MissingPathsAreReportedAtOnce) {
   BatchRun run = run_to("out");
   run.paths.push_back(folder_ / "nowhere");
   EXPECT_EQ(refusal(plain_, run), DataCode::file_missing);

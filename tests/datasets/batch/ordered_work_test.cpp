@@ -175,7 +175,7 @@ TEST(BatchCoroutine, GivesEverythingOneStepAtATime) {
   EXPECT_EQ(numbers.next(), std::nullopt);
 }
 
-TEST(BatchCoroutine, WhatItsBodyThrowsIsThrownInItsPlace) {
+TEST(BatchCoroutine, ExceptionsOfItsBodyAreThrownInItsPlace) {
   Coroutine<int> numbers([](const Coroutine<int>::Give& give) {
     give(1);
     throw std::runtime_error("broken");

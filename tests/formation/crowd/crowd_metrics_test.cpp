@@ -127,7 +127,7 @@ TEST(CrowdMetrics, ARunThatGoesOnFromASnapshotIsMeasuredTheSame) {
   EXPECT_THROW(other.restore(RunState{0, 0.0, {}, {}}, bytes), CrowdError);
 }
 
-TEST(CrowdMetrics, OfVeryManyRobotsClearancesAreNotMeasuredAndThatIsReported) {
+TEST(CrowdMetrics, ClearancesOfVeryManyRobotsAreNotMeasuredAndThatIsReported) {
   Scenario s;
   s.name = "many";
   s.time_limit = 0.1;

@@ -159,7 +159,7 @@ TEST(Crowd, OthersSeeTheVelocityThatARobotBeginsWith) {
   }
 }
 
-TEST(Crowd, AKindBeyondThe255thIsTheOneThatWasAsked) {
+TEST(Crowd, AKindBeyondThe255thIsTheOneThatWasAskedFor) {
   Crowd few = with_one_kind(), many = with_one_kind();
   CrowdKind kind;
   for (int k = 1; k <= 300; ++k) {
