@@ -283,7 +283,7 @@ TEST(History, ForgetsTheOldestRowsThatAreNotNeeded) {
 
 /// A robot whose speed is bounded by a box drives faster than `max_speed` along the diagonal. Going back at `max_speed`
 /// it fell behind its own way.
-TEST(Groups, AStepOfABoxBoundIsGoneBackInOneStep) {
+TEST(Groups, AStepUnderABoxBoundIsUndoneInOneStep) {
   Scenario s;
   Robot& r = s.robots.emplace_back();
   const Vec2 fastest{r.max_speed * s.time_step, -r.max_speed * s.time_step};

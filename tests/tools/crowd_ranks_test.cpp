@@ -152,7 +152,7 @@ TEST(CrowdOverRanks, AnErrorOfAllRanksIsReportedOnce) {
       {"id": "B", "position": [5, 5], "goal": [9, 0], "max_speed": 1e-6}]})");
   const std::pair<const char*, const char*> cases[] = {
       {"simulate mixed.json --decisions binding",
-       "--decisions: found 'binding', expected none over ranks of MPI, which keep no decisions"},
+       "--decisions: found 'binding', expected none: runs over ranks of MPI record no decisions"},
       {"simulate mixed.json --method ivo", "--method ivo cannot be combined with ranks of MPI"},
       {"simulate - --decisions none", "scenario: found '-', expected a file"},
       {"simulate none.json --decisions none", "E_FILE_MISSING"},

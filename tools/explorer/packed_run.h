@@ -55,7 +55,7 @@ class RunPacker {
   /// In the order of time. Shapes of half-planes are not kept: their bodies have them.
   void add(const formation::Step& row);
 
-  /// The same of a row whose robots have a place, a velocity, a mode and a status, and no decisions.
+  /// The same for a row whose robots have a place, a velocity, a mode and a status, and no decisions.
   void add_positions(const formation::Step& row);
 
   /// Takes everything of `about` but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is

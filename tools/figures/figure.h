@@ -145,7 +145,7 @@ const std::map<std::string, std::string>& embedded_templates();
 /// Throws std::logic_error where a place is not filled, or nothing has that place.
 std::string filled_text(const std::string& text, const Filling& filling);
 
-/// The same of the template `name`.
+/// The same for the template `name`.
 std::string filled(const std::string& name, const Filling& filling);
 
 // --- Several plots side by side on one sheet, each with a letter, and one legend below all of them. Axis labels stand

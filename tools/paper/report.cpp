@@ -61,7 +61,7 @@ void add_equations(const ReportData& data, Document& d) {
   d.paragraph(
       "What is printed, what is wrong with it, and what runs. Controller `paper-literal` runs the formation "
       "equations as printed, `paper-signs` with the signs of (15) and (17) corrected, `corrected` all of the "
-      "fourth column in the paper's order, `default` what makes it hold.");
+      "fourth column in the paper's order, `default` what makes the promises hold.");
   Rows rows;
   for (const Equation& e : equations())
     rows.push_back({e.number, e.printed, e.trouble.empty() ? "-" : e.trouble,
@@ -72,7 +72,8 @@ void add_equations(const ReportData& data, Document& d) {
 void add_claims(const ReportData& data, Document& d) {
   d.heading(2, "Claims");
   d.paragraph(
-      "Verdicts are on the paper's own method, and on what it leaves open by the default, computed from the "
+      "Verdicts judge the paper's own method, and the default where the paper leaves something open. They are computed "
+      "from the "
       "runs below: a claim about many runs holds in part where it holds for some of them, and has no verdict "
       "where one is missing.");
   Rows rows;

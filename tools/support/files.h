@@ -25,7 +25,7 @@ void make_folder(const std::filesystem::path& path);
 /// the work, not after.
 void check_output_folder(const std::filesystem::path& target);
 
-/// The same of a folder for figures alone: throws where it holds a file that is no figure of ours, nor belongs to one.
+/// The same for a folder for figures alone: throws where it holds a file that is no figure of ours, nor belongs to one.
 void check_figure_folder(const std::filesystem::path& target);
 
 /// Takes an earlier output's pictures and page away, which would show another run than the one that is put there

@@ -226,7 +226,7 @@ Way way_of(const DecisionFlags& flags, const SimulationFlags& simulation, const 
   way.records_all = flags.recorded == "all";
   if (flags.recorded == "none" || has_ranks) {
     if (flags.recorded != "none" && !flags.recorded.empty())
-      throw UsageError("--decisions", flags.recorded, "none over ranks of MPI, which keep no decisions");
+      throw UsageError("--decisions", flags.recorded, "none: runs over ranks of MPI record no decisions");
     require_crowd(file, scenario, need, flags.recorded == "none" ? "--decisions none" : "ranks of MPI");
     way.is_crowd = true;
     return way;

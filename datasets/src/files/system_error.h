@@ -15,7 +15,7 @@ namespace exactvo::datasets {
 /// `error` is an errno value.
 inline DataError cannot_write(const std::filesystem::path& path, int error) {
   return {DataCode::file_unwritable, path.string(), "", std::generic_category().message(error),
-          "a place that can be written"};
+          "a path that can be written"};
 }
 
 inline DataError cannot_read(const std::filesystem::path& path, int error) {

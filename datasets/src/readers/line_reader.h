@@ -94,7 +94,7 @@ class CsvTable : public Lines {
     if (!Lines::next_filled()) refuse(DataCode::format_syntax, "an empty file", expected);
     take_header(known, required, expected, OtherColumns::refused);
   }
-  /// The same of the line at hand.
+  /// The same for the line at hand.
   void take_header(const std::vector<std::string>& known, std::size_t required, const std::string& expected,
                    OtherColumns others) {
     fields_ = Lines::fields();
@@ -146,7 +146,7 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
 std::vector<std::string_view> words_of(std::string_view line);
 /// Split at every `separator`; blanks round a field are taken off.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
-/// The same of CSV (RFC 4180): in a field that begins with a quotation mark separators count for nothing, and two
+/// The same for CSV (RFC 4180): in a field that begins with a quotation mark separators count for nothing, and two
 /// quotation marks are one. None where a quotation mark is not closed, or more follows it than blanks.
 std::optional<std::vector<std::string>> csv_fields_of(std::string_view line, char separator = ',');
 std::string_view trimmed(std::string_view text);

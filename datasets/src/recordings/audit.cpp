@@ -460,8 +460,8 @@ std::vector<std::string> not_audited(const AuditReport& report) {
       "whether the rows have the half-planes against what is out of reach of a time step, also where "
       "all_half_planes says so");
   words.emplace_back(
-      "that recorded half-planes forbid no more than they must, and that a user asked for those of a user: a choice is "
-      "the best, and its stage the first, of the half-planes that its row has");
+      "that recorded half-planes forbid no more than they must, and that those marked as a user's are: a choice is the "
+      "best, and its stage the first, for the half-planes in its row");
   if (report.without_pairs)
     words.emplace_back(
         "half-planes of pairs of robots: the method promises nothing between robots, and their motions tell");

@@ -226,7 +226,7 @@ class MotionAudit : public RowAudit {
     const auto steps = static_cast<double>(std::max<std::size_t>(1, to_->step - from_->step));
     return std::min(distance, radius(i)) - kTouches * steps * (lengths + 4.0 * way);
   }
-  /// The same of an obstacle as a whole, seen from `at`.
+  /// The same for an obstacle as a whole, seen from `at`.
   double allowed(std::size_t i, const RationalObstacle& o, Vec2 at) const {
     const double distance =
         o.disc ? norm(at - o.disc->disc.center) - o.disc->disc.radius : geometry::signed_distance(*o.obstacle, at);

@@ -24,7 +24,7 @@ inline constexpr std::int32_t kKindBits = 0x3FFF;
 inline constexpr int kMostNeighbours = 15, kMostRanks = kMostNeighbours + 1;
 /// Edges and bodies at rest that a robot of a pack has half-planes against; a robot with more is decided alone.
 inline constexpr std::size_t kMostEdges = 12;
-/// The same of bodies that move.
+/// The same for bodies that move.
 inline constexpr std::size_t kMostMoving = 4;
 /// Arrays of robots end with this many entries of no robot, so that whole registers may be read.
 inline constexpr std::size_t kPadding = 64;

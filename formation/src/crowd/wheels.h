@@ -49,7 +49,7 @@ class Wheels {
   bool allow(std::size_t kind, std::int32_t id, Motion m) const {
     return !has(kind) || m == Motion{} || is_driven(limits_[kind], state(id), m);
   }
-  /// The same of motions of at most kPack robots from the `first` on: bit `lane`.
+  /// The same for motions of at most kPack robots from the `first` on: bit `lane`.
   std::uint32_t allow(const Robots& robots, std::size_t first, std::size_t count, const std::int32_t* mx,
                       const std::int32_t* my) const;
   /// Drives the next motions of robots. REQUIRES: they are allowed; no two threads drive one robot.

@@ -85,7 +85,7 @@ bool comes_near_until_left(Vec2 p, Vec2 q, Vec2 o, double keep) {
   return squared_distance(o, p, q) < keep * keep;
 }
 
-/// The same of a robot that stays.
+/// The same for a robot that stays.
 bool comes_near(Vec2 p, Vec2 q, Vec2 o, double keep) {
   return comes_near_until_left(p, q, o, keep) || squared_norm(q - o) < keep * keep;
 }

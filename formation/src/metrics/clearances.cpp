@@ -335,7 +335,7 @@ class ClearanceSweep::Sweep {
         [&](double share) { return motion.stray(share); });
   }
 
-  /// The same of a disc. `chord(start, end)`: of its centre, from one share of the step to another, and `stray(share)`
+  /// The same for a disc. `chord(start, end)`: of its centre, from one share of the step to another, and `stray(share)`
   /// how far it strays from it in such a share of the step at most.
   template <class ChordOf, class StrayOf>
   double disc_clearance(std::size_t obstacle, double disc, double others, double enough, const ChordOf& chord_of,

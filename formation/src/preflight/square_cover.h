@@ -68,7 +68,7 @@ class CoverWalls {
   /// Whether some edge is nearer than the radius to every point of the square; false where rounding leaves it open.
   bool exclude(GridSquare q, double side, double radius) const;
 
-  /// The same of a single point.
+  /// The same for a single point.
   bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
 
   /// Whether the square lies beyond all edges, and farther from their box than the radius: from there any number of

@@ -28,7 +28,7 @@ void move_obstacles(const std::vector<MovingObstacle>& obstacles, double time, S
 void add_moving_constraint(const DecisionRules& rules, const Viewpoint& from, vo::BodyTable& bodies,
                            vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out);
 
-/// The same of every moving obstacle. REQUIRES: `move_obstacles` for this time.
+/// The same for every moving obstacle. REQUIRES: `move_obstacles` for this time.
 void add_moving_constraints(const DecisionRules& rules, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out);
 

@@ -36,7 +36,7 @@ double allowed_half_angle(const geometry::HalfPlane& h, double speed) {
   return ratio <= -1.0 ? kPi : std::acos(ratio);
 }
 
-/// The same of any lines that say which is the first that a velocity violates.
+/// The same for any lines that say which is the first that a velocity violates.
 template <class FirstViolated>
 std::optional<Sweep> swept(const FirstViolated& first_violated, Vec2 start, double side, double speed) {
   Sweep out;

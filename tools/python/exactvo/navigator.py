@@ -61,7 +61,7 @@ class Navigator:
     arrival_tolerance   m: within this of the last goal it has arrived
     neighbour_distance  m: a robot farther away, which cannot be met within a time step, is ignored
     acceleration        m/s^2: how fast the velocity may change; None: it jumps. Robots that meet all have the same
-    braking_time        s, the same of all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
+    braking_time        s, the same for all robots that meet. None: 1.1 max_speed / acceleration, or 1.1 max_wheel_speed /
                         max_wheel_acceleration, the longer of both where both are given, and with an acceleration neighbours
                         of another max_speed are refused.
                         Horizons that are not given are at least this long

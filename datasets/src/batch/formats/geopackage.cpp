@@ -72,7 +72,7 @@ class WrittenGeoPackage final : public GeoPackage {
     const std::string words = complaints.take_failure();
     if (worked && words.empty()) return;
     throw DataError(DataCode::file_unwritable, path_.string(), "", words.empty() ? "GDAL can't write it" : words,
-                    "a place that can be written");
+                    "a path that can be written");
   }
 
   bool create_layer(const Layer& layer) {

@@ -26,7 +26,7 @@
 
 namespace exactvo::geometry {
 
-/// From where to where a robot wants to go, for a trap-free ellipse made to measure.
+/// The way of a robot for which a trap-free ellipse is made to measure.
 struct StartAndGoal {
   Vec2 start;  ///< m
   Vec2 goal;   ///< m

@@ -43,8 +43,8 @@ struct ConvexOnTwist {
 
 /// What to keep.
 struct GapToKeep {
-  ConvexOnTwist a;        ///< the one
-  ConvexOnTwist b;        ///< the other
+  ConvexOnTwist a;        ///< one set
+  ConvexOnTwist b;        ///< the other set
   double duration = 0.0;  ///< s, >= 0
   double reach = 0.0;     ///< m, >= 0: the radii of both; it is taken off the gap
   double growth = 0.0;    ///< m/s, >= 0: by which the reach grows

@@ -36,7 +36,7 @@ struct TurningMotion {
 /// the corners lie on one line; a valid obstacle (validity.h; finite vertices are checked, the rest is not).
 Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle);
 
-/// The same against a body at rest; the same of its parts is required. Exact.
+/// The same against a body at rest; the same is required of its parts. Exact.
 Encounter encounter(const TurningMotion& motion, const RigidBody& body, const RigidBody& other, Vec2 other_at);
 
 /// A proof that the body stays clear of the obstacle (motion_certificate.h has the kind); none if they touch or
@@ -48,7 +48,7 @@ Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Ri
 ///
 /// REQUIRES: as `encounter`.
 std::optional<MotionCertificate> certify(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle);
-/// The same of two bodies that both may turn, over the time that both have; none too where more than 2^16 pieces of
+/// The same for two bodies that both may turn, over the time that both have; also none where more than 2^16 pieces of
 /// time would be needed.
 std::optional<MotionCertificate> certify(const TurningMotion& a, const RigidBody& body_a, const TurningMotion& b,
                                          const RigidBody& body_b);
@@ -57,7 +57,7 @@ std::optional<MotionCertificate> certify(const TurningMotion& a, const RigidBody
 /// enclosed by their series. False too where the body turns by more than 64 rad. REQUIRES: as `encounter`.
 bool proves_clear(const MotionCertificate& certificate, const TurningMotion& motion, const RigidBody& body,
                   const Obstacle& obstacle);
-/// The same of two bodies.
+/// The same for two bodies.
 bool proves_clear(const MotionCertificate& certificate, const TurningMotion& a, const RigidBody& body_a,
                   const TurningMotion& b, const RigidBody& body_b);
 

@@ -138,7 +138,8 @@ class VelocityObstacle {
   std::optional<HalfPlane> half_plane(Vec2 v, double responsibility = 1.0) const;
 
   /// { v' : n.v' >= 0 } away from the nearest point: for a robot in bare contact. Certified; nothing where the robot
-  /// overlaps beyond proof. n is the rounded unit normal, or safer an exact one of length sqrt(1/2) to sqrt(2).
+  /// overlaps beyond proof. n is the rounded unit normal, or where only that is proven an exact normal of length
+  /// sqrt(1/2) to sqrt(2).
   std::optional<HalfPlane> contact_half_plane() const;
 
  private:
