@@ -154,6 +154,17 @@ TEST(TakenGoals, LastPlacesAreWithinReachOfGoals) {
   }
 }
 
+/// Cells as small as they are would be too many within the arrival tolerance and the margin.
+TEST(TakenGoals, RobotsOfMicrometresAreNoMoreWork) {
+  Scenario s;
+  s.time_limit = 1.0;
+  s.robots = {robot("R1", {0, 0}, {1e-4, 0}), robot("R2", {1, 0}, {1.5, 0})};
+  for (Robot& r : s.robots) r.radius = 1e-6;
+  EXPECT_EQ(detail::last_places(s, detail::room_at_ends(s)), (std::vector<Vec2>{{1e-4, 0}, {1.5, 0}}));
+  const Recording run = simulate(s);
+  EXPECT_TRUE(audits_clean(s, run));
+}
+
 TEST(TakenGoals, LastPlacesOfTwoLeaveRoomForBothWhereThereIsAny) {
   test::SeededRandom random(2209);
   for (int k = 0; k < 200; ++k) {
