@@ -358,15 +358,47 @@ TEST(TrajectoryFile, ReadsPlansOfPathFinding) {
   expect_row(c.rows[1], 0, 1.0, 0.0, 2.0, 8);
   const Content paths = content_of("Agent 0: (1,2)->(1,3)->\nAgent 1: (4,5)->(4,5)->(4,6)\n");
   EXPECT_EQ(paths.file.format, "mapf-paths");
-  ASSERT_EQ(paths.rows.size(), 5u);
+  ASSERT_EQ(paths.rows.size(), 6u);
   expect_row(paths.rows[1], 0, 1.0, 3.0, 1.0, 1);
   expect_row(paths.rows[4], 1, 2.0, 6.0, 4.0, 2);
+}
+
+/// As the planners have it: a plan in which an agent crosses the goal of one that has arrived is no solution.
+TEST(TrajectoryFile, AgentsOfPlansRestAtTheirGoalsUntilThePlanEnds) {
+  const Content paths = content_of("Agent 0: (0,0)->(0,1)\nAgent 1: (2,1)->(2,1)->(1,1)->(0,1)->\n");
+  ASSERT_EQ(paths.rows.size(), 8u);
+  expect_row(paths.rows[6], 0, 2.0, 1.0, 0.0, 1);
+  expect_row(paths.rows[7], 0, 3.0, 1.0, 0.0, 1);
+  EXPECT_THAT(paths.file.notes,
+              ElementsAre("agents that have arrived rest at their goals until the plan ends, at 3 s"));
+  const Content c = content_of(
+      "schedule:\n  a:\n    - {x: 0, y: 1, t: 0}\n  b:\n    - {x: 5, y: 1, t: 1}\n    - {x: 5, y: 2, t: 2.5}\n");
+  ASSERT_EQ(c.rows.size(), 6u);
+  for (const auto& [row, time] : {std::pair{3, 1.0}, {4, 2.0}, {5, 2.5}}) expect_row(c.rows[row], 0, time, 0.0, 1.0, 3);
+  EXPECT_THAT(content_of("Agent 0: (0,0)->(0,1)\nAgent 1: (2,1)->(2,2)\n").file.notes, ElementsAre());
+  EXPECT_EQ(refusal_of("schedule:\n  a: [{x: 0, y: 1, t: 0}]\n  b: [{x: 5, y: 1, t: 1e20}]\n").code(), DataCode::size);
 }
 
 TEST(TrajectoryFile, ReadsVelocities) {
   const Content c = content_of("t,id,x,y,vx,vy\n0,A,1,2,3,-4\n", {"", 0.0, 0.5});
   EXPECT_EQ(c.rows[0].velocity, (geometry::Vec2{1.5, -2.0}));
   EXPECT_FALSE(is_finite(content_of("t,id,x,y,vx\n0,A,1,2,3\n").rows[0].velocity));
+  const Content some = content_of("t,id,x,y,vx,vy\n0,A,1,2,3,-4\n1,A,1,2,,\n2,A,1,2, ,\n");
+  EXPECT_TRUE(is_finite(some.rows[0].velocity));
+  EXPECT_FALSE(is_finite(some.rows[1].velocity) || is_finite(some.rows[2].velocity));
+  EXPECT_EQ(refusal_of("t,id,x,y,vx,vy\n0,A,1,2,3,\n").code(), DataCode::number);
+}
+
+TEST(TrajectoryFile, AFrameRateOfAFileMayBeginWithItsPoint) {
+  EXPECT_DOUBLE_EQ(content_of("#framerate: .5\n#ID FR X Y\n1 1 0 1\n").rows[0].time, 2.0);
+}
+
+TEST(TrajectoryFile, AFrameRateWithoutFramesIsNoted) {
+  const TrajectoryOptions options{"", 25.0};
+  const auto note = ElementsAre(HasSubstr("--frame-rate has no effect"));
+  EXPECT_THAT(content_of("t,id,x,y\n0,A,1,2\n", options).file.notes, note);
+  EXPECT_THAT(content_of("Agent 0: (1,2)->\n", options).file.notes, note);
+  EXPECT_THAT(content_of("frame,id,x,y\n0,A,1,2\n", options).file.notes, ElementsAre());
 }
 
 TEST(TrajectoryFile, ReadsPolynomialsAsCurvesAndSamplesOfThem) {
@@ -496,6 +528,8 @@ TEST(TrajectoryFile, RefusalsNameTheLine) {
       {"t,id,x,x_mm,y\n0,A,1,2,3\n", DataCode::not_an_option, "line 1: found the columns \"x\" and \"x_mm\""},
       {"t_s,t_ms,id,x,y\n0,0,A,1,2\n", DataCode::not_an_option, "the columns \"t_s\" and \"t_ms\""},
       {"t,id,x_mm,y\n0,A,1,2\n", DataCode::not_an_option, "\"x_mm\" and \"y\", of which one states no unit"},
+      {"t,id,x,y,x\n0,A,1,2,3\n", DataCode::json_duplicate_key, "column \"x\" a second time"},
+      {"t,id,X,y,vx,vy,x\n0,A,1,2,3,4,5\n", DataCode::json_duplicate_key, "column \"x\" a second time"},
       {"# id frame x/cm x/m y/m\n#framerate: 8\n1 0 1 1 1\n", DataCode::not_an_option, "differ in the unit alone"},
       {"{\n\"name\": \"a\",\n\"robots\": []\n}\n", DataCode::format_unknown, "found a scenario, which is no run yet"},
       {"t,robot name,x,y\n1,A,1,2\n1,B,1,3\n", DataCode::out_of_range, "the table has no column of ids, such as id"},

@@ -282,7 +282,7 @@ def test_findings():
         ({}, {"radius": 1}, "trajectories"),
         ({"x": [1], "y": [2]}, {"radius": 1}, "trajectories"),
         ({"t": [0], "x": [1, 2], "y": [2]}, {"radius": 1}, "x"),
-        ({"t": [0], "id": ["A"], "x_mm": [1], "y_mm": [2]}, {"radius": 1}, "trajectories"),
+        ({"t": [0], "id": ["A"], "x_in": [1], "y_in": [2]}, {"radius": 1}, "trajectories"),
         (np.zeros((2, 3)), {"radius": 1}, "trajectories"),
         (np.zeros((2, 3, 2)), {"radius": 1}, "trajectories"),
         (np.zeros((2, 3, 2)), {"radius": 1, "time": [0]}, "time"),
@@ -296,6 +296,34 @@ def test_wrong_arguments_are_named(given, options, where):
     with pytest.raises(exactvo.ArgumentError) as caught:
         exactvo.check(given, **options)
     assert caught.value.where == where
+
+
+def test_tables_are_read_as_csv_is(tmp_path):
+    """Names, units, frames and quaternions: the same reader answers for both, and notes the same."""
+    rows = [(0, "A", 0, 0), (500, "A", 250, 0), (1000, "A", 500, 100)]
+    turned = [(0, 0, 0, 0), (0, 0, 1, 1), (0, 0, 1, 0)]
+    tables = [
+        ("t_ms,id,x_mm,y_mm", rows, {}, 'read by their names: "t_ms" in ms, "x_mm" in mm, "y_mm" in mm'),
+        ("Time [ms],robot,X (cm),Y (cm)", rows, {}, 'read by their names: "Time [ms]" in ms, "X (cm)" in cm, "Y (cm)" in cm'),
+        ("frame,id,x,y", rows, {"frame_rate": 25, "scale": 0.001}, None),
+        ("frame,id,x,y", rows, {}, "times are frames, since no frame rate is known: one frame counts as 1 s (`frame_rate`)"),
+        ("t,id,x,y", rows, {"frame_rate": 25}, "`frame_rate` has no effect: the file has times, and no numbers of frames"),
+        ("t,id,x,y,qx,qy,qz,qw", [(*row, *q) for row, q in zip(rows, turned)], {}, None),
+        ("t,id,x_cm,y_cm,vx,vy", [(*row, 1, 1) for row in rows], {}, '"vx" and "vy" are left out, since their names do not state the unit (vx_mm_s, "vx [cm/s]")'),
+    ]
+    footprint = [(0, -0.01), (0.1, 0), (0, 0.01)]
+    for names, written, options, note in tables:
+        path = tmp_path / "table.csv"
+        path.write_text("\n".join([names, *(",".join(map(str, row)) for row in written)]) + "\n")
+        table = {name: [row[k] for row in written] for k, name in enumerate(names.split(","))}
+        theirs, ours = (exactvo.check(given, footprint=footprint, **options) for given in (path, table))
+        assert ours.speeds == theirs.speeds and ours.bodies[0].end == theirs.bodies[0].end, names
+        assert ours.notes[: len(theirs.notes)] == theirs.notes and (note is None or note in ours.notes), names
+    for names in (["t", "id", "x", "x_mm", "y"], ["t", "id", "X", "x", "y"]):
+        with pytest.raises(exactvo.DataError, match="header"):
+            exactvo.check({name: [0] for name in names}, radius=1)
+    with pytest.raises(exactvo.DataError, match="no row"):
+        exactvo.check({"A": np.zeros((0, 3))}, radius=1)
 
 
 def test_bad_rows_are_named(tmp_path):

@@ -665,6 +665,7 @@ TEST(CheckVerb, BadInputIsNamed) {
       {kCrossing, "--radius 0.2 --between quintic", "one of straight hold cubic none"},
       {kCrossing, "--radius 0.2 --unknown open", "--unknown"},
       {kCrossing, "--radius 0.2 --scale 0", "--scale"},
+      {kCrossing, "--radius 0.2 --frame-rate 0", "--frame-rate: found '0', expected frames a second, above 0"},
       {kCrossing, "--radius 0.2 --max-gap -1", "--max-gap"},
       {kCrossing, "--radius 0.2 --format obsmatt", "did you mean 'obsmat'?"},
       {kCrossing, "--radius 0.2 --map nothing.wkt", "E_FILE_MISSING"},

@@ -375,17 +375,32 @@ TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {
   EXPECT_THAT(place().run("validate header.csv").err, HasSubstr("points-csv, 2 read: 2 valid"));
   place().write("three.csv", "x,y,z\n1,2,3\n");
   EXPECT_THAT(place().run("validate three.csv").out,
-              AllOf(HasSubstr("found a table without a column of geometry"), HasSubstr("--format points-csv")));
+              AllOf(HasSubstr("found a table without a column of geometry"), HasSubstr("the format points-csv")));
   for (const char* command : {"route three.csv --from 0,0 --to 1,1 --radius 0.1", "convert three.csv o.wkt",
                               "check t.csv --radius 0.1 --map three.csv", "segment three.csv"})
     EXPECT_EQ(place().run(command).status, 2) << command << ": no way is clear of a map that was not read";
+}
+
+TEST(Messages, TheUnitInTheHeaderOfADrawingIsNamed) {
+  const auto drawing = [](const std::string& header) {
+    return "0\nSECTION\n2\nHEADER\n" + header + "0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nwalls\n" +
+           "10\n0\n20\n0\n11\n4000\n21\n0\n0\nENDSEC\n0\nEOF\n";
+  };
+  place().write("mm.dxf", drawing("9\n$INSUNITS\n 70\n     4\n"));
+  EXPECT_THAT(place().run("validate mm.dxf").err,
+              HasSubstr("taken as metres: names no reference system; its header states millimetres ($INSUNITS)\n"));
+  for (const char* header : {"9\n$INSUNITS\n70\n6\n", "9\n$INSUNITS\n70\n0\n", "9\n$INSUNITS\n"}) {
+    place().write("m.dxf", drawing(header));
+    EXPECT_THAT(place().run("validate m.dxf").err, Not(HasSubstr("its header"))) << header;
+  }
 }
 
 TEST(Messages, AnImageIsReferredToItsMap) {
   place().write("room.pgm", "P2\n2 2\n255\n0 0 0 0\n");
   EXPECT_THAT(place().run("validate room.pgm").out, HasSubstr("of a ROS map give the .yaml that names its image"));
   place().write("mystery.xyz", "abc\n");
-  EXPECT_THAT(place().run("validate mystery.xyz").out, HasSubstr("name it with --format (convert: --from)"));
+  EXPECT_THAT(place().run("validate mystery.xyz").out,
+              HasSubstr("name it with --format (convert: --from; check, monitor: --map-format)"));
 }
 
 TEST(Messages, AGoalThatIsWalledInIsReportedBeforeTheRun) {

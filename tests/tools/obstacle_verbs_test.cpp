@@ -267,13 +267,13 @@ TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
   EXPECT_EQ(here.read("one/measurements.jsonl"), here.read("two/measurements.jsonl"));
 }
 
-TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
+TEST(Batch, RejectedFilesAreNamedAndNoSuccess) {
   const Workplace here;
   std::filesystem::create_directory(here.path() / "maps");
   here.write("maps/good.wkt", kGood);
   for (int k = 10; k < 35; ++k) here.write("maps/bad" + std::to_string(k) + ".wkt", "POLYGON ((0 0");
   const Outcome some = here.run("batch maps --out out --write measurements");
-  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_EQ(some.status, 1) << some.err;
   EXPECT_THAT(some.err, AllOf(HasSubstr("rejected: maps/bad10.wkt: E_"), HasSubstr("rejected: maps/bad29.wkt"),
                               testing::Not(HasSubstr("bad30.wkt")), HasSubstr("and 5 more, see out/summary.json")));
   const Outcome again = here.run("batch maps --out out --write measurements");
@@ -283,6 +283,9 @@ TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
   EXPECT_THAT(here.run("batch maps --out out --write measurements --resume").err,
               HasSubstr("rejected: maps/bad10.wkt"));
   EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write measurements").status, 1);
+  here.write("half.wkt", std::string(kGood) + kBowTie);
+  EXPECT_EQ(here.run("batch half.wkt --out half --write measurements").status, 1);
+  EXPECT_EQ(here.run("batch half.wkt --out mended --write measurements --repair").status, 0);
   std::filesystem::create_directory(here.path() / "empty");
   const Outcome nothing = here.run("batch empty --out zero --write measurements");
   EXPECT_EQ(nothing.status, 2);

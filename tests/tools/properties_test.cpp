@@ -319,7 +319,7 @@ TEST(BatchSizes, ArePrintedBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest)
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 file, 67 B: about 87.1 B in out"), HasSubstr("--write geopackage adds"),
                                  HasSubstr("--write geojson adds")));
   EXPECT_TRUE(here.has("out/measurements.jsonl"));
-  EXPECT_TRUE(here.has("out/index.html"));
+  EXPECT_THAT(here.read("out/index.html"), AllOf(HasSubstr("1 file: 1 done"), HasSubstr("1 obstacle: 1 done")));
   EXPECT_FALSE(here.has("out/obstacles.gpkg"));
   EXPECT_FALSE(here.has("out/obstacles.geojson"));
 }

@@ -314,7 +314,7 @@ BatchSummary Session::publish() {
   summary.no_half_plane = out.no_half_plane;
   outputs_->finish();
   if (configuration_.pictures) {
-    const std::string words = words_of(summary.files, "files") + ". " + words_of(summary.obstacles, "obstacles") + ".";
+    const std::string words = words_of(summary.files, "file") + ". " + words_of(summary.obstacles, "obstacle") + ".";
     write_pages(journal_, identity_, facts, words, provenance_);
   }
   const Times taken = times();

@@ -211,7 +211,7 @@ class VectorReader {
     for (int k = 0; k < layers(); ++k)
       if (data_->GetLayer(k)->GetLayerDefn()->GetGeomFieldCount() > 0) return;
     throw DataError(DataCode::format_syntax, path_.string(), "", "a table without a column of geometry",
-                    "a column of geometry as WKT; of points two columns, x and y in metres, and --format points-csv");
+                    "a column of geometry as WKT; of points two columns, x and y in metres, and the format points-csv");
   }
 
   /// A feature of a layer, or a record of GeoJSON.

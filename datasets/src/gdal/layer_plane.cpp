@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "files/file_names.h"
 #include "files/text_file.h"
 #include "gdal/ground_scale.h"
 #include "gdal/vector_library.h"
@@ -99,6 +101,24 @@ std::string name_of(const OGRSpatialReference& system) {
   return name != nullptr ? name : "without a name";
 }
 
+/// What the header of a drawing says of its unit, which GDAL leaves out: "; its header states millimetres ($INSUNITS)".
+/// It is no more than a note, since many programs write a unit that is not that of the numbers: GDAL writes inches.
+std::string words_of_drawing_unit(const std::filesystem::path& path) {
+  constexpr std::size_t kHeader = std::size_t{1} << 16;  // bytes
+  constexpr std::pair<int, const char*> kUnits[] = {{1, "inches"},      {2, "feet"},       {4, "millimetres"},
+                                                    {5, "centimetres"}, {7, "kilometres"}, {14, "decimetres"}};
+  if (lower_extension(path) != ".dxf") return "";
+  const std::string text = read_beginning(path, kHeader);
+  const std::size_t name = text.find("$INSUNITS");
+  if (name == std::string::npos) return "";
+  std::istringstream values(text.substr(text.find('\n', name) + 1));
+  int group = 0, unit = 0;
+  if (!(values >> group >> unit) || group != 70) return "";
+  for (const auto& [code, word] : kUnits)
+    if (unit == code) return std::string("; its header states ") + word + " ($INSUNITS)";
+  return "";
+}
+
 std::string kilometres(double metres) {
   return number_text(std::ceil(metres / 1000.0));
 }
@@ -117,7 +137,7 @@ void LayerPlane::reset() {
 std::string LayerPlane::settle(const LayerNumbers& layer) {
   if (layer.units == Units::metres) return settle_as_they_stand("metres: " + layer.reason);
   if (layer.units == Units::automatic && layer.system == nullptr)
-    return settle_as_they_stand("taken as metres: names no reference system");
+    return settle_as_they_stand("taken as metres: names no reference system" + words_of_drawing_unit(path_));
   const bool is_other =
       layer.units == Units::automatic && !(layer.system->IsGeographic() != FALSE && is_in_plain_degrees(*layer.system));
   return is_other ? settle_other_system(layer) : settle_degrees(layer);

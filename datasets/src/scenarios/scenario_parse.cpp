@@ -294,7 +294,7 @@ class ScenarioReader {
 
   /// A reader names the program's option for the format, which here is a key.
   static std::string with_the_key(std::string expected) {
-    const std::string option = "--format (convert: --from)";
+    const std::string option = "--format (convert: --from; check, monitor: --map-format)";
     const std::size_t at = expected.find(option);
     return at == std::string::npos ? expected : expected.replace(at, option.size(), "the key \"format\"");
   }

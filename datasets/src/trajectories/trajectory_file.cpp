@@ -138,8 +138,12 @@ void TrajectorySink::has_no_ids() {
 }
 
 void TrajectorySink::finish() {
+  if (std::all_of(last_.begin(), last_.end(), [](const Last& last) { return std::isinf(last.time); }))
+    throw DataError(DataCode::format_syntax, file_.file, "", "no row", "at least one row of a trajectory");
   if (2 * large_headings_ > headings_)
     file_.notes.emplace_back("most headings are beyond 2 pi: they are read in radians, not in degrees");
+  if (options_.frame_rate > 0.0 && !counts_frames_)
+    file_.notes.emplace_back("--frame-rate has no effect: the file has times, and no numbers of frames");
   constexpr double kAfterAllDates = 1e11;  // s: milliseconds since 1970 are more
   double latest = 0.0;
   for (const Last& last : last_) latest = std::max(latest, last.time);
@@ -149,6 +153,7 @@ void TrajectorySink::finish() {
 }
 
 double TrajectorySink::time_of_frame(double frame, double of_file) {
+  counts_frames_ = true;
   if (options_.frame_rate > 0.0) return frame / options_.frame_rate;
   if (of_file > 0.0) return frame / of_file;
   if (!rate_noted_)
@@ -221,7 +226,8 @@ struct TrajectoryReader::State {
       TrajectoryRow row;
       if (!columns.heading.empty()) row.heading = columns.heading[k];
       if (!columns.vx.empty()) row.velocity = {columns.vx[k], columns.vy[k]};
-      sink.row(columns.agent[k], columns.time[k], {columns.x[k], columns.y[k]}, k + 1, row.heading, row.velocity);
+      const double time = columns.in_frames ? sink.time_of_frame(columns.time[k], 0.0) : columns.time[k];
+      sink.row(columns.agent[k], time, {columns.x[k], columns.y[k]}, k + 1, row.heading, row.velocity);
     }
   }
 };
@@ -294,8 +300,6 @@ const TrajectoryFile& TrajectoryReader::read(const std::function<void(const Traj
     }
   }
   sink.finish();
-  if (s.file.agents.empty())
-    throw DataError(DataCode::format_syntax, s.file.file, "", "no row", "at least one row of a trajectory");
   return s.file;
 }
 

@@ -59,7 +59,7 @@ class TrajectorySink {
   std::string id_;  ///< to look up without allocating each time
   std::vector<Last> last_;
   std::uint64_t headings_ = 0, large_headings_ = 0;  ///< rows with one, and with one beyond a whole turn
-  bool rate_noted_ = false, has_ids_ = true;
+  bool rate_noted_ = false, counts_frames_ = false, has_ids_ = true;
 };
 
 struct TrajectoryFormat {

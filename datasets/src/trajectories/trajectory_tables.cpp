@@ -90,6 +90,7 @@ constexpr const char* kNanoseconds = "%time";
 struct Columns {
   std::array<std::size_t, kColumnKinds> at;
   std::array<ColumnUnit, kColumnKinds> units;
+  std::string twice;  ///< a column that stands twice, in words; empty if none does
   std::string clash;  ///< two columns that differ in their units alone, in words; empty if there are none
 
   Columns() {
@@ -160,7 +161,7 @@ BareName without_unit(const std::string& name, const ColumnUnits& units) {
   return {name, name == kNanoseconds ? kTimes.back() : kNotStated};
 }
 
-/// Where a column stands that has one of `known.names`: the same name twice counts the first time.
+/// Where a column stands that has one of `known.names`.
 void find_column(std::size_t column, const std::vector<std::string>& header, Columns& columns) {
   const ColumnNames& known = kColumnNames[column];
   std::vector<BareName> bare;
@@ -179,6 +180,8 @@ void find_column(std::size_t column, const std::vector<std::string>& header, Col
     for (const std::size_t k : found)
       if (header[k] != header[found.front()])
         columns.clash = "the columns \"" + header[found.front()] + "\" and \"" + header[k] + "\"";
+      else if (k != found.front())
+        columns.twice = "the column \"" + header[k] + "\" a second time";
     return;
   }
 }
@@ -266,7 +269,8 @@ class TableRows {
     if (ids_ == Ids::numbers) id = plain_id(id, memory_);
     if (id.empty()) out_.refuse(DataCode::format_syntax, line, "an empty id", "the id of an agent");
     geometry::Vec2 velocity = TrajectoryRow().velocity;
-    if (columns_[kVxColumn] != kNoColumn && columns_[kVyColumn] != kNoColumn)
+    const bool has_velocities = columns_[kVxColumn] != kNoColumn && columns_[kVyColumn] != kNoColumn;
+    if (has_velocities && (has(kVxColumn) || has(kVyColumn)))
       velocity = {number(kVxColumn, "a velocity"), number(kVyColumn, "a velocity")};
     out_.row(out_.agent(id), time, {number(kXColumn, "x"), number(kYColumn, "y")}, line, heading, velocity);
   }
@@ -288,6 +292,7 @@ void settle_units(const std::vector<std::string_view>& header, std::uint64_t lin
   const auto refuse = [&](const std::string& found, const char* expected) {
     out.refuse(DataCode::not_an_option, line, found, expected);
   };
+  if (!columns.twice.empty()) out.refuse(DataCode::json_duplicate_key, line, columns.twice, "each column once");
   if (!columns.clash.empty()) refuse(columns.clash, "one of them, since their names differ in the unit alone");
   const bool x_states = columns.states_unit(kXColumn), y_states = columns.states_unit(kYColumn);
   if (x_states != y_states && (is_other(kXColumn) || is_other(kYColumn)))
@@ -376,6 +381,26 @@ std::string what_a_header_lacks(std::string_view beginning) {
   return is_header ? words_of_header(columns_in(fields)) : "";
 }
 
+TrajectoryHeader read_trajectory_header(const std::vector<std::string>& names, double scale) {
+  constexpr std::array<const char*, kColumnKinds> kMeanings{"t",  "frame", "id", "x",  "y",  "theta",
+                                                            "vx", "vy",    "qx", "qy", "qz", "qw"};
+  const std::vector<std::string_view> header(names.begin(), names.end());
+  const TrajectoryOptions options{"", 0.0, scale};
+  const std::function<void(const TrajectoryRow&)> take;
+  TrajectoryFile file;
+  file.file = "trajectories";
+  file.row_word = "header, line";
+  TrajectorySink sink(options, take, file);
+  Columns columns = columns_in(header);
+  note_headings_left_out(header, columns, file);
+  settle_units(header, 1, columns, sink);
+  TrajectoryHeader found;
+  for (std::size_t c = 0; c < kColumnKinds; ++c)
+    if (columns[c] != kNoColumn) found.columns.push_back({kMeanings[c], columns[c], columns.units[c].in_si});
+  found.notes = file.notes;
+  return found;
+}
+
 void read_trajectory_csv(const std::filesystem::path& path, TrajectorySink& out) {
   TextLines lines(path.string(), kLongestRow);
   std::optional<TableRows> rows;
@@ -439,7 +464,7 @@ void read_jupedsim_text(const std::filesystem::path& path, TrajectorySink& out) 
     line = trimmed(line.substr(1));
     const std::string lower = lower_case(std::string(line));
     if (lower.rfind("framerate", 0) == 0) {
-      const std::size_t number = lower.find_first_of("0123456789");
+      const std::size_t number = lower.find_first_of("-.0123456789");
       if (number == std::string::npos)
         out.refuse(DataCode::number, lines.number(), excerpt(line, 0, 40), "frames a second");
       frame_rate = out.number(line.substr(number, line.find_first_of(" \tf", number) - number), "frames a second",

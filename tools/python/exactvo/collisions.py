@@ -36,17 +36,6 @@ __all__ = ["Approach", "BodySummary", "CheckResult", "Extreme", "Finding", "Moti
 PathLike = Union[str, "os.PathLike[str]"]
 Bounds = tuple[float, float]
 
-#: Columns of tables by the names that they go by, the best first; those of docs/guide/check.md.
-_NAMES: dict[str, tuple[str, ...]] = {
-    "t": ("t", "time", "time_s", "timestamp", "frame"),
-    "id": ("id", "agent", "agent_id", "robot", "robot_id", "track_id", "ped_id", "pedestrian", "vehicle", "name"),
-    "x": ("x", "x_m"),
-    "y": ("y", "y_m"),
-    "theta": ("theta", "heading", "yaw"),
-    "vx": ("vx", "v_x", "vx_m_s"),
-    "vy": ("vy", "v_y", "vy_m_s"),
-}
-
 
 @dataclass(frozen=True)
 class MotionEvent:
@@ -190,7 +179,7 @@ def check(
     trajectories  a path (any format of `trajectory_formats()`, or the folder of a run; several paths of polynomials, or a
                   folder of them, are one fleet); a dict of ids to
                   n x 3 arrays (t, x, y) or n x 4 arrays (t, x, y, theta); a table with the columns t, id, x, y and, where
-                  wanted, theta, vx, vy (a DataFrame, or a dict of columns); an n x 4 array (t, id, x, y); a steps x robots
+                  wanted, theta, vx, vy (a DataFrame, or a dict of columns), named and in units as in CSV; an n x 4 array (t, id, x, y); a steps x robots
                   x 2 array of positions with `time`, in which NaN is "not there"; a `Recording`
     map           a path, or obstacles as `exactvo.obstacles` takes them; of a run by default its own
     unknown       what unknown cells of a ROS map are, "free" (the default, which `notes` says) or "blocked"
@@ -218,8 +207,7 @@ def check(
         _no_time(time)
         options = {"between": between, "near": near, "max_speed": max_speed, "max_gap": max_gap, "scale": scale, **written}
         return _check_on_wheels(trajectories, radius, map=map, unknown=unknown, footprint=footprint, **options)
-    source, ids = _source(trajectories, time)
-    notes: list[str] = []
+    source, ids, notes = _source(trajectories, time, scale)
     if isinstance(trajectories, Recording):
         scenario = trajectories.scenario
         if radius is None and footprint is None:
@@ -338,32 +326,32 @@ def _floats(given: Any, name: str, dimensions: int) -> npt.NDArray[np.float64]:
     return array
 
 
-Columns = tuple[list[str], Any, Any, Any, Any, Any, Any, Any]
+Columns = tuple[list[str], Any, Any, Any, Any, Any, Any, Any, bool]
 
 
-def _source(given: Any, time: Any) -> tuple[Union[list[str], Columns], list[str] | None]:
-    """Paths, or columns as the extension takes them; and the ids, where their order is known."""
+def _source(given: Any, time: Any, scale: Any) -> tuple[Union[list[str], Columns], list[str] | None, list[str]]:
+    """Paths, or columns as the extension takes them; the ids, where their order is known; and notes."""
     if isinstance(given, Recording):
         _no_time(time)
         ids = [robot.id for robot in given.scenario.robots]
-        return (ids, *_of_array(given.position, given.time)[1:]), ids
+        return (ids, *_of_array(given.position, given.time)[1:]), ids, []
     if isinstance(given, (str, os.PathLike)):
         _no_time(time)
-        return [os.fspath(given)], None
+        return [os.fspath(given)], None, []
     if isinstance(given, (list, tuple)) and given and all(isinstance(path, (str, os.PathLike)) for path in given):
         _no_time(time)
-        return [os.fspath(path) for path in given], None
-    columns = None
+        return [os.fspath(path) for path in given], None, []
+    notes: list[str] = []
     if isinstance(given, Mapping):
         _no_time(time)
         is_table = {"x", "y"} <= {str(key).lower() for key in given} or all(_is_regular(column) and np.ndim(column) == 1 for column in given.values())
-        columns = _table(given, list(given)) if is_table and given else _by_id(given)
+        columns, notes = _table(given, list(given), scale) if is_table and given else (_by_id(given), notes)
     elif hasattr(given, "columns") and hasattr(given, "__getitem__"):
         _no_time(time)
-        columns = _table(given, list(given.columns))
+        columns, notes = _table(given, list(given.columns), scale)
     else:
         columns = _of_array(given, time)
-    return columns, columns[0]
+    return columns, columns[0], notes
 
 
 def _no_time(time: Any) -> None:
@@ -384,24 +372,30 @@ def _name(one: Any) -> str:
     return str(int(one)) if isinstance(one, (float, np.floating)) and float(one).is_integer() else str(one)
 
 
-def _table(table: Any, names: list[Any]) -> Columns:
-    known = {str(name).lower(): name for name in reversed(names)}
-    found = {column: next((known[word] for word in words if word in known), None) for column, words in _NAMES.items()}
-    for column in ("t", "x", "y"):
-        if found[column] is None:
-            raise ArgumentError(
-                "trajectories", f"columns {', '.join(str(n) for n in names)[:60]}", "columns t, id, x, y, in s and in m, or in another unit with scale"
-            )
+def _table(table: Any, names: list[Any], scale: Any) -> tuple[Columns, list[str]]:
+    """Columns by their names and in the units that these state, as the header of CSV does; and notes."""
+    shown = f"columns {', '.join(str(n) for n in names)[:60]}"
+    found, notes = _exactvo.trajectory_header([str(name) for name in names], scale)
+    when = "t" if "t" in found else "frame"
+    if not {when, "x", "y"} <= set(found):
+        raise ArgumentError("trajectories", shown, "columns t, id, x, y, in s and in m, or in another unit with scale")
 
     def column_of(column: str) -> Any:
-        return None if found[column] is None else _floats(table[found[column]], column, 1)
+        if column not in found:
+            return None
+        at, in_si = found[column]
+        return _floats(table[names[at]], column, 1) / in_si
 
-    t, x, y = column_of("t"), column_of("x"), column_of("y")
-    if found["id"] is None and not (np.diff(t) > 0).all():
-        raise ArgumentError("trajectories", f"columns {', '.join(str(n) for n in names)[:60]}, and times that do not rise", "a column id: whose row it is")
-    ids, rows = (["agent"], np.zeros(len(t), dtype=np.int64)) if found["id"] is None else _numbered(table[found["id"]])
-    velocities = (column_of("vx"), column_of("vy")) if found["vx"] is not None and found["vy"] is not None else (None, None)
-    return ids, rows, t, x, y, column_of("theta"), *velocities
+    t, x, y, theta = (column_of(column) for column in (when, "x", "y", "theta"))
+    if theta is None and {"qx", "qy", "qz", "qw"} <= set(found):
+        qx, qy, qz, qw = (column_of(column) for column in ("qx", "qy", "qz", "qw"))
+        is_none = (qx == 0) & (qy == 0) & (qz == 0) & (qw == 0)
+        theta = np.where(is_none, np.nan, np.arctan2(2 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz))
+    if "id" not in found and not (np.diff(t) > 0).all():
+        raise ArgumentError("trajectories", f"{shown}, and times that do not rise", "a column id: whose row it is")
+    ids, rows = _numbered(table[names[found["id"][0]]]) if "id" in found else (["agent"], np.zeros(len(t), dtype=np.int64))
+    velocities = (column_of("vx"), column_of("vy")) if {"vx", "vy"} <= set(found) else (None, None)
+    return (ids, rows, t, x, y, theta, *velocities, when == "frame"), notes
 
 
 def _by_id(given: Mapping[Any, Any]) -> Columns:
@@ -415,14 +409,14 @@ def _by_id(given: Mapping[Any, Any]) -> Columns:
     rows = np.repeat(np.arange(len(arrays)), [len(array) for array in arrays])
     all_rows = np.concatenate(arrays)
     heading = all_rows[:, 3] if width == 4 else None
-    return [_name(key) for key in given], rows, all_rows[:, 0], all_rows[:, 1], all_rows[:, 2], heading, None, None
+    return [_name(key) for key in given], rows, all_rows[:, 0], all_rows[:, 1], all_rows[:, 2], heading, None, None, False
 
 
 def _of_array(given: Any, time: Any) -> Columns:
     array = _floats(given, "trajectories", np.ndim(given) if _is_regular(given) and np.ndim(given) in (2, 3) else 2)
     if array.ndim == 2 and array.shape[1] == 4 and time is None:
         ids, rows = _numbered(array[:, 1])
-        return ids, rows, array[:, 0], array[:, 2], array[:, 3], None, None, None
+        return ids, rows, array[:, 0], array[:, 2], array[:, 3], None, None, None, False
     if array.ndim == 3 and array.shape[2] == 2 and time is not None:
         times = _floats(time, "time", 1)
         if len(times) != len(array):
@@ -431,7 +425,7 @@ def _of_array(given: Any, time: Any) -> Columns:
         rows, t = np.tile(np.arange(robots), steps), np.repeat(times, robots)
         x, y = array[..., 0].ravel(), array[..., 1].ravel()
         there = ~(np.isnan(x) & np.isnan(y))
-        return [str(k) for k in range(robots)], rows[there], t[there], x[there], y[there], None, None, None
+        return [str(k) for k in range(robots)], rows[there], t[there], x[there], y[there], None, None, None, False
     raise ArgumentError(
         "trajectories", f"an array of shape {array.shape}" + ("" if time is None else " and times"),
         "n x 4 (t, id, x, y), or steps x robots x 2 with time",

@@ -78,7 +78,7 @@ def _extension_missing() -> ImportError:
 
 
 #: Options of the program in texts of the library, unless they name one of its commands; the arguments have the same names.
-_OPTION = re.compile(r"(?<!simulate )(?<!MAP )--(format|frame-rate|scale|map|footprint|out|resume)\b( \(convert: --from\))?")
+_OPTION = re.compile(r"(?<!simulate )(?<!MAP )--(format|frame-rate|scale|map|footprint|out|resume)\b( \(convert: --from; check, monitor: --map-format\))?")
 
 
 def with_arguments(text: str) -> str:

@@ -42,7 +42,8 @@ std::vector<double> copied(py::handle object, const char* name, py::ssize_t coun
   return {array.data(), array.data() + array.size()};
 }
 
-/// (names, agent, time, x, y, heading, vx, vy), arrays of one length, the last three or None.
+/// (names, agent, time, x, y, heading, vx, vy, in_frames): arrays of one length, the last three of them or None, and
+/// whether `time` counts frames.
 TrajectoryColumns columns_of(const py::tuple& source) {
   TrajectoryColumns columns;
   columns.names = py::cast<std::vector<std::string>>(source[0]);
@@ -55,6 +56,7 @@ TrajectoryColumns columns_of(const py::tuple& source) {
   columns.heading = copied(source[5], "theta", count);
   columns.vx = copied(source[6], "vx", count);
   columns.vy = copied(source[7], "vy", count);
+  columns.in_frames = py::cast<bool>(source[8]);
   return columns;
 }
 
@@ -281,6 +283,13 @@ py::dict check_trajectories(const py::object& source, const py::object& format, 
 }  // namespace
 
 void bind_check(py::module_& module) {
+  module.def("trajectory_header", [](const std::vector<std::string>& names, const py::object& scale) {
+    const datasets::TrajectoryHeader header = datasets::read_trajectory_header(names, positive(scale, "scale"));
+    py::dict columns;
+    for (const auto& column : header.columns)
+      columns[py::str(column.meaning)] = py::make_tuple(column.at, column.in_si);
+    return py::make_tuple(columns, header.notes);
+  });
   module.def("check_trajectories", &check_trajectories);
   module.def("trajectory_formats", &datasets::trajectory_formats);
 }

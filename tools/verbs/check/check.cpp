@@ -46,8 +46,8 @@ struct CheckFlags {
   std::string format, map, footprint, certificates, figure, page;
   std::string between = "straight";
   ReadingFlags reading;  ///< of the map
-  std::optional<double> radius, near, max_speed, max_gap;
-  double scale = 1.0, frame_rate = 0.0;
+  std::optional<double> radius, near, max_speed, max_gap, frame_rate;
+  double scale = 1.0;
   std::size_t samples = 0;
   bool json = false;
 };
@@ -61,8 +61,7 @@ void check_flags(const CheckFlags& flags) {
   require_known("--between", flags.between, between_names());
   reading_options(flags.reading, "--map-format");
   require_positive("--scale", flags.scale, "metres of one unit of length, above 0");
-  require(flags.frame_rate >= 0.0 && std::isfinite(flags.frame_rate), "--frame-rate",
-          fmt::format("{}", flags.frame_rate), "frames a second, above 0");
+  if (flags.frame_rate) require_positive("--frame-rate", *flags.frame_rate, "frames a second, above 0");
   if (flags.radius) require_length("--radius", *flags.radius);
   if (flags.near) require_length("--near", *flags.near);
   if (flags.max_speed) require_positive("--max-speed", *flags.max_speed, "a speed in m/s, above 0");
@@ -292,7 +291,7 @@ class Byproducts {
 
 /// One file, or several files of polynomials together.
 ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
-  TrajectoryReader reader(files, {flags.format, flags.frame_rate, flags.scale, flags.radius || !flags.footprint.empty(),
+  TrajectoryReader reader(files, {flags.format, flags.frame_rate.value_or(0.0), flags.scale, flags.radius || !flags.footprint.empty(),
                                   flags.between == "cubic"});
   TrajectorySurvey survey = survey_of(reader);
   const TrajectoryFile file = reader.file();

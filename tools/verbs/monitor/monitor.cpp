@@ -404,6 +404,8 @@ MonitorSetup setup_of(const MonitorFlags& flags, std::vector<std::string>& obsta
   if (!flags.radius && flags.footprint.empty())
     throw missing_option("monitor", "option --radius or --footprint", "the size of the robot");
   if (flags.radius) require_length("--radius", *flags.radius);
+  if (flags.footprint.empty() && *flags.radius == 0.0)
+    throw UsageError("--radius", "0", "a radius above 0 m, of a robot that is a disc");
   setup.footprint = flags.footprint.empty()
                         ? geometry::disc_body(*flags.radius)
                         : footprint_body(footprint_shape(flags.footprint), flags.radius.value_or(0.0));

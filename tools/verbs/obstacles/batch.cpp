@@ -228,7 +228,8 @@ void note_missing_half_planes(const BatchSummary& summary, const std::string& ou
 
 ExitCode verdict(const BatchSummary& s) {
   if (s.obstacles_out == 0) message("warning: no obstacle came out");
-  return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
+  const bool all_came_out = s.files.rejected.empty() && s.obstacles.rejected.empty() && s.obstacles_out > 0;
+  return all_came_out && s.uncertified == 0 ? ExitCode::success : ExitCode::negative;
 }
 
 ExitCode batch(const BatchFlags& flags) {
@@ -314,7 +315,7 @@ Verb batch_verb() {
           "  exactvo batch maps --out out/maps -j 4 --repair\n"
           "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after an interruption, or next to a running "
           "batch)\n"
-          "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
+          "    (status 1: a file or an obstacle was rejected, a result is not certified, or no obstacle was produced)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
           with_flags(declare_batch, batch)};

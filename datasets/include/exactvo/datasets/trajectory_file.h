@@ -73,13 +73,28 @@ struct TrajectoryFile {
 struct TrajectoryColumns {
   std::vector<std::string> names;  ///< ids of the agents
   std::vector<std::size_t> agent;  ///< of each row, its place among `names`
-  std::vector<double> time;        ///< s
+  std::vector<double> time;        ///< s, or with `in_frames` numbers of frames
   std::vector<double> x;           ///< of places
   std::vector<double> y;           ///< of places
   std::vector<double> heading;     ///< rad; empty: not known
   std::vector<double> vx;          ///< of velocities, in the unit of places a second; empty: not known
   std::vector<double> vy;          ///< as many as `vx`
+  bool in_frames = false;          ///< `TrajectoryOptions::frame_rate` makes times of them
 };
+
+/// What the names of columns in a table say, as the header of CSV says it (docs/guide/check.md).
+struct TrajectoryHeader {
+  struct Column {
+    std::string meaning;  ///< t, frame, id, x, y, theta, vx, vy, qx, qy, qz or qw
+    std::size_t at = 0;   ///< its place among the names
+    double in_si = 1.0;   ///< how many of its unit make one s, m, m/s or rad
+  };
+  std::vector<Column> columns;     ///< those that are known, each meaning once
+  std::vector<std::string> notes;  ///< what a reader should know, in words
+};
+
+/// Throws DataError where a column stands twice or a unit is ambiguous. `scale`: that of `TrajectoryOptions`.
+TrajectoryHeader read_trajectory_header(const std::vector<std::string>& names, double scale = 1.0);
 
 /// A file of trajectories that can be read several times. What comes through a pipe is kept in a temporary file.
 class TrajectoryReader {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
 #include "json/json_text.h"
 
@@ -110,7 +111,7 @@ std::string to_json(const BatchSummary& summary, const Identity& identity, const
 }
 
 std::string words_of(const BatchTally& tally, const char* what) {
-  std::string text = std::to_string(tally.read) + " " + what + ": " + std::to_string(tally.done) + " done, " +
+  std::string text = geometry::counted(tally.read, what) + ": " + std::to_string(tally.done) + " done, " +
                      std::to_string(tally.repaired) + " repaired, " + std::to_string(tally.rejected_in_all()) +
                      " rejected";
   for (const auto& [code, count] : tally.rejected) text += ", " + code + " " + std::to_string(count);
@@ -119,7 +120,7 @@ std::string words_of(const BatchTally& tally, const char* what) {
 
 std::string words_of(const InputFacts& facts) {
   if (!facts.message.empty()) return facts.message;
-  return facts.outcome + "; " + words_of(facts.tally, "obstacles");
+  return facts.outcome + "; " + words_of(facts.tally, "obstacle");
 }
 
 BatchSummary read_summary(const fs::path& out) {
