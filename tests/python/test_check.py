@@ -198,6 +198,9 @@ def test_a_run_brings_its_radii_obstacles_and_ids(tmp_path, program):
         least = {a.body: a.clearance for a in answer.approaches if a.with_obstacle}
         assert least["a"] == pytest.approx((0.62, 0.62), abs=0.03) and least["b"] == pytest.approx((0.52, 0.52), abs=0.03)
     assert len({answer.approaches for answer in answers}) == 1
+    for given in (run, tmp_path):
+        with pytest.raises((exactvo.ArgumentError, exactvo.DataError), match="scale"):
+            exactvo.check(given, scale=2)
     lines = [json.loads(line) for line in program("check", tmp_path, "--near", 2, "--json").splitlines()]
     assert sorted(tuple(line["approach"]) for line in lines if "approach" in line) == sorted(a.clearance for a in answers[0].approaches)
     assert not exactvo.check(run, radius=0.6).clear and exactvo.check(run, map=[], radius=0.4, near=2).approaches[0].other == "b"

@@ -497,28 +497,36 @@ TEST(CheckVerb, RecordingsBringTheirRadiiAndObstacles) {
 TEST(CheckVerb, BodiesOfRobotsOnWheelsAreAboutTheAxle) {
   const Workplace here;
   // The axle goes from (0, 0) to (0, 0.92), heading along y; the reference point is 0.08 m ahead.
-  here.write("burger.json", R"({"name": "a Burger", "time_limit": 60, "arrival_tolerance": 0.02, "robots": [
+  here.write("burger.json", R"({"name": "a Burger", "time_limit": 60, "arrival_tolerance": 0.02,
+    "time_step": 0.25, "horizons": {"least": 0.5}, "robots": [
     {"id": "R1", "position": [0, 0], "heading": 90, "radius": 0.105, "goal": [0, 1], "kinematics": {"type":
      "differential", "wheel_separation": 0.16, "max_wheel_speed": 0.22, "max_wheel_acceleration": 1}}]})");
   ASSERT_EQ(here.run("simulate burger.json --out run --no-figures").status, 0);
+  ASSERT_EQ(here.run("simulate burger.json --decisions none --record crowd.evr").status, 0);
   here.write("behind.wkt", "LINESTRING (-0.05 -0.95, 0.05 -0.95)\n");
   here.write("beside.wkt", "LINESTRING (-0.9 -0.5, -0.9 1.5)\n");
-  const std::string footprint = " --footprint 'POLYGON ((-1 -0.1, 0.5 -0.1, 0.5 0.1, -1 0.1))'";
-  const Outcome behind = here.run("check run --map behind.wkt" + footprint);
-  EXPECT_EQ(behind.status, 1) << behind.out << behind.err;
-  EXPECT_THAT(behind.out, AllOf(HasSubstr("overlap: R1 and wall 1, from 0 s"), HasSubstr("at the axle's centre")));
-  const Outcome beside = here.run("check run --map beside.wkt" + footprint);
-  EXPECT_EQ(beside.status, 0) << beside.out << beside.err;
-  EXPECT_THAT(beside.out, Not(HasSubstr("no headings")));
   here.write("close.wkt", "LINESTRING (-0.05 -0.1, 0.05 -0.1)\n");
   here.write("ahead.wkt", "LINESTRING (-0.05 1.06, 0.05 1.06)\n");
-  const Outcome close = here.run("check run --map close.wkt --radius 0.105");
-  EXPECT_EQ(close.status, 1) << close.out << close.err;
-  EXPECT_THAT(close.out, HasSubstr("round the axle's centre"));
-  EXPECT_EQ(here.run("check run --map ahead.wkt --radius 0.105").status, 0);
-  const Outcome own = here.run("check run --map ahead.wkt");
-  EXPECT_EQ(own.status, 1) << "the disc about the reference point";
-  EXPECT_THAT(own.out, HasSubstr("discs of the file's radii, of robots on wheels round the reference point"));
+  const std::string footprint = " --footprint 'POLYGON ((-1 -0.1, 0.5 -0.1, 0.5 0.1, -1 0.1))'";
+  for (const std::string check : {"check run --map ", "check crowd.evr --map "}) {
+    const Outcome behind = here.run(check + "behind.wkt" + footprint);
+    EXPECT_EQ(behind.status, 1) << behind.out << behind.err;
+    EXPECT_THAT(behind.out, AllOf(HasSubstr("overlap: R1 and wall 1, from 0 s"), HasSubstr("at the axle's centre")));
+    const Outcome beside = here.run(check + "beside.wkt" + footprint);
+    EXPECT_EQ(beside.status, 0) << beside.out << beside.err;
+    EXPECT_THAT(beside.out, Not(HasSubstr("no headings")));
+    const Outcome close = here.run(check + "close.wkt --radius 0.105");
+    EXPECT_EQ(close.status, 1) << close.out << close.err;
+    EXPECT_THAT(close.out, HasSubstr("round the axle's centre"));
+    EXPECT_EQ(here.run(check + "ahead.wkt --radius 0.105").status, 0);
+    const Outcome own = here.run(check + "ahead.wkt");
+    EXPECT_EQ(own.status, 1) << "the disc about the reference point";
+    EXPECT_THAT(own.out, HasSubstr("discs of the file's radii, of robots on wheels round the reference point"));
+  }
+  ASSERT_EQ(here.run("simulate burger.json --decisions none --every 3 --record seldom.evr").status, 0);
+  const Outcome seldom = here.run("check seldom.evr --radius 0.105");
+  EXPECT_EQ(seldom.status, 2) << seldom.out;
+  EXPECT_THAT(seldom.err, HasSubstr("a row every 3 steps, from which headings do not follow"));
 }
 
 TEST(CheckVerb, ARunWithAFootprintNeedsOneOfItsOwn) {
@@ -547,6 +555,9 @@ TEST(CheckVerb, RecordingsOfCrowdsAreChecked) {
   const Outcome outcome = here.run("check c.evr --json");
   EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
   EXPECT_EQ(json_lines(outcome.out).back()["summary"]["format"], "crowd-recording");
+  const Outcome scaled = here.run("check c.evr --scale 2");
+  EXPECT_EQ(scaled.status, 2) << "radii and obstacles would stay as they are";
+  EXPECT_THAT(scaled.err, HasSubstr("found the scale 2, expected no scale for a recording"));
 }
 
 TEST(CheckVerb, DiscsOfRecordingsAreDiscs) {

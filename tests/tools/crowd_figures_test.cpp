@@ -13,11 +13,12 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
-#include "support/crowd_headings.h"
+#include "recordings/crowd_headings.h"
 
 namespace exactvo::tools {
 namespace {
 
+using datasets::CrowdHeadings;
 using testing::AllOf;
 using testing::HasSubstr;
 

@@ -310,7 +310,8 @@ TEST(MonitorVerb, OptionsThatAreWrongAreNamed) {
   EXPECT_THAT(here.run("monitor - < /dev/null").err, HasSubstr("--radius or --footprint"));
   EXPECT_THAT(here.run("monitor - --radius 0.3 --max-deceleration 0 < /dev/null").err, HasSubstr("--max-deceleration"));
   EXPECT_THAT(here.run("monitor - --radius -1 < /dev/null").err, HasSubstr("--radius"));
-  EXPECT_THAT(here.run("monitor - --radius 0 < /dev/null").err, HasSubstr("--radius: found '0', expected a radius above"));
+  EXPECT_THAT(here.run("monitor - --radius 0 < /dev/null").err,
+              HasSubstr("--radius: found '0', expected a radius above"));
   EXPECT_THAT(here.run("monitor - --footprint 'LINESTRING (0 0, 1 0)' < /dev/null").err, HasSubstr("half its width"));
   EXPECT_EQ(here.run("monitor - --radius 0.3 --latency nan < /dev/null").status, 2);
   EXPECT_EQ(here.run("monitor none.jsonl --radius 0.3").status, 2);

@@ -3,11 +3,12 @@
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "explorer/packed_run.h"
-#include "support/crowd_headings.h"
+#include "recordings/crowd_headings.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
 
+using datasets::CrowdHeadings;
 using datasets::CrowdRow;
 using geometry::Vec2;
 

@@ -11,10 +11,11 @@
 
 #include "exactvo/geometry/counted.h"
 #include "figures/plane.h"
-#include "support/crowd_headings.h"
+#include "recordings/crowd_headings.h"
 
 namespace exactvo::tools {
 
+using datasets::CrowdHeadings;
 using datasets::CrowdRecordingHead;
 using datasets::CrowdRecordingReader;
 using datasets::CrowdRow;

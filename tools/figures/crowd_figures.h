@@ -54,8 +54,8 @@ struct CrowdCourse {
   std::vector<CellCourse> cells;         ///< by number
   std::vector<SpeedsThen> speeds;        ///< at most kMostRowsOver
   std::vector<std::vector<Vec2>> paths;  ///< m, of robots spread evenly over the numbers
-  /// The drive of each of these robots, if it has wheels and its headings are known (support/crowd_headings.h), and its
-  /// headings at the points of its path, as unit vectors; else both are empty.
+  /// The drive of each of these robots, if it has wheels and its headings are known (recordings/crowd_headings.h), and
+  /// its headings at the points of its path, as unit vectors; else both are empty.
   std::vector<std::optional<formation::DifferentialDrive>> drives;
   std::vector<std::vector<Vec2>> headings;
   std::vector<geometry::Segment> edges;       ///< of obstacles

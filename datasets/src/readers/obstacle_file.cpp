@@ -53,7 +53,8 @@ std::string hint_for(const FormatProbe& probe) {
              "pixel), origin";
   if (probe.extension == ".svg") return "; of a drawing, its shapes in metres as WKT, GeoJSON or DXF";
   if (probe.extension == ".scen") return "; tasks of Moving AI are for exactvo route MAP --queries";
-  return "; if its format is one of these, name it with --format (convert: --from; check, monitor: --map-format): " + all_names();
+  return "; if its format is one of these, name it with --format (convert: --from; check, monitor: --map-format): " +
+         all_names();
 }
 
 const Reader& reader_for(const std::filesystem::path& path) {

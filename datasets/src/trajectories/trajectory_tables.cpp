@@ -206,7 +206,8 @@ Columns numbered(std::size_t frame, std::size_t id, std::size_t x, std::size_t y
 
 /// A name that may mean a heading, of a table that has none that is known: in another unit, or half a quaternion.
 void note_headings_left_out(const std::vector<std::string_view>& header, const Columns& columns, TrajectoryFile& file) {
-  const bool has_quaternion = std::count(columns.at.begin() + kQxColumn, columns.at.begin() + kQwColumn + 1, kNoColumn) == 0;
+  const bool has_quaternion =
+      std::count(columns.at.begin() + kQxColumn, columns.at.begin() + kQwColumn + 1, kNoColumn) == 0;
   if (columns[kHeadingColumn] != kNoColumn || has_quaternion) return;
   for (const std::string_view field : header) {
     const std::string name = lower_case(std::string(field));

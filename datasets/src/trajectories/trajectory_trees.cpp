@@ -17,6 +17,7 @@
 #include "files/text_file.h"
 #include "json/json_text.h"
 #include "readers/readers.h"
+#include "recordings/crowd_headings.h"
 #include "trajectories/trajectory_readers.h"
 
 namespace exactvo::datasets {
@@ -159,6 +160,9 @@ class TagAttributes {
 void begin(const formation::Scenario& scenario, TrajectorySink& out) {
   TrajectoryFile& file = out.file();
   file.row_word = "row";
+  if (out.scale() != 1.0)
+    throw DataError(DataCode::not_an_option, file.file, "", "the scale " + number_text(out.scale()),
+                    "no scale for a recording, whose places, radii and obstacles are in m");
   for (const formation::Robot& robot : scenario.robots) {
     if (!out.options().at_axles && obstacle_radius(robot) < robot.radius)
       throw DataError(DataCode::scenario, file.file, "", "robot '" + robot.id + "', which has a footprint",
@@ -317,12 +321,27 @@ void read_recorded_trajectories(const std::filesystem::path& path, TrajectorySin
 void read_crowd_trajectories(const std::filesystem::path& path, TrajectorySink& out) {
   CrowdRecordingReader reader(path);
   const CrowdRecordingHead& head = reader.head();
+  for (const std::uint16_t kind : head.kind_of) out.file().on_wheels += head.kinds[kind].wheels ? 1 : 0;
+  const bool at_axles = out.options().at_axles && out.file().on_wheels > 0;
+  if (at_axles && head.every > 1)
+    throw DataError(
+        DataCode::not_an_option, out.file().file, "",
+        "robots on wheels and a row every " + std::to_string(head.every) + " steps, from which headings do not follow",
+        "a recording of every step, or neither --radius nor --footprint");
   begin(scene_of(head).scenario, out);
   leave_out_ellipses(head, out.file());
+  CrowdHeadings headings(head);
   CrowdRow row;
   for (std::uint64_t number = 1; reader.next(row); ++number) {
     call_wait_hook();
-    for (std::size_t i = 0; i < row.x.size(); ++i) out.row(i, row.step * head.time_step, head.place(row, i), number);
+    if (at_axles) headings.follow(row);
+    for (std::size_t i = 0; i < row.x.size(); ++i) {
+      const bool at_axle = at_axles && headings.has(i);
+      const geometry::Vec2 e = at_axle ? headings.of(i).heading : geometry::Vec2{};
+      const double reference = at_axle ? head.kinds[head.kind_of[i]].wheels->reference : 0.0;
+      out.row(i, row.step * head.time_step, head.place(row, i) - reference * e, number,
+              at_axle ? std::atan2(e.y, e.x) : TrajectoryRow().heading);
+    }
   }
   std::vector<std::string>& notes = out.file().notes;
   if (reader.is_cut_off()) notes.emplace_back("the recording is cut off after its last row");

@@ -202,6 +202,8 @@ def check(
 
     Raises `ArgumentError`, `DataError` with the line or row, `MissingFileError`.
     """
+    if isinstance(trajectories, Recording) and scale != 1.0:
+        raise ArgumentError("scale", repr(scale)[:60], "1.0 for a run, whose places, radii and obstacles are in m")
     written = _written(trajectories, map, page=page, certificates=certificates)
     if isinstance(trajectories, Recording) and _is_on_wheels(trajectories):
         _no_time(time)

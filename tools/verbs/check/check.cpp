@@ -291,8 +291,8 @@ class Byproducts {
 
 /// One file, or several files of polynomials together.
 ExitCode check_together(const CheckFlags& flags, const std::vector<std::string>& files) {
-  TrajectoryReader reader(files, {flags.format, flags.frame_rate.value_or(0.0), flags.scale, flags.radius || !flags.footprint.empty(),
-                                  flags.between == "cubic"});
+  TrajectoryReader reader(files, {flags.format, flags.frame_rate.value_or(0.0), flags.scale,
+                                  flags.radius || !flags.footprint.empty(), flags.between == "cubic"});
   TrajectorySurvey survey = survey_of(reader);
   const TrajectoryFile file = reader.file();
   say_what_was_read(file, survey);

@@ -9,17 +9,17 @@
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
 
-namespace exactvo::tools {
+namespace exactvo::datasets {
 
 /// Where robots on wheels head, from where they headed at first and from their places: (1) of crowd/wheels.h, rounded.
 class CrowdHeadings {
  public:
   /// Known only where every step is a row.
-  explicit CrowdHeadings(const datasets::CrowdRecordingHead& head) : head_(head) {
+  explicit CrowdHeadings(const CrowdRecordingHead& head) : head_(head) {
     if (head.every == 1) half_ = head.half_headings;
   }
   bool has(std::size_t robot) const { return !half_.empty() && kind_of(robot).wheels; }
-  void follow(const datasets::CrowdRow& row) {
+  void follow(const CrowdRow& row) {
     for (std::size_t i = 0; i < half_.size() && !before_.x.empty(); ++i) {
       if (!has(i)) continue;
       const double ahead = 2.0 * kind_of(i).wheels->reference / head_.position_step, x = row.x[i] - before_.x[i],
@@ -36,7 +36,7 @@ class CrowdHeadings {
   }
   /// What a picture shows of a robot's wheels, with the disc of its body. REQUIRES: has(robot).
   formation::DifferentialDrive drive(std::size_t robot) const {
-    const datasets::CrowdKindRecord& kind = kind_of(robot);
+    const CrowdKindRecord& kind = kind_of(robot);
     formation::DifferentialDrive drive;
     drive.wheel_separation = kind.wheels->wheel_separation;
     drive.max_wheel_speed = kind.max_speed;
@@ -48,11 +48,11 @@ class CrowdHeadings {
   }
 
  private:
-  const datasets::CrowdKindRecord& kind_of(std::size_t robot) const { return head_.kinds[head_.kind_of[robot]]; }
+  const CrowdKindRecord& kind_of(std::size_t robot) const { return head_.kinds[head_.kind_of[robot]]; }
 
-  const datasets::CrowdRecordingHead& head_;
+  const CrowdRecordingHead& head_;
   std::vector<geometry::Vec2> half_;
-  datasets::CrowdRow before_;
+  CrowdRow before_;
 };
 
-}  // namespace exactvo::tools
+}  // namespace exactvo::datasets
