@@ -279,6 +279,19 @@ Ring gear(int n, Vec2 center, double radius) {
   return ring;
 }
 
+// The height of the outer ring is beyond the doubles, and a vertex at its top was sought in a slab that is not there.
+TEST(Normalize, AHoleInARingAsHighAsAllDoubles) {
+  for (const double far : {1.0, 1.5e308}) {
+    Ring outer;
+    for (int k = 0; k < 100; ++k) outer.push_back({1.0 * k, -far});
+    outer.push_back({99.0, far});
+    outer.push_back({0.0, far});
+    const Ring hole{{10.0, 0.0}, {10.0, 0.5}, {11.0, 0.5}, {11.0, 0.0}}, beside{{-2, 0}, {-2, 0.5}, {-1, 0.5}, {-1, 0}};
+    EXPECT_TRUE(normalize({outer, hole}).ok()) << far;
+    EXPECT_FALSE(normalize({outer, beside}).ok()) << far;
+  }
+}
+
 double seconds_to_normalize(const std::vector<Ring>& rings) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_TRUE(normalize(rings).ok());

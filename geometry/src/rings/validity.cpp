@@ -149,7 +149,8 @@ class PointLocator {
 
  private:
   std::size_t slab_of(double y) const {
-    const double share = (y - box_.low.y) / (box_.high.y - box_.low.y);
+    // Halves, since a difference may lie beyond the doubles.
+    const double share = (0.5 * y - 0.5 * box_.low.y) / (0.5 * box_.high.y - 0.5 * box_.low.y);
     const auto last = static_cast<double>(slabs_.size() - 1);
     return static_cast<std::size_t>(std::min(std::max(share, 0.0) * static_cast<double>(slabs_.size()), last));
   }
