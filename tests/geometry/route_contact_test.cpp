@@ -245,6 +245,15 @@ TEST(RouteContact, ADiscInExactContactStartsAndArrives) {
 
 // --- Certificates ---
 
+// Such an edge was passed over, or ended the program, as there is no rational for it.
+TEST(RouteContact, ACheckRefusesObstaclesThatAreNotFinite) {
+  const RouteQuestion question{0.1, {0, 0}, {1, 0}};
+  const RouteAnswer route = Route{{{{0, 0}, {}, {}}, {{1, 0}, {}, {}}}, 1.0, 0.0};
+  EXPECT_EQ(check({Polyline{{{0, 1}, {1, 1}}}}, question, route), "");
+  for (const double bad : {std::nan(""), HUGE_VAL})
+    EXPECT_THROW(check({Polyline{{{0, 1}, {bad, 1}}}}, question, route), std::logic_error);
+}
+
 TEST(RouteContact, CertificatesThatTouchMoreThanTheirEndsAreRefused) {
   const std::vector<Obstacle> two{box_of(0, 0, 2, 2), box_of(2, 2, 4, 4)};
   const auto route = [](std::vector<Vec2> points) {

@@ -101,6 +101,7 @@ class Checker {
     for (const Obstacle& obstacle : obstacles) {
       solid_.push_back(has_interior(obstacle));
       edges_.push_back(edges_of(obstacle));
+      for (const Segment& e : edges_.back()) EXACTVO_REQUIRE(is_finite(e.a) && is_finite(e.b), excerpt({e.a, e.b}));
     }
   }
 
