@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/motion_certificate.h"
+#include "exactvo/geometry/turning_motions.h"
 #include "geometry/motion_case.h"
 
 namespace exactvo::test {
@@ -758,6 +760,30 @@ TEST(MotionCertificate, BodiesAndTimesThatCannotBeAreRefused) {
   const geometry::Motion back = StraightMotion{{1, {0, 1}}, {0, {0, 1}}};
   EXPECT_THROW(geometry::proves_clear({}, back, geometry::disc_body(1.0), wall), std::logic_error);
   EXPECT_THROW(geometry::proves_clear({}, rest, geometry::disc_body(1.0), back, negative), std::logic_error);
+}
+
+// There is no rational for it: the program ended.
+TEST(MotionCertificate, NumbersThatAreNotFiniteAreRefused) {
+  const MotionCertificate touching{{{0, 0, 0.0, 1.0, {0, 1}, 0.0}}};
+  const geometry::RigidBody disc = geometry::disc_body(0.5);
+  const geometry::Motion rest = geometry::held({0, {0, 1}}, 1);
+  const Obstacle wall = Polyline{{{-3, 0}, {3, 0}}};
+  for (const double bad : {std::nan(""), geometry::kInfinity}) {
+    const geometry::Motion straight = StraightMotion{{0, {bad, 1}}, {1, {0, 1}}};
+    const geometry::Motion curved = geometry::CurvedMotion{geometry::CurveBasis::bezier, 0, 1, {{0, bad}, {0, 1}}};
+    const geometry::Motion endless = StraightMotion{{0, {0, 1}}, {bad, {0, 1}}};
+    for (const geometry::Motion& m : {straight, curved, endless}) {
+      EXPECT_THROW(geometry::proves_clear(touching, m, disc, wall), std::logic_error);
+      EXPECT_THROW(geometry::proves_clear(touching, rest, disc, m, disc), std::logic_error);
+    }
+    EXPECT_THROW(geometry::proves_clear(touching, rest, {{{{0, 0}}, bad}}, wall), std::logic_error);
+    EXPECT_THROW(geometry::proves_clear(touching, rest, {{{{bad, 0}}, 0.5}}, wall), std::logic_error);
+    EXPECT_THROW(geometry::proves_clear(touching, rest, disc, Polyline{{{-3, 0}, {bad, 0}}}), std::logic_error);
+    const geometry::TurningMotion turning{0.0, 1.0, {0, 1}, {{}, 1.0}};
+    EXPECT_FALSE(geometry::proves_clear(touching, turning, disc, Polyline{{{-3, 0}, {bad, 0}}}));
+  }
+  const geometry::Motion nowhere = geometry::CurvedMotion{geometry::CurveBasis::bezier, 0, 1, {}};
+  EXPECT_THROW(geometry::proves_clear(touching, nowhere, disc, wall), std::logic_error);
 }
 
 }  // namespace

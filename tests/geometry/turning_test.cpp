@@ -205,6 +205,16 @@ TEST(GapKeeper, TwoBoxesThatComeTowardsEachOtherMeetWhenTheyShould) {
   }
 }
 
+// A share of so short a duration is 0, so that the search for the moment of loss did not end.
+TEST(GapKeeper, AnswersWhereTheDurationIsHardlyMoreThanNothing) {
+  const std::vector<Vec2> point{{0, 0}};
+  const geometry::CornerView corners{point.data(), 1};
+  const GapToKeep q{{{}, {{0x1p510, 0}, 0.0}, corners}, {{0x1p-531, 0}, {}, corners}, 0x1p-1040, 0.0, 0.0, 0.0};
+  const KeptGap kept = GapKeeper().keep(q);
+  EXPECT_FALSE(kept.whole);
+  EXPECT_NEAR(kept.kept_until / 0x1p-1041, 1.0, 1e-8);
+}
+
 TEST(GapKeeper, CornersMustBeThere) {
   EXPECT_THROW(GapKeeper().keep({}), std::logic_error);
 }

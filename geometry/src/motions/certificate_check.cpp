@@ -9,6 +9,7 @@
 
 #include "exactvo/geometry/motion_certificate.h"
 #include "exactvo/geometry/require.h"
+#include "motions/certificate_pairs.h"
 
 namespace exactvo::geometry {
 namespace motion_check {
@@ -91,12 +92,22 @@ std::vector<Number> bernstein(std::vector<Number> values) {
   return values;
 }
 
+bool are_finite(const std::vector<Vec2>& points) {
+  return std::all_of(points.begin(), points.end(), is_finite);
+}
 void require(const Motion& motion) {
-  EXACTVO_REQUIRE(start_of(motion) <= end_of(motion), hex_text(start_of(motion)) + " " + hex_text(end_of(motion)));
+  const double start = start_of(motion), end = end_of(motion);
+  EXACTVO_REQUIRE(std::isfinite(start) && std::isfinite(end) && start <= end, hex_text(start) + " " + hex_text(end));
+  const auto* straight = std::get_if<StraightMotion>(&motion);
+  const std::vector<Vec2> points =
+      straight ? std::vector<Vec2>{straight->from.at, straight->to.at} : std::get<CurvedMotion>(motion).points;
+  EXACTVO_REQUIRE(!points.empty() && are_finite(points), excerpt(points));
 }
 void require(const RigidBody& body) {
   for (const RoundedPolygon& part : body)
-    EXACTVO_REQUIRE(part.radius >= 0.0 && !part.corners.empty(), hex_text(part.radius));
+    EXACTVO_REQUIRE(
+        part.radius >= 0.0 && std::isfinite(part.radius) && !part.corners.empty() && are_finite(part.corners),
+        hex_text(part.radius) + " " + excerpt(part.corners));
 }
 
 class Check {
@@ -144,17 +155,10 @@ class Check {
     return sgn(gap) > 0 && (s.margin > 0.0 ? left >= right : left > right);
   }
 
-  /// Whether the part's first corner begins inside, by the even-odd rule.
+  /// Whether the part's first corner begins inside.
   bool begins_inside(const RoundedPolygon& part, const std::vector<Segment>& edges) const {
-    Place p = at(a_, Number(from_), Number(0));
-    p = {Number(p.x + Number(part.corners[0].x)), Number(p.y + Number(part.corners[0].y))};
-    bool inside = false;
-    for (const Segment& e : edges) {
-      const Place u = exactly(e.a), v = exactly(e.b);
-      if ((u.y > p.y) == (v.y > p.y)) continue;
-      if (p.x < u.x + (p.y - u.y) / (v.y - u.y) * (v.x - u.x)) inside = !inside;
-    }
-    return inside;
+    const Place p = at(a_, Number(from_), Number(0));
+    return is_inside(Number(p.x + Number(part.corners[0].x)), Number(p.y + Number(part.corners[0].y)), edges);
   }
 
  private:
@@ -163,31 +167,6 @@ class Check {
   double from_, to_;
   std::size_t degree_ = 1;
 };
-
-/// Whether the separations are those of all pairs in turn, without a gap, and each is true. `others` gives the corners
-/// and the radius of the other's part.
-template <class Others>
-bool all_hold(const Check& check, const MotionCertificate& certificate, const RigidBody& body, std::size_t count,
-              const Others& others) {
-  if (check.from() > check.to()) return certificate.separations.empty();
-  std::size_t next = 0;
-  for (std::size_t part = 0; part < body.size(); ++part) {
-    for (std::size_t other = 0; other < count; ++other) {
-      double reached = check.from();
-      bool some = false;
-      for (; next < certificate.separations.size() && !(some && reached == check.to()); ++next) {
-        const Separation& s = certificate.separations[next];
-        if (s.part != part || s.other != other || s.from != reached || !(s.to >= s.from && s.to <= check.to())) break;
-        const auto [corners, radius] = others(other);
-        if (!check.separates(s, body[part], corners, radius)) return false;
-        reached = s.to;
-        some = true;
-      }
-      if (!some || reached != check.to()) return false;
-    }
-  }
-  return next == certificate.separations.size();
-}
 
 }  // namespace
 }  // namespace motion_check
@@ -199,9 +178,10 @@ bool proves_clear(const MotionCertificate& certificate, const Motion& a, const R
   motion_check::require(body_a);
   motion_check::require(body_b);
   const motion_check::Check check(a, &b);
-  return motion_check::all_hold(check, certificate, body_a, body_b.size(), [&](std::size_t i) {
-    return std::pair{body_b[i].corners, body_b[i].radius};
-  });
+  return motion_check::all_hold(
+      certificate, body_a.size(), body_b.size(), check.from(), check.to(), [&](const Separation& s) {
+        return check.separates(s, body_a[s.part], body_b[s.other].corners, body_b[s.other].radius);
+      });
 }
 
 bool proves_clear(const MotionCertificate& certificate, const Motion& a, const RigidBody& body_a,
@@ -210,12 +190,14 @@ bool proves_clear(const MotionCertificate& certificate, const Motion& a, const R
   motion_check::require(body_a);
   const motion_check::Check check(a, nullptr);
   const std::vector<Segment> edges = edges_of(obstacle);
+  for (const Segment& e : edges) EXACTVO_REQUIRE(is_finite(e.a) && is_finite(e.b), excerpt({e.a, e.b}));
   if (has_interior(obstacle))
     for (const RoundedPolygon& part : body_a)
       if (check.begins_inside(part, edges)) return false;
-  return motion_check::all_hold(check, certificate, body_a, edges.size(), [&](std::size_t i) {
-    return std::pair{std::vector<Vec2>{edges[i].a, edges[i].b}, 0.0};
-  });
+  return motion_check::all_hold(certificate, body_a.size(), edges.size(), check.from(), check.to(),
+                                [&](const Separation& s) {
+                                  return check.separates(s, body_a[s.part], {edges[s.other].a, edges[s.other].b}, 0.0);
+                                });
 }
 
 }  // namespace exactvo::geometry

@@ -253,30 +253,18 @@ double middle_of(double low, double high) {
   return low + 0.5 * (high - low);
 }
 
-/// The first moment that meets. `met` is a moment by which there has been one.
-Bounds first_moment(const Meets& meets, double met) {
+/// The first moment that meets, or the last one. `met` is a moment by which there has been one, or from which on.
+Bounds outermost_moment(const Meets& meets, double met, bool first) {
   const Window whole = meets.question.window();
-  if (meets({whole.from, whole.from})) return {whole.from, whole.from};
+  const double end = first ? whole.from : whole.to;
+  if (meets({end, end})) return {end, end};
   const double fine = kMomentShare * (whole.to - whole.from);
-  double low = whole.from, high = met;
+  double low = first ? end : met, high = first ? met : end;
   while (high - low > fine) {
     const double middle = middle_of(low, high);
     if (!(low < middle && middle < high)) break;
-    (meets({low, middle}) ? high : low) = middle;
-  }
-  return {low, high};
-}
-
-/// The last moment that meets. `met` is a moment from which on there has been one.
-Bounds last_moment(const Meets& meets, double met) {
-  const Window whole = meets.question.window();
-  if (meets({whole.to, whole.to})) return {whole.to, whole.to};
-  const double fine = kMomentShare * (whole.to - whole.from);
-  double low = met, high = whole.to;
-  while (high - low > fine) {
-    const double middle = middle_of(low, high);
-    if (!(low < middle && middle < high)) break;
-    (meets({middle, high}) ? low : high) = middle;
+    const bool is_outside = meets(first ? Window{low, middle} : Window{middle, high});
+    (is_outside == first ? high : low) = middle;
   }
   return {low, high};
 }
@@ -336,8 +324,8 @@ MotionVerdict examined(const Question& q) {
   const Meets meets{q, verdict.encounter};
   const double t = nearest.time;
   const bool there = meets({t, t});
-  verdict.first = first_moment(meets, there || meets({whole.from, t}) ? t : whole.to);
-  verdict.last = last_moment(meets, there || meets({t, whole.to}) ? t : whole.from);
+  verdict.first = outermost_moment(meets, there || meets({whole.from, t}) ? t : whole.to, true);
+  verdict.last = outermost_moment(meets, there || meets({t, whole.to}) ? t : whole.from, false);
   if (there || verdict.encounter == Encounter::contact) return verdict;
   // Polygons that touch are as near as those that overlap: they may only touch at `t`.
   if (const std::optional<double> moment = some_moment(meets)) {

@@ -268,11 +268,6 @@ Path<T> path_from(const Question& q, Window w) {
   return path;
 }
 
-template <class T>
-Known reach_sign(const Anchor& anchor, double more) {
-  return sign_of(T(T(anchor.reach) + T(more)));
-}
-
 /// Targets and anchors over one ring in which the way is straight.
 template <class T>
 Known straight_question(const Question& q, const Path<T>& path, double more, bool thin_overlaps) {
@@ -294,7 +289,7 @@ Known anchor_question(const Question& q, const Path<T>& path, double more, bool 
   const Vec2 origin = origin_of(q.motion());
   Known gap = Known::positive;
   for (const Anchor& anchor : q.anchors()) {
-    const Known reach = reach_sign<T>(anchor, more);
+    const Known reach = sign_of(T(T(anchor.reach) + T(more)));
     if (reach == Known::negative || (reach == Known::zero && in_contact && anchor.corners.size() == 1)) continue;
     const Known here = reach == Known::unknown ? reach : inside<T>(q.edges(), anchor, path.c[0], path.scale, origin);
     gap = least(gap, here);

@@ -15,6 +15,7 @@
 #include "exactvo/geometry/turning.h"
 #include "exactvo/geometry/turning_motions.h"
 #include "motions/real_roots.h"
+#include "motions/turning_parts.h"
 
 namespace exactvo::geometry {
 namespace turned {
@@ -233,23 +234,18 @@ class Pair {
 
 // --- The question ---
 
-struct Part {
-  std::vector<Vec2> corners;  ///< once round, counter-clockwise
-  double radius = 0.0;
-};
-
 class Question {
  public:
   Question(const TurningMotion& motion, const RigidBody& body) : m_(motion) {
-    EXACTVO_REQUIRE(std::isfinite(m_.start) && std::isfinite(m_.end) && m_.start <= m_.end,
-                    hex_text(m_.start) + " " + hex_text(m_.end));
-    EXACTVO_REQUIRE(is_finite(m_.at) && is_finite(m_.twist.velocity) && std::isfinite(m_.twist.turn),
-                    excerpt({m_.at, m_.twist.velocity}));
-    take_parts(body, {}, parts_);
+    require_drive(m_);
+    parts_ = hulls_of(body);
     EXACTVO_REQUIRE(!parts_.empty(), "no parts");
   }
 
-  void add_standing(const RigidBody& body, Vec2 at) { take_parts(body, at, standing_); }
+  void add_standing(const RigidBody& body, Vec2 at) {
+    EXACTVO_REQUIRE(is_finite(at), excerpt({at}));
+    for (RoundedPolygon& part : hulls_of(body)) standing_.push_back({at, std::move(part)});
+  }
   void add_edges(const Obstacle& obstacle) {
     for (const Segment& e : geometry::edges_of(obstacle)) {
       EXACTVO_REQUIRE(is_finite(e.a) && is_finite(e.b), excerpt({e.a, e.b}));
@@ -261,7 +257,7 @@ class Question {
   Encounter decide() const {
     Encounter worst = Encounter::clear;
     bool by_filter = true;
-    for (const Part& part : parts_)
+    for (const RoundedPolygon& part : parts_)
       for (const Standing& other : standing_) {
         if (const std::optional<Encounter> found = filtered(part, other)) {
           worst = std::max(worst, *found);
@@ -278,24 +274,8 @@ class Question {
  private:
   struct Standing {
     Vec2 at;
-    Part part;
+    RoundedPolygon part;
   };
-
-  static Part part_of(const RoundedPolygon& part) {
-    EXACTVO_REQUIRE(part.radius >= 0.0 && std::isfinite(part.radius), hex_text(part.radius));
-    EXACTVO_REQUIRE(!part.corners.empty() && std::all_of(part.corners.begin(), part.corners.end(), is_finite),
-                    excerpt(part.corners));
-    Part made{convex_hull(part.corners).vertices, part.radius};
-    EXACTVO_REQUIRE(made.radius > 0.0 || made.corners.size() > 2, excerpt(part.corners));
-    return made;
-  }
-  static void take_parts(const RigidBody& body, Vec2 /*at*/, std::vector<Part>& parts) {
-    for (const RoundedPolygon& part : body) parts.push_back(part_of(part));
-  }
-  static void take_parts(const RigidBody& body, Vec2 at, std::vector<Standing>& parts) {
-    EXACTVO_REQUIRE(is_finite(at), excerpt({at}));
-    for (const RoundedPolygon& part : body) parts.push_back({at, part_of(part)});
-  }
 
   /// Whether all that is not 0 is so far inside the range of doubles that no product of two leaves it.
   static bool has_plain_sizes(const GapToKeep& q) {
@@ -308,7 +288,7 @@ class Question {
     return is_plain_body(q.a) && is_plain_body(q.b) && is_plain(q.duration) && is_plain(q.reach);
   }
 
-  std::optional<Encounter> filtered(const Part& part, const Standing& other) const {
+  std::optional<Encounter> filtered(const RoundedPolygon& part, const Standing& other) const {
     const double duration = m_.end - m_.start;
     const GapToKeep q{{m_.at, m_.twist, {part.corners.data(), part.corners.size()}},
                       {other.at, {}, {other.part.corners.data(), other.part.corners.size()}},
@@ -324,7 +304,7 @@ class Question {
     return std::nullopt;
   }
 
-  Encounter exactly(const Part& part, const Standing& other) const {
+  Encounter exactly(const RoundedPolygon& part, const Standing& other) const {
     const Rational turn(m_.twist.turn), duration = Rational(m_.end) - Rational(m_.start);
     const Rational reach = Rational(part.radius) + Rational(other.part.radius);
     if (sgn(turn) == 0 || sgn(duration) == 0) return straight(part, other);
@@ -355,21 +335,41 @@ class Question {
   }
 
   /// A polynomial of degree 1: exactly at + velocity (time - start).
-  Encounter straight(const Part& part, const Standing& other) const {
+  Encounter straight(const RoundedPolygon& part, const Standing& other) const {
     const Motion way = CurvedMotion{CurveBasis::powers, m_.start, m_.end, {m_.at, m_.twist.velocity}};
-    const RigidBody body{{part.corners, part.radius}};
+    const RigidBody body{part};
     if (other.part.radius == 0.0 && other.part.corners.size() == 2)
       return encounter(way, body, Obstacle(Polyline{other.part.corners}));
     const Motion stays = StraightMotion{{m_.start, other.at}, {m_.end, other.at}};
-    return encounter(way, body, stays, RigidBody{{other.part.corners, other.part.radius}});
+    return encounter(way, body, stays, RigidBody{other.part});
   }
 
   const TurningMotion& m_;
-  std::vector<Part> parts_;
+  RigidBody parts_;
   std::vector<Standing> standing_;
 };
 
 }  // namespace
+
+void require_drive(const TurningMotion& m) {
+  EXACTVO_REQUIRE(std::isfinite(m.start) && std::isfinite(m.end) && m.start <= m.end,
+                  hex_text(m.start) + " " + hex_text(m.end));
+  EXACTVO_REQUIRE(is_finite(m.at) && is_finite(m.twist.velocity) && std::isfinite(m.twist.turn),
+                  excerpt({m.at, m.twist.velocity}));
+}
+
+RigidBody hulls_of(const RigidBody& body) {
+  RigidBody hulls;
+  for (const RoundedPolygon& part : body) {
+    EXACTVO_REQUIRE(part.radius >= 0.0 && std::isfinite(part.radius), hex_text(part.radius));
+    EXACTVO_REQUIRE(!part.corners.empty() && std::all_of(part.corners.begin(), part.corners.end(), is_finite),
+                    excerpt(part.corners));
+    hulls.push_back({convex_hull(part.corners).vertices, part.radius});
+    EXACTVO_REQUIRE(part.radius > 0.0 || hulls.back().corners.size() > 2, excerpt(part.corners));
+  }
+  return hulls;
+}
+
 }  // namespace turned
 
 Encounter encounter(const TurningMotion& motion, const RigidBody& body, const Obstacle& obstacle) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactvo/geometry/turning_motions.h"
+#include "motions/certificate_pairs.h"
 
 namespace exactvo::geometry {
 namespace turn_check {
@@ -88,16 +89,8 @@ class TurnCheck {
 
   bool is_small() const { return abs(turn_) * (Number(m_.end) - Number(m_.start)) <= kMostAngle; }
 
-  /// Whether the corner begins inside, by the even-odd rule.
   bool begins_inside(Vec2 corner, const std::vector<Segment>& edges) const {
-    const Number x = Number(m_.at.x) + Number(corner.x), y = Number(m_.at.y) + Number(corner.y);
-    bool inside = false;
-    for (const Segment& e : edges) {
-      const Number ax(e.a.x), ay(e.a.y), bx(e.b.x), by(e.b.y);
-      if ((ay > y) == (by > y)) continue;
-      if (x < ax + (y - ay) / (by - ay) * (bx - ax)) inside = !inside;
-    }
-    return inside;
+    return motion_check::is_inside(Number(m_.at.x) + Number(corner.x), Number(m_.at.y) + Number(corner.y), edges);
   }
 
   /// For each corner of a part a lower bound of its place along n at a time, and an upper bound of how far it strays
@@ -151,24 +144,12 @@ bool separates(const Separation& s, const TurnCheck& a, const RoundedPolygon& pa
   return true;
 }
 
-/// Whether the separations are those of these parts, pair after pair, each over the whole of the time.
+/// Whether the certificate has a direction for each pair of parts and piece of time, and each keeps them apart.
 bool covers(const MotionCertificate& certificate, const TurnCheck& a, const RigidBody& body_a, const TurnCheck& b,
             const RigidBody& body_b, double from, double to) {
-  std::size_t next = 0;
-  for (std::size_t part = 0; part < body_a.size(); ++part)
-    for (std::size_t other = 0; other < body_b.size(); ++other) {
-      double reached = from;
-      bool some = false;
-      for (; next < certificate.separations.size() && !(some && reached == to); ++next) {
-        const Separation& s = certificate.separations[next];
-        if (s.part != part || s.other != other || s.from != reached || !(s.to >= s.from && s.to <= to)) break;
-        if (!separates(s, a, body_a[part], b, body_b[other])) return false;
-        reached = s.to;
-        some = true;
-      }
-      if (!some || reached != to) return false;
-    }
-  return next == certificate.separations.size();
+  return motion_check::all_hold(certificate, body_a.size(), body_b.size(), from, to, [&](const Separation& s) {
+    return separates(s, a, body_a[s.part], b, body_b[s.other]);
+  });
 }
 
 bool is_readable(const TurningMotion& m, const RigidBody& body) {
@@ -188,12 +169,13 @@ bool proves_clear(const MotionCertificate& certificate, const TurningMotion& mot
   const turn_check::TurnCheck check(motion);
   if (!(motion.start <= motion.end) || !check.is_small()) return false;
   const std::vector<Segment> edges = edges_of(obstacle);
-  if (has_interior(obstacle))
-    for (const RoundedPolygon& part : body)
-      if (check.begins_inside(part.corners.at(0), edges)) return false;
   RigidBody sides;
   for (const Segment& edge : edges) sides.push_back({{edge.a, edge.b}, 0.0});
   const TurningMotion rest{motion.start, motion.end, {}, {}};
+  if (!turn_check::is_readable(rest, sides)) return false;
+  if (has_interior(obstacle))
+    for (const RoundedPolygon& part : body)
+      if (check.begins_inside(part.corners.at(0), edges)) return false;
   return turn_check::covers(certificate, check, body, turn_check::TurnCheck(rest), sides, motion.start, motion.end);
 }
 
@@ -202,9 +184,8 @@ bool proves_clear(const MotionCertificate& certificate, const TurningMotion& a, 
   if (!turn_check::is_readable(a, body_a) || !turn_check::is_readable(b, body_b)) return false;
   const turn_check::TurnCheck check_a(a), check_b(b);
   if (!(a.start <= a.end && b.start <= b.end) || !check_a.is_small() || !check_b.is_small()) return false;
-  const double from = std::max(a.start, b.start), to = std::min(a.end, b.end);
-  if (from > to) return certificate.separations.empty();
-  return turn_check::covers(certificate, check_a, body_a, check_b, body_b, from, to);
+  return turn_check::covers(certificate, check_a, body_a, check_b, body_b, std::max(a.start, b.start),
+                            std::min(a.end, b.end));
 }
 
 }  // namespace exactvo::geometry

@@ -187,6 +187,7 @@ KeptGap GapKeeper::keep(const GapToKeep& q) {
     double low = 0.0, high = left;
     while (high - low > kFineShare * q.duration) {
       const double middle = 0.5 * (low + high);
+      if (!(low < middle && middle < high)) break;  // a share of a tiny duration is 0
       (course.least_within(middle) >= q.required ? low : high) = middle;
     }
     if (low <= kLeastShare * q.duration) break;

@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/turning.h"
+#include "motions/turning_parts.h"
 
 namespace exactvo::geometry {
 namespace turning_pairs {
@@ -36,23 +36,18 @@ constexpr int kMostDescents = 64, kDescentsOfOneInVain = 16;
 /// A share of the time: so near to the moment of the least gap there is no other one to be sought.
 constexpr double kSameDip = 0x1p-10;
 
-struct Part {
-  std::vector<Vec2> corners;  ///< once round, counter-clockwise
-  double radius = 0.0;
-};
-
 /// A body as it stands at a moment, seen from where the first body's motion begins, and how it goes on.
 struct Mover {
   Vec2 at;
   Twist twist;
-  std::vector<Part> parts;
+  RigidBody parts;  ///< corners once round, counter-clockwise
 };
 
 Mover after(Mover m, double time) {
   const Displacement d = displacement_after(m.twist, time);
   m.at += d.by;
   m.twist.velocity = d.turned(m.twist.velocity);
-  for (Part& part : m.parts)
+  for (RoundedPolygon& part : m.parts)
     for (Vec2& corner : part.corners) corner = d.turned(corner);
   return m;
 }
@@ -63,30 +58,9 @@ Mover back_in_time(Mover m, double time) {
   return m;
 }
 
-std::vector<Part> parts_of(const RigidBody& body) {
+RigidBody parts_of(const RigidBody& body) {
   EXACTVO_REQUIRE(!body.empty(), "no parts");
-  std::vector<Part> parts;
-  for (const RoundedPolygon& part : body) {
-    EXACTVO_REQUIRE(part.radius >= 0.0 && std::isfinite(part.radius), hex_text(part.radius));
-    EXACTVO_REQUIRE(!part.corners.empty() && std::all_of(part.corners.begin(), part.corners.end(), is_finite),
-                    excerpt(part.corners));
-    parts.push_back({convex_hull(part.corners).vertices, part.radius});
-    EXACTVO_REQUIRE(parts.back().radius > 0.0 || parts.back().corners.size() > 2, excerpt(part.corners));
-  }
-  return parts;
-}
-
-void require_motion(const TurningMotion& m) {
-  EXACTVO_REQUIRE(std::isfinite(m.start) && std::isfinite(m.end) && m.start <= m.end,
-                  hex_text(m.start) + " " + hex_text(m.end));
-  EXACTVO_REQUIRE(is_finite(m.at) && is_finite(m.twist.velocity) && std::isfinite(m.twist.turn),
-                  excerpt({m.at, m.twist.velocity}));
-}
-
-double extent_of(const Part& part) {
-  double most = 0.0;
-  for (const Vec2 c : part.corners) most = std::max(most, norm(c));
-  return most;
+  return turned::hulls_of(body);
 }
 
 /// What a search over a span of time finds of one pair of parts.
@@ -110,7 +84,8 @@ class Span {
   Span(Mover a, Mover b, double duration) : a_(std::move(a)), b_(std::move(b)), duration_(duration) {
     double extent = 0.0;
     for (const Mover* m : {&a_, &b_})
-      for (const Part& part : m->parts) extent = std::max(extent, extent_of(part) + part.radius);
+      for (const RoundedPolygon& part : m->parts)
+        for (const Vec2 c : part.corners) extent = std::max(extent, norm(c) + part.radius);
     angle_ = (std::fabs(a_.twist.turn) + std::fabs(b_.twist.turn)) * duration;
     way_ = (norm(a_.twist.velocity) + norm(b_.twist.velocity)) * duration + angle_ * extent;
     size_ = norm(b_.at - a_.at) + way_ + 4.0 * extent;
@@ -145,7 +120,7 @@ class Span {
 
  private:
   GapToKeep question(const Pair& pair, double time, double duration, double required) {
-    const auto place = [&](const Mover& m, const Part& part, std::vector<Vec2>& corners) {
+    const auto place = [&](const Mover& m, const RoundedPolygon& part, std::vector<Vec2>& corners) {
       const Displacement d = displacement_after(m.twist, time);
       corners.clear();
       for (const Vec2 c : part.corners) corners.push_back(d.turned(c));
@@ -377,9 +352,9 @@ class Examination {
     if (encounter == Encounter::contact && !is_open) return {0.0, 0.0};
     double deepest = 0.0, shallow = kInfinity;
     for (const Pair& pair : pairs_) deepest = std::max(deepest, pair.reach);
-    for (const Part& part : a_.parts) shallow = std::min(shallow, part.radius);
+    for (const RoundedPolygon& part : a_.parts) shallow = std::min(shallow, part.radius);
     if (is_within)
-      for (const Part& part : a_.parts) deepest = std::max(deepest, part.radius);
+      for (const RoundedPolygon& part : a_.parts) deepest = std::max(deepest, part.radius);
     const double lowest = encounter == Encounter::clear ? 0.0 : -deepest;
     double certain = lowest;
     int descents = 0;
@@ -444,8 +419,8 @@ Standing standing_at(const TurningMotion& m, const RigidBody& body, double time)
 TurningVerdict examine(const TurningMotion& a, const RigidBody& body_a, const TurningMotion& b,
                        const RigidBody& body_b) {
   using namespace turning_pairs;
-  require_motion(a);
-  require_motion(b);
+  turned::require_drive(a);
+  turned::require_drive(b);
   const Window window{std::max(a.start, b.start), std::min(a.end, b.end)};
   if (window.from > window.to) return {{Encounter::clear, {kInfinity, kInfinity}, {}, {}, 0.0, {}}, false};
   if (window.from == window.to) {
@@ -480,7 +455,7 @@ TurningVerdict examine(const TurningMotion& a, const RigidBody& body_a, const Ob
 TurningVerdict examine(const TurningMotion& a, const RigidBody& body_a, const Obstacle& obstacle,
                        const std::vector<Segment>& edges) {
   using namespace turning_pairs;
-  require_motion(a);
+  turned::require_drive(a);
   if (a.start == a.end) {
     const Standing s = standing_at(a, body_a, a.start);
     return {examine(s.motion, s.body, obstacle), false};
