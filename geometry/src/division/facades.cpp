@@ -31,12 +31,6 @@ std::vector<Vec2> without_repeats(std::vector<Vec2> points) {
   return points;
 }
 
-Course open_course(const std::vector<Vec2>& points) {
-  Course course;
-  course.points = without_repeats(points);
-  return course;
-}
-
 Course closed_course(const Ring& ring) {
   Course course;
   course.points = without_repeats(ring);
@@ -48,7 +42,8 @@ Course closed_course(const Ring& ring) {
 }
 
 std::vector<Course> courses_of(const Obstacle& obstacle) {
-  if (const auto* polyline = std::get_if<Polyline>(&obstacle)) return {open_course(polyline->points)};
+  if (const auto* polyline = std::get_if<Polyline>(&obstacle))
+    return {Course{without_repeats(polyline->points), false, {}}};
   const auto& polygon = std::get<Polygon>(obstacle);
   std::vector<Course> courses = {closed_course(polygon.outer)};
   for (const Ring& hole : polygon.holes) courses.push_back(closed_course(hole));

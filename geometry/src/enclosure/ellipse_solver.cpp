@@ -295,10 +295,6 @@ EllipseFrame composed(const EllipseFrame& outer, const EllipseFrame& inner) {
   return f;
 }
 
-bool all_in_box(const std::vector<Vec2>& points, double half_height) {
-  return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return std::fabs(p.y) <= half_height; });
-}
-
 // Three points whose triangle is about the largest, weighted alike: where the dual's arithmetic says nothing.
 std::vector<WeightedPoint> support_of_flat(const std::vector<Vec2>& points) {
   const Vec2 p = farthest_from(points.front(), points);
@@ -376,7 +372,8 @@ EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points) {
   constexpr double kFlat = 0x1p-26;  // squares of it still count beside 1
   const EllipseFrame outer = unit_box_frame(points);
   const std::vector<Vec2> in_box = into(outer, points);
-  if (all_in_box(in_box, kFlat)) return {outer, support_of_flat(points)};
+  const bool is_flat = std::all_of(in_box.begin(), in_box.end(), [](Vec2 p) { return std::fabs(p.y) <= kFlat; });
+  if (is_flat) return {outer, support_of_flat(points)};
   const Dual dual(in_box);
   const EllipseFrame inner = frame_of_moments(dual.moments());
   if (!is_sound(inner)) return {outer, support_of_flat(points)};

@@ -296,12 +296,6 @@ bool is_too_near(const std::vector<Vec2>& hull, const FitGoal& want, double size
   return locate({ConvexPolygon{hull}, {}, std::max(reach, 0.0)}, end) != Place::outside;
 }
 
-FitGoal seen_from(Vec2 origin, FitGoal want) {
-  want.start = want.start - origin;
-  want.goal = want.goal - origin;
-  return want;
-}
-
 /// The area of hull (+) D(0, r): A + P r + pi r^2.
 double grown_area(const std::vector<Vec2>& hull, double r) {
   double twice_area = 0.0;
@@ -345,7 +339,9 @@ class LocalFit {
   }
 
   std::optional<Ellipse> operator()(const FitGoal& want) {
-    const FitGoal local = seen_from(hull_.front(), want);
+    FitGoal local = want;
+    local.start -= hull_.front();
+    local.goal -= hull_.front();
     if (is_too_near(memory_.points, local, size_, local.start) || is_too_near(memory_.points, local, size_, local.goal))
       return std::nullopt;
     if (!coarse_) {

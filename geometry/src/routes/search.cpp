@@ -108,7 +108,8 @@ bool WaySearch::search(Vec2 s, const std::vector<int>& starts, Vec2 t, Way& way)
       if (number < 0) return false;
     }
     fresh_ = nodes_.size();
-    if (is_outdone(nodes_[number])) continue;
+    const Node& node = nodes_[number];
+    if (node.corner >= 0 && is_outdone_at(node.corner, node.length, node.root_size)) continue;
     if (is_goal(nodes_[number].cell)) {
       trace(number, t, way);
       // Portals that rounding has shut were opened by up to twice the slack.
@@ -151,10 +152,6 @@ int WaySearch::next_from_queue(double& bound) {
   queue_.pop_back();
   bound = best;
   return number;
-}
-
-bool WaySearch::is_outdone(const Node& node) const {
-  return node.corner >= 0 && is_outdone_at(node.corner, node.length, node.root_size);
 }
 
 /// The corner was reached before on a shorter way; or another corner round the same vertex was, so much earlier that

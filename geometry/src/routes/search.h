@@ -115,7 +115,6 @@ class WaySearch {
   void turn(const Node& node, int parent, bool round_left, const Passage& p, const Sight& seen);
   void queue_fresh(Vec2 t);
   int next_from_queue(double& bound);
-  bool is_outdone(const Node& node) const;
   bool is_outdone_at(int corner, double length, double size) const;
   bool may_pass(const Passage& p, int from) const {
     return !p.leads_into_dead_end || allowed_.find(p.to) != nullptr || plan_.way_out(from) == p.to;

@@ -60,16 +60,12 @@ void for_each_edge(const Polyline& polyline, const Visit& visit) {
   for (std::size_t i = 1; i < points.size(); ++i) visit(Segment{points[i - 1], points[i]});
 }
 
-template <class Shape, class Query>
-double least_edge_distance(const Shape& shape, const Query& query) {
-  double least = kInfinity;
-  for_each_edge(shape, [&](const Segment& edge) { least = std::min(least, distance(edge, query)); });
-  return least;
-}
-
 template <class Query>
 double edge_distance(const Obstacle& obstacle, const Query& query) {
-  return std::visit([&](const auto& shape) { return least_edge_distance(shape, query); }, obstacle);
+  double least = kInfinity;
+  const auto look_at = [&](const Segment& edge) { least = std::min(least, distance(edge, query)); };
+  std::visit([&](const auto& shape) { for_each_edge(shape, look_at); }, obstacle);
+  return least;
 }
 
 bool is_inside(const Obstacle& obstacle, Vec2 x) {

@@ -13,10 +13,6 @@
 namespace exactvo::geometry {
 namespace {
 
-bool all_finite(const std::vector<Vec2>& points) {
-  return std::all_of(points.begin(), points.end(), [](Vec2 p) { return is_finite(p); });
-}
-
 bool valid(const Disc& d) {
   return is_finite(d.center) && std::isfinite(d.radius) && d.radius >= 0.0;
 }
@@ -34,7 +30,8 @@ bool bounds_a_convex_set(const std::vector<Vec2>& vertices) {
 }
 
 bool valid(const ConvexPolygon& p) {
-  return !p.vertices.empty() && all_finite(p.vertices) && bounds_a_convex_set(p.vertices);
+  return !p.vertices.empty() && std::all_of(p.vertices.begin(), p.vertices.end(), is_finite) &&
+         bounds_a_convex_set(p.vertices);
 }
 bool valid(const Ellipse& e) {
   return is_finite(e.center) && std::isfinite(e.l11) && std::isfinite(e.l21) && std::isfinite(e.l22);
