@@ -45,16 +45,6 @@ AlgebraicDirection direction_of(const RationalVector& v) {
   return direction_of(rational_root(w.y / w.x), k);
 }
 
-int turn_sign(const AlgebraicValue& a, const RationalVector& v) {
-  const RationalVector w = turned(v, -a.quarter_turns);
-  return linear_sign(a.slope, w.y, -w.x);
-}
-
-int along_sign(const AlgebraicValue& a, const RationalVector& v) {
-  const RationalVector w = turned(v, -a.quarter_turns);
-  return linear_sign(a.slope, w.x, w.y);
-}
-
 }  // namespace detail
 
 using detail::value_of;
@@ -129,11 +119,13 @@ Sign turn(const AlgebraicDirection& a, const AlgebraicDirection& b) {
 }
 
 Sign turn(const AlgebraicDirection& a, Vec2 v) {
-  return static_cast<Sign>(turn_sign(value_of(a), checked(v)));
+  const detail::RationalVector w = detail::turned(checked(v), -a.quarter_turns());
+  return static_cast<Sign>(detail::linear_sign(value_of(a).slope, w.y, -w.x));
 }
 
 Sign along(const AlgebraicDirection& a, Vec2 v) {
-  return static_cast<Sign>(along_sign(value_of(a), checked(v)));
+  const detail::RationalVector w = detail::turned(checked(v), -a.quarter_turns());
+  return static_cast<Sign>(detail::linear_sign(value_of(a).slope, w.x, w.y));
 }
 
 }  // namespace exactvo::vo

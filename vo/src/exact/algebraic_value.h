@@ -39,8 +39,4 @@ RationalVector turned(const RationalVector& v, int k);
 AlgebraicDirection direction_of(const RationalVector& v);
 AlgebraicDirection direction_of(Root slope, int quarter_turns);
 
-/// The signs of cross(a, v) and dot(a, v).
-int turn_sign(const AlgebraicValue& a, const RationalVector& v);
-int along_sign(const AlgebraicValue& a, const RationalVector& v);
-
 }  // namespace exactvo::vo::detail

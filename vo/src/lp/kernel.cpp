@@ -57,10 +57,6 @@ double disc_for_kernel(const Problem& problem, double beyond_data) {
   return bound_is_finite(b) ? kBeyondBox * std::hypot(b.box_x, b.box_y) : beyond_data * largest_speed(problem);
 }
 
-Vec2 multiplied(Vec2 v, int exponent) {
-  return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent)};
-}
-
 /// The normal of a half-plane, of about unit length.
 Vec2 unit_normal(const HalfPlane& h, double& length) {
   const bool is_unit = std::abs(squared_norm(h.normal) - 1.0) <= kUnitLength;
@@ -146,7 +142,8 @@ class Kernel {
       else if (std::isinf(problem_.bound.disc))
         return false;
     }
-    s.velocity = into_box(multiplied(s.velocity, exponent_), problem_.bound);
+    s.velocity = {std::ldexp(s.velocity.x, exponent_), std::ldexp(s.velocity.y, exponent_)};
+    s.velocity = into_box(s.velocity, problem_.bound);
     return true;
   }
 
