@@ -270,7 +270,8 @@ TEST(EveryKind, WithoutAFiniteBoundIsRefusedForALinearObjective) {
   for (const ProblemKind& kind : refused_kinds()) EXPECT_THROW(solve(random_problem(kind, random)), std::logic_error);
 }
 
-// The centre of the box was called optimal: a search to an infinite end of a line, which no disc cut off.
+// The solver once called the centre of the box optimal: it searched to an infinite end of a line, where no disc ends
+// it.
 TEST(Farthest, ReachesTheCornerOfABoxWithoutADisc) {
   Problem p;
   p.objective = Objective::farthest;

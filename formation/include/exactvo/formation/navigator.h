@@ -60,8 +60,8 @@ struct NavigatorSetup {
   /// step and the same braking time, each knows the exact velocities of the others, and nothing else moves.
   std::optional<double> acceleration = {};
   /// s: as of a Scenario; by default the usual one with an acceleration or a drive, and then neighbours of another
-  /// max_speed are refused, since theirs would be another. Given without either, the velocity jumps, and half-planes
-  /// are those that robots which brake rely on.
+  /// max_speed are refused, since theirs would be another. If it is given without either, the velocity jumps, and
+  /// half-planes are those on which robots rely that brake.
   std::optional<double> braking_time = {};
   /// Two wheels: `body_radius` and `max_wheel_speed` stand in place of `radius` and `max_speed`; `axle` and `heading`
   /// come with every decision. Goals are of the reference point. What `acceleration` requires of all robots holds too.
