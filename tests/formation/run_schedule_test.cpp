@@ -26,6 +26,18 @@ TEST(RunSchedule, ATimeBetweenRowsGivesTheRowBefore) {
   EXPECT_NEAR(recording.steps[recording.steps.size() - 2].time, 1.3, 1e-12);
 }
 
+// A number of rows that no integer holds became row 0.
+TEST(RunSchedule, ATimeFarBeyondTheRunDoesNotStopIt) {
+  const Scenario scene = test::paper_scene("A2");
+  const std::size_t whole = simulate(scene, {}).steps.size();
+  ASSERT_GT(whole, 100u);
+  for (const double time : {1e6, 1e19, 1e300}) {
+    SimulationOptions options;
+    options.stop_at = time;
+    EXPECT_EQ(simulate(scene, options).steps.size(), whole) << time;
+  }
+}
+
 TEST(RunSchedule, TheLastDecisionKeepsEveryHalfPlane) {
   const Scenario scene = test::paper_scene("A2");
   SimulationOptions all;

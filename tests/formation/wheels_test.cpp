@@ -98,6 +98,18 @@ TEST(Wheels, Theorem1_ThePolygonLiesInTheSet) {
   EXPECT_GE(beyond_disc, 200);
 }
 
+// A step that takes next to nothing of the velocity needs the most chords; their number was infinite, and became the
+// fewest.
+TEST(Wheels, AVeryLongBrakingTimeMakesTheFinestPolygon) {
+  const auto sides = [](double braking_time) {
+    std::vector<geometry::HalfPlane> set;
+    WheelLimits(burger(), 0.05, braking_time).half_planes({1.0, 0.0}, {}, {}, set);
+    return set.size();
+  };
+  EXPECT_GT(sides(1e6), 200u);
+  EXPECT_EQ(sides(1e18), sides(1e6));
+}
+
 /// End point, heading, stray and wheels of a constant twist.
 TEST(Wheels, Theorem2_AConstantTwistTakesTheReferencePointThere) {
   test::SeededRandom random(test::seed_of_run(2));
@@ -226,9 +238,9 @@ TEST(Wheels, BurgersOnACircleArriveInTimeWithNothingRelaxed) {
     std::uint64_t seed = 5;
     bool pillars = false;
   };
-  for (const Case c : {Case{4, 1.5, false, 14.7}, Case{12, 2.2, false, 24.35}, Case{12, 2.2, true, 25.95},
-                       Case{12, 2.2, true, 25.95, 6}, Case{12, 2.2, true, 25.95, 7},
-                       Case{12, 2.2, false, 38.0, 5, true}}) {
+  for (const Case c :
+       {Case{4, 1.5, false, 14.7}, Case{12, 2.2, false, 24.35}, Case{12, 2.2, true, 25.95},
+        Case{12, 2.2, true, 25.95, 6}, Case{12, 2.2, true, 25.95, 7}, Case{12, 2.2, false, 38.0, 5, true}}) {
     Scenario s = burgers_on_circle(c.robots, c.radius, c.turned, c.seed);
     if (c.pillars) add_pillars(s);
     const datasets::RecordingFile file = recorded(s);

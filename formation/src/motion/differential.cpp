@@ -184,8 +184,8 @@ void WheelLimits::make_polygon(double braking_time) {
   const double touches = std::acos(side / apex), arc = 2.0 * geometry::kPi - 2.0 * touches;
   const double left = 1.0 - step_ / braking_time;
   // An odd number: with a corner straight behind, a robot that is to turn round would back up instead.
-  const int needed = static_cast<int>(std::ceil(0.5 * arc / std::acos(std::max(left, 0.5)))) + 1;
-  const int chords = std::clamp(needed | 1, kLeastChords, kMostChords);
+  const double needed = std::ceil(0.5 * arc / std::acos(std::max(left, 0.5))) + 1.0;  // infinite where left is 1
+  const int chords = static_cast<int>(std::clamp(needed, double{kLeastChords}, double{kMostChords})) | 1;
   std::vector<Vec2> corners{{apex, 0.0}};
   for (int k = 0; k <= chords; ++k) {
     const double angle = touches + arc * k / chords;

@@ -6,6 +6,7 @@
 /// when everything is kept. That robots have arrived or diverged ends a run too: the loops in robot_run.cpp and
 /// formation_run.cpp ask for that.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -52,8 +53,8 @@ class RunSchedule {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// The last row at or before `time`.
-  std::size_t row_of(double time) const { return static_cast<std::size_t>(time / dt_ + kSameRow); }
+  /// The last row at or before `time`, at most row 10^15, which no run has.
+  std::size_t row_of(double time) const { return static_cast<std::size_t>(std::min(time / dt_ + kSameRow, 1e15)); }
 
   /// Calls the caller's progress function where it is due; false when the caller wants to stop.
   bool beat(double time) {
