@@ -40,14 +40,10 @@ Step row_of(double time, const RelativeState& s, double push) {
   return row;
 }
 
-/// u of (15), signs corrected.
-Vec2 input(const FormationSpec& f, std::size_t i, const RelativeState& s, double push) {
-  return detail::consensus_input(f, s, i, -1.0) - f.gains.k3 * (s.velocity[i] - asked(i, push));
-}
-
 void advance(const FormationSpec& f, double push, RelativeState& s) {
-  std::vector<Vec2> u;
-  for (std::size_t i = 0; i < kRobots; ++i) u.push_back(input(f, i, s, push));
+  std::vector<Vec2> u;  // of (15), signs corrected
+  for (std::size_t i = 0; i < kRobots; ++i)
+    u.push_back(detail::consensus_input(f, s, i, -1.0) - f.gains.k3 * (s.velocity[i] - asked(i, push)));
   for (std::size_t i = 0; i < kRobots; ++i) {
     s.velocity[i] += kStep * u[i];
     s.position[i] += kStep * s.velocity[i];

@@ -16,10 +16,6 @@ namespace {
 constexpr geometry::Names<Pattern, 4> kNames{
     {{Pattern::line, "line"}, {Pattern::wedge, "wedge"}, {Pattern::circle, "circle"}, {Pattern::grid, "grid"}}};
 
-Vec2 on_line(std::size_t k) {
-  return {0.0, static_cast<double>(k)};
-}
-
 /// The point, then left and right in turn; each arm's neighbours 1 apart, 45 degrees back.
 Vec2 on_wedge(std::size_t k) {
   const double rank = static_cast<double>((k + 1) / 2) / std::sqrt(2.0);
@@ -43,7 +39,7 @@ Vec2 on_grid(std::size_t k, std::size_t n) {
 }
 
 Vec2 slot(Pattern pattern, std::size_t k, std::size_t n) {
-  if (pattern == Pattern::line) return on_line(k);
+  if (pattern == Pattern::line) return {0.0, static_cast<double>(k)};
   if (pattern == Pattern::wedge) return on_wedge(k);
   return pattern == Pattern::circle ? on_circle(k, n) : on_grid(k, n);
 }

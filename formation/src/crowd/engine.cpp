@@ -344,7 +344,8 @@ class CrowdEngine final : public CrowdCore {
     query.mx = &robots.mx[pack.begin];
     query.my = &robots.my[pack.begin];
     query.kind = s.found.limits.kind;
-    const LineFlags flags = make_lines(table_, query, robot_rows(s, slot));
+    const std::size_t at = kRobotRows + slot;
+    const LineFlags flags = make_lines(table_, query, LineRows<T>{s.x + at, s.y + at, s.c + at, kSlots});
     const std::uint32_t lanes = pack.lanes();
     pack.alone |= flags.coincident & lanes;
     pack.touching = flags.touching & lanes & ~pack.alone;
@@ -352,11 +353,6 @@ class CrowdEngine final : public CrowdCore {
     s.counts.neighbours += static_cast<std::size_t>(s.found.finds.neighbours);
     for (std::uint32_t alone = pack.alone; alone != 0; alone &= alone - 1)
       s.counts.neighbours -= static_cast<std::size_t>(pack.neighbours[__builtin_ctz(alone)]);
-  }
-
-  static LineRows<T> robot_rows(Scratch& s, std::size_t slot) {
-    const std::size_t at = kRobotRows + slot;
-    return {s.x + at, s.y + at, s.c + at, kSlots};
   }
 
   // --- Edges ---

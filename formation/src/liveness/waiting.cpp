@@ -28,14 +28,10 @@ bool is_held_up(const RobotStep& r, const Robot& robot) {
   return r.mode != Mode::arrived && wanted > nothing * nothing && dot(r.chosen, r.preferred) < kHeldBelow * wanted;
 }
 
-/// m: how near another robot must be to be waited for.
-double near_enough(const Scenario& scenario, std::size_t robot) {
-  return std::max(scenario.robots[robot].radius, detail::kNearMargins * scenario.margins.robot);
-}
-
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
 bool holds(const DecisionConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
-  return c.source == ConstraintSource::robot && !is_own_limit(c) && c.clearance < near_enough(scenario, robot) &&
+  const double near = std::max(scenario.robots[robot].radius, detail::kNearMargins * scenario.margins.robot);
+  return c.source == ConstraintSource::robot && !is_own_limit(c) && c.clearance < near &&
          (c.active || c.clearance <= detail::reach_of_pair(scenario.time_step, scenario.robots[robot].max_speed,
                                                            scenario.robots[c.index].max_speed)) &&
          (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);

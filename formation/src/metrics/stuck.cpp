@@ -40,10 +40,6 @@ Vec2 target_of(const RunEnd& end, std::size_t i) {
   return end.last.leader_position + end.run.offsets[i];
 }
 
-const RobotStep* last_decision(const RunEnd& end, std::size_t robot) {
-  return end.decided ? &end.decided->robots[robot] : nullptr;
-}
-
 bool is_static(const DecisionConstraint& c) {
   return c.source == ConstraintSource::enclosure || c.source == ConstraintSource::obstacle_edge;
 }
@@ -176,8 +172,8 @@ std::string moving_words(const RunEnd& end, const RobotStep& decision, const Stu
 }
 
 std::string cause_words(const RunEnd& end, const StuckReport& r) {
-  const RobotStep* decision = last_decision(end, r.robot);
-  if (!decision) return "no decision was taken";
+  if (!end.decided) return "no decision was taken";
+  const RobotStep* decision = &end.decided->robots[r.robot];
   if (decision->mode == Mode::staying)
     return (is_at_rest(end, r) ? "it stays, since " : "it stops, since ") +
            why_it_stays(end.scenario, *end.decided, r.robot);

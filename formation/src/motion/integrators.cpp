@@ -25,26 +25,11 @@ struct Tracking {
   }
 };
 
-BodyState closed_form(const BodyState& s, Vec2 w, const Decay& decay) {
-  const Vec2 gap = s.velocity - w;
-  const double lag = decay.settled / decay.gain;
-  return {s.position + decay.duration * w + lag * gap, w + decay.left * gap};
-}
-
-State pack(const BodyState& s) {
-  return {s.position.x, s.position.y, s.velocity.x, s.velocity.y};
-}
-
-template <typename S>
-BodyState unpack(const S& s) {
-  return {{s[0], s[1]}, {s[2], s[3]}};
-}
-
 template <typename Stepper>
 BodyState fixed(Stepper stepper, const BodyState& s, const Tracking& system, double dt) {
-  State state = pack(s);
+  State state{s.position.x, s.position.y, s.velocity.x, s.velocity.y};
   stepper.do_step(system, state, 0.0, dt);
-  return unpack(state);
+  return {{state[0], state[1]}, {state[2], state[3]}};
 }
 
 }  // namespace
@@ -60,7 +45,9 @@ BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked,
     case Integrator::rk4:
       return fixed(odeint::runge_kutta4<State>{}, state, system, dt);
   }
-  return closed_form(state, tracked, decay);
+  const Vec2 gap = state.velocity - tracked;
+  const double lag = decay.settled / decay.gain;
+  return {state.position + decay.duration * tracked + lag * gap, tracked + decay.left * gap};
 }
 
 MotionLaw motion_of(Integrator integrator) {

@@ -44,15 +44,11 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
   return targets;
 }
 
-bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
-  return signed_distance(o, t.place) + t.reach < obstacle_radius(robot);
-}
-
 /// Those that block a target, ascending.
 std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, const Target& t) {
   std::vector<std::size_t> found;
   for (const std::size_t k : boxes.near(t.place, obstacle_radius(robot)))
-    if (is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
+    if (signed_distance(s.obstacles[k], t.place) + t.reach < obstacle_radius(robot)) found.push_back(k);
   return found;
 }
 
@@ -82,29 +78,30 @@ std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes
   return std::nullopt;
 }
 
-/// The first ones: of many robots that share a goal each pair would be named.
+/// Of pairs this many are named, since of many robots that share a goal each pair would be, then how many more.
+constexpr std::size_t kPairsNamed = 10;
+void tell_more(std::size_t pairs, const std::string& words, std::vector<std::string>& out) {
+  if (pairs > kPairsNamed) out.push_back(geometry::counted(pairs - kPairsNamed, "more pair") + words);
+}
+
 void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
-  constexpr std::size_t kNamed = 10;
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < last.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double room = norm(last[i].place - last[j].place) + last[i].reach + last[j].reach;
       const double radii = s.robots[i].radius + s.robots[j].radius;
-      if (!(room < radii) || ++pairs > kNamed) continue;
+      if (!(room < radii) || ++pairs > kPairsNamed) continue;
       const auto [have, need] = geometry::told_apart(room, radii);
       out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots: " + have +
                     " m, and their radii take " + need + " m");
     }
   }
-  if (pairs > kNamed)
-    out.push_back(geometry::counted(pairs - kNamed, "more pair") + (s.formation ? " of slots" : " of goals") +
-                  " too near to each other");
+  tell_more(pairs, std::string(s.formation ? " of slots" : " of goals") + " too near to each other", out);
 }
 
 /// Last goals where there is room for both, but not with the margin between them, also where they stand aside within
 /// reach of their goals: the second to come finds the first one too near.
 void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
-  constexpr std::size_t kNamed = 10;
   std::size_t pairs = 0;
   const std::vector<Vec2> places = s.liveness == Liveness::off ? std::vector<Vec2>{} : last_places(s, room_at_ends(s));
   for (std::size_t i = 0; i < last.size(); ++i) {
@@ -112,16 +109,14 @@ void warn_of_near_pairs(const Scenario& s, const std::vector<Target>& last, std:
       const double radii = s.robots[i].radius + s.robots[j].radius, apart = norm(last[i].place - last[j].place);
       const double aside = places.empty() ? apart : norm(places[i] - places[j]);
       if (are_too_near(s.robots[i], s.robots[j], s.arrival_tolerance) || !leave_no_room(s, i, j, aside) ||
-          ++pairs > kNamed)
+          ++pairs > kPairsNamed)
         continue;
       const auto [have, need] = geometry::told_apart(apart, radii + s.margins.robot);
       out.push_back(last[i].name + ", and " + last[j].name + ", are " + have + " m apart, and radii and margin take " +
                     need + " m: the second to come finds no room");
     }
   }
-  if (pairs > kNamed)
-    out.push_back(geometry::counted(pairs - kNamed, "more pair") +
-                  " of goals nearer to each other than radii and margin take");
+  tell_more(pairs, " of goals nearer to each other than radii and margin take", out);
 }
 
 /// Goals on the way where another robot is to rest: in its last goal it leaves no room there. By plans it makes way and
@@ -143,12 +138,9 @@ void warn_of_goals_on_the_way(const Scenario& s, std::size_t i, const std::vecto
 
 /// Robots that have to pass each other and cannot; the first ones.
 void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
-  constexpr std::size_t kNamed = 10;
   const std::vector<NoPassing> proofs = robots_without_passing_by_plan(s);
-  for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
-  if (proofs.size() > kNamed)
-    out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +
-                  " of robots without room to pass each other");
+  for (std::size_t k = 0; k < std::min(kPairsNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
+  tell_more(proofs.size(), " of robots without room to pass each other", out);
 }
 
 void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
@@ -270,10 +262,15 @@ void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, st
 
 // --- What a formation's controller follows too slowly ---
 
+double fastest_of(const std::vector<Robot>& robots) {
+  double fastest = 0.0;
+  for (const Robot& robot : robots) fastest = std::max(fastest, robot.max_speed);
+  return fastest;
+}
+
 /// m/s: how fast two robots of a formation go past each other at most, each closing in on its slot.
 double passing_speed(const Scenario& s, const ControllerOptions& options) {
-  double fastest = 0.0;
-  for (const Robot& robot : s.robots) fastest = std::max(fastest, robot.max_speed);
+  const double fastest = fastest_of(s.robots);
   return 2.0 * (options.saturation ? std::min(fastest, s.formation->catch_up_speed) : fastest);
 }
 
@@ -294,9 +291,7 @@ void warn_of_lag(const Scenario& s, const ControllerOptions& options, std::vecto
 void warn_of_bound(const Scenario& s, const ControllerOptions& options, std::vector<std::string>& out) {
   const double bound = options.acceleration_bound;
   if (!(bound > 0.0)) return;
-  double fastest = 0.0;
-  for (const Robot& robot : s.robots) fastest = std::max(fastest, robot.max_speed);
-  const double stops_in = fastest / bound;
+  const double stops_in = fastest_of(s.robots) / bound;
   if (stops_in <= s.horizons.least) return;
   out.push_back("acceleration_bound = " + number_text(bound, 3) + " m/s^2: a robot takes " + number_text(stops_in, 3) +
                 " s to stop, longer than horizons.least, " + number_text(s.horizons.least, 3) +

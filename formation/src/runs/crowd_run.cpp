@@ -153,7 +153,7 @@ class CrowdSteps final : public Stepper {
     if (journeys_.has_claims()) look_at_claims();
     if (reservations_) reserve();
     for (std::size_t i = own_begin(); i < own_end(); ++i)
-      preferred_[i] = has_reserved(i) ? reservations_->preferred()[i] : preferred_of(i);
+      preferred_[i] = reservations_ && reservations_->reserved()[i] ? reservations_->preferred()[i] : preferred_of(i);
     if (options_.steering)
       steer_by(options_.steering, {own_begin(), own_end(), report_.time, at_, velocity_}, preferred_);
     // All preferred velocities to all.
@@ -411,8 +411,6 @@ class CrowdSteps final : public Stepper {
     if (reservations_->has_changed()) reserved_ = report_.steps;
     crowd_.set_reservations(reservations_->places(), reservations_->reserved());
   }
-
-  bool has_reserved(std::size_t i) const { return reservations_ && reservations_->reserved()[i] != 0; }
 
   RobotUnderWay under_way(std::size_t i) const {
     const Journey& j = journeys_[i];

@@ -16,12 +16,8 @@ namespace {
 
 using geometry::norm;
 
-/// What robots keep anyway, so that a plan can begin from wherever half-planes let them go.
-double gap_of(const Margins& margins) {
-  return std::max(kContactSkin, std::min(margins.robot, margins.obstacle));
-}
-
-/// Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to each other.
+/// Of the gap that robots keep. Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to
+/// each other.
 constexpr double kShareOfGap = 0.25;
 
 /// A share of the tolerance: a robot that ends as near beside its slot counts as there.
@@ -55,7 +51,8 @@ SlotPlans::SlotPlans(const Scenario& scenario, const DecisionRules& rules, std::
       offsets_(std::move(offsets)),
       leader_arrival_(detail::leader_arrival(scenario.formation->leader)),
       tolerance_(scenario.arrival_tolerance),
-      gap_(gap_of(rules.margins)),
+      // What robots keep anyway, so that a plan can begin from wherever half-planes let them go.
+      gap_(std::max(kContactSkin, std::min(rules.margins.robot, rules.margins.obstacle))),
       gap_to_obstacles_(kShareOfGap * gap_),
       larger_(larger_robots(scenario.robots, *scenario.formation, offsets_, gap_)),
       space_(scenario.obstacles),
