@@ -225,6 +225,27 @@ TEST(Cells, FarFromTheOriginOnlyWhatIsNearIsVisited) {
   }
 }
 
+/// A query of more cells than could be looked at, as about robots of micrometres within a margin of centimetres.
+TEST(Cells, ALargeBoxIsSeenInTheSameOrder) {
+  Cells<int> small(1e-9), large(0.25);
+  SeededRandom random(2612);
+  for (int k = 0; k < 200; ++k) {
+    const Vec2 place{0.25 * std::floor(random.uniform(-8.0, 8.0)), 0.25 * std::floor(random.uniform(-8.0, 8.0))};
+    small.add(place, k);
+    large.add(place, k);
+  }
+  const auto seen = [](const Cells<int>& cells, bool latest_first) {
+    std::vector<int> numbers;
+    const auto take = [&](int n) { numbers.push_back(n); };
+    const geometry::Box box{{-1.0, -1.0}, {1.1, 1.1}};
+    latest_first ? cells.for_each_in_latest_first(box, take) : cells.for_each_in(box, take);
+    return numbers;
+  };
+  EXPECT_GT(seen(small, false).size(), 10u);
+  EXPECT_EQ(seen(small, false), seen(large, false));
+  EXPECT_EQ(seen(small, true), seen(large, true));
+}
+
 /// Planning takes seconds, in which a user may want to stop.
 TEST(JointSearch, EndsWhenItIsStopped) {
   SeededRandom random(test::seed_of_run(37));

@@ -112,6 +112,18 @@ TEST(Properties, SurviveGeoPackageFlatGeobufAndCsv) {
   }
 }
 
+/// Which is a column of geometry in CSV alone.
+TEST(Properties, OfTheNameWktSurvive) {
+  for (const std::string format : {"gpkg", "fgb"}) {
+    const Workplace here;
+    here.write("a.geojson", R"({"type": "Feature", "properties": {"WKT": "x", "n": 1}, "geometry": {"type": "Polygon",
+      "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}})");
+    ASSERT_EQ(here.run("convert a.geojson out." + format).status, 0);
+    ASSERT_EQ(here.run("convert out." + format + " back.geojson").status, 0);
+    EXPECT_EQ(features_of(here, "back.geojson").at(0).at("properties").at("WKT"), "x") << format;
+  }
+}
+
 TEST(Properties, AreNamedWhereTheFormatHasNoPlaceForThem) {
   const Workplace here;
   here.write("town.geojson", kTown);

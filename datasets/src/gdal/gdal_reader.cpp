@@ -373,7 +373,7 @@ class VectorReader {
   FeatureProperties properties_of(const Item& item) const {
     if (!out_.options().keep_properties) return {};
     if (geojson_) return datasets::properties_of(item.record->json);
-    return datasets::properties_of(*item.feature, data_->GetDriverName() == std::string("GPKG"));
+    return datasets::properties_of(*item.feature, data_->GetDriverName());
   }
 
   bool is_shapefile_of_polygons() const {

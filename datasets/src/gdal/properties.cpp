@@ -118,15 +118,16 @@ void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth) {
   visitor.other(std::string("a ") + geometry.getGeometryName() + " skipped: no line or polygon");
 }
 
-FeatureProperties properties_of(const OGRFeature& feature, bool with_id) {
+FeatureProperties properties_of(const OGRFeature& feature, const std::string& driver) {
+  const bool is_csv = driver == "CSV";
   FeatureProperties properties;
-  if (with_id && feature.GetFID() != OGRNullFID) properties.id = std::to_string(feature.GetFID());
+  if (driver == "GPKG" && feature.GetFID() != OGRNullFID) properties.id = std::to_string(feature.GetFID());
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object();
   bool any = false;
   for (int k = 0; k < feature.GetFieldCount(); ++k) {
     const std::string name = feature.GetFieldDefnRef(k)->GetNameRef();
-    if (!feature.IsFieldSet(k) || is_column_of_geometry(feature, name)) continue;
+    if (!feature.IsFieldSet(k) || (is_csv && is_column_of_geometry(feature, name))) continue;
     json.key(name);
     append_value(json, feature, k);
     any = true;

@@ -33,19 +33,15 @@ class Cells {
   /// Calls visit(number) for every entry of a cell that meets the box; for some more than once.
   template <class Visit>
   void for_each_in(const geometry::Box& box, const Visit& visit) const {
-    for_each_cell(box, [&](const Cell& cell) {
-      const auto found = lists_.find(cell);
-      if (found == lists_.end()) return;
-      for (const Number number : found->second) visit(number);
+    for_each_list(box, [&](const std::vector<Number>& list) {
+      for (const Number number : list) visit(number);
     });
   }
   /// The same; of each cell the entry that was added last comes first.
   template <class Visit>
   void for_each_in_latest_first(const geometry::Box& box, const Visit& visit) const {
-    for_each_cell(box, [&](const Cell& cell) {
-      const auto found = lists_.find(cell);
-      if (found == lists_.end()) return;
-      for (auto entry = found->second.rbegin(); entry != found->second.rend(); ++entry) visit(*entry);
+    for_each_list(box, [&](const std::vector<Number>& list) {
+      for (auto entry = list.rbegin(); entry != list.rend(); ++entry) visit(*entry);
     });
   }
   /// As `for_each_in`, of cells about a place.
@@ -68,6 +64,26 @@ class Cells {
     const auto [high_x, high_y] = cell_of(box.high);
     for (std::int64_t y = low_y; y <= high_y; ++y)
       for (std::int64_t x = low_x; x <= high_x; ++x) visit(Cell{x, y});
+  }
+  /// Of the cells of the box that have one, row by row. Where the box has more cells than there are lists, as about
+  /// robots that are small beside a margin, it looks at the lists.
+  template <class Visit>
+  void for_each_list(const geometry::Box& box, const Visit& visit) const {
+    constexpr double kManyCells = 1024.0;
+    const auto [low_x, low_y] = cell_of(box.low);
+    const auto [high_x, high_y] = cell_of(box.high);
+    const double cells = (static_cast<double>(high_x) - static_cast<double>(low_x) + 1.0) *
+                         (static_cast<double>(high_y) - static_cast<double>(low_y) + 1.0);
+    if (cells <= std::max(kManyCells, static_cast<double>(lists_.size())))
+      return for_each_cell(box, [&](const Cell& cell) {
+        if (const auto found = lists_.find(cell); found != lists_.end()) visit(found->second);
+      });
+    std::vector<std::pair<std::int64_t, std::int64_t>> met;  // y, x
+    for (const auto& [cell, list] : lists_)
+      if (low_x <= cell.first && cell.first <= high_x && low_y <= cell.second && cell.second <= high_y)
+        met.emplace_back(cell.second, cell.first);
+    std::sort(met.begin(), met.end());
+    for (const auto& [y, x] : met) visit(lists_.at({x, y}));
   }
 
   double side_;

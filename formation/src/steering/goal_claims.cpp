@@ -10,21 +10,12 @@
 
 namespace exactvo::formation::detail {
 
-namespace {
-
-/// m: as far as is looked, or robots that are small beside the margin would have too many cells about them.
-double side_of_cells(double largest_radius, const RoomAtEnds& room) {
-  return 2.0 * (2.0 * largest_radius + room.margin);
-}
-
-}  // namespace
-
 GoalClaims::GoalClaims(const Scenario& scenario, const RoomAtEnds& room, double horizon)
     : scenario_(scenario),
       room_(room),
       horizon_(horizon),
       largest_(largest_radius(scenario.robots)),
-      claimed_(side_of_cells(largest_, room)),
+      claimed_(4.0 * largest_),
       robots_(scenario.robots.size()) {}
 
 /// The nearest of those in `others` that leave robot i no room in `place`; the first of several as near.
@@ -62,7 +53,7 @@ bool GoalClaims::look(std::vector<EndNow> now) {
   const std::size_t claims_before = claims_;
   bool has_changed = false;
   now_ = std::move(now);
-  Resting resting(side_of_cells(largest_, room_));
+  Resting resting(4.0 * largest_);
   const auto place_of = [&](std::size_t j) { return robots_[j].place; };
   for (std::size_t i = 0; i < now_.size(); ++i) {
     OfRobot& r = robots_[i];

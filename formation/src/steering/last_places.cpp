@@ -39,13 +39,13 @@ std::vector<std::vector<std::size_t>> by_goal(const Scenario& s) {
 /// Pairs that may come too near to each other where they stand aside, but for those whose goals are too near in any
 /// case. In order.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_to_part(const Scenario& s, const RoomAtEnds& room) {
-  const double most = 2.0 * most_moved(s), reach = 2.0 * largest_radius(s.robots) + room.margin + most;
+  const double largest = largest_radius(s.robots), most = 2.0 * most_moved(s);
   const std::vector<std::vector<std::size_t>> groups = by_goal(s);  // many may have one goal, which parts none of them
-  Cells<std::size_t> before(reach);
+  Cells<std::size_t> before(4.0 * largest);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Vec2 goal = s.robots[groups[g].front()].goals.back();
-    before.for_each_about(goal, reach, [&](std::size_t other) {
+    before.for_each_about(goal, 2.0 * largest + room.margin + most, [&](std::size_t other) {
       const double apart = norm(goal - s.robots[groups[other].front()].goals.back());
       for (const std::size_t i : groups[g])
         for (const std::size_t j : groups[other]) {
