@@ -30,7 +30,8 @@ Visitor taker_of_rings(DegreeBox& box);
 
 void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0);
 
-/// The fields of the feature; in a CSV without the column that its geometry was read from, in a GeoPackage with its number.
+/// The fields of the feature; in a CSV without the column that its geometry was read from, in a GeoPackage with its
+/// number.
 FeatureProperties properties_of(const OGRFeature& feature, const std::string& driver);
 
 /// What stands in the column that a CSV's geometries are taken from.
