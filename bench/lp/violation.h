@@ -16,7 +16,7 @@ namespace exactvo::bench {
 /// largest double for a velocity that is not finite.
 double worst_violation(const std::vector<lp::Constraint>& constraints, lp::Vec2 velocity);
 
-/// The same for the constraints and of the disc, |v| - disc, m/s. REQUIRES: a finite disc.
+/// The same for the constraints and the disc, |v| - disc, m/s. REQUIRES: a finite disc.
 double worst_breach(const lp::Problem& problem, lp::Vec2 velocity);
 
 }  // namespace exactvo::bench

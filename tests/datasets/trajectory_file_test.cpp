@@ -377,6 +377,9 @@ TEST(TrajectoryFile, AgentsOfPlansRestAtTheirGoalsUntilThePlanEnds) {
   for (const auto& [row, time] : {std::pair{3, 1.0}, {4, 2.0}, {5, 2.5}}) expect_row(c.rows[row], 0, time, 0.0, 1.0, 3);
   EXPECT_THAT(content_of("Agent 0: (0,0)->(0,1)\nAgent 1: (2,1)->(2,2)\n").file.notes, ElementsAre());
   EXPECT_EQ(refusal_of("schedule:\n  a: [{x: 0, y: 1, t: 0}]\n  b: [{x: 5, y: 1, t: 1e20}]\n").code(), DataCode::size);
+  const DataError much = refusal_of("schedule:\n  a: [{x: 0, y: 1, t: 0}]\n  b: [{x: 5, y: 1, t: 3000000}]\n");
+  EXPECT_EQ(much.code(), DataCode::size);
+  EXPECT_THAT(much.what(), HasSubstr("line 3"));
 }
 
 TEST(TrajectoryFile, ReadsVelocities) {

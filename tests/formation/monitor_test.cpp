@@ -197,7 +197,7 @@ TEST(Monitor, ArcThatLeavesAContactMayNotReturnToIt) {
     }
   }
   EXPECT_EQ(judged, 8);
-  // The same for a circle that leads away from a wall and back to it, and of a mover that stands.
+  // The same for a circle that leads away from a wall and back to it, and for a mover that stands.
   Monitor disc(setup_with(geometry::disc_body(0.3), {wall({{-10.0, 0.9}, {10.0, 0.9}})}));
   const Command circle = ahead(8.0, -4.0);
   const double share = disc.judge({{0.0, 0.7}, 0.0}, circle).share;

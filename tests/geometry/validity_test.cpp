@@ -292,6 +292,17 @@ TEST(Normalize, AHoleInARingAsHighAsAllDoubles) {
   }
 }
 
+TEST(Normalize, AHoleInARingThatIsNearlyFlat) {
+  const auto is_ok = [](double height) {
+    Ring outer;
+    for (int k = 0; k < 100; ++k) outer.push_back({1.0 * k, 0.0});
+    outer.push_back({99.0, height});
+    outer.push_back({0.0, height});
+    return normalize({outer, {{10.0, 0.0}, {11.0, 0.0}, {11.0, height}, {10.0, height}}}).ok();
+  };
+  for (const double height : {5e-324, 1e-323, 2e-308}) EXPECT_EQ(is_ok(height), is_ok(1.0)) << height;
+}
+
 double seconds_to_normalize(const std::vector<Ring>& rings) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_TRUE(normalize(rings).ok());

@@ -28,7 +28,7 @@ std::optional<GeoJsonFault> fault_of_file(const Json& members);
 /// The first fault of an entry among the features of a collection. None where there is no geometry, or an empty one. A
 /// point is no obstacle, but a malformed one may have been meant for something else.
 std::optional<GeoJsonFault> fault_of_entry(const Json& entry);
-/// The same for a record of a sequence, or of what a file holds alone.
+/// The same for a record of a sequence, or for the one that a file holds.
 std::optional<GeoJsonFault> fault_of_record(const Json& record);
 
 /// The geometry of a valid feature, or the record itself where that is a geometry. Null: none.

@@ -36,19 +36,20 @@ class PlanRows {
     out_.row(agent, time, at, line);
     if (agent >= last_.size()) last_.resize(agent + 1);
     last_[agent] = {time, at, line};
-    end_ = std::max(end_, time);
+    if (time > end_) end_ = time, end_line_ = line;
+    rows_ += 1.0;
   }
 
   /// A row for each step that an agent rests at its goal. REQUIRES: all steps have been added.
   void rest() {
-    constexpr double kMostRests = 0x1p26;  // rows, each of which is kept in memory
+    const double most = std::max(0x1p21, 16.0 * rows_);  // each is kept in memory
     double rests = 0.0;
     for (const Step& last : last_)
       if (last.line > 0) rests += std::ceil(end_ - last.time);
     if (rests == 0.0) return;
-    if (rests > kMostRests)
-      out_.refuse(DataCode::size, last_.front().line, number_text(rests) + " steps at goals until the plan ends",
-                  "at most " + number_text(kMostRests));
+    if (rests > most)
+      out_.refuse(DataCode::size, end_line_, number_text(rests) + " steps at goals until the plan ends",
+                  "at most " + number_text(most));
     for (std::size_t agent = 0; agent < last_.size(); ++agent) {
       const Step& last = last_[agent];
       if (last.line == 0) continue;
@@ -69,6 +70,8 @@ class PlanRows {
   TrajectorySink& out_;
   std::vector<Step> last_;  ///< of each agent
   double end_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t end_line_ = 0;
+  double rows_ = 0.0;  ///< of the file
 };
 
 /// The number at the beginning of a text, which is taken off.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entries of tables of whole numbers, one a lane. AVX2 has an instruction for it, which takes twice the time of the loads
-// on AMD's processors. Compiled once per SIMD target, hence the toggling guard.
+// Entries of tables of whole numbers, one for each lane. On AVX2 they are loaded one by one: the instruction that
+// gathers them takes twice as long on AMD's processors. Compiled once per SIMD target, hence the toggling guard.
 #if defined(EXACTVO_CROWD_ENTRIES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_CROWD_ENTRIES_H
 #undef EXACTVO_CROWD_ENTRIES_H

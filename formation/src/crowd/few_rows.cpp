@@ -86,8 +86,8 @@ class Robots {
     return {{number(1.0), number(0.0)}, number(-kInfinity), number(-1.0), number(-kInfinity)};
   }
 
-  /// The one that misses more; of those that miss as much, the one whose normal comes first: the order of rows depends on
-  /// how robots are divided among threads.
+  /// The one that misses more; of those that miss as much, the one whose normal comes first: the order of rows depends
+  /// on how robots are divided among threads.
   static HWY_INLINE void take(const Row& row, Row& most) {
     const M comes_first = hn::Or(hn::Lt(row.normal.x, most.normal.x),
                                  hn::And(hn::Eq(row.normal.x, most.normal.x), hn::Lt(row.normal.y, most.normal.y)));

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The motion nearest to a wish where one row binds or two, by KKT: a robot a SIMD lane, without branches that depend on
-/// rows, which processors do not foresee. Whether rows allow a motion is exact: all numbers are whole, and products
+/// The motion nearest to a wish where one row binds or two, by KKT: one robot in each SIMD lane. A robot alone takes
+/// branches that processors do not foresee. Whether rows allow a motion is exact: all numbers are whole, and products
 /// stay below 2^44. The way that is rounded is heuristic in the last digits, like the linear program; every target
 /// gives the same bits.
 
@@ -34,7 +34,8 @@ struct FewRows {
   alignas(64) double squared_way[kLanes];   ///< and no farther after
   alignas(64) double x[kMost][kLanes], y[kMost][kLanes], least[kMost][kLanes];
 
-  /// Of the next robot: (side normal).m >= its_least. False where there is no room.
+  /// Adds to the next robot the row (side normal).m >= its_least. False where there is no room. REQUIRES: robots <
+  /// kLanes.
   bool add(double side, double normal_x, double normal_y, double its_least) {
     const std::size_t k = count[robots];
     if (k == kMost) return false;
@@ -58,7 +59,8 @@ struct FewRows {
 /// rows bind, or the linear program decides.
 enum class Few { allowed, not_allowed, not_found };
 
-/// Of each robot, in arrays of kLanes. Exact where it is `allowed`. Leaves no robot in `rows`.
+/// Writes the answer for each robot into arrays of kLanes, `m` only where one was found. An answer `allowed` is exact.
+/// Leaves no robot in `rows`.
 void nearest_of_few(FewRows& rows, Few* found, Motion* m);
 
 }  // namespace exactvo::formation::crowd

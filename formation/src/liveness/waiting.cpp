@@ -17,7 +17,7 @@ namespace {
 using geometry::norm;
 
 // Shares of a robot's own fastest speed.
-constexpr double kWantsNothing = 1e-3;  ///< m/s: a robot that wants less is not held up
+constexpr double kWantsNothing = 1e-3;  ///< a robot that wants less is not held up
 /// A faster robot does not stand: a ring of robots that wait for each other may turn slowly, and get apart.
 constexpr double kMoves = 1.0 / 15.0;
 /// Robots of a chain that are named one by one.

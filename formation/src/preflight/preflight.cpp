@@ -78,7 +78,7 @@ std::optional<Vec2> warn_of_target(const Scenario& s, const ObstacleBoxes& boxes
   return std::nullopt;
 }
 
-/// Of pairs this many are named, since of many robots that share a goal each pair would be, then how many more.
+/// At most this many pairs are named; a line says how many more there are. Many robots with one goal make many.
 constexpr std::size_t kPairsNamed = 10;
 void tell_more(std::size_t pairs, const std::string& words, std::vector<std::string>& out) {
   if (pairs > kPairsNamed) out.push_back(geometry::counted(pairs - kPairsNamed, "more pair") + words);

@@ -16,8 +16,8 @@ namespace {
 
 using geometry::norm;
 
-/// Of the gap that robots keep. Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to
-/// each other.
+/// Share of the gap that robots keep. Plans also leave a share of the radii (sweeps.h), and slots may be as near to
+/// each other as the sum of both.
 constexpr double kShareOfGap = 0.25;
 
 /// A share of the tolerance: a robot that ends as near beside its slot counts as there.

@@ -65,8 +65,8 @@ class Cells {
     for (std::int64_t y = low_y; y <= high_y; ++y)
       for (std::int64_t x = low_x; x <= high_x; ++x) visit(Cell{x, y});
   }
-  /// Of the cells of the box that have one, row by row. Where the box has more cells than there are lists, as about
-  /// robots that are small beside a margin, it looks at the lists.
+  /// Calls visit(list) for the cells of the box that have entries, row by row. Where the box has more than kManyCells
+  /// cells, and more than there are lists (small robots with a large margin), it goes through the lists.
   template <class Visit>
   void for_each_list(const geometry::Box& box, const Visit& visit) const {
     constexpr double kManyCells = 1024.0;

@@ -2,6 +2,7 @@
 #include "exactvo/geometry/validity.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -149,8 +150,9 @@ class PointLocator {
 
  private:
   std::size_t slab_of(double y) const {
-    // Halves, since a difference may lie beyond the doubles.
-    const double share = (0.5 * y - 0.5 * box_.low.y) / (0.5 * box_.high.y - 0.5 * box_.low.y);
+    const double height = box_.high.y - box_.low.y;  // infinite where it lies beyond the doubles
+    const double share = std::isfinite(height) ? (y - box_.low.y) / height
+                                               : (0.5 * y - 0.5 * box_.low.y) / (0.5 * box_.high.y - 0.5 * box_.low.y);
     const auto last = static_cast<double>(slabs_.size() - 1);
     return static_cast<std::size_t>(std::min(std::max(share, 0.0) * static_cast<double>(slabs_.size()), last));
   }

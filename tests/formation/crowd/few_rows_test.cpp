@@ -181,7 +181,8 @@ TEST(FewRows, TheOrderOfRowsChangesNothing) {
   for (Wanted& w : many) std::reverse(w.rows.begin(), w.rows.end());
   expect_same(before, answers(many, FewRows::kLanes), "in another order");
   std::size_t changed = 0;
-  for (std::size_t k = 0; k < many.size(); ++k) changed += before[k].found != Few::not_found && before[k].m != many[k].wish;
+  for (std::size_t k = 0; k < many.size(); ++k)
+    changed += before[k].found != Few::not_found && before[k].m != many[k].wish;
   EXPECT_GT(changed, 4000U);
 }
 

@@ -99,7 +99,7 @@ function triangled(ctx, colours) {
 function worldLegend(element, colours, isServed, isCheck, hasMovers) {
   const entries = isCheck ? [['collision', plussed]] : [['goal', crossed(false)], ['goal out of reach', crossed(true)], ['route', stroked('text', 1.4, [8, 3, 2, 3])], ['path of a joint plan', stroked('text', 2.4, [2, 3])],
     ['enclosure that the robot sees', stroked('enclosure', 1.4, [5, 4])], ['facade, piece', stroked('enclosure', 1.4, [])],
-    ['obstacle that presses on the robot', stroked('active', 4, [])], ['to a robot that presses on it', arrowed('active', 1.4, [3, 3])], ['to a robot that it waits for', arrowed('bad', 3, [])],
+    ['obstacle that presses on the robot', stroked('active', 4, [])], ['from a robot to one that presses on it', arrowed('active', 1.4, [3, 3])], ['from a robot to one that it waits for', arrowed('bad', 3, [])],
     ['collision', plussed]];
   if (hasMovers) entries.push(['it stood and was hit', triangled]);
   if (isServed) entries.push(['drag it', squared]);
