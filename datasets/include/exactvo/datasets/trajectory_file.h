@@ -84,6 +84,7 @@ struct TrajectoryColumns {
 
 /// What the names of columns in a table say, as the header of CSV says it (docs/guide/check.md).
 struct TrajectoryHeader {
+  /// One that is known.
   struct Column {
     std::string meaning;  ///< t, frame, id, x, y, theta, vx, vy, qx, qy, qz or qw
     std::size_t at = 0;   ///< its place among the names
