@@ -121,8 +121,10 @@ class Campaign {
   static bool finishes(pid_t batch) {
     int status = 0;
     ::waitpid(batch, &status, 0);
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return has_finished(status);
   }
+  /// 1: some of the inputs were rejected.
+  static bool has_finished(int status) { return WIFEXITED(status) && WEXITSTATUS(status) <= 1; }
 
   enum class Strike { struck, too_late, failed };
 
@@ -137,7 +139,7 @@ class Campaign {
     }
     int status = 0;
     ::waitpid(batch, &status, 0);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Strike::too_late;
+    if (has_finished(status)) return Strike::too_late;
     // mpirun says by its status what signal its rank died of.
     const bool by_signal = plan_.ranks == 1 ? WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL
                                             : WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGKILL;
