@@ -25,6 +25,12 @@ struct Tracking {
   }
 };
 
+BodyState closed_form(const BodyState& s, Vec2 w, const Decay& decay) {
+  const Vec2 gap = s.velocity - w;
+  const double lag = decay.settled / decay.gain;
+  return {s.position + decay.duration * w + lag * gap, w + decay.left * gap};
+}
+
 template <typename Stepper>
 BodyState fixed(Stepper stepper, const BodyState& s, const Tracking& system, double dt) {
   State state{s.position.x, s.position.y, s.velocity.x, s.velocity.y};
@@ -45,9 +51,7 @@ BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked,
     case Integrator::rk4:
       return fixed(odeint::runge_kutta4<State>{}, state, system, dt);
   }
-  const Vec2 gap = state.velocity - tracked;
-  const double lag = decay.settled / decay.gain;
-  return {state.position + decay.duration * tracked + lag * gap, tracked + decay.left * gap};
+  return closed_form(state, tracked, decay);
 }
 
 MotionLaw motion_of(Integrator integrator) {
