@@ -442,6 +442,10 @@ TEST(NavigatorErrors, SetupsOutOfRange) {
         s.obstacles[0].shape = geometry::Polyline{{{0, 0}, {kNan, 1}}};
       },
       P::not_finite, "obstacle 0 vertex");
+  expect_setup_refused([](auto& s) { s.obstacles[0].disc = geometry::Disc{{kNan, 0}, 1.0}; }, P::not_finite,
+                       "obstacle 0 disc centre");
+  expect_setup_refused([](auto& s) { s.obstacles[0].disc = geometry::Disc{{3, 0}, -1.0}; }, P::out_of_range,
+                       "obstacle 0 disc radius");
   expect_refused([] { Navigator(by_a_block(), {}); }, P::no_goal, "goals");
   expect_refused([] { Navigator(by_a_block(), {{0, 0}, {kNan, 0}}); }, P::not_finite, "goal 1");
 }

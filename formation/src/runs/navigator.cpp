@@ -163,8 +163,13 @@ const NavigatorSetup& checked(const NavigatorSetup& setup, const std::vector<Vec
     refuse(Problem::out_of_range, "method", name(setup.method), "orca, ivo-edge, ivo-cluster or ivo");
   if (setup.neighbours > kMostNeighbours)
     refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
-  for (std::size_t k = 0; k < setup.obstacles.size(); ++k)
+  for (std::size_t k = 0; k < setup.obstacles.size(); ++k) {
     for (const Vec2 v : geometry::vertices_of(setup.obstacles[k].shape)) require_vector(v, "obstacle", k, "vertex");
+    if (const std::optional<geometry::Disc>& disc = setup.obstacles[k].disc) {
+      require_vector(disc->center, "obstacle", k, "disc centre");
+      require_positive(disc->radius, "obstacle", k, "disc radius");
+    }
+  }
   if (!setup.drive) require_none(field_problems(setup.radius, setup.max_speed));
   require_none(field_problems(rules_of(setup), setup.arrival_tolerance));
   if (setup.acceleration) require_positive(*setup.acceleration, nullptr, 0, "acceleration");
