@@ -751,7 +751,8 @@ HWY_NOINLINE bool run_copied(const Problem& problem, Solution& s) {
 
 bool run_plain_lines(const Problem& problem, Solution& s) {
   const std::size_t count = problem.constraints.size();
-  if (count == 0 || count > kFewLines) return count <= kMostCopied && run_copied<ManyLines, AnyCount>(problem, s);
+  // What was just stored is loaded by registers of the same width: a wider load waits until all stores are done.
+  if (count == 0 || count > kFewLines) return count <= kMostCopied && run_copied<FewLines, AnyCount>(problem, s);
   return count > 8 ? run_copied<FewLines, UpTo12>(problem, s) : run_copied<FewLines, UpTo8>(problem, s);
 }
 
