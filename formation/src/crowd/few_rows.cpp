@@ -47,9 +47,9 @@ struct Row {
 };
 
 /// As many robots as there are lanes, from `lane` on.
-class Robots {
+class RobotLanes {
  public:
-  Robots(const FewRows& rows, std::size_t lane, std::size_t count)
+  RobotLanes(const FewRows& rows, std::size_t lane, std::size_t count)
       : rows_(rows), lane_(lane), count_(count), wish_{load(rows.wish_x), load(rows.wish_y)} {}
 
   HWY_INLINE void find(Few* found, Motion* m) {
@@ -178,7 +178,7 @@ void search_rows(FewRows& rows, Few* found, Motion* m) {
         rows.x[row][k] = 1.0, rows.y[row][k] = 0.0;
         rows.least[row][k] = -kInfinity;
       }
-    Robots(rows, lane, most).find(found, m);
+    RobotLanes(rows, lane, most).find(found, m);
     std::fill(rows.count + lane, rows.count + lane + lanes, 0);
   }
   rows.robots = 0;

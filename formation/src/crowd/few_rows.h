@@ -23,7 +23,7 @@ inline Motion whole(double x, double y) {
   return {static_cast<std::int32_t>(nearest_whole(x)), static_cast<std::int32_t>(nearest_whole(y))};
 }
 
-/// The rows of up to kLanes robots, a robot a lane.
+/// The rows of up to kLanes robots. Each lane holds one robot.
 struct FewRows {
   static constexpr std::size_t kMost = 16, kLanes = 8;
 

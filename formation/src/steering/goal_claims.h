@@ -3,7 +3,7 @@
 
 /// \file
 /// Where ways end, at last goals (last_places.h) or as near to them as robots can get: places too near to each other
-/// for all robots that have them. The first robot there keeps its place for good; the others come beside it and stay
+/// for all robots that have them. The first robot there keeps its place for good; the others stop next to it and stay
 /// there, instead of pressing for it for ever.
 
 #include <cstddef>
@@ -64,7 +64,7 @@ class GoalClaims {
   };
   /// But for `has_come_to_rest`, `seen` and `end`, which follow.
   const std::vector<OfRobot>& remembered() const { return robots_; }
-  /// Goes on from there. REQUIRES: an entry a robot; a robot that has taken a place has a claim.
+  /// Goes on from there. REQUIRES: one entry for each robot; a robot that has taken a place has a claim.
   void remember(std::vector<OfRobot> robots);
 
  private:

@@ -33,7 +33,7 @@ class StraightWays {
   Stop end_at(Vec2 x) const;
 
   /// Whether the gate is strict Gabriel. The middle of any other narrow side may be off the way, or not free. Then
-  /// the way also crosses a narrower gate beside it.
+  /// the way also crosses a narrower gate next to it.
   bool is_gabriel(int portal) const;
 
   /// Points from which it is reached straight, farthest first; the last is the point itself.

@@ -21,8 +21,8 @@ struct Bounds {
   mpq_class low, high;
 };
 
-/// atan(t) / t by its series, |t| < 1: the terms fall and alternate in sign. Of a t with long digits that of a short
-/// one beside it; the derivative is below 1.
+/// atan(t) / t by its series, |t| < 1: the terms fall and alternate in sign. A t with many digits is rounded first; the
+/// derivative is below 1, so that the result moves by no more.
 inline Bounds arc_bounds(const mpq_class& t) {
   const mpq_class near(t.get_d()), off = abs(t - near), square = near * near;
   mpq_class power(1), sum(0), before(0);

@@ -79,7 +79,7 @@ using ObstacleId = std::uint32_t;
 /// Two wheels on an axle. What the crowd moves is the reference point of the robot, `reference` ahead of the axle's
 /// centre; it can go in any direction, and the heading follows as a trailer follows its coupling. A robot on wheels
 /// starts at rest and can always stop within a step. One that prefers to go straight back for ever stands in the end,
-/// since its heading becomes too uncertain (ADR 0022): prefer a direction a degree aside.
+/// since its heading becomes too uncertain (ADR 0022). Prefer a direction that differs by a degree.
 struct CrowdWheels {
   double reference = 0.0;         ///< m, at least max_speed times the time step and a sixteenth of the separation
   double wheel_separation = 0.0;  ///< m, > 0
